@@ -62,9 +62,18 @@ std::size_t position_of(Rows& rows, Index state_lags, Index input_lags, Index de
 }
 
 /// As many lags of the states as of the inputs, of those that are searched for.
-std::size_t position_of_equal(Rows& rows, Index lags, const SearchedLags& searched, const StructureScore& like) {
-  return position_of(rows, searched.state ? lags : like.state_lags, searched.input ? lags : like.input_lags,
-                     like.input_delay);
+std::size_t position_of_equal(Rows& rows, Index lags, Index delay, const SearchedLags& searched,
+                              const StructureScore& like) {
+  return position_of(rows, searched.state ? lags : like.state_lags, searched.input ? lags : like.input_lags, delay);
+}
+
+/// The delay of one linear motion, and the usual one: effects of an input that differ in sign between modes cancel in
+/// one model of all of them, which then takes a later sample of that input.
+std::vector<Index> delays_of(const StructureScore& linear, const SearchedLags& searched) {
+  constexpr Index usual = 1;
+  std::vector<Index> delays{linear.input_delay};
+  if (searched.delay && linear.input_delay != usual) delays.push_back(usual);
+  return delays;
 }
 
 Index memory_of(const StructureScore& s) { return std::max(s.state_lags, s.input_delay + s.input_lags - 1); }
@@ -74,13 +83,11 @@ void let_drifting_choose(const Recording& recording, const StructureInputs& inpu
   if (transitions > most_asked_transitions) return;
   Rows candidates = rows;
   const StructureScore best = rows.front();
-  for (Index lags = 1; lags <= most_equal_lags; ++lags) {
-    position_of_equal(candidates, lags, inputs.searched, best);
-    if (inputs.searched.most_samples > 0 && memory_of(candidates.back()) > inputs.searched.most_samples) {
-      candidates.pop_back();
-      break;
-    }
-  }
+  for (const Index delay : delays_of(marked(rows, &StructureScore::linear), inputs.searched))
+    for (Index lags = 1; lags <= most_equal_lags; ++lags)
+      position_of_equal(candidates, lags, delay, inputs.searched, best);
+  if (inputs.searched.most_samples > 0)
+    std::erase_if(candidates, [&](const StructureScore& c) { return memory_of(c) > inputs.searched.most_samples; });
   Index latest = 0;
   for (const StructureScore& c : candidates)
     latest = std::max(latest, structure_of(c, recording, inputs.window).first_transition());
@@ -135,7 +142,10 @@ void choose_for_stages(const Recording& recording, const StructureInputs& inputs
     if (std::find(positions.begin(), positions.end(), at) == positions.end()) positions.push_back(at);
   };
   const StructureScore like = marked(rows, &StructureScore::linear);
-  for (const Index lags : {1, 2}) ask(position_of_equal(rows, lags, inputs.searched, like));
+  const Index most = inputs.searched.most_samples;
+  for (const Index delay : delays_of(like, inputs.searched))
+    for (const Index lags : {1, 2})
+      if (most == 0 || delay + lags - 1 <= most) ask(position_of_equal(rows, lags, delay, inputs.searched, like));
   for (const Flag flag : {&StructureScore::linear, &StructureScore::drifting})
     ask(static_cast<std::size_t>(&marked(rows, flag) - rows.data()));
   if (inputs.with_modes) {

@@ -7,7 +7,7 @@ namespace modebank {
 
 /// What each stage takes of the structures that were compared: a linear model wants lags wherever motion bends or
 /// switches, and what bends or switches loses with them. Marks rows of the table, and adds those that are asked about
-/// alone: one lag and two, with the delay that was found.
+/// alone: one lag and two, with the delay that was found and with that of one sample.
 ///
 /// - One linear motion: as the search has it.
 /// - `drifting`: a rule of one standard error over few runs that are unlike each other is unstable. Where a model whose

@@ -27,7 +27,7 @@ struct ModesAndStart {
   Index modes, start;
 };
 constexpr std::array<ModesAndStart, 6> asked_fits{{{1, 0}, {2, 0}, {2, 1}, {4, 0}, {4, 1}, {8, 0}}};
-constexpr Index most_parts = 4, most_trial_iterations = 40, most_compared_transitions = 5000;
+constexpr Index most_parts = 4, most_trial_iterations = 40, most_compared_transitions = 10000;
 constexpr Index shortest_start = 30, start_per_regressor = 3;
 constexpr double trial_tolerance = 1e-4;  // nats per transition
 

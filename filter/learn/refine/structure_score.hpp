@@ -20,7 +20,7 @@ inline constexpr double least_structure_gain = 0.02;  // [nats/sample]
 
 /// One, two, four and eight modes are learned by expectation-maximisation of the switching regression from random
 /// stretches of the runs; the best of these counts. `one_theta`: modes differ in noise alone. All structures are
-/// learned from and scored on the same transitions, at most 5,000 of them, drawn by the seed. The same for any number
+/// learned from and scored on the same transitions, at most 10,000 of them, drawn by the seed. The same for any number
 /// of threads.
 StructuresOfModes compare_structures(const Recording& recording, const std::vector<LinearStructure>& structures,
                                      std::size_t incumbent, bool one_theta, std::uint64_t seed);

@@ -2,12 +2,17 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <random>
 
+#include "app/chain/stage_structures.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "io/archive/archive.hpp"
 #include "tests/app/cli_fixture.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
 
 namespace modebank::test {
 namespace {
@@ -150,6 +155,32 @@ TEST_F(StructureOfRuns, IsOneLagWhereWindowsAreSimulated) {
   const ChainOptions options = app::chain_options(config);
   EXPECT_FALSE(options.searched_lags.any());
   EXPECT_EQ(options.window.model, "linear");
+}
+
+/// Two modes whose inputs act with opposite signs: one linear model of both may take a later sample of the input, and
+/// modes that kept that delay would not be found.
+TEST(StageStructures, ModesAreAskedForTheUsualDelayToo) {
+  std::mt19937_64 generator(1);
+  boost::random::normal_distribution<double> normal;
+  Recording recording = empty_recording(1, 1);
+  for (Index r = 0; r < 6; ++r) {
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, 300), u(1, 300);
+    for (Index k = 0; k < 300; ++k) {
+      u(k) = normal(generator);
+      const double gain = k / 60 % 2 == 0 ? 0.4 : -0.4;
+      if (k + 1 < 300) x(k + 1) = 0.5 * x(k) + gain * u(k) + 0.05 * normal(generator);
+    }
+    add_run(recording, x, u);
+  }
+  FoundStructure found{1, 1, 2};
+  StructureScore linear{1, 1, 2};
+  linear.rmse = Eigen::VectorXd::Ones(1);
+  linear.chosen = true;
+  found.scores = {linear};
+  choose_for_stages(recording, {{true, true, true}, {}}, found);
+  EXPECT_EQ(found.input_delay, 1);
+  const auto kept = std::find_if(found.scores.begin(), found.scores.end(), [](const auto& s) { return s.linear; });
+  EXPECT_EQ(kept->input_delay, 2);
 }
 
 }  // namespace
