@@ -1,5 +1,6 @@
 #include "app/chain/error_pattern.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <vector>
 

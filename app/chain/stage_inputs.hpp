@@ -31,14 +31,14 @@ struct MixtureInputs {
 /// the mixture has components.
 struct CompetitorInputs {
   FitOptions window;
-  FilterOptions filter;                        ///< that runs competitors, for the noise scale's memory
-  std::vector<Index> horizon;                  ///< that drifting is to widen its predictions for
-  Index transitions = 0;                       ///< that they learn from at most, as the bank does; 0: from all
-  std::uint64_t seed = 1;                      ///< which these are
-  TermsChoice terms = TermsChoice::automatic;  ///< of nonlinear
-  RefineOptions em = {};                       ///< how that is learned
-  std::optional<Lags> linear = {};             ///< of baseline, noise_only and nonlinear; empty: the windows'
-  std::optional<Lags> drifting = {};           ///< of drifting; empty: the windows'
+  FilterOptions filter;                              ///< that runs competitors, for the noise scale's memory
+  std::vector<Index> horizon;                        ///< that drifting is to widen its predictions for
+  Index transitions = 0;                             ///< that they learn from at most, as the bank does; 0: from all
+  std::uint64_t seed = 1;                            ///< which these are
+  TermsChoice terms = TermsChoice::automatic;        ///< of nonlinear
+  RefineOptions em = {};                             ///< how that is learned
+  std::optional<Lags> linear = {};                   ///< of baseline, noise_only and nonlinear; empty: the windows'
+  std::optional<Lags> drifting = {};                 ///< of drifting; empty: the windows'
   NoiseByInput noise_by_input = NoiseByInput::none;  ///< of all but baseline and drifting, and of the bank
 };
 

@@ -56,7 +56,7 @@ std::string modes_section(const Archive& archive, const FirstScreen& screen, int
   boost::replace_all(table, "\n", "\n" + indent);
   std::string head = fmt::format("{} on {} runs", screen.mode_count, words_for(screen.role));
   const bool units = !screen.modes.gain_unit.empty();
-  if (units) head += fmt::format("; steady gains in {}", screen.modes.gain_unit);
+  if (units) head += fmt::format("; gains in {}", screen.modes.gain_unit);
   if (modes.gains_left_out > 0)
     head += units ? fmt::format(", {} more in `modebank show`", modes.gains_left_out)
                   : fmt::format("; `modebank show` has {} more column{} of gains", modes.gains_left_out,

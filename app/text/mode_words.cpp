@@ -236,8 +236,7 @@ std::string modes_in_words(const Archive& archive, int width) {
   if (!archive.bank) return "";
   const GainNames gains = gains_of(archive);
   const ModeTable table{headings_of(gains), rows_of(archive, used_modes(archive), true), 0, 0.0, gains.unit};
-  return fmt::format("\nmodes in words{}\n",
-                     gains.unit.empty() ? "" : fmt::format("; steady gains in {}", gains.unit)) +
+  return fmt::format("\nmodes in words{}\n", gains.unit.empty() ? "" : fmt::format("; gains in {}", gains.unit)) +
          text_of(table, !archive.mode_names.empty(), width);
 }
 

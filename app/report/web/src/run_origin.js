@@ -44,9 +44,10 @@ export function drawOrigin(origin) {
           details('The whole configuration', listing(origin.config))),
       origin.structures.length ? details(
                                      'Lags and delay that were compared on training runs left out',
-                                     table(
-                                         structureColumns, origin.structures,
-                                         {caption: 'Structures, each with its score as one linear motion, as one that drifts, as one whose noise switches, as modes', chosen: (row) => row.chosen})) :
+                                     table(structureColumns, origin.structures, {
+                                       caption: 'Structures, scored as one motion, as one that drifts, as modes',
+                                       chosen: (row) => row.chosen
+                                     })) :
                                  null,
       details(`${origin.inputs.length} input files`, table(fileColumns, origin.inputs, {caption: 'Input files'})),
       details('Versions', facts(origin.versions)),
