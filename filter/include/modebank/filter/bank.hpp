@@ -52,7 +52,7 @@ struct BankDescription {
   /// weights_i log(|directions_i [z; v]| + 0.1) - offset), bounded to between a fifth and five; empty: Q itself.
   Matrix noise_directions;
   std::vector<double> noise_weights;  ///< d
-  double noise_offset = 0.0;
+  double noise_offset = 0.0;          ///< of the exponent
   /// Of modes whose theta follows the run: a size per regressor [z; v; (1)], in whose units it wanders; empty: it
   /// stays.
   std::vector<double> drift_scale;
