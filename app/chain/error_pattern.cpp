@@ -34,7 +34,7 @@ Recording runs_of_errors(const Recording& recording, const FilterEvaluation& ban
   return errors;
 }
 
-/// What least squares leaves of `z`, each fold of parts predicted by the others.
+/// The residuals of `z` by least squares, each fold of parts predicted by the others.
 MatrixXd left_out_errors(const TermRows& rows, const MatrixXd& z) {
   const Index folds = std::min(most_folds, rows.parts);
   MatrixXd errors = z;

@@ -5,7 +5,7 @@
 
 namespace modebank {
 
-/// What each stage takes of the structures that were compared: a linear model wants lags wherever motion bends or
+/// Each stage takes one of the structures that were compared: a linear model wants lags wherever motion bends or
 /// switches, and what bends or switches loses with them. Marks rows of the table, and adds those that are asked about
 /// alone: one lag and two, with the delay that was found and with that of one sample.
 ///

@@ -39,8 +39,8 @@ struct StructureScore {
   bool drifting = false;             ///< for one motion that wanders
   /// Causal log score of the training runs where coefficients wander [nats/sample]; NaN where this was not asked.
   double drifting_score = std::numeric_limits<double>::quiet_NaN();
-  /// Of few modes, and of one motion whose noise switches, on training runs that were left out [nats/sample]; NaN as
-  /// above.
+  /// Scores of few modes, and of one motion whose noise switches, on training runs that were left out [nats/sample];
+  /// NaN as above.
   double modes_score = std::numeric_limits<double>::quiet_NaN();
   double one_motion_score = std::numeric_limits<double>::quiet_NaN();
 };

@@ -48,7 +48,7 @@ TEST(StructureScore, ModesWithOneLagLeaveTheLagsThatALinearModelWants) {
   }
 }
 
-/// What one motion of second order needs is kept by modes and by one motion whose noise switches.
+/// Modes, and one motion whose noise switches, keep the two lags that a motion of second order needs.
 TEST(StructureScore, TwoLagsStayWhereMotionHasThem) {
   for (const bool one_theta : {false, true}) {
     const Recording recording = second_order(4);
@@ -62,7 +62,7 @@ TEST(StructureScore, TwoLagsStayWhereMotionHasThem) {
 }
 
 /// Two noise levels at equal shares, known coefficients: the mean log density of a Gaussian of the level that acts is
-/// -(log(2 pi) + 1 + log(.01) + log(.1)) / 2. A switching filter knows the level up to the few samples after a change.
+/// -(log(2 pi) + 1 + log(.01) + log(.1)) / 2. A switching filter has the level up to the few samples after a change.
 TEST(StructureScore, IsTheLogDensityOfRunsLeftOut) {
   const StructuresOfModes compared = compare_structures(second_order(5), {lags(2, 1)}, 0, true, 1);
   const double truth = -0.5 * (std::log(2.0 * 3.14159265358979) + 1.0 + std::log(0.01) + std::log(0.1));

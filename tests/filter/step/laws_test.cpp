@@ -32,7 +32,7 @@ void expect_same_estimates(const RunEvaluation& a, const RunEvaluation& b) {
   EXPECT_TRUE(near(a.pit, b.pit, law_rounding));
 }
 
-/// What the products for lagged samples leave out is what plain ones multiply by zero and by one.
+/// Products for lagged samples leave out factors of zero and one.
 TEST(SmallProducts, OfShiftsAndOfPartsThatAreSeenHaveThePlainOnesBits) {
   const Eigen::Index n = 7, full = 2;
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n), gain = Eigen::MatrixXd::Random(n, full), P(n, n);
