@@ -13,29 +13,13 @@
 namespace modebank {
 namespace {
 
-constexpr Index most_asked_transitions = 20000, most_equal_lags = 8;
+constexpr Index most_asked_transitions = 20000, most_equal_lags = 8, most_equal_lags_of_modes = 2;
 constexpr double least_drifting_gain = 0.02;  // [nats/sample]
 
 LinearStructure structure_of(const StructureScore& s, const Recording& recording, const FitOptions& window) {
   return {
       recording.state_count(), recording.input_count(), window.intercept, s.state_lags, s.input_lags, s.input_delay};
 }
-
-class DriftingChoice {
- public:
-  DriftingChoice(const Recording& recording, const FitOptions& window, Index latest)
-      : recording_(recording), window_(window), latest_(latest) {}
-
-  /// Minus infinity where it cannot be learned.
-  double score(const StructureScore& of, const DriftingGrid& grid) const {
-    return drifting_training_score(recording_, latest_, structure_of(of, recording_, window_), TimeSteps::single, grid);
-  }
-
- private:
-  const Recording& recording_;
-  const FitOptions& window_;
-  Index latest_;
-};
 
 using Rows = std::vector<StructureScore>;
 using Flag = bool StructureScore::*;
@@ -61,12 +45,6 @@ std::size_t position_of(Rows& rows, Index state_lags, Index input_lags, Index de
   return rows.size() - 1;
 }
 
-/// As many lags of the states as of the inputs, of those that are searched for.
-std::size_t position_of_equal(Rows& rows, Index lags, Index delay, const SearchedLags& searched,
-                              const StructureScore& like) {
-  return position_of(rows, searched.state ? lags : like.state_lags, searched.input ? lags : like.input_lags, delay);
-}
-
 /// The delay of one linear motion, and the usual one: effects of an input that differ in sign between modes cancel in
 /// one model of all of them, which then takes a later sample of that input.
 std::vector<Index> delays_of(const StructureScore& linear, const SearchedLags& searched) {
@@ -76,31 +54,42 @@ std::vector<Index> delays_of(const StructureScore& linear, const SearchedLags& s
   return delays;
 }
 
-Index memory_of(const StructureScore& s) { return std::max(s.state_lags, s.input_delay + s.input_lags - 1); }
+/// Positions of 1 to `most` lags of the states and as many of the inputs, of those that are searched for, where runs
+/// have samples enough before their first prediction.
+std::vector<std::size_t> positions_of_equal(Rows& rows, Index most, const SearchedLags& searched) {
+  const StructureScore linear = marked(rows, &StructureScore::linear);
+  std::vector<std::size_t> positions;
+  for (const Index delay : delays_of(linear, searched))
+    for (Index lags = 1; lags <= most; ++lags) {
+      const Index state_lags = searched.state ? lags : linear.state_lags,
+                  input_lags = searched.input ? lags : linear.input_lags;
+      if (searched.most_samples == 0 || std::max(state_lags, delay + input_lags - 1) <= searched.most_samples)
+        positions.push_back(position_of(rows, state_lags, input_lags, delay));
+    }
+  return positions;
+}
 
 void let_drifting_choose(const Recording& recording, const StructureInputs& inputs, Rows& rows) {
   const Index transitions = recording.transitions(Role::train);
   if (transitions > most_asked_transitions) return;
   Rows candidates = rows;
-  const StructureScore best = rows.front();
-  for (const Index delay : delays_of(marked(rows, &StructureScore::linear), inputs.searched))
-    for (Index lags = 1; lags <= most_equal_lags; ++lags)
-      position_of_equal(candidates, lags, delay, inputs.searched, best);
-  if (inputs.searched.most_samples > 0)
-    std::erase_if(candidates, [&](const StructureScore& c) { return memory_of(c) > inputs.searched.most_samples; });
+  positions_of_equal(candidates, most_equal_lags, inputs.searched);
   Index latest = 0;
   for (const StructureScore& c : candidates)
     latest = std::max(latest, structure_of(c, recording, inputs.window).first_transition());
-  const DriftingChoice choice(recording, inputs.window, latest);
+  const auto score = [&](const StructureScore& c, const DriftingGrid& grid) {
+    return drifting_training_score(recording, latest, structure_of(c, recording, inputs.window), TimeSteps::single,
+                                   grid);
+  };
   DriftingGrid constant = coarse_drifting_grid();
   constant.q = constant.p0 = {0.0};
   constant.leak = {1.0};
   StructureScore& of_linear = marked(candidates, &StructureScore::linear);
-  of_linear.drifting_score = choice.score(of_linear, coarse_drifting_grid());
-  if (!(of_linear.drifting_score >= choice.score(of_linear, constant) + least_drifting_gain)) return;
+  of_linear.drifting_score = score(of_linear, coarse_drifting_grid());
+  if (!(of_linear.drifting_score >= score(of_linear, constant) + least_drifting_gain)) return;
   double highest = of_linear.drifting_score;
   for (StructureScore& c : candidates) {
-    if (!c.linear) c.drifting_score = choice.score(c, coarse_drifting_grid());
+    if (!c.linear) c.drifting_score = score(c, coarse_drifting_grid());
     highest = std::max(highest, c.drifting_score);
   }
   const double slack = loss_by_chance(static_cast<double>(transitions));
@@ -137,17 +126,11 @@ void choose_for_stages(const Recording& recording, const StructureInputs& inputs
   StructureScore& of_linear = marked(rows, &StructureScore::chosen);
   of_linear.linear = of_linear.one_motion = of_linear.drifting = true;
   let_drifting_choose(recording, inputs, rows);
-  std::vector<std::size_t> positions;
-  const auto ask = [&](std::size_t at) {
+  std::vector<std::size_t> positions = positions_of_equal(rows, most_equal_lags_of_modes, inputs.searched);
+  for (const Flag flag : {&StructureScore::linear, &StructureScore::drifting}) {
+    const auto at = static_cast<std::size_t>(&marked(rows, flag) - rows.data());
     if (std::find(positions.begin(), positions.end(), at) == positions.end()) positions.push_back(at);
-  };
-  const StructureScore like = marked(rows, &StructureScore::linear);
-  const Index most = inputs.searched.most_samples;
-  for (const Index delay : delays_of(like, inputs.searched))
-    for (const Index lags : {1, 2})
-      if (most == 0 || delay + lags - 1 <= most) ask(position_of_equal(rows, lags, delay, inputs.searched, like));
-  for (const Flag flag : {&StructureScore::linear, &StructureScore::drifting})
-    ask(static_cast<std::size_t>(&marked(rows, flag) - rows.data()));
+  }
   if (inputs.with_modes) {
     let_modes_choose(recording, inputs, positions, false, rows);
     let_modes_choose(recording, inputs, positions, true, rows);

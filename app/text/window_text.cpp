@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// Who solved the windows, and the audit of the batch solver; empty for archives that do not say in words.
+/// The solvers of the windows, and the audit of the batch solver; empty for archives without them in words.
 std::string audit_text(const WindowAudit& audit) {
   if (audit.ceres_method.empty()) return "";
   std::string text = "solved    ";

@@ -17,9 +17,10 @@
 #include "filter/learn/switching/switching_regression.hpp"
 #include "ident/base/clustered_error.hpp"
 #include "ident/base/linalg.hpp"
-#include "ident/base/sample_quantile.hpp"
+#include "ident/fit/constants.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/robust_regression.hpp"
+#include "ident/fit/scale.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -60,11 +61,8 @@ MatrixXd standardised(const MatrixXd& residuals) {
   std::vector<Index> kept;
   MatrixXd E = residuals;
   for (Index i = 0; i < E.cols(); ++i) {
-    std::vector<double> sizes(static_cast<std::size_t>(E.rows()));
-    VectorXd::Map(sizes.data(), E.rows()) = E.col(i).cwiseAbs();
-    std::sort(sizes.begin(), sizes.end());
     const double sd = std::sqrt(E.col(i).squaredNorm() / static_cast<double>(E.rows()));
-    const double scale = std::max(1.4826 * sample_quantile(sizes, 0.5), 0.05 * sd);
+    const double scale = std::max(mad_to_sd * median(E.col(i).cwiseAbs()), 0.05 * sd);
     if (!(scale > 0.0)) continue;
     E.col(i) /= scale;
     kept.push_back(i);
@@ -158,26 +156,17 @@ SwitchingRegression switching_noise(const Recording& recording, const TrainingTr
   return em.model();
 }
 
-/// Log density of every row of `judged` by one motion of `learned`, N.
-VectorXd densities(const Recording& learned, const Recording& judged, const LinearStructure& s,
-                   const NoiseFactor& factor) {
-  return predictive_log_densities(gather_training_transitions(judged, s, factor),
-                                  switching_noise(learned, gather_training_transitions(learned, s, factor)));
-}
-
 /// Sums per run of log density that the factor adds to rows of `judged`, and the number of these rows.
 std::pair<VectorXd, VectorXd> gains(const Recording& learned, const Recording& judged, const LinearStructure& s) {
   if (stack_training(judged, s).count() == 0) return {};
-  const NoiseFactor factor = fit_noise_factor(learned, s);
-  const VectorXd gain = densities(learned, judged, s, factor) - densities(learned, judged, s, {});
-  const TrainingTransitions rows = gather_training_transitions(judged, s);
-  VectorXd sums(std::ssize(rows.runs)), samples(std::ssize(rows.runs));
-  for (Index r = 0; r < sums.size(); ++r) {
-    const RunRows& run = rows.runs[static_cast<std::size_t>(r)];
-    sums(r) = gain.segment(run.first, run.count).sum();
-    samples(r) = rows.usable.segment(run.first, run.count).sum();
-  }
-  return {sums, samples};
+  const TrainingTransitions rows = gather_training_transitions(learned, s),
+                            of_judged = gather_training_transitions(judged, s);
+  const NoiseFactor factor = fit(rows, {});
+  const VectorXd with_factor =
+      predictive_log_densities(gather_training_transitions(judged, s, factor),
+                               switching_noise(learned, gather_training_transitions(learned, s, factor)));
+  const VectorXd without = predictive_log_densities(of_judged, switching_noise(learned, rows));
+  return {sum_by_run(of_judged, with_factor - without), sum_by_run(of_judged, of_judged.usable)};
 }
 
 }  // namespace

@@ -93,6 +93,15 @@ Eigen::MatrixXd RegressionSums::scatter_after(const Eigen::MatrixXd& change) con
   return S - cross - cross.transpose() + change.transpose() * G * change;
 }
 
+Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::VectorXd& rows) {
+  Eigen::VectorXd sums(std::ssize(transitions.runs));
+  for (Index r = 0; r < sums.size(); ++r) {
+    const RunRows& run = transitions.runs[static_cast<std::size_t>(r)];
+    sums(r) = rows.segment(run.first, run.count).sum();
+  }
+  return sums;
+}
+
 RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& weights,
                                const Eigen::MatrixXd& residuals) {
   constexpr double negligible = 1e-12;  // a mode has most transitions with less than this

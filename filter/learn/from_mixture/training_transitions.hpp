@@ -42,6 +42,9 @@ TrainingTransitions gather_training_transitions(const Recording& recording, cons
 /// Divides every row by the root of its noise factor. Returns the factors' logarithms, N; empty without a factor.
 Eigen::VectorXd divide_by_noise(const NoiseFactor& factor, const LinearStructure& structure, Transitions& rows);
 
+/// Sums over the rows of each run. `rows`: N.
+Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::VectorXd& rows);
+
 /// What a regression needs to know of weighted transitions: sums over them, r being the residual (increment minus
 /// prediction) of whatever coefficients the sums are taken about, g the weight of a transition.
 struct RegressionSums {

@@ -43,15 +43,7 @@ LeftOutRuns predict(const TrainingTransitions& learned, const TrainingTransition
   ExpectationMaximisation em(learned, prior, {one_theta, trial_tolerance},
                              start_from_stretches(learned, prior, fit.modes, length, seed, fit.start));
   for (Index i = 0; i < most_trial_iterations && !em.converged(); ++i) em.step();
-  const VectorXd densities = predictive_log_densities(left_out, em.model());
-  const Index runs = std::ssize(left_out.runs);
-  LeftOutRuns result{VectorXd(runs), VectorXd(runs)};
-  for (Index r = 0; r < runs; ++r) {
-    const RunRows& rows = left_out.runs[static_cast<std::size_t>(r)];
-    result.log_likelihood(r) = densities.segment(rows.first, rows.count).sum();
-    result.transitions(r) = left_out.usable.segment(rows.first, rows.count).sum();
-  }
-  return result;
+  return {sum_by_run(left_out, predictive_log_densities(left_out, em.model())), sum_by_run(left_out, left_out.usable)};
 }
 
 /// A split as one structure sees it, and what every fit to it says of its left-out runs; empty where there is nothing

@@ -12,17 +12,6 @@ namespace modebank::small {
 
 using Eigen::Index;
 
-/// out = a b. Requires an inner size >= 1; out must not alias.
-template <class Out, class A, class B>
-void multiply(Out& out, const A& a, const B& b) {
-  for (Index j = 0; j < b.cols(); ++j)
-    for (Index i = 0; i < a.rows(); ++i) {
-      double sum = a(i, 0) * b(0, j);
-      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(k, j);
-      out(i, j) = sum;
-    }
-}
-
 /// out = a b'. Requires an inner size >= 1; out must not alias.
 template <class Out, class A, class B>
 void multiply_transposed(Out& out, const A& a, const B& b) {
@@ -46,6 +35,12 @@ void multiply_shifting(Out& out, const A& a, const B& b, Index full) {
     }
     for (Index i = full; i < a.rows(); ++i) out(i, j) = b(i - full, j);
   }
+}
+
+/// out = a b. Requires an inner size >= 1; out must not alias.
+template <class Out, class A, class B>
+void multiply(Out& out, const A& a, const B& b) {
+  multiply_shifting(out, a, b, a.rows());
 }
 
 /// out += a b' for such a b, where the product is known to be symmetric (add_symmetric_product).
@@ -93,13 +88,7 @@ void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) 
 /// symmetric to the bit.
 template <class Out, class A, class B>
 void add_symmetric_product(Out& out, const A& a, const B& b) {
-  for (Index j = 0; j < b.rows(); ++j)
-    for (Index i = j; i < a.rows(); ++i) {
-      double sum = a(i, 0) * b(j, 0);
-      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(j, k);
-      out(i, j) += sum;
-      if (i != j) out(j, i) = out(i, j);
-    }
+  add_symmetric_product_shifting(out, a, b, b.rows());
 }
 
 /// out += weight (P + d d'), all symmetric.

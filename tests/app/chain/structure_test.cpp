@@ -183,5 +183,20 @@ TEST(StageStructures, ModesAreAskedForTheUsualDelayToo) {
   EXPECT_EQ(kept->input_delay, 2);
 }
 
+/// Lags that are stated may need more samples than a free run has: they stay, and none is asked about beside them.
+TEST(StageStructures, StatedLagsBeyondAFreeRunStay) {
+  Recording recording = empty_recording(1, 1);
+  for (Index r = 0; r < 4; ++r) add_run(recording, Eigen::MatrixXd::Random(1, 100), Eigen::MatrixXd::Random(1, 100));
+  FoundStructure found{5, 1, 1};
+  StructureScore stated{5, 1, 1};
+  stated.rmse = Eigen::VectorXd::Ones(1);
+  stated.chosen = true;
+  found.scores = {stated};
+  choose_for_stages(recording, {{false, true, true, 3}, {}}, found);
+  EXPECT_EQ(found.state_lags, 5);
+  EXPECT_EQ(found.scores.size(), 1u);
+  EXPECT_TRUE(found.scores.front().drifting);
+}
+
 }  // namespace
 }  // namespace modebank::test
