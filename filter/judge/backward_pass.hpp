@@ -20,6 +20,7 @@ class FilteredHistory {
     covariances_.resize(n_ * n_ * K_, run.count());
     probability_.resize(K_, run.count());
     noise_scale_.resize(run.count());
+    uncertain_.resize(run.count());
     fill(model, run, trajectory);
   }
 
@@ -27,6 +28,7 @@ class FilteredHistory {
     const auto j = static_cast<Eigen::Index>(mode);
     estimate.mean = means_.col(t).segment(j * n_, n_);
     estimate.covariance = covariances_.col(t).segment(j * n_ * n_, n_ * n_).reshaped(n_, n_);
+    estimate.uncertain = uncertain_(t);
   }
   auto probability(Eigen::Index t) const { return probability_.col(t); }
   double noise_scale(Eigen::Index t) const { return noise_scale_(t); }
@@ -35,6 +37,7 @@ class FilteredHistory {
   Eigen::Index n_, K_;
   Eigen::MatrixXd means_, covariances_, probability_;
   Eigen::VectorXd noise_scale_;
+  Eigen::VectorX<Eigen::Index> uncertain_;
 
   void fill(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory) {
     FilterStep<N, NY> step(model);
@@ -48,6 +51,7 @@ class FilteredHistory {
       }
       probability_.col(t) = state.mode_probability;
       noise_scale_(t) = state.noise_scale;
+      uncertain_(t) = uncertain_rows<N>(state.modes);
     }
   }
 };
@@ -109,7 +113,7 @@ class BackwardPass {
           smooth_pair(filtered_, input, k, noise_scale);
           visit(SmoothedPair<N>{j, k, weight, pairs_[k], next_[k], gain_});
         }
-      if (probability(row) > 0.0)
+      if (probability(row) > 0.0 && filtered_.uncertain > 0)
         merge(pairs_, weights_.row(row) / probability(row), modes[j]);
       else
         modes[j] = filtered_;
@@ -183,23 +187,68 @@ class BackwardPass {
   void smooth_pair(const Gaussian<N>& filtered, const U& input, std::size_t k, double noise_scale) {
     const auto& mode = model_.modes[k];
     Gaussian<N>& result = pairs_[k];
+    if (filtered.uncertain == 0) {  // nothing later can tell more of it
+      result = filtered;
+      gain_.setZero();
+      return;
+    }
+    result.uncertain = n();
     kalman_.predict(filtered, model_, mode, input, noise_scale);
     cholesky_.factorise(kalman_.predicted.covariance);
-    small::multiply_transposed(gain_, filtered.covariance, mode.F);
-    for (Eigen::Index i = 0; i < n(); ++i) cholesky_.solve(gain_.row(i));
+    find_gain(filtered, mode.F);
     const Eigen::Matrix<double, N, 1> change = next_[k].mean - kalman_.predicted.mean;
     small::multiply(result.mean, gain_, change);
     result.mean += filtered.mean;
-    small::multiply(closed_loop_, gain_, mode.F);
-    closed_loop_ = -closed_loop_;
-    closed_loop_.diagonal().array() += 1.0;
-    small::multiply(product_, closed_loop_, filtered.covariance);
-    result.covariance.setZero();
-    small::add_symmetric_product(result.covariance, product_, closed_loop_);
     closed_loop_ = kalman_.process_noise + next_[k].covariance;
-    small::multiply(product_, gain_, closed_loop_);
-    small::add_symmetric_product(result.covariance, product_, gain_);
+    multiply_gain(product_, closed_loop_);
+    result.covariance.setZero();
+    add_gain_product(result.covariance);
+    add_what_is_left(filtered, mode.F, result.covariance);
     if (!is_finite(result)) result = filtered;
+  }
+
+  /// Rows of a state that the next one repeats, lags further on: their gain is a shift, which leaves nothing open.
+  Eigen::Index repeated() const { return n() - model_.full_rows; }
+
+  /// P F' P_next^-1.
+  void find_gain(const Gaussian<N>& filtered, const Eigen::Matrix<double, N, N>& F) {
+    gain_.setZero();
+    for (Eigen::Index i = 0; i < repeated(); ++i) gain_(i, i + model_.full_rows) = 1.0;
+    for (Eigen::Index i = repeated(); i < n(); ++i) {
+      for (Eigen::Index j = 0; j < n(); ++j) gain_(i, j) = filtered.covariance.row(i).dot(F.row(j));
+      cholesky_.solve(gain_.row(i));
+    }
+  }
+
+  /// out = gain a.
+  void multiply_gain(Eigen::Matrix<double, N, N>& out, const Eigen::Matrix<double, N, N>& a) const {
+    const Eigen::Index shift = model_.full_rows;
+    out.topRows(repeated()) = a.middleRows(shift, repeated());
+    for (Eigen::Index i = repeated(); i < n(); ++i)
+      for (Eigen::Index j = 0; j < n(); ++j) out(i, j) = gain_.row(i).dot(a.col(j));
+  }
+
+  /// out += product gain', symmetric.
+  void add_gain_product(Eigen::Matrix<double, N, N>& out) const {
+    for (Eigen::Index j = 0; j < n(); ++j)
+      for (Eigen::Index i = j; i < n(); ++i) {
+        out(i, j) += j < repeated() ? product_(i, j + model_.full_rows) : product_.row(i).dot(gain_.row(j));
+        if (i != j) out(j, i) = out(i, j);
+      }
+  }
+
+  /// out += (I - gain F) P (I - gain F)', whose repeated rows are zeros.
+  void add_what_is_left(const Gaussian<N>& filtered, const Eigen::Matrix<double, N, N>& F,
+                        Eigen::Matrix<double, N, N>& out) {
+    for (Eigen::Index i = repeated(); i < n(); ++i) {
+      for (Eigen::Index j = 0; j < n(); ++j) closed_loop_(i, j) = (i == j ? 1.0 : 0.0) - gain_.row(i).dot(F.col(j));
+      for (Eigen::Index j = 0; j < n(); ++j) product_(i, j) = closed_loop_.row(i).dot(filtered.covariance.col(j));
+    }
+    for (Eigen::Index j = repeated(); j < n(); ++j)
+      for (Eigen::Index i = j; i < n(); ++i) {
+        out(i, j) += product_.row(i).dot(closed_loop_.row(j));
+        if (i != j) out(j, i) = out(i, j);
+      }
   }
 };
 

@@ -44,7 +44,7 @@ class EquationStepper final : public Stepper {
   Eigen::Map<const Eigen::VectorXd> mode_probability() const override { return map(state_.mode_probability); }
 
   void save(FilterMemory& memory) const override { modebank::save(state_, memory); }
-  void restore(const FilterMemory& memory) override { modebank::restore(memory, state_); }
+  void restore(const FilterMemory& memory) override { modebank::restore(memory, model_.exact, state_); }
 
  private:
   FilterModel<N, NY> model_;

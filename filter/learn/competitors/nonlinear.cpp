@@ -168,7 +168,7 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   em.look_ahead = 1;
   em.measurement_noise = false;
   em.max_iterations = std::min(em.max_iterations, most_em_iterations);
-  const MatrixXd R = least_measurement_noise(frame, em.tuning).asDiagonal();
+  const MatrixXd R = MatrixXd::Zero(structure.states, structure.states);
   const NoiseFactor factor = options.noise_by_input ? fit_noise_factor(recording, structure, terms) : NoiseFactor();
   Bank bank =
       refine_bank(known, frame,

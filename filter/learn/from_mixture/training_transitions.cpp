@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "ident/base/gram.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -109,13 +110,7 @@ RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::V
   std::vector<Index> rows;
   for (Index k = 0; k < weights.size(); ++k)
     if (weights(k) > negligible) rows.push_back(k);
-  Eigen::MatrixXd weighted(std::ssize(rows), q + n);
-  const Eigen::VectorXd root = weights(rows).cwiseSqrt();
-  for (Index c = 0; c < q; ++c) weighted.col(c) = root.cwiseProduct(regressors.col(c)(rows));
-  for (Index c = 0; c < n; ++c) weighted.col(q + c) = root.cwiseProduct(residuals.col(c)(rows));
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(q + n, q + n);
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
-  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  const Eigen::MatrixXd gram = weighted_gram(regressors, residuals, rows, weights(rows).cwiseSqrt());
   return {gram.topLeftCorner(q, q), gram.topRightCorner(q, n), gram.bottomRightCorner(n, n), weights.sum()};
 }
 

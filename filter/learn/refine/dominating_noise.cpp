@@ -18,8 +18,10 @@ namespace {
 constexpr std::array<double, 2> R_shares{0.6, 0.25};
 constexpr double Q_share = 0.05;
 constexpr AscentLimits climb_limits{100, 1e-7};
-/// Beyond so many coefficients of lagged states these stand in for R, and a climb in all of them takes minutes.
+/// Beyond so many coefficients of states a climb in all of them takes minutes.
 constexpr Index most_coefficients = 4;
+/// Two lags hold a velocity; the coefficients of more stand in for R.
+constexpr Index most_lags = 2;
 
 /// One model with the bank's structure, R of these shares.
 Bank one_model(const Bank& bank, const GlobalModel& global, double R_share) {
@@ -49,7 +51,7 @@ LikelihoodMaximum climb(const RefineInput& in, const Recording& recording, const
 
 std::optional<Bank> start_of_dominating_noise(const RefineInput& in, const Recording& recording,
                                               const GlobalModel& global, const Bank& bank) {
-  if (bank.is_quantised() || !global.covariance.allFinite() ||
+  if (bank.is_quantised() || !global.covariance.allFinite() || bank.structure.state_lags > most_lags ||
       bank.structure.states * bank.structure.dimension() > most_coefficients)
     return std::nullopt;
   std::optional<LikelihoodMaximum> best;

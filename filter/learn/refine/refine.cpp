@@ -18,9 +18,9 @@ namespace modebank {
 namespace {
 
 /// What is not refined. The fit takes the state as measured exactly: a start's R would count what Q then holds twice.
-Bank frame_of(const Bank& start, const WindowFits& fits, const RefineOptions& options) {
+Bank frame_of(const Bank& start, const RefineOptions& options) {
   Bank frame = start;
-  if (options.measurement_noise) frame.R = least_measurement_noise(fits, options.tuning).asDiagonal().toDenseMatrix();
+  if (options.measurement_noise) frame.R.setZero();
   return frame;
 }
 
@@ -105,7 +105,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   if (!banks.front().motion_parameters.empty())
     throw std::invalid_argument("a bank of the motion model " + banks.front().model +
                                 " cannot be refined, a linear one can");
-  const Bank frame = frame_of(banks.front(), fits, options);
+  const Bank frame = frame_of(banks.front(), options);
   const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure, frame.noise_factor);
   const RefineInput in{recording, fits, frame, transitions, options, filter};
 

@@ -12,25 +12,32 @@ namespace modebank::small {
 
 using Eigen::Index;
 
-/// out = a b'. Requires an inner size >= 1; out must not alias.
+/// out = a b' where all but the first `seen` columns of b are zero. Requires seen >= 1; out must not alias.
 template <class Out, class A, class B>
-void multiply_transposed(Out& out, const A& a, const B& b) {
+void multiply_transposed(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.rows(); ++j)
     for (Index i = 0; i < a.rows(); ++i) {
       double sum = a(i, 0) * b(j, 0);
-      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(j, k);
+      for (Index k = 1; k < seen; ++k) sum += a(i, k) * b(j, k);
       out(i, j) = sum;
     }
 }
 
-/// out = a b where row i of `a` is that of a shift from row i - full on, for every i >= full: e_{i - full}'. The same
-/// bits as multiply, as long as b is finite. full = a.rows(): any a.
+/// out = a b'. Requires an inner size >= 1; out must not alias.
 template <class Out, class A, class B>
-void multiply_shifting(Out& out, const A& a, const B& b, Index full) {
-  for (Index j = 0; j < b.cols(); ++j) {
+void multiply_transposed(Out& out, const A& a, const B& b) {
+  multiply_transposed(out, a, b, a.cols());
+}
+
+/// out = a b where row i of `a` is that of a shift from row i - full on, for every i >= full: e_{i - full}', and where
+/// b is zero outside its first `inner` rows and columns, as columns of `out` then are, which are left as they stand.
+/// The same bits as multiply, as long as b is finite. full = a.rows(): any a.
+template <class Out, class A, class B>
+void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
+  for (Index j = 0; j < std::min(inner, b.cols()); ++j) {
     for (Index i = 0; i < full; ++i) {
       double sum = a(i, 0) * b(0, j);
-      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(k, j);
+      for (Index k = 1; k < inner; ++k) sum += a(i, k) * b(k, j);
       out(i, j) = sum;
     }
     for (Index i = full; i < a.rows(); ++i) out(i, j) = b(i - full, j);
@@ -40,20 +47,27 @@ void multiply_shifting(Out& out, const A& a, const B& b, Index full) {
 /// out = a b. Requires an inner size >= 1; out must not alias.
 template <class Out, class A, class B>
 void multiply(Out& out, const A& a, const B& b) {
-  multiply_shifting(out, a, b, a.rows());
+  for (Index j = 0; j < b.cols(); ++j)
+    for (Index i = 0; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(0, j);
+      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(k, j);
+      out(i, j) = sum;
+    }
 }
 
-/// out += a b' for such a b, where the product is known to be symmetric (add_symmetric_product).
+/// out += a b' for such a b and an a whose columns from `inner` on are zero, where the product is known to be symmetric
+/// (add_symmetric_product).
 template <class Out, class A, class B>
-void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full) {
-  for (Index j = 0; j < b.rows(); ++j)
-    for (Index i = j; i < a.rows(); ++i) {
+void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
+  const Index rows = std::min(a.rows(), inner + full);
+  for (Index j = 0; j < rows; ++j)
+    for (Index i = j; i < rows; ++i) {
       double sum = 0.0;
       if (j >= full) {
         sum = a(i, j - full);
       } else {
         sum = a(i, 0) * b(j, 0);
-        for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(j, k);
+        for (Index k = 1; k < inner; ++k) sum += a(i, k) * b(j, k);
       }
       out(i, j) += sum;
       if (i != j) out(j, i) = out(i, j);
@@ -88,7 +102,7 @@ void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) 
 /// symmetric to the bit.
 template <class Out, class A, class B>
 void add_symmetric_product(Out& out, const A& a, const B& b) {
-  add_symmetric_product_shifting(out, a, b, b.rows());
+  add_symmetric_product_shifting(out, a, b, b.rows(), a.cols());
 }
 
 /// out += weight (P + d d'), all symmetric.

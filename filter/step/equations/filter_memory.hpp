@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <iterator>
+#include <vector>
 
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/equations/imm.hpp"
@@ -24,15 +26,30 @@ void save(const FilterState<N>& state, FilterMemory& memory) {
   memory.drift = state.drift;
 }
 
-/// `state`: of the memory's sizes.
+/// How many rows of these estimates are uncertain: from there on all have the same mean and no covariance.
 template <int N>
-void restore(const FilterMemory& memory, FilterState<N>& state) {
+Eigen::Index uncertain_rows_of(const std::vector<Gaussian<N>>& modes) {
+  Eigen::Index rows = modes.front().mean.size();
+  const auto known = [&](Eigen::Index row) {
+    return std::all_of(modes.begin(), modes.end(), [&](const Gaussian<N>& mode) {
+      return mode.mean(row) == modes.front().mean(row) && (mode.covariance.col(row).array() == 0.0).all();
+    });
+  };
+  while (rows > 0 && known(rows - 1)) --rows;
+  return rows;
+}
+
+/// `state`: of the memory's sizes. `exact`: FilterModel's.
+template <int N>
+void restore(const FilterMemory& memory, bool exact, FilterState<N>& state) {
   const Eigen::Index n = memory.means.rows();
   for (Eigen::Index j = 0; j < memory.means.cols(); ++j) {
     Gaussian<N>& mode = state.modes[static_cast<std::size_t>(j)];
     mode.mean = memory.means.col(j);
     mode.covariance = memory.covariances.col(j).reshaped(n, n);
   }
+  const Eigen::Index uncertain = exact ? uncertain_rows_of(state.modes) : n;
+  for (Gaussian<N>& mode : state.modes) mode.uncertain = uncertain;
   state.mode_probability = memory.mode_probability;
   state.noise_scale = memory.noise_scale;
   state.noise_samples = memory.noise_samples;

@@ -28,6 +28,7 @@ template <int N, int NY, class Y>
 void start(const FilterModel<N, NY>& model, const Y& y, FilterState<N>& state) {
   small::multiply(state.modes[0].mean, model.start_gain, y);
   state.modes[0].covariance = model.start_covariance;
+  state.modes[0].uncertain = model.exact ? 0 : model.structure.dimension();
   for (std::size_t j = 1; j < state.modes.size(); ++j) state.modes[j] = state.modes[0];
   state.mode_probability = model.initial_probability;
   floor_probabilities(state.mode_probability);
@@ -59,9 +60,9 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
                    step.mixing);
   }
   if (model.variant == FilterVariant::gpb1)
-    gpb::start_from_one(state, step.mixed);
+    gpb::start_from_one(state, model.exact, step.mixed);
   else
-    mix(state, step.mixing, step.mixed);
+    mix(state, step.mixing, model.exact, step.mixed);
   return step.mixed;
 }
 
@@ -77,7 +78,7 @@ void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const
 template <int N, int NY>
 void skip_measurement(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, FilterState<N>& state) {
   if (step.pairs())
-    gpb::keep_prediction(step, state);
+    gpb::keep_prediction(model, step, state);
   else
     keep_prediction(step, state);
   state.mode_probability = step.predicted_probability;
@@ -97,7 +98,7 @@ double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y
     return step.log_likelihood(0);
   }
   const double log_density = step.pairs()
-                                 ? gpb::merge_pairs(step, state)
+                                 ? gpb::merge_pairs(model, step, state)
                                  : bayes(step.predicted_probability, step.log_likelihood, state.mode_probability);
   if (model.variant == FilterVariant::salvi2025) salvi2025::weigh_by_posterior(sensor, y, step, state);
   floor_probabilities(state.mode_probability);

@@ -14,8 +14,8 @@ namespace modebank::gpb {
 
 /// First order: the common estimate, once per mode.
 template <int N>
-void start_from_one(const FilterState<N>& state, std::vector<Gaussian<N>>& mixed) {
-  merge(state.modes, state.mode_probability, mixed[0]);
+void start_from_one(const FilterState<N>& state, bool exact, std::vector<Gaussian<N>>& mixed) {
+  merge(state.modes, state.mode_probability, mixed[0], exact);
   for (std::size_t j = 1; j < mixed.size(); ++j) mixed[j] = mixed[0];
 }
 
@@ -44,25 +44,26 @@ std::span<const Gaussian<N>> leading_to(const std::vector<Gaussian<N>>& pairs, s
 /// What the pairs say together after the measurement: one estimate per mode, and the modes' probabilities. Returns the
 /// log predictive density.
 template <int N, int NY>
-double merge_pairs(FilterStep<N, NY>& step, FilterState<N>& state) {
+double merge_pairs(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, FilterState<N>& state) {
   const std::size_t K = state.modes.size();
   for (std::size_t j = 0; j < K; ++j) {
     const auto mode = static_cast<Eigen::Index>(j), first = static_cast<Eigen::Index>(j * K);
     const auto prior = step.mixing.matrix.col(mode);
     step.mode_likelihood(mode) =
         bayes(prior, step.log_likelihood.segment(first, static_cast<Eigen::Index>(K)), step.merging);
-    merge(leading_to(step.corrected, j, K), step.merging, state.modes[j]);
+    merge(leading_to(step.corrected, j, K), step.merging, state.modes[j], model.exact);
   }
   return bayes(step.predicted_probability, step.mode_likelihood, state.mode_probability);
 }
 
 /// Where nothing was measured.
 template <int N, int NY>
-void keep_prediction(FilterStep<N, NY>& step, FilterState<N>& state) {
+void keep_prediction(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, FilterState<N>& state) {
   const std::size_t K = state.modes.size();
   for (std::size_t h = 0; h < step.kalman.size(); ++h) step.corrected[h] = step.kalman[h].predicted;
   for (std::size_t j = 0; j < K; ++j)
-    merge(leading_to(step.corrected, j, K), step.mixing.matrix.col(static_cast<Eigen::Index>(j)), state.modes[j]);
+    merge(leading_to(step.corrected, j, K), step.mixing.matrix.col(static_cast<Eigen::Index>(j)), state.modes[j],
+          model.exact);
 }
 
 }  // namespace modebank::gpb

@@ -137,21 +137,42 @@ inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, 
   }
 }
 
+/// Of the mixture of `parts`, whose known rows are the same (Gaussian::uncertain).
+template <int N>
+Eigen::Index uncertain_rows(std::span<const Gaussian<N>> parts) {
+  Eigen::Index most = 0;
+  for (const Gaussian<N>& part : parts) most = std::max(most, part.uncertain);
+  return most;
+}
+
+template <int N>
+bool has_one_mean(std::span<const Gaussian<N>> parts, Eigen::Index row) {
+  return std::all_of(parts.begin(), parts.end(),
+                     [&](const Gaussian<N>& part) { return part.mean(row) == parts.front().mean(row); });
+}
+
 /// Steps 2 and 5. Mean and covariance of the mixture sum_i weights(i) N(parts[i]) (moment matching): with mu_{i|j} what
 /// mode j starts from (11.6.6-9, -10), with mu the combined estimate (11.6.6-17, -18). The spread of means is taken
 /// about the finished mean. Weights need not sum to one: [S25, eq. 12-13] is the same sum with other weights. (One sum
-/// after the other, not one part after the other: sums then live in registers.)
+/// after the other, not one part after the other: sums then live in registers.) `exact`: FilterModel's; a row of one
+/// mean in all parts then keeps it without rounding, which would look like a spread that other rows share.
 template <int N, class Weights>
-void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights, Gaussian<N>& merged) {
+void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights, Gaussian<N>& merged,
+           bool exact = false) {
   const Eigen::Index n = merged.mean.size(), count = static_cast<Eigen::Index>(parts.size());
   const Gaussian<N>* part = parts.data();
-  for (Eigen::Index a = 0; a < n; ++a) {
+  const Eigen::Index uncertain = merged.uncertain = uncertain_rows(parts);
+  if (uncertain < n) {
+    merged.mean = part[0].mean;
+    merged.covariance.setZero();
+  }
+  for (Eigen::Index a = 0; a < uncertain; ++a) {
     double sum = 0.0;
     for (Eigen::Index i = 0; i < count; ++i) sum += weights(i) * part[i].mean(a);
-    merged.mean(a) = sum;
+    merged.mean(a) = exact && has_one_mean(parts, a) ? part[0].mean(a) : sum;
   }
-  for (Eigen::Index b = 0; b < n; ++b)
-    for (Eigen::Index a = b; a < n; ++a) {
+  for (Eigen::Index b = 0; b < uncertain; ++b)
+    for (Eigen::Index a = b; a < uncertain; ++a) {
       const double mean_a = merged.mean(a), mean_b = merged.mean(b);
       double sum = 0.0;
       for (Eigen::Index i = 0; i < count; ++i)
@@ -163,9 +184,9 @@ void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weigh
 /// Step 2. Every mode j starts from x0_j = sum_i mu_{i|j} x_i (11.6.6-9) with the covariance of that mixture
 /// (11.6.6-10).
 template <int N>
-void mix(const FilterState<N>& state, const MixingWeights& weights, std::vector<Gaussian<N>>& mixed) {
+void mix(const FilterState<N>& state, const MixingWeights& weights, bool exact, std::vector<Gaussian<N>>& mixed) {
   for (std::size_t j = 0; j < mixed.size(); ++j)
-    merge(state.modes, weights.matrix.col(static_cast<Eigen::Index>(j)), mixed[j]);
+    merge(state.modes, weights.matrix.col(static_cast<Eigen::Index>(j)), mixed[j], exact);
 }
 
 /// Step 3, before the measurement: every mode's own prediction, and S_j.

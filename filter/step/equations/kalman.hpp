@@ -16,8 +16,10 @@ template <int N>
 struct Gaussian {
   Eigen::Matrix<double, N, 1> mean;
   Eigen::Matrix<double, N, N> covariance;
+  /// Rows from here on are known: no covariance, and the same mean in every mode. Lags of an exact sensor are.
+  Eigen::Index uncertain;
 
-  explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size) {
+  explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size), uncertain(size) {
     mean.setZero();
     covariance.setZero();
   }
@@ -41,6 +43,7 @@ struct PartialSensor {
   Eigen::Matrix<double, NY, 1> y;
   Eigen::Matrix<double, NY, 1> quantum;
   bool quantised = false;
+  static constexpr bool exact = false;
   Eigen::Index seen_columns;  ///< of C (FilterModel)
   Eigen::Index missing = 0;   ///< signals
 
@@ -71,6 +74,7 @@ template <int N, int NY>
 struct KalmanStep {
   Gaussian<N> predicted;                                ///< x, P before the measurement
   Eigen::Matrix<double, N, N> process_noise;            ///< Q as it entered P
+  Eigen::Matrix<double, NY, 1> measured;                ///< y of an exact sensor
   Eigen::Matrix<double, NY, 1> innovation;              ///< e = y - C x
   Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e, of variance cholesky.D
   Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S = C P C' + R
@@ -84,6 +88,7 @@ struct KalmanStep {
   KalmanStep(Eigen::Index n, Eigen::Index n_y, Eigen::Index regressors)
       : predicted(n),
         process_noise(n, n),
+        measured(n_y),
         innovation(n_y),
         decorrelated(n_y),
         innovation_covariance(n_y, n_y),
@@ -126,6 +131,9 @@ struct KalmanStep {
   TermValues terms_;
   Eigen::Matrix<double, N, N> bent_F_;
 
+  /// What an exact sensor sees is known, without the rounding of a correction.
+  template <class Sensor>
+  void take_exactly(const Sensor& sensor, Gaussian<N>& posterior) const;
   /// Adds terms to the predicted mean; F with their derivatives.
   template <class U>
   const Eigen::Matrix<double, N, N>& bend(const FilterModel<N, NY>& model,
@@ -182,12 +190,17 @@ template <class U>
 void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY>& model,
                                 const typename FilterModel<N, NY>::Mode& mode, const U& u, double noise_scale) {
   propagate(mode.A, mode.B, mode.c, from.mean, u, predicted.mean);
+  for (Eigen::Index i = model.full_rows; i < predicted.mean.size(); ++i)  // without rounding
+    predicted.mean(i) = from.mean(i - model.full_rows);
   process_noise = noise_scale * mode.Q;
   if (mode.spread.size() > 0) add_parameter_noise(model.structure, mode.spread, from.mean, u);
   const auto& F = model.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
-  small::multiply_shifting(NN_, F, from.covariance, model.full_rows);
   predicted.covariance = process_noise;
-  small::add_symmetric_product_shifting(predicted.covariance, NN_, F, model.full_rows);
+  predicted.uncertain = std::min(from.mean.size(), from.uncertain + model.full_rows);
+  if (from.uncertain > 0) {
+    small::multiply_shifting(NN_, F, from.covariance, model.full_rows, from.uncertain);
+    small::add_symmetric_product_shifting(predicted.covariance, NN_, F, model.full_rows, from.uncertain);
+  }
   make_usable(predicted);
 }
 
@@ -227,7 +240,7 @@ void KalmanStep<N, NY>::add_parameter_noise(const LinearStructure& s, const Eige
 template <int N, int NY>
 template <class Sensor>
 void KalmanStep<N, NY>::expect(const Sensor& sensor) {
-  small::multiply_transposed(PCt_, predicted.covariance, sensor.C);
+  small::multiply_transposed(PCt_, predicted.covariance, sensor.C, sensor.seen_columns);
   innovation_covariance = sensor.R;
   small::add_symmetric_product(innovation_covariance, sensor.C, PCt_.transpose());
   cholesky.factorise(innovation_covariance);
@@ -238,6 +251,7 @@ template <class Sensor, class Y>
 void KalmanStep<N, NY>::observe(const Sensor& sensor, const Y& y) {
   small::multiply(innovation, sensor.C, predicted.mean);
   innovation = y - innovation;
+  if (sensor.exact) measured = y;
   decorrelated = innovation;
   log_density = log_normal(decorrelated);
 }
@@ -255,6 +269,13 @@ double KalmanStep<N, NY>::log_normal(Vector& residual) const {
 template <int N, int NY>
 template <class Sensor>
 void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
+  posterior.uncertain = predicted.uncertain;
+  if (sensor.exact && predicted.uncertain <= sensor.seen_columns) {
+    posterior.mean = predicted.mean;
+    posterior.covariance.setZero();
+    posterior.uncertain = 0;
+    return take_exactly(sensor, posterior);
+  }
   for (Eigen::Index i = 0; i < gain_.rows(); ++i) {  // row i of K = P C' S^-1, as S is symmetric
     gain_.row(i) = PCt_.row(i);
     cholesky.solve(gain_.row(i));
@@ -271,6 +292,16 @@ void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
   small::add_symmetric_product(posterior.covariance, NY_, gain_);
   if (!is_finite(posterior)) posterior = predicted;  // an overflowing correction is no information
   bound_variances(predicted, posterior);
+  if (sensor.exact) take_exactly(sensor, posterior);
+}
+
+template <int N, int NY>
+template <class Sensor>
+void KalmanStep<N, NY>::take_exactly(const Sensor& sensor, Gaussian<N>& posterior) const {
+  const Eigen::Index seen = sensor.seen_columns;
+  posterior.mean.head(seen) = measured;
+  posterior.covariance.topRows(seen).setZero();
+  posterior.covariance.leftCols(seen).setZero();
 }
 
 }  // namespace modebank

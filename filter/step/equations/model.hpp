@@ -45,6 +45,8 @@ struct FilterModel {
   Eigen::Index full_rows;
   /// Columns of C that are not zero, all others being to their right.
   Eigen::Index seen_columns;
+  /// Whether a measurement says exactly where the state is that lags repeat, so that covariances are zeros.
+  bool exact;
 
   /// Requires check_sizes(bank). Throws std::invalid_argument for FilterVariant::kf of several modes.
   FilterModel(const Bank& bank, const FilterOptions& options);
@@ -99,6 +101,8 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
   full_rows = full_rows_of(*this);
   seen_columns = C.cols();
   while (seen_columns > 1 && (C.col(seen_columns - 1).array() == 0.0).all()) --seen_columns;
+  exact = structure.state_lags > 1 && !quantised && !drift.on() && variant != FilterVariant::salvi2025 &&
+          R.isZero(0.0) && seen_columns == C.rows() && C.leftCols(seen_columns).isIdentity(0.0);
   const StartMoments start = start_moments(bank);
   start_gain = start.gain;
   start_covariance = start.covariance;

@@ -29,8 +29,8 @@ double explained_share(const Sensor& sensor, const Matrix& P, const Kalman& kalm
   for (Eigen::Index i = 0; i < column.size(); ++i) {
     for (Eigen::Index a = 0; a < column.size(); ++a) {
       double sum = 0.0;
-      for (Eigen::Index q = 0; q < P.cols(); ++q)
-        for (Eigen::Index p = 0; p < P.rows(); ++p) sum += sensor.C(a, p) * P(p, q) * sensor.C(i, q);
+      for (Eigen::Index q = 0; q < sensor.seen_columns; ++q)
+        for (Eigen::Index p = 0; p < sensor.seen_columns; ++p) sum += sensor.C(a, p) * P(p, q) * sensor.C(i, q);
       column(a) = sum;
     }
     kalman.cholesky.solve(column);
@@ -48,8 +48,8 @@ double explained_square(const Sensor& sensor, const Matrix& P, const Kalman& kal
   column = kalman.innovation;
   kalman.cholesky.solve(column);
   double sum = 0.0;
-  for (Eigen::Index q = 0; q < P.cols(); ++q)
-    for (Eigen::Index p = 0; p < P.rows(); ++p) {
+  for (Eigen::Index q = 0; q < sensor.seen_columns; ++q)
+    for (Eigen::Index p = 0; p < sensor.seen_columns; ++p) {
       double left = 0.0, right = 0.0;
       for (Eigen::Index i = 0; i < column.size(); ++i) {
         left += sensor.C(i, p) * column(i);

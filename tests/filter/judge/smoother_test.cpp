@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 
 #include "filter/judge/horizon.hpp"
 #include "filter/step/bank_filter.hpp"
@@ -131,6 +132,68 @@ TEST(Smoother, StaysFiniteWhereNoiseIsSingular) {
       EXPECT_TRUE(e.smoothed_state.allFinite() && e.smoothed_covariance.allFinite()) << R << name_of(variant);
     }
   }
+}
+
+/// Two states with three lags of each; `rounding`: how far rows that shift are off, after which they are any rows.
+Bank lagged_bank(double R, double rounding = 0.0) {
+  Bank bank = example_bank(2, 1, 3, R);
+  const LinearStructure one_lag = bank.structure;
+  bank.structure.state_lags = 3;
+  bank.C = Eigen::MatrixXd::Identity(2, 6);
+  for (Mode& mode : bank.modes) {
+    Eigen::MatrixXd theta(2, bank.structure.regressors());  // as unpack has it: [A B c] by rows
+    theta << mode.model.A, Eigen::MatrixXd::Constant(2, 2, 0.05), Eigen::MatrixXd::Constant(2, 2, -0.04), mode.model.B,
+        mode.model.c;
+    mode.model = unpack(bank.structure, Eigen::MatrixXd(theta.transpose()).reshaped());
+    mode.model.A.bottomRows(4).array() += rounding;
+    Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(6, 6);
+    Q.topLeftCorner(one_lag.states, one_lag.states) = mode.Q;
+    mode.Q = Q;
+    mode.spread = {};
+  }
+  return bank;
+}
+
+Trajectory run_with_gaps(std::uint64_t seed) {
+  Trajectory run = simulate_bank(example_bank(2, 1, 3), 120, seed);
+  run.state.col(30).setConstant(std::numeric_limits<double>::quiet_NaN());
+  run.state(0, 60) = std::numeric_limits<double>::quiet_NaN();
+  return run;
+}
+
+void expect_alike(const Bank& a, const Bank& b, const FilterOptions& options, double off) {
+  const Trajectory run = run_with_gaps(31);
+  const RunEvaluation left = smoothed(a, run, options), right = smoothed(b, run, options);
+  const Index first = 3, count = run.samples() - first;
+  const auto of = [&](const Eigen::MatrixXd& rows) { return Eigen::MatrixXd(rows.middleCols(first, count)); };
+  for (Index k = first; k < run.samples(); ++k) {
+    if (std::isnan(left.log_density(k))) continue;
+    EXPECT_NEAR(left.log_density(k), right.log_density(k), off * 1e3) << k;
+  }
+  EXPECT_TRUE(near(of(left.state), of(right.state), off));
+  EXPECT_TRUE(near(of(left.covariance), of(right.covariance), off));
+  EXPECT_TRUE(near(of(left.mode_probability), of(right.mode_probability), off * 1e2));
+  EXPECT_TRUE(near(of(left.smoothed_state), of(right.smoothed_state), off));
+  EXPECT_TRUE(near(of(left.smoothed_covariance), of(right.smoothed_covariance), off));
+  const HorizonEvaluation ahead = evaluate_horizons(a, run, options, {1, 5}),
+                          other = evaluate_horizons(b, run, options, {1, 5});
+  for (Index k = first + 5; k < run.samples(); ++k) {
+    if (std::isnan(ahead.log_density(1, k))) continue;
+    EXPECT_NEAR(ahead.log_density(1, k), other.log_density(1, k), off * 1e3) << k;
+  }
+}
+
+constexpr FilterOptions lagged_filters[] = {{FilterVariant::imm}, {FilterVariant::gpb2}, {FilterVariant::gpb1}};
+
+/// Rows of lags that only shift have shorter products.
+TEST(LaggedStates, ThatShiftAreThoseOfAnyRows) {
+  for (const FilterOptions& options : lagged_filters)
+    expect_alike(lagged_bank(1e-4), lagged_bank(1e-4, 1e-14), options, 1e-10);
+}
+
+/// Measured exactly they are known, and nothing is computed of them: the limit of measurement noise that goes to zero.
+TEST(LaggedStates, MeasuredExactlyAreTheLimitOfLittleNoise) {
+  for (const FilterOptions& options : lagged_filters) expect_alike(lagged_bank(0.0), lagged_bank(1e-13), options, 1e-7);
 }
 
 /// The best of all sequences by their joint density, the state being measured exactly. `scale`: of Q, sample by sample.

@@ -44,10 +44,10 @@ TEST(SmallProducts, OfShiftsAndOfPartsThatAreSeenHaveThePlainOnesBits) {
   closed.leftCols(full) -= gain;
   Eigen::MatrixXd plain(n, n), quick(n, n), plain_sum = P, quick_sum = P;
   small::multiply(plain, F, P);
-  small::multiply_shifting(quick, F, P, full);
+  small::multiply_shifting(quick, F, P, full, P.rows());
   EXPECT_EQ(plain, quick);
   small::add_symmetric_product(plain_sum, plain, F);
-  small::add_symmetric_product_shifting(quick_sum, quick, F, full);
+  small::add_symmetric_product_shifting(quick_sum, quick, F, full, P.rows());
   EXPECT_EQ(plain_sum, quick_sum);
   small::multiply(plain, closed, P);
   small::multiply_seeing(quick, closed, P, full);
@@ -55,6 +55,20 @@ TEST(SmallProducts, OfShiftsAndOfPartsThatAreSeenHaveThePlainOnesBits) {
   small::add_symmetric_product(plain_sum, plain, closed);
   small::add_symmetric_product_seeing(quick_sum, quick, closed, full);
   EXPECT_EQ(plain_sum, quick_sum);
+}
+
+/// Where only the newest samples are uncertain the rest of a product is zeros.
+TEST(SmallProducts, OfAPartThatIsUncertainAreThoseOfTheWhole) {
+  const Eigen::Index n = 7, full = 2, uncertain = 3;
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n), P = Eigen::MatrixXd::Zero(n, n);
+  F.topRows(full) = Eigen::MatrixXd::Random(full, n);
+  for (Eigen::Index i = full; i < n; ++i) F(i, i - full) = 1.0;
+  const Eigen::MatrixXd root = Eigen::MatrixXd::Random(uncertain, uncertain);
+  P.topLeftCorner(uncertain, uncertain) = root * root.transpose();
+  Eigen::MatrixXd product = Eigen::MatrixXd::Constant(n, n, 7.0), sum = Eigen::MatrixXd::Zero(n, n);
+  small::multiply_shifting(product, F, P, full, uncertain);
+  small::add_symmetric_product_shifting(sum, product, F, full, uncertain);
+  EXPECT_TRUE(near(sum, Eigen::MatrixXd(F * P * F.transpose()), law_rounding));
 }
 
 TEST(MixingWeights, PredictedProbabilitiesFollowTheRowsOfTheTransitionMatrix) {
