@@ -59,21 +59,35 @@ double excess_error(const Reached& one, const std::vector<const Reached*>& all) 
   return largest;
 }
 
-/// The filter of least error among those that `may` be taken and lose less than 0.02 nats to the best of these; of
-/// about equals the first (single filters come before their combination). Null without any.
+constexpr double about_equal = 0.002;
+
+/// Of single filters that `may` be taken and lose less than 0.02 nats to the best of these the one of least error; of
+/// about equals the first. Null without any.
 template <class May>
-const Reached* best_of(const std::vector<Reached>& all, May may) {
-  constexpr double about_equal = 0.002;
+const Reached* best_single(const std::vector<Reached>& all, May may) {
+  const auto counts = [&](const Reached& one) { return one.filter != combined_name && may(one.filter); };
   double best = -std::numeric_limits<double>::infinity();
   for (const Reached& one : all)
-    if (may(one.filter)) best = std::fmax(best, one.log_score);
+    if (counts(one)) best = std::fmax(best, one.log_score);
   std::vector<const Reached*> good;
   for (const Reached& one : all)
-    if (may(one.filter) && one.log_score > best - negligible_gain) good.push_back(&one);
+    if (counts(one) && one.log_score > best - negligible_gain) good.push_back(&one);
   const Reached* chosen = nullptr;
   for (const Reached* one : good)
     if (!chosen || excess_error(*one, good) < excess_error(*chosen, good) - about_equal) chosen = one;
   return chosen;
+}
+
+/// The combination where it gains anything over every single filter: its weights follow the run, which a choice made
+/// before it cannot. Null without any filter.
+const Reached* best_of(const std::vector<Reached>& all) {
+  const auto combined =
+      std::find_if(all.begin(), all.end(), [](const Reached& one) { return one.filter == combined_name; });
+  const auto as_good = [&](const Reached& one) {
+    return one.filter != combined_name && !(combined->log_score > one.log_score + about_equal);
+  };
+  if (combined != all.end() && std::none_of(all.begin(), all.end(), as_good)) return &*combined;
+  return best_single(all, [](const std::string&) { return true; });
 }
 
 /// Mean log score and samples of each judged run.
@@ -129,12 +143,12 @@ NamedForecast named(const Archive& archive, const std::vector<Reached>& all, con
   if (chosen.filter != "bank")
     forecast.other = "bank";
   else if (const Reached* next =
-               best_of(all, [](const std::string& name) { return name != "bank" && name != combined_name; }))
+               best_single(all, [](const std::string& name) { return name != "bank"; }))
     forecast.other = next->filter;
   const Gain gain = gain_over(archive, forecast.filter, forecast.other, steps);
   forecast.gain = gain.mean;
   forecast.error = gain.error;
-  const Reached* in_c = best_of(all, [&](const std::string& name) { return runs_in_c(archive, name); });
+  const Reached* in_c = best_single(all, [&](const std::string& name) { return runs_in_c(archive, name); });
   if (!in_c || in_c->filter == chosen.filter) return forecast;
   forecast.c_filter = in_c->filter;
   forecast.c_loss = gain_over(archive, forecast.filter, in_c->filter, steps).mean;
@@ -174,7 +188,7 @@ std::vector<NamedForecast> named_forecasts(const Archive& archive) {
   std::vector<NamedForecast> forecasts;
   for (const Index steps : horizons) {
     const std::vector<Reached> all = reached_in_training(archive, steps);
-    if (const Reached* chosen = best_of(all, [](const std::string&) { return true; }))
+    if (const Reached* chosen = best_of(all))
       forecasts.push_back(named(archive, all, *chosen, steps));
   }
   return forecasts;

@@ -64,7 +64,7 @@ bool has_few_agreeing_restarts(const Situation& s) {
                      [](const Candidate& c) { return c.selected && 2 * c.agreeing_restarts < c.restarts; });
 }
 
-/// "record about 9 more runs like these": errors and margins fall with the root of the number of runs.
+/// "record more: about 9 more runs like these": errors and margins fall with the root of the number of runs.
 std::string more_runs(const Finding& finding) {
   constexpr double too_many = 20.0;  // times as many
   const char* const name_them = ", or name more held-out ones with --data.test";
@@ -77,8 +77,9 @@ std::string more_runs(const Finding& finding) {
         "{} is as good (`modebank track ARCHIVE --track.filter {}`)",
         too_many, least->competitor, least->competitor);
   const double runs = std::ceil((times - 1.0) * static_cast<double>(finding.runs));
-  return fmt::format("record more: about {:.0f} runs like these, by which the gain over {} would be told{}",
-                     std::max(runs, 1.0), least->competitor, name_them);
+  return fmt::format("record more: {} like these, by which the gain over {} would be told{}",
+                     runs > 1.0 ? fmt::format("about {:.0f} more runs", runs) : "one more run", least->competitor,
+                     name_them);
 }
 
 std::string advice_on_doubt(const Situation& s) {

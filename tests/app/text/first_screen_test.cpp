@@ -343,7 +343,7 @@ TEST_F(NextStep, ADoubtfulGainAsksForSoManyRuns) {
   archive.finding->modes_differ = true;
   archive.finding->runs = 6;
   archive.finding->gains = {{"drifting", 700, 0.1, 0.08, 5.0, 0.2, false}};
-  EXPECT_THAT(advice(), HasSubstr("record more: about 18 runs like these, by which the gain over drifting"));
+  EXPECT_THAT(advice(), HasSubstr("record more: about 18 more runs like these, by which the gain over drifting"));
   archive.finding->gains[0].margin = 0.5;
   EXPECT_THAT(advice(), HasSubstr("the data cannot tell"));
   archive.finding->gains[0] = {"drifting", 700, 0.01, 0.001, 5.0, 0.003, false, 0.01};

@@ -77,6 +77,10 @@ def numbers(value, digits):
     return " ".join(f"{v:.{digits}f}" for v in np.atleast_1d(value))
 
 
+def significant(value, digits=3):
+    return " ".join(f"{v:#.{digits}g}" for v in np.atleast_1d(value))
+
+
 def modes(archive):
     with h5py.File(archive) as file:
         return len(file["bank/A"])
