@@ -19,11 +19,12 @@ struct Baseline {
   Bank bank;                    ///< K = 1
   double log_likelihood = 0.0;  ///< of the training runs, from each run's second sample
   bool converged = false;
-  bool at_bound = false;  ///< R stopped where it adds 1e-8 to the residual variance: the data show no measurement noise
+  bool at_bound = false;  ///< R stopped where it adds 1e-8 to the residual variance, or is 0 beside many lags
 };
 
 /// theta fixed at the global least squares; Q (full) and R (diagonal) maximise the exact Gaussian likelihood. Of
-/// rounded states all three maximise the likelihood of their intervals.
+/// rounded states all three maximise the likelihood of their intervals. Beside more than most_lags_beside_R lags R is 0
+/// and Q the residual covariance.
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure);
 
 /// The competitor that switches noise only: one Huber theta, eight log-spaced noise scales, `stay` chosen on the

@@ -9,6 +9,7 @@
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "modebank/base/error.hpp"
 
@@ -101,6 +102,9 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
   bank.modes.push_back(make_mode(structure, global.theta, global.residual_covariance, Eigen::MatrixXd::Zero(p, p),
                                  global.covariance.diagonal().cwiseSqrt(), 1.0));
   set_mode_sequence(bank, TransitionMatrix());
+
+  if (structure.state_lags > most_lags_beside_R && !bank.is_quantised())
+    return {bank, training_log_likelihood(bank, training, {FilterVariant::kf}), true, true};
 
   const Eigen::VectorXd scale = global.noise_variance().unaryExpr(&positive_variance);
   NoiseSearch search{

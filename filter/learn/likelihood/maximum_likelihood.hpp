@@ -13,6 +13,10 @@
 
 namespace modebank {
 
+/// Coefficients of more lags than these predict what R would let a filter predict. On ICE with 17 the search took a
+/// minute for the bank and another for one_motion, and found none.
+inline constexpr Eigen::Index most_lags_beside_R = 8;
+
 /// What is maximised: the filter's log-likelihood of the training runs plus the prior's log density; a sample's weight
 /// is the power of its density. The likelihood is exact for one mode and the IMM's approximation for several.
 struct LikelihoodTarget {

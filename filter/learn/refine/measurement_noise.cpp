@@ -224,10 +224,6 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 
 namespace {
 
-/// Coefficients of more lags than these predict what R would let a filter predict. On ICE with 17 the search took a
-/// minute for the bank and another for one_motion, and found none.
-constexpr Index most_lags_beside_R = 8;
-
 /// R where the data ask for some and the runs left out do not lose by it: of the bank and of the splits.
 bool take_R(const RefineInput& in, const SwitchingPrior& prior, std::optional<MeasuredSplits>& splits,
             MeasuredBank& fit) {
