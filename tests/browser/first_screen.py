@@ -53,7 +53,7 @@ class FirstScreen(PageTest):
               range.setEnd(walk.currentNode, walk.currentNode.data.indexOf(word) + word.length);
               return [word, new Set([...range.getClientRects()].map((box) => box.top)).size];
             }));""")
-        if name != "none_held_out":
+        if name == "demo":  # others may end without an option
             self.assertTrue(tops)
         for word, lines in tops:
             self.assertEqual(lines, 1, word)
@@ -65,7 +65,7 @@ class FirstScreen(PageTest):
             return [...document.querySelectorAll('#verdict .numbers > li')].map((card) =>
                 [card.querySelector('.name').textContent, JSON.parse(card.querySelector('.big span').dataset.value ?? 'null'), card.textContent]);""")}
         bank = rows["bank", "test"]
-        best = max((row for (_, role), row in rows.items() if role == "test" and row["filter"] != b"bank"), key=lambda row: row["log_score"])
+        best = max((row for (_, role), row in rows.items() if role == "test" and row["filter"] not in (b"bank", b"combined")), key=lambda row: row["log_score"])
         competitor = best["filter"].decode()
         self.assertEqual(shown["In the 95 % band"][0], bank["coverage_95"])
         with h5py.File(session.made["demo"]) as file:
