@@ -61,8 +61,8 @@ double excess_error(const Reached& one, const std::vector<const Reached*>& all) 
 
 constexpr double about_equal = 0.002;
 
-/// Of single filters that `may` be taken and lose less than 0.02 nats to the best of these the one of least error; of
-/// about equals the first. Null without any.
+/// The filter of least error among single ones that `may` be taken and lose less than 0.02 nats to the best of these;
+/// of about equals the first. Null without any.
 template <class May>
 const Reached* best_single(const std::vector<Reached>& all, May may) {
   const auto counts = [&](const Reached& one) { return one.filter != combined_name && may(one.filter); };
@@ -142,8 +142,7 @@ NamedForecast named(const Archive& archive, const std::vector<Reached>& all, con
   forecast.filter = chosen.filter;
   if (chosen.filter != "bank")
     forecast.other = "bank";
-  else if (const Reached* next =
-               best_single(all, [](const std::string& name) { return name != "bank"; }))
+  else if (const Reached* next = best_single(all, [](const std::string& name) { return name != "bank"; }))
     forecast.other = next->filter;
   const Gain gain = gain_over(archive, forecast.filter, forecast.other, steps);
   forecast.gain = gain.mean;
@@ -188,8 +187,7 @@ std::vector<NamedForecast> named_forecasts(const Archive& archive) {
   std::vector<NamedForecast> forecasts;
   for (const Index steps : horizons) {
     const std::vector<Reached> all = reached_in_training(archive, steps);
-    if (const Reached* chosen = best_of(all))
-      forecasts.push_back(named(archive, all, *chosen, steps));
+    if (const Reached* chosen = best_of(all)) forecasts.push_back(named(archive, all, *chosen, steps));
   }
   return forecasts;
 }

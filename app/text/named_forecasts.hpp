@@ -20,8 +20,8 @@ struct NamedForecast {
 
 /// One per horizon that was scored, 1 first. Training runs alone choose: as filters predict them that were learned
 /// without them (/bank/left_out), or where nothing was left out as they are. The combination is named where its log
-/// score gains 0.002 nats over every single filter's; else, of single filters that lose less than 0.02 nats to the best,
-/// the one of least root mean square error. Empty where nothing was scored.
+/// score gains 0.002 nats over every single filter's; else, of single filters that lose less than 0.02 nats to the
+/// best, the one of least root mean square error. Empty where nothing was scored.
 std::vector<NamedForecast> named_forecasts(const Archive& archive);
 
 /// "to understand: the bank of 3 modes; to predict: `--track.filter combined`, +0.041 +- 0.012 nats per sample over

@@ -38,7 +38,7 @@ def free_parameters(system):
     return K * (n * (n + 2) + n * (n + 1) // 2) + K * (K - 1) + (n * (n + 1) // 2 if system.R else 0)
 
 
-def steady_gains(A, B):
+def gains_at_rest(A, B):
     return np.linalg.solve(-A, B).ravel()
 
 
@@ -67,7 +67,7 @@ def errors(bank, system):
     for row, P, Q, Q_error, k in zip(theta, covariance, bank["Q"][:], bank["Q_standard_error"][:], nearest):
         z["theta"] += ((row - true[k]) / np.sqrt(np.diag(P))).tolist()
         z["Q"] += ((Q - system.sd[k] ** 2 * np.eye(n))[half] / Q_error[half]).tolist()
-        for name, function in (("gain", lambda t: steady_gains(of(t)[:, :n], of(t)[:, n:])), ("time constant", lambda t: time_constants(of(t)[:, :n]))):
+        for name, function in (("gain", lambda t: gains_at_rest(of(t)[:, :n], of(t)[:, n:])), ("time constant", lambda t: time_constants(of(t)[:, :n]))):
             z[name] += ((function(row) - function(true[k])).ravel() / stated(function, row, P)).tolist()
     return z
 

@@ -137,7 +137,7 @@ inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, 
   }
 }
 
-/// Of the mixture of `parts`, whose known rows are the same (Gaussian::uncertain).
+/// The rows that are uncertain in any of `parts` (Gaussian::uncertain).
 template <int N>
 Eigen::Index uncertain_rows(std::span<const Gaussian<N>> parts) {
   Eigen::Index most = 0;

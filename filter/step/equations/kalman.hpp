@@ -131,7 +131,7 @@ struct KalmanStep {
   TermValues terms_;
   Eigen::Matrix<double, N, N> bent_F_;
 
-  /// What an exact sensor sees is known, without the rounding of a correction.
+  /// The rows that an exact sensor sees, without the rounding of a correction.
   template <class Sensor>
   void take_exactly(const Sensor& sensor, Gaussian<N>& posterior) const;
   /// Adds terms to the predicted mean; F with their derivatives.
