@@ -121,9 +121,10 @@ StructuresOfModes compare_structures(const Recording& all, const std::vector<Lin
     result.scores[s] = best.log_likelihood.sum() / transitions.sum();
   }
   if (transitions.size() == 0) return result;
-  const PairedLoss loss = paired_loss(candidates[best_candidate(candidates)].log_likelihood,
-                                      candidates[incumbent].log_likelihood, transitions);
-  if (loss.mean >= std::max(least_structure_gain, loss.standard_error))
+  const LeftOutScores& best = candidates[best_candidate(candidates)];
+  const PairedLoss loss = paired_loss(best.log_likelihood, candidates[incumbent].log_likelihood, transitions);
+  const bool fewer_lags = best.modes < candidates[incumbent].modes;
+  if (loss.mean >= least_structure_gain && (fewer_lags || loss.mean >= loss.standard_error))
     result.chosen = fewest_modes_as_good(candidates, transitions, {});
   return result;
 }
