@@ -94,7 +94,7 @@ struct RefineOptions {
   std::uint64_t seed = 1;       ///< of the random starts
   DriftOptions drift;           ///< whether theta of each mode follows a run
   RefineTuning tuning;          ///< what has no key in configurations
-  std::ptrdiff_t transitions = 200000;  ///< learn from so many at most, stretches of the runs drawn with the seed; 0:
+  std::ptrdiff_t transitions = 20000;  ///< learn from so many at most, stretches of the runs drawn with the seed; 0:
                                         ///< from all
 
   /// How far ahead densities decide.
