@@ -48,8 +48,8 @@ TEST(StructureScore, ModesWithOneLagLeaveTheLagsThatALinearModelWants) {
   }
 }
 
-/// x[k+1] = a x[k] + b u[k] + w, of other coefficients in each run: what left-out runs say differs so much between them
-/// that its error hides every gain.
+/// x[k+1] = a x[k] + b u[k] + w, of other coefficients in each run: the scores of left-out runs differ so much that
+/// their error hides every gain.
 Recording another_mode_each_run(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;

@@ -95,7 +95,7 @@ struct RefineOptions {
   DriftOptions drift;           ///< whether theta of each mode follows a run
   RefineTuning tuning;          ///< what has no key in configurations
   std::ptrdiff_t transitions = 20000;  ///< learn from so many at most, stretches of the runs drawn with the seed; 0:
-                                        ///< from all
+                                       ///< from all
 
   /// How far ahead densities decide.
   std::ptrdiff_t densities_ahead() const { return look_ahead_score == LookAheadScore::density ? look_ahead : 1; }
