@@ -61,17 +61,26 @@ double excess_error(const Reached& one, const std::vector<const Reached*>& all) 
 
 constexpr double about_equal = 0.002;
 
+bool is_single(const std::string& filter) { return filter != combined_name; }
+
+/// The highest log score of filters that `may` be taken; minus infinity without any.
+template <class May>
+double highest_score(const std::vector<Reached>& all, May may) {
+  double best = -std::numeric_limits<double>::infinity();
+  for (const Reached& one : all)
+    if (may(one.filter)) best = std::fmax(best, one.log_score);
+  return best;
+}
+
 /// The filter of least error among single ones that `may` be taken and lose less than 0.02 nats to the best of these;
 /// of about equals the first. Null without any.
 template <class May>
 const Reached* best_single(const std::vector<Reached>& all, May may) {
-  const auto counts = [&](const Reached& one) { return one.filter != combined_name && may(one.filter); };
-  double best = -std::numeric_limits<double>::infinity();
-  for (const Reached& one : all)
-    if (counts(one)) best = std::fmax(best, one.log_score);
+  const auto counts = [&](const std::string& filter) { return is_single(filter) && may(filter); };
+  const double best = highest_score(all, counts);
   std::vector<const Reached*> good;
   for (const Reached& one : all)
-    if (counts(one) && one.log_score > best - negligible_gain) good.push_back(&one);
+    if (counts(one.filter) && one.log_score > best - negligible_gain) good.push_back(&one);
   const Reached* chosen = nullptr;
   for (const Reached* one : good)
     if (!chosen || excess_error(*one, good) < excess_error(*chosen, good) - about_equal) chosen = one;
@@ -81,13 +90,10 @@ const Reached* best_single(const std::vector<Reached>& all, May may) {
 /// The combination where it gains anything over every single filter: its weights follow the run, which a choice made
 /// before it cannot. Null without any filter.
 const Reached* best_of(const std::vector<Reached>& all) {
-  const auto combined =
-      std::find_if(all.begin(), all.end(), [](const Reached& one) { return one.filter == combined_name; });
-  const auto as_good = [&](const Reached& one) {
-    return one.filter != combined_name && !(combined->log_score > one.log_score + about_equal);
-  };
-  if (combined != all.end() && std::none_of(all.begin(), all.end(), as_good)) return &*combined;
-  return best_single(all, [](const std::string&) { return true; });
+  const double best = highest_score(all, is_single);
+  for (const Reached& one : all)
+    if (!is_single(one.filter) && one.log_score > best + about_equal) return &one;
+  return best_single(all, is_single);
 }
 
 /// Mean log score and samples of each judged run.

@@ -57,9 +57,9 @@ HWY_EXPORT(add_block);
 Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
                               const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& root) {
   using Eigen::Index;
-  constexpr Index block_rows = 256, side_step = 4;  // a block of 20 columns stays in the first cache
+  constexpr Index block_rows = 256, tile = gram::HWY_NAMESPACE::tile;  // 20 columns stay in the first cache
   const Index q = left.cols(), columns = q + right.cols();
-  const Index side = (columns + side_step - 1) / side_step * side_step;
+  const Index side = (columns + tile - 1) / tile * tile;
   const auto block = hwy::AllocateAligned<double>(static_cast<std::size_t>(side * block_rows));
   std::fill_n(block.get(), side * block_rows, 0.0);
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(side, side);

@@ -31,9 +31,9 @@ template <int N>
 Eigen::Index uncertain_rows_of(const std::vector<Gaussian<N>>& modes) {
   Eigen::Index rows = modes.front().mean.size();
   const auto known = [&](Eigen::Index row) {
-    return std::all_of(modes.begin(), modes.end(), [&](const Gaussian<N>& mode) {
-      return mode.mean(row) == modes.front().mean(row) && (mode.covariance.col(row).array() == 0.0).all();
-    });
+    return has_one_mean<N>(modes, row) && std::all_of(modes.begin(), modes.end(), [row](const Gaussian<N>& mode) {
+             return (mode.covariance.col(row).array() == 0.0).all();
+           });
   };
   while (rows > 0 && known(rows - 1)) --rows;
   return rows;

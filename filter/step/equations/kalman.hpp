@@ -7,6 +7,7 @@
 #include "filter/step/equations/arithmetic.hpp"
 #include "filter/step/equations/bounds.hpp"
 #include "filter/step/equations/model.hpp"
+#include "filter/step/equations/partial_sensor.hpp"
 #include "ident/model/linear_model.hpp"
 
 namespace modebank {
@@ -22,50 +23,6 @@ struct Gaussian {
   explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size), uncertain(size) {
     mean.setZero();
     covariance.setZero();
-  }
-};
-
-/// Makes signal i of a covariance one of variance one, unrelated to the others.
-template <class Matrix>
-void detach(Matrix& S, Eigen::Index i) {
-  S.row(i).setZero();
-  S.col(i).setZero();
-  S(i, i) = 1.0;
-}
-
-/// A sensor some of whose signals are missing: their rows of C and R become those of a signal that is always zero, of
-/// variance one, unrelated to anything, and is measured as zero. Gains, NIS and the other signals' densities are then
-/// exactly those of the signals that are there; log densities carry -log(2 pi) / 2 too much per missing signal.
-template <int N, int NY>
-struct PartialSensor {
-  Eigen::Matrix<double, NY, N> C;
-  Eigen::Matrix<double, NY, NY> R;
-  Eigen::Matrix<double, NY, 1> y;
-  Eigen::Matrix<double, NY, 1> quantum;
-  bool quantised = false;
-  static constexpr bool exact = false;
-  Eigen::Index seen_columns;  ///< of C (FilterModel)
-  Eigen::Index missing = 0;   ///< signals
-
-  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y), quantum(n_y), seen_columns(n) {}
-
-  template <class Sensor, class Y>
-  void assign(const Sensor& whole, const Y& measured) {
-    C = whole.C;
-    R = whole.R;
-    y = measured;
-    quantum = whole.quantum;
-    quantised = whole.quantised;
-    seen_columns = whole.seen_columns;
-    missing = 0;
-    for (Eigen::Index i = 0; i < y.size(); ++i)
-      if (is_missing(measured(i))) {
-        C.row(i).setZero();
-        detach(R, i);
-        y(i) = 0.0;
-        quantum(i) = 0.0;
-        ++missing;
-      }
   }
 };
 
@@ -189,8 +146,8 @@ template <int N, int NY>
 template <class U>
 void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY>& model,
                                 const typename FilterModel<N, NY>::Mode& mode, const U& u, double noise_scale) {
-  propagate(mode.A, mode.B, mode.c, from.mean, u, predicted.mean);
-  for (Eigen::Index i = model.full_rows; i < predicted.mean.size(); ++i)  // without rounding
+  propagate(mode.A.topRows(model.full_rows), mode.B, mode.c, from.mean, u, predicted.mean);
+  for (Eigen::Index i = model.full_rows; i < predicted.mean.size(); ++i)
     predicted.mean(i) = from.mean(i - model.full_rows);
   process_noise = noise_scale * mode.Q;
   if (mode.spread.size() > 0) add_parameter_noise(model.structure, mode.spread, from.mean, u);

@@ -6,6 +6,7 @@ import resource
 import subprocess
 
 import h5py
+import numpy as np
 
 from benchmark import SOURCES, Arguments, decoded, filters, head, held_out, line, modes, significant
 from hybrid_systems import INPUTS, simulator
@@ -58,7 +59,7 @@ def named(screen, steps):
 
 
 def size(row):
-    return float(sum(v * v for v in map(float, row["rmse"] if hasattr(row["rmse"], "__len__") else [row["rmse"]]))) ** 0.5
+    return np.linalg.norm(row["rmse"])
 
 
 def forecasts(title, archive, screen):

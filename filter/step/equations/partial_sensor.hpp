@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "filter/step/equations/bounds.hpp"
+
+namespace modebank {
+
+/// Makes signal i of a covariance one of variance one, unrelated to the others.
+template <class Matrix>
+void detach(Matrix& S, Eigen::Index i) {
+  S.row(i).setZero();
+  S.col(i).setZero();
+  S(i, i) = 1.0;
+}
+
+/// A sensor some of whose signals are missing: their rows of C and R become those of a signal that is always zero, of
+/// variance one, unrelated to anything, and is measured as zero. Gains, NIS and the other signals' densities are then
+/// exactly those of the signals that are there; log densities carry -log(2 pi) / 2 too much per missing signal.
+template <int N, int NY>
+struct PartialSensor {
+  Eigen::Matrix<double, NY, N> C;
+  Eigen::Matrix<double, NY, NY> R;
+  Eigen::Matrix<double, NY, 1> y;
+  Eigen::Matrix<double, NY, 1> quantum;
+  bool quantised = false;
+  static constexpr bool exact = false;
+  Eigen::Index seen_columns;  ///< of C (FilterModel)
+  Eigen::Index missing = 0;   ///< signals
+
+  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y), quantum(n_y), seen_columns(n) {}
+
+  template <class Sensor, class Y>
+  void assign(const Sensor& whole, const Y& measured) {
+    C = whole.C;
+    R = whole.R;
+    y = measured;
+    quantum = whole.quantum;
+    quantised = whole.quantised;
+    seen_columns = whole.seen_columns;
+    missing = 0;
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      if (is_missing(measured(i))) {
+        C.row(i).setZero();
+        detach(R, i);
+        y(i) = 0.0;
+        quantum(i) = 0.0;
+        ++missing;
+      }
+  }
+};
+
+}  // namespace modebank
