@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using test::near;
 
-/// Of columns that fill no tile, rows that fill no block, and of several blocks; every third row is left out.
+/// The columns fill no tile and the rows fill no block, or several; every third row is left out.
 TEST(WeightedGram, IsThePlainProductOfTheRowsThatAreListed) {
   for (const Index count : {1, 5, 255, 256, 257, 1000})
     for (const Index columns : {1, 3, 4, 5, 17}) {
