@@ -52,6 +52,11 @@ namespace gram {
 
 HWY_EXPORT(add_block);
 
+/// `add_block` for this processor. Highway finds a function that is built for one processor only by its bare name.
+void dispatch(const double* block, std::ptrdiff_t stride, std::ptrdiff_t count, std::ptrdiff_t side, double* sums) {
+  HWY_DYNAMIC_DISPATCH(add_block)(block, stride, count, side, sums);
+}
+
 }  // namespace gram
 
 Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
@@ -71,7 +76,7 @@ Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& left, const Eigen::MatrixXd
       for (Index k = 0; k < count; ++k) to[k] = root(first + k) * from[rows[static_cast<std::size_t>(first + k)]];
       std::fill(to + count, to + block_rows, 0.0);
     }
-    HWY_DYNAMIC_DISPATCH(gram::add_block)(block.get(), block_rows, count, side, sums.data());
+    gram::dispatch(block.get(), block_rows, count, side, sums.data());
   }
   sums.triangularView<Eigen::StrictlyUpper>() = sums.transpose();
   return sums.topLeftCorner(columns, columns);
