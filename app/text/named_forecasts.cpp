@@ -96,6 +96,22 @@ const Reached* best_of(const std::vector<Reached>& all) {
   return best_single(all, is_single);
 }
 
+constexpr double worth_a_name = 0.02;  // of an error
+
+/// Names the filter of least error where it saves that much of the chosen one's.
+void name_point(const std::vector<Reached>& all, const Reached& chosen, NamedForecast& forecast) {
+  forecast.point_filter = chosen.filter;
+  std::vector<const Reached*> every;
+  for (const Reached& one : all) every.push_back(&one);
+  const Reached* least = &chosen;
+  for (const Reached* one : every)
+    if (excess_error(*one, every) < excess_error(*least, every)) least = one;
+  const double saved = 1.0 - 1.0 / (1.0 + excess_error(chosen, {&chosen, least}));
+  if (saved <= worth_a_name) return;
+  forecast.point_filter = least->filter;
+  forecast.point_gain = saved;
+}
+
 /// Mean log score and samples of each judged run.
 struct OfRuns {
   std::vector<double> score, samples;
@@ -146,6 +162,7 @@ NamedForecast named(const Archive& archive, const std::vector<Reached>& all, con
   NamedForecast forecast;
   forecast.steps = steps;
   forecast.filter = chosen.filter;
+  name_point(all, chosen, forecast);
   if (chosen.filter != "bank")
     forecast.other = "bank";
   else if (const Reached* next = best_single(all, [](const std::string& name) { return name != "bank"; }))
@@ -177,6 +194,8 @@ std::string worth(const NamedForecast& forecast) {
     text = fmt::format(", {:+.3f}{} nats over {}", forecast.gain, error, forecast.other);
     if (!std::isnan(forecast.error) && std::abs(forecast.gain) <= forecast.error) text += " (within its error)";
   }
+  if (forecast.point_filter != forecast.filter)
+    text += fmt::format(", least error `{}` (-{:.0f} %)", forecast.point_filter, 100.0 * forecast.point_gain);
   if (!forecast.c_filter.empty())
     text += std::isnan(forecast.c_loss) ? fmt::format(", in C {}", forecast.c_filter)
                                         : fmt::format(", in C {} ({:+.3f})", forecast.c_filter, -forecast.c_loss);
@@ -202,8 +221,9 @@ std::string use_words(const Archive& archive) {
   if (!archive.finding || !archive.bank) return "";
   const std::vector<NamedForecast> forecasts = named_forecasts(archive);
   std::string text = "to understand: " + understanding(archive);
-  const bool alike = std::all_of(forecasts.begin(), forecasts.end(),
-                                 [&](const NamedForecast& f) { return f.filter == forecasts.front().filter; });
+  const bool alike = std::all_of(forecasts.begin(), forecasts.end(), [&](const NamedForecast& f) {
+    return f.filter == forecasts.front().filter && f.point_filter == forecasts.front().point_filter;
+  });
   for (const NamedForecast& forecast : forecasts) {
     const bool first = &forecast == &forecasts.front();
     text += first ? "; to predict" : ";";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/chain/judged_runs.hpp"
+#include "app/text/named_forecasts.hpp"
 #include "app/text/warnings.hpp"
 #include "filter/judge/verdict_reason.hpp"
 #include "ident/fit/window_length.hpp"
@@ -99,6 +100,15 @@ std::string advice_on_doubt(const Situation& s) {
          "them";
 }
 
+/// Where lags were looked for already.
+std::string left_pattern(const Situation& s) {
+  const std::vector<NamedForecast> named = named_forecasts(s.archive);
+  return fmt::format(
+      "ready: to predict, use `modebank track ARCHIVE --track.filter {}`; a pattern is left in the errors, which more "
+      "lags do not take away",
+      named.empty() ? "bank" : named.front().filter);
+}
+
 /// From what spoils every number to what only could be better. docs/howto/troubleshooting.md has the same list.
 const Rule rules[] = {
     {[](const Situation& s) { return warns(s, WarningKind::failed_windows); },
@@ -130,8 +140,11 @@ const Rule rules[] = {
      }},
     {[](const Situation& s) { return s.finding.pattern.told(); },
      [](const Situation& s) {
-       return fmt::format("errors follow a pattern, so the model lacks memory: repeat with --window.model auto{}",
-                          s.setting("data.lag_s") == "auto" ? "" : ", or with --data.lag_s auto");
+       if (s.setting("window.model") != "auto")
+         return std::string("errors follow a pattern, so the model lacks memory: repeat with --window.model auto");
+       if (s.setting("data.lag_s") != "auto")
+         return std::string("errors follow a pattern: repeat with --data.lag_s auto");
+       return left_pattern(s);
      }},
     {[](const Situation& s) { return s.answers(Answer::cannot_tell); }, advice_on_doubt},
     {[](const Situation& s) { return s.answers(Answer::no_evidence) && !s.finding.better_description.empty(); },
@@ -142,6 +155,8 @@ const Rule rules[] = {
            description_of(simpler, s.archive.one_motion_drifts()),
            simpler == s.finding.best_competitor ? "" : ", which is about as good as " + s.finding.best_competitor);
      }},
+    {[](const Situation& s) { return errors_follow_a_pattern(s.bank) && s.setting("window.model") == "auto"; },
+     left_pattern},
     {[](const Situation& s) { return errors_follow_a_pattern(s.bank); },
      [](const Situation&) -> std::string {
        return "errors follow a pattern: `modebank check CONFIG` looks for a lag between inputs and states, and for "
