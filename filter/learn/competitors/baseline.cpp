@@ -17,9 +17,10 @@ namespace modebank {
 namespace {
 
 constexpr double smallest_r_share = 1e-8;  // of the residual variance: what R at its bound adds to a prediction
-constexpr double bound_tolerance = 1e-7;   // nats per sample that R at its bound may cost
+constexpr double bound_tolerance = 1e-5;   // nats per sample that R at its bound may cost
 constexpr double least_gain = 1e-9;        // nats per sample: a better start has to be better than rounding
 constexpr AscentLimits limits{200, 1e-12};
+constexpr AscentLimits rough_limits{200, 1e-6};  // while starts and bounds are compared
 constexpr std::array<std::pair<double, double>, 2> noise_starts{{{1.0, 0.1}, {0.01, 0.5}}};  // shares of Q, R
 
 /// Lower bound of R's diagonal. An output's noise enters the innovations of every state, by the measurement itself and
@@ -46,14 +47,15 @@ struct NoiseSearch {
 
   double samples() const { return static_cast<double>(target.recording.transitions(Role::train)); }
 
-  LikelihoodMaximum maximise(const Bank& start, const std::vector<Index>& free_R) const {
+  LikelihoodMaximum maximise(const Bank& start, const std::vector<Index>& free_R,
+                             const AscentLimits& end = rough_limits) const {
     FreeParameters free;
     if (theta_unit.size() > 0) free.theta_unit = theta_unit;  // an empty vector is a column, which is one theta
     free.least_Q = rounding_share * scale;
     free.R = free_R;
     free.least_R = bound;
     free.transition = false;
-    return maximise_likelihood(target, free, start, limits);
+    return maximise_likelihood(target, free, start, end);
   }
 };
 
@@ -76,17 +78,25 @@ struct HeldNoise {
   std::vector<Index> free;  ///< outputs whose R is not at its bound
 };
 
-/// Holds every output's R at its bound where that costs no likelihood.
-HeldNoise hold_at_bounds(const NoiseSearch& search, LikelihoodMaximum best, const std::vector<Index>& outputs) {
+/// Holds every output's R at its bound where that costs no likelihood: all at once, from Q of states measured exactly,
+/// or one by one.
+HeldNoise hold_at_bounds(const NoiseSearch& search, const Bank& exact, LikelihoodMaximum best,
+                         const std::vector<Index>& outputs) {
+  const auto costs_nothing = [&](const LikelihoodMaximum& held, const LikelihoodMaximum& free) {
+    return held.value >= free.value - bound_tolerance * search.samples();
+  };
+  Bank start = exact;
+  start.R = search.bound.asDiagonal();
+  LikelihoodMaximum none = search.maximise(start, {});
+  if (costs_nothing(none, best)) return {std::move(none), {}};
   HeldNoise result{std::move(best), outputs};
   for (const Index i : outputs) {
     std::vector<Index> rest = result.free;
     std::erase(rest, i);
-    Bank start = result.best.bank;
+    start = result.best.bank;
     start.R(i, i) = search.bound(i);
     LikelihoodMaximum held = search.maximise(start, rest);
-    if (!(held.value >= result.best.value - bound_tolerance * search.samples())) continue;
-    result = {std::move(held), std::move(rest)};
+    if (costs_nothing(held, result.best)) result = {std::move(held), std::move(rest)};
   }
   return result;
 }
@@ -113,7 +123,8 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
     search.theta_unit = global.covariance.diagonal().cwiseSqrt().unaryExpr(&positive_variance);
   std::vector<Index> outputs(static_cast<std::size_t>(n));
   std::iota(outputs.begin(), outputs.end(), Index{0});
-  HeldNoise noise = hold_at_bounds(search, best_of_starts(search, bank, outputs), outputs);
+  HeldNoise noise = hold_at_bounds(search, bank, best_of_starts(search, bank, outputs), outputs);
+  noise.best = search.maximise(noise.best.bank, noise.free, limits);
   return {std::move(noise.best.bank), noise.best.value, noise.best.end == MeasuredFit::converged,
           noise.free.size() < outputs.size()};
 }

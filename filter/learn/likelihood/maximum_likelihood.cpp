@@ -131,6 +131,7 @@ std::optional<Metric> metric_of(const SampleGradients& gradients) {
 struct BfgsEnd {
   Eigen::VectorXd at;
   Index iterations = 0;
+  double expected_gain = 0.0;  ///< of a Newton step from there, by the metric that it began with
 };
 
 /// `small_gain`: what no more is to be gained by.
@@ -146,7 +147,8 @@ BfgsEnd bfgs(const Neighbourhood& nearby, const Metric& metric, double origin_va
   ceres::GradientProblemSolver::Summary summary;
   Eigen::VectorXd at = Eigen::VectorXd::Zero(nearby.size());
   ceres::Solve(options, problem, at.data(), &summary);
-  return {metric.by_standard_errors * at, std::max<Index>(std::ssize(summary.iterations) - 1, 1)};
+  const double slope = summary.iterations.back().gradient_norm;
+  return {metric.by_standard_errors * at, std::max<Index>(std::ssize(summary.iterations) - 1, 1), 0.5 * slope * slope};
 }
 
 bool is_finite(const Bank& bank) {
@@ -195,6 +197,11 @@ LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const Free
     best.bank = std::move(next);
     best.value = value;
     best.rose = true;
+    // Another metric costs two passes of the filter per coordinate, a gradient three.
+    if (end.expected_gain <= small_gain) {
+      best.end = MeasuredFit::converged;
+      return best;
+    }
   }
 }
 

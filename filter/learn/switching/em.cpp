@@ -47,7 +47,8 @@ class ConditionalMaximiser {
       const Eigen::MatrixXd of_mode = at(j).H * *Q_inverse;
       pull += of_mode.reshaped();
     }
-    return prior_.mean + solve_semidefinite(information, pull);
+    const Cholesky factor(information);  // an LDLT of 128 coefficients takes four times as long
+    return prior_.mean + (factor.definite() ? factor.solve(pull) : solve_semidefinite(information, pull));
   }
 
   const LinearStructure& structure_;
