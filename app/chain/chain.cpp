@@ -45,9 +45,10 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
       refuse_unreached_horizons(*archive_.recording, options.scoring.horizon);
     find_lags(inputs_.structure);
   }
-  if (last >= Stage::windows && (archive_.structure || options.automatic_length)) {
+  if (last >= Stage::windows && (archive_.structure || options.automatic_windows.any())) {
     ChainOptions found = archive_.structure ? with_structure(options, *archive_.structure) : options;
-    if (options.automatic_length) found.window.length = automatic_length(*archive_.recording, found.window);
+    if (options.automatic_windows.length) found.window.length = automatic_length(*archive_.recording, found.window);
+    if (options.automatic_windows.step) found.window.step = automatic_step(*archive_.recording);
     inputs_ = chain_inputs(found);
     want();
   }

@@ -27,6 +27,13 @@ struct ScoringOptions {
   std::uint64_t seed = 1;                        ///< of the transforms of quantised measurements; the chain's
 };
 
+/// Which numbers of windows are found from the data (ident/fit/window_length.hpp).
+struct AutomaticWindows {
+  bool length = false, step = false;
+
+  bool any() const { return length || step; }
+};
+
 /// Lags and delay of stages that have others than the windows; empty: the same.
 struct OtherLags {
   std::optional<Lags> linear = {};      ///< baseline, noise_only, and where terms are looked for
@@ -45,10 +52,10 @@ struct ChainOptions {
   FilterOptions filter;
   ScoringOptions scoring;
   std::uint64_t seed = 1;
-  SearchedLags searched_lags = {};             ///< that are found by runs left out, whatever `window` has
-  bool automatic_length = false;               ///< of windows (ident/fit/window_length.hpp), whatever `window` has
-  std::vector<std::string> mode_names = {};    ///< of the bank; they change no number
-  TermsChoice terms = TermsChoice::automatic;  ///< whether one motion may bend
+  SearchedLags searched_lags = {};                        ///< that are found by runs left out, whatever `window` has
+  AutomaticWindows automatic_windows = {};                ///< whatever `window` has
+  std::vector<std::string> mode_names = {};               ///< of the bank; they change no number
+  TermsChoice terms = TermsChoice::automatic;             ///< whether one motion may bend
   NoiseByInput noise_by_input = NoiseByInput::automatic;  ///< whether noise may follow state and input
   OtherLags other_lags = {};
 };

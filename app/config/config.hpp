@@ -75,7 +75,7 @@ enum class LagChoice { by_model, automatic, number };
 struct StructureConfig {
   bool automatic_model = true;  ///< window.model = auto: by_model means automatic
   LagChoice state = LagChoice::by_model, input = LagChoice::by_model, delay = LagChoice::by_model;
-  LagChoice length = LagChoice::by_model;  ///< of windows
+  LagChoice length = LagChoice::by_model, step = LagChoice::by_model;  ///< of windows
 };
 
 /// Every stage's options, as one configuration file states them. The option table lists their keys.
@@ -110,7 +110,7 @@ FitOptions window_options_of(const Config& config);
 /// Which of its lags are found.
 SearchedLags searched_lags_of(const Config& config);
 /// Whether the windows' length follows from the structure and the data.
-bool automatic_length_of(const Config& config);
+AutomaticWindows automatic_windows_of(const Config& config);
 
 /// Checks values against each other, before any file of data is opened. Throws ConfigurationError naming the keys.
 void validate(const Config& config);

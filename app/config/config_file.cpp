@@ -153,7 +153,7 @@ void forget_lags(Config& config, const KeyValues& overrides) {
   config.window.state_lags = standard.state_lags;
   config.window.input_lags = standard.input_lags;
   config.window.input_delay = standard.input_delay;
-  config.structure = {.length = config.structure.length};
+  config.structure = {.length = config.structure.length, .step = config.structure.step};
 }
 
 void apply_overrides(Config& config, const KeyValues& overrides) {

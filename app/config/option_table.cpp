@@ -34,15 +34,18 @@ SearchedLags searched_lags_of(const Config& c) {
   return {searched(c.structure.state), searched(c.structure.input), searched(c.structure.delay)};
 }
 
-bool automatic_length_of(const Config& c) {
-  return c.structure.length == LagChoice::automatic ||
-         (c.structure.length == LagChoice::by_model && c.structure.automatic_model);
+AutomaticWindows automatic_windows_of(const Config& c) {
+  const auto automatic = [&](LagChoice choice) {
+    return choice == LagChoice::automatic || (choice == LagChoice::by_model && c.structure.automatic_model);
+  };
+  return {automatic(c.structure.length), automatic(c.structure.step)};
 }
 
 ChainOptions chain_options(const Config& c) {
-  return {data_options_of(c), window_options_of(c), c.mixture,           c.mixture_start,        c.bank,       c.filter,
-          c.scoring,          c.job.seed,           searched_lags_of(c), automatic_length_of(c), c.mode_names, c.terms,
-          c.noise_by_input};
+  return {
+      data_options_of(c), window_options_of(c), c.mixture,           c.mixture_start,         c.bank,       c.filter,
+      c.scoring,          c.job.seed,           searched_lags_of(c), automatic_windows_of(c), c.mode_names, c.terms,
+      c.noise_by_input};
 }
 
 namespace {

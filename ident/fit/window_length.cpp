@@ -83,4 +83,9 @@ Index automatic_length(const Recording& recording, const FitOptions& options) {
   return automatic_length(recording, linear_structure(recording.state_count(), recording.input_count(), options));
 }
 
+Index automatic_step(const Recording& recording) {
+  constexpr Index enough_windows = 100000;
+  return std::max<Index>(1, recording.transitions(Role::train) / enough_windows);
+}
+
 }  // namespace modebank

@@ -19,4 +19,8 @@ Index automatic_length(const Recording& recording, const LinearStructure& struct
 /// The same for the linear model, or the linearised motion model, of these options.
 Index automatic_length(const Recording& recording, const FitOptions& options);
 
+/// From one window's start to the next so that training runs have about 100,000 windows: 1 where they have fewer.
+/// Neighbours share most of their samples, and 100,000 are more than a mixture's candidates are compared on.
+Index automatic_step(const Recording& recording);
+
 }  // namespace modebank

@@ -62,7 +62,9 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
       {"window.length",
        "when `modebank check` suggests another: longer where windows are rank deficient, shorter where "
        "modes last less than a window; auto, when the model has many lags"},
-      {"window.step", "larger, when windows are too many to wait for: neighbours share most of their samples"},
+      {"window.step",
+       "larger, when windows are too many to wait for: neighbours share most of their samples; beyond 100,000 windows "
+       "auto does it"},
       {"window.loss", "when `modebank check` suggests it: tukey for gross errors, trivial for clean data"},
       {"window.loss_scale", "never, unless you study the loss itself"},
       {"window.scale", "run or fixed, when windows are so short that their own scale is noise"},

@@ -111,18 +111,18 @@ TEST(WindowLengthKey, FollowsTheModelUnlessItIsGiven) {
   app::Config config;
   const app::Option& length = *app::find_option("window.length");
   EXPECT_EQ(length.get(config), "auto");
-  EXPECT_TRUE(app::chain_options(config).automatic_length);
+  EXPECT_TRUE(app::chain_options(config).automatic_windows.length);
   app::find_option("window.model")->set(config, "linear");
   EXPECT_EQ(length.get(config), "25");
-  EXPECT_FALSE(app::chain_options(config).automatic_length);
+  EXPECT_FALSE(app::chain_options(config).automatic_windows.length);
   app::find_option("window.model")->set(config, "auto");
   length.set(config, "40");
   EXPECT_EQ(length.get(config), "40");
-  EXPECT_FALSE(app::chain_options(config).automatic_length);
+  EXPECT_FALSE(app::chain_options(config).automatic_windows.length);
   app::find_option("window.model")->set(config, "linear");
   length.set(config, "auto");
   EXPECT_EQ(length.get(config), "auto");
-  EXPECT_TRUE(app::chain_options(config).automatic_length);
+  EXPECT_TRUE(app::chain_options(config).automatic_windows.length);
 }
 
 /// Thirteen coefficients and more: windows are longer, the cloud is of one-lag fits, and both are told.

@@ -57,5 +57,14 @@ TEST(WindowLength, LookedAtRunsAreThoseThatTrain) {
   EXPECT_EQ(automatic_length(recording, many_lags), 72);
 }
 
+/// Three transitions from a window to the next leave 100,000 of 300,000.
+TEST(WindowStep, LeavesAHundredThousandWindows) {
+  Recording recording =
+      test::make_recording({test::make_run(Eigen::MatrixXd::Zero(1, 300001), Eigen::MatrixXd::Zero(1, 300001))});
+  EXPECT_EQ(automatic_step(recording), 3);
+  recording.runs.front().role = Role::test;
+  EXPECT_EQ(automatic_step(recording), 1);
+}
+
 }  // namespace
 }  // namespace modebank
