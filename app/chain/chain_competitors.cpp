@@ -26,7 +26,7 @@ void Chain::learn_competitor_banks(const CompetitorInputs& inputs) {
     archive_.drifting = std::move(part.drifting);
     archive_.nonlinear = std::move(part.nonlinear);
   };
-  archive_.terms_asked = inputs.terms != TermsChoice::none;
+  archive_.terms_asked = inputs.terms != "none";
   provide(Stage::competitors, {learn_all, copy_all, take_all});
 }
 

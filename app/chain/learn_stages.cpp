@@ -8,6 +8,7 @@
 #include "filter/judge/scores.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/competitors/noise_by_input.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/passing_windows.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/learning_part.hpp"
@@ -15,6 +16,9 @@
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/linearise.hpp"
 #include "ident/terms/find_terms.hpp"
+#include "ident/terms/stated_terms.hpp"
+#include "ident/terms/term_rows.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 
@@ -72,20 +76,36 @@ std::string lags_of(const LinearStructure& s) {
   return fmt::format("({}, {}, {})", s.state_lags, s.input_lags, s.input_delay);
 }
 
+/// Terms that the configuration states are taken, whatever they gain.
+FoundTerms take_stated(const Recording& recording, const LinearStructure& structure, const std::string& terms) {
+  constexpr Index enough_rows = 200000;
+  std::vector<std::string> names = state_names(recording, structure);
+  for (const std::string& input : input_names(recording, structure)) names.push_back(input);
+  const TermRows rows = gather_term_rows(recording, structure, enough_rows);
+  if (rows.count() == 0) throw DataError("no training run has a transition to learn window.terms from");
+  FoundTerms found;
+  found.structure = structure;
+  found.terms = stated_terms(read_terms(terms), names, rows.X);
+  return found;
+}
+
+std::string gain_words(const FoundTerms& found) {
+  if (found.terms_asked > 0)
+    return fmt::format("{} terms gain {:.4f} +- {:.4f} nats/sample on halves that did not choose them",
+                       found.terms_asked, found.gain, found.gain_standard_error);
+  return found.terms.empty() ? "no terms that gain" : fmt::format("{} terms as stated", found.terms.count());
+}
+
 std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure& structure,
                               const CompetitorInputs& inputs, bool noise_by_input, const Listener& listener) {
-  if (inputs.terms == TermsChoice::none) return {};
+  if (inputs.terms == "none") return {};
   const Stopwatch watch;
-  const FoundTerms found = find_terms(recording, structure, inputs.window);
+  const FoundTerms found = inputs.terms == "auto" ? find_terms(recording, structure, inputs.window)
+                                                  : take_stated(recording, structure, inputs.terms);
   for (const TriedTerms& tried : found.tried)
     listener.detail(fmt::format("nonlinear: {} terms with lags {}: {:.4f} nats/sample left out", tried.terms,
                                 lags_of(tried.structure), tried.log_score));
-  const std::string gain = found.terms_asked == 0
-                               ? "no terms that gain"
-                               : fmt::format(
-                                     "{} terms gain {:.4f} +- {:.4f} nats/sample on halves that did not choose "
-                                     "them",
-                                     found.terms_asked, found.gain, found.gain_standard_error);
+  const std::string gain = gain_words(found);
   if (found.terms.empty()) {
     listener.progress(fmt::format("nonlinear: {}: not taken, in {:.2f} s", gain, watch.seconds()));
     return {};

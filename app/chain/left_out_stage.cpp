@@ -23,7 +23,8 @@ using OfSplits = std::vector<std::pair<std::string, std::vector<Bank>>>;
 /// Terms are chosen anew, too: terms judged by the runs that chose them look better than they are. Where the split's
 /// runs take none, those of all training runs are fitted to them.
 Bank relearn_nonlinear(const Archive& learned, const Recording& training, const BankInputs& inputs) {
-  FoundTerms found = find_terms(training, learned.baseline->structure, inputs.window);
+  FoundTerms found;
+  if (!inputs.terms_stated) found = find_terms(training, learned.baseline->structure, inputs.window);
   if (found.terms.empty()) {
     found.structure = learned.nonlinear->structure;
     found.terms = learned.nonlinear->terms;

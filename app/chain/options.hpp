@@ -11,7 +11,6 @@
 #include "filter/learn/learn.hpp"
 #include "ident/fit/options.hpp"
 #include "ident/lag/structure.hpp"
-#include "ident/terms/find_terms.hpp"
 #include "io/import/options.hpp"
 #include "mixture/select.hpp"
 #include "modebank/mixture/options.hpp"
@@ -55,7 +54,7 @@ struct ChainOptions {
   SearchedLags searched_lags = {};                        ///< that are found by runs left out, whatever `window` has
   AutomaticWindows automatic_windows = {};                ///< whatever `window` has
   std::vector<std::string> mode_names = {};               ///< of the bank; they change no number
-  TermsChoice terms = TermsChoice::automatic;             ///< whether one motion may bend
+  std::string terms = "auto";                             ///< of nonlinear: auto, none, or a list that read_terms takes
   NoiseByInput noise_by_input = NoiseByInput::automatic;  ///< whether noise may follow state and input
   OtherLags other_lags = {};
 };

@@ -12,6 +12,7 @@ namespace {
 
 BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
   BankInputs inputs{window, options.bank, options.filter.variant == FilterVariant::kf, {}};
+  inputs.terms_stated = options.terms != "auto" && options.terms != "none";
   inputs.bank.em.seed = options.seed;
   inputs.bank.em.most_modes = most_components(options.mixture.selection);
   inputs.bank.refine = refinement_asked(options.bank, is_linear(window));  // one key for what is the same
@@ -41,7 +42,7 @@ CompetitorInputs competitor_inputs(const ChainOptions& options, const FitOptions
           options.scoring.horizon,
           options.bank.em.transitions,
           options.seed,
-          rivals ? options.terms : TermsChoice::none,
+          rivals ? options.terms : "none",
           em,
           options.other_lags.linear,
           options.other_lags.drifting,

@@ -35,7 +35,7 @@ struct CompetitorInputs {
   std::vector<Index> horizon;                        ///< that drifting is to widen its predictions for
   Index transitions = 0;                             ///< that they learn from at most, as the bank does; 0: from all
   std::uint64_t seed = 1;                            ///< which these are
-  TermsChoice terms = TermsChoice::automatic;        ///< of nonlinear
+  std::string terms = "auto";                        ///< of nonlinear
   RefineOptions em = {};                             ///< how that is learned
   std::optional<Lags> linear = {};                   ///< of baseline, noise_only and nonlinear; empty: the windows'
   std::optional<Lags> drifting = {};                 ///< of drifting; empty: the windows'
@@ -56,6 +56,7 @@ struct BankInputs {
   bool one_model = false;               ///< the bank is the baseline: a single Kalman filter was asked for
   std::optional<FilterOptions> filter;  ///< where learning runs the filter: refinement, and what merging modes costs
   std::optional<OneMotionInputs> one_motion = {};  ///< empty: a single Kalman filter has no use for it
+  bool terms_stated = false;                       ///< runs left out choose no terms of nonlinear
 };
 
 struct CompetitorScoreInputs {

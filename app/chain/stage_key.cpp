@@ -94,7 +94,7 @@ MODEBANK_KEY_FIELDS(MixtureInputs, window, mixture, start_file, start_sha256, se
 MODEBANK_KEY_FIELDS(CompetitorInputs, window, filter, horizon, transitions, seed, terms, em, linear, drifting,
                     noise_by_input)
 MODEBANK_KEY_FIELDS(OneMotionInputs, bank, filter, horizon, lags)
-MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter, one_motion)
+MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter, one_motion, terms_stated)
 MODEBANK_KEY_FIELDS(StructureInputs, searched, window, with_modes)
 MODEBANK_KEY_FIELDS(CompetitorScoreInputs, window, filter, scoring)
 MODEBANK_KEY_FIELDS(BankScoreInputs, filter, scoring)

@@ -84,7 +84,7 @@ struct Config {
   FitOptions window;
   ClusterOptions mixture;
   StructureConfig structure;
-  TermsChoice terms = TermsChoice::automatic;
+  std::string terms = "auto";
   NoiseByInput noise_by_input = NoiseByInput::automatic;
   std::string mixture_start;  ///< an archive as mixture.start; empty: none
   BankOptions bank;

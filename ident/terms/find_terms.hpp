@@ -10,14 +10,6 @@
 
 namespace modebank {
 
-/// automatic: terms that gain on training runs make the competitor `nonlinear`; none: it is left out.
-enum class TermsChoice { automatic, none };
-
-template <>
-struct EnumNames<TermsChoice> {
-  static constexpr Names<2> values{"auto", "none"};
-};
-
 /// Terms of one structure, and how these predicted rows that were left out.
 struct TriedTerms {
   LinearStructure structure;

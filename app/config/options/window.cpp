@@ -4,6 +4,7 @@
 #include "app/config/options/sections.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/window_length.hpp"
+#include "ident/terms/stated_terms.hpp"
 
 namespace modebank::app {
 namespace {
@@ -54,6 +55,19 @@ Option lag_option(std::string key, const Range& range, const std::string& help, 
                         count, choice);
 }
 
+Option terms_option() {
+  Option result =
+      text("window.terms", "auto | none | TERM, TERM, ...",
+           "whether one motion may bend, as the competitor nonlinear: auto: by terms that training runs left "
+           "out ask for; or by these: NAME * NAME, |NAME|, max(0, NAME - NUMBER)",
+           MODEBANK_FIELD(terms));
+  result.set = [set = result.set](Config& config, const std::string& text) {
+    if (text != "auto" && text != "none") read_terms(text);
+    set(config, text);
+  };
+  return result;
+}
+
 }  // namespace
 
 std::vector<Option> window_options() {
@@ -92,9 +106,7 @@ std::vector<Option> window_options() {
               "the prior's standard deviations, one per parameter or one for all; empty: 3 x the spread of full-rank "
               "windows",
               MODEBANK_FIELD(window.prior_sd)),
-      words("window.terms",
-            "whether one motion may bend, as the competitor nonlinear: terms that training runs left out ask for",
-            MODEBANK_FIELD(terms)),
+      terms_option(),
       flag("window.intercept", "estimate a constant term c", MODEBANK_FIELD(window.intercept)),
       words("window.covariance", "covariance of a window's parameters: M-estimator or HC3 sandwich",
             MODEBANK_FIELD(window.covariance)),

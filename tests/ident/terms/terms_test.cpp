@@ -7,6 +7,8 @@
 
 #include "ident/model/equations.hpp"
 #include "ident/terms/find_terms.hpp"
+#include "ident/terms/stated_terms.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/ident/ident_test_support.hpp"
 
 namespace modebank::test {
@@ -26,6 +28,36 @@ MotionTerms example_terms() {
   terms.unit = Eigen::Vector3d(2.0, 1.0, 0.5);
   terms.terms = {{TermKind::product, {0, 0, 1}}, {TermKind::magnitude, {1}}, {TermKind::hinge, {2}, 0.5}};
   return terms;
+}
+
+/// The functions by hand at two rows, through units and ranges that the rows themselves give.
+TEST(StatedTerms, AreTheFunctionsThatTheyName) {
+  MatrixXd rows(2, 4);          // v, v[k-1], u[k+1] and the constant
+  rows << 2.0, -1.0, 0.5, 1.0,  //
+      -3.0, 4.0, -0.25, 1.0;
+  const auto stated = read_terms("v * v*u, |v[k-1]|, max(0, v - 1.5), max(0,u + 1)");
+  ASSERT_EQ(stated.size(), 4);
+  const MotionTerms terms = stated_terms(stated, {"v", "v[k-1]", "u[k+1]"}, rows);
+  const MatrixXd columns = term_columns(terms, rows);
+  const auto in_units = [&](Index t, double value) {
+    double unit = 1.0;
+    for (const Index v : terms.terms[static_cast<std::size_t>(t)].variables) unit *= terms.unit(v);
+    return value / unit;
+  };
+  const MatrixXd expected = (MatrixXd(2, 4) << 2.0, 1.0, 0.5, 1.5, -2.25, 4.0, 0.0, 0.75).finished();
+  for (Index k = 0; k < 2; ++k)
+    for (Index t = 0; t < 4; ++t) EXPECT_NEAR(columns(k, t), in_units(t, expected(k, t)), 1e-14) << k << ' ' << t;
+}
+
+TEST(StatedTerms, AnswerWhatIsNoTermWithItsName) {
+  for (const char* text : {"v", "", "v*v*v*v", "sin(v)", "max(1, v)", "v * ", "|v| * u"})
+    EXPECT_THROW(read_terms(text), std::invalid_argument) << text;
+  try {
+    stated_terms(read_terms("v * w"), {"v", "u"}, MatrixXd::Ones(3, 3));
+    FAIL();
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("'w'"), testing::HasSubstr("v, u")));
+  }
 }
 
 TEST(TermValues, AreTheFunctions) {
