@@ -2,7 +2,7 @@
 # <modebank/NAME/...>. Only what the named components link has to be installed; without names all of them are meant.
 #   filter   stepping a bank: Eigen's headers (for modebank/base/eigen.hpp) and, to link, libhwy
 #   judge    scoring banks on runs: nothing besides
-#   archive  loading a bank from an archive: HDF5 besides (C among the project's languages)
+#   archive  loading a bank from an archive: HDF5 and libcrypto besides (C among the project's languages)
 #   ident    fitting windows: Ceres and TBB besides
 #   mixture  clustering: TBB and fmt besides
 #   learn    learning banks: Ceres, TBB and fmt besides
@@ -33,6 +33,7 @@ if(NOT TARGET PkgConfig::highway)
 endif()
 if("archive" IN_LIST modebank_wanted)
   find_dependency(HDF5 1.10 COMPONENTS C)
+  find_dependency(OpenSSL 3.0 COMPONENTS Crypto)
 endif()
 if("ident" IN_LIST modebank_wanted OR "learn" IN_LIST modebank_wanted)
   find_dependency(Ceres 2.1)

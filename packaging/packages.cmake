@@ -104,7 +104,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmodebank-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libceres-dev (>= 2.1), libeigen3-dev (>= 3.4), libfmt-dev (>= 9), libhdf5-dev (>= 1.10), libhwy-dev (>= 1.0), libtbb-dev, pkg-config")
+    "libceres-dev (>= 2.1), libeigen3-dev (>= 3.4), libfmt-dev (>= 9), libhdf5-dev (>= 1.10), libhwy-dev (>= 1.0), libssl-dev (>= 3.0), libtbb-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "cmake, g++, modebank")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "motion with changing character: libraries of modebank
 ${what}

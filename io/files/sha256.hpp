@@ -1,28 +1,31 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
+struct evp_md_ctx_st;  // EVP_MD_CTX of libcrypto
+
 namespace modebank {
 
-/// Incremental SHA-256 (FIPS 180-4).
+/// Incremental SHA-256 (FIPS 180-4) by libcrypto. Throws std::runtime_error where libcrypto offers none.
 class Sha256 {
  public:
+  Sha256();
+
   void update(const void* data, std::size_t bytes);
   void update(std::string_view bytes) { update(bytes.data(), bytes.size()); }
   /// Lowercase hex (64 characters) of everything so far; more may follow.
   std::string hex() const;
 
-  static constexpr std::size_t block_bytes = 64;
-  using State = std::array<std::uint32_t, 8>;
-
  private:
-  State state_{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  std::array<unsigned char, block_bytes> block_{};  ///< the begun block: bytes_ % block_bytes are there
-  std::uint64_t bytes_ = 0;                         ///< so far
+  struct Free {
+    void operator()(evp_md_ctx_st* context) const;
+  };
+  using Context = std::unique_ptr<evp_md_ctx_st, Free>;
+
+  Context context_;
 };
 
 /// Whether a text is one: 64 lowercase hexadecimal digits.

@@ -29,7 +29,8 @@ endif()
 
 # Each component alone asks for what it links and nothing else.
 if(PART STREQUAL components)
-  foreach(without "filter|HDF5|Ceres|TBB|fmt" "judge|HDF5|Ceres|TBB|fmt" "archive|Ceres|TBB|fmt" "ident|HDF5|fmt" "mixture|HDF5|Ceres" "learn|HDF5")
+  foreach(without "filter|HDF5|OpenSSL|Ceres|TBB|fmt" "judge|HDF5|OpenSSL|Ceres|TBB|fmt" "archive|Ceres|TBB|fmt" "ident|HDF5|OpenSSL|fmt" "mixture|HDF5|OpenSSL|Ceres"
+          "learn|HDF5|OpenSSL")
     string(REPLACE "|" ";" left_out "${without}")
     list(POP_FRONT left_out component)
     list(TRANSFORM left_out REPLACE "(.+)" "-DCMAKE_DISABLE_FIND_PACKAGE_\\1=ON")
@@ -76,7 +77,7 @@ message(STATUS "${PART}: ${output}")
 
 if(PART STREQUAL plain)
   needs_only(${WORK}/plain/embedded_bank "hwy")
-  needs_only(${WORK}/plain/robot_loop "hwy|hdf5_serial")
+  needs_only(${WORK}/plain/robot_loop "hwy|hdf5_serial|crypto")
   # Ceres may be a static library, and then what it needs itself is asked for, too.
   needs_only(${WORK}/plain/identify "hwy|tbb|fmt|ceres|glog|gflags|cholmod|cxsparse|spqr|lapack|blas|f77blas")
 endif()

@@ -2,11 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
-
-#include "io/files/sha256_blocks.hpp"
-#include "tests/support/golden.hpp"
 
 namespace modebank {
 namespace {
@@ -47,51 +43,6 @@ TEST(Sha256, GoesOnAfterAsking) {
   EXPECT_EQ(hash.hex(), sha256_hex("ab"));
   hash.update("c");
   EXPECT_EQ(hash.hex(), sha256_hex("abc"));
-}
-
-TEST(Sha256, OfEveryLengthAroundABlockInOneOrTwoPieces) {
-  const nlohmann::json expected = test::read_golden("sha256").at("messages");
-  for (std::size_t length = 0; length < expected.size(); ++length) {
-    std::string message(length, '\0');
-    for (std::size_t i = 0; i < length; ++i) message[i] = static_cast<char>((7 * i + length) % 256);
-    Sha256 hash;
-    hash.update(message.substr(0, length / 3));
-    hash.update(message.substr(length / 3));
-    const auto sum = expected[length].get<std::string>();
-    EXPECT_EQ(hash.hex(), sum) << length;
-    EXPECT_EQ(sha256_hex(message), sum) << length;
-  }
-}
-
-std::string bytes_of(const std::string& hex) {
-  std::string bytes;
-  for (std::size_t i = 0; i < hex.size(); i += 2) bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
-  return bytes;
-}
-
-TEST(Sha256, PassesNistsMonteCarloTest) {
-  const nlohmann::json golden = test::read_golden("sha256");
-  std::string seed = bytes_of(golden.at("seed"));
-  for (const nlohmann::json& expected : golden.at("monte_carlo")) {
-    std::string a = seed, b = seed, c = seed;
-    for (int i = 0; i < 1000; ++i) {
-      std::string next = bytes_of(sha256_hex(a + b + c));
-      a = std::move(b), b = std::move(c), c = std::move(next);
-    }
-    seed = c;
-    ASSERT_EQ(bytes_of(expected), seed);
-  }
-}
-
-TEST(Sha256, EquationsAndInstructionsAgree) {
-  std::string blocks(37 * Sha256::block_bytes, '\0');
-  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] = static_cast<char>(i * i / 5 + 31 * i);
-  const auto* bytes = reinterpret_cast<const unsigned char*>(blocks.data());
-  Sha256::State by_equations{1, 2, 3, 4, 5, 6, 7, 0xffffffff}, by_instructions = by_equations;
-  if (!sha256::compress_by_instructions(by_instructions, bytes, 37))
-    GTEST_SKIP() << "this processor has no SHA-256 instructions";
-  sha256::compress_by_equations(by_equations, bytes, 37);
-  EXPECT_EQ(by_equations, by_instructions);
 }
 
 }  // namespace
