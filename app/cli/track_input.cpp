@@ -10,7 +10,7 @@
 #include "filter/step/equations/bounds.hpp"
 #include "ident/base/characters.hpp"
 #include "ident/base/not_a_number.hpp"
-#include "io/import/csv_text.hpp"
+#include "io/csv/csv_text.hpp"
 #include "io/table/number.hpp"
 #include "modebank/base/error.hpp"
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "ident/base/printable.hpp"
-#include "io/import/csv_number.hpp"
+#include "io/csv/csv_number.hpp"
 
 namespace modebank::app {
 

@@ -1,5 +1,3 @@
-#include "io/import/open_table.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,9 +7,10 @@
 #include <vector>
 
 #include "io/arrays/array_reader.hpp"
+#include "io/csv/csv.hpp"
+#include "io/csv/csv_text.hpp"
 #include "io/files/read_file.hpp"
-#include "io/import/csv.hpp"
-#include "io/import/csv_text.hpp"
+#include "io/import/open_table.hpp"
 #include "io/recording/recording_reader.hpp"
 #include "io/recording/split_recording.hpp"
 #include "modebank/base/error.hpp"

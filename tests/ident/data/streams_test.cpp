@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "io/csv/csv.hpp"
 #include "io/files/read_file.hpp"
-#include "io/import/csv.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/support/matrix_compare.hpp"
 #include "tests/support/paths.hpp"

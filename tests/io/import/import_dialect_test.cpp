@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "io/import/csv_dialect.hpp"
+#include "io/csv/csv_dialect.hpp"
 #include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
+#include "io/csv/csv.hpp"
 #include "io/files/read_file.hpp"
-#include "io/import/csv.hpp"
 #include "io/import/import.hpp"
 #include "tests/support/paths.hpp"
 

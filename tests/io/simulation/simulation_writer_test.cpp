@@ -1,8 +1,8 @@
 #include "io/simulation/simulation_writer.hpp"
 
 #include "ident/base/seed.hpp"
+#include "io/csv/csv.hpp"
 #include "io/files/read_file.hpp"
-#include "io/import/csv.hpp"
 #include "io/simulation/simulation_files.hpp"
 #include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"

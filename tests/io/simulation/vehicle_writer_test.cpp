@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/import/csv.hpp"
+#include "io/csv/csv.hpp"
 #include "io/simulation/simulation_writer.hpp"
 #include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"

@@ -1,4 +1,4 @@
-#include "io/import/csv_number.hpp"
+#include "io/csv/csv_number.hpp"
 
 #include <algorithm>
 #include <boost/algorithm/string/predicate.hpp>

@@ -1,4 +1,4 @@
-#include "io/import/csv.hpp"
+#include "io/csv/csv.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
@@ -10,13 +10,13 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/utf8.hpp"
 #include "ident/base/work_counter.hpp"
+#include "io/csv/csv_dialect.hpp"
+#include "io/csv/csv_head.hpp"
+#include "io/csv/csv_number.hpp"
+#include "io/csv/csv_pass.hpp"
+#include "io/csv/csv_text.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
-#include "io/import/csv_dialect.hpp"
-#include "io/import/csv_head.hpp"
-#include "io/import/csv_number.hpp"
-#include "io/import/csv_pass.hpp"
-#include "io/import/csv_text.hpp"
 #include "io/table/number.hpp"
 #include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"

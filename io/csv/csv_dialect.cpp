@@ -1,4 +1,4 @@
-#include "io/import/csv_dialect.hpp"
+#include "io/csv/csv_dialect.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,8 +7,8 @@
 #include <array>
 #include <map>
 
-#include "io/import/csv_number.hpp"
-#include "io/import/csv_text.hpp"
+#include "io/csv/csv_number.hpp"
+#include "io/csv/csv_text.hpp"
 #include "io/table/number.hpp"
 #include "io/table/stamp_pattern.hpp"
 

@@ -29,7 +29,7 @@ struct CsvDialect {
 
 /// What the first rows of a text (UTF-8; `complete`: all of it) show, where `options` do not say it: the separator that
 /// splits them into equally many fields, most of them numbers; a comma as decimal mark where numbers show it and none
-/// shows a point (io/import/csv_number.hpp); a header unless the first row holds numbers as the second does; a row of
+/// shows a point (io/csv/csv_number.hpp); a header unless the first row holds numbers as the second does; a row of
 /// units where the second holds none, but the third. Comments begin with # or %; the last one before the rows names the
 /// columns if nothing else does and it has as many fields.
 CsvDialect find_dialect(std::string_view text, bool complete, const FormatOptions& options);

@@ -1,4 +1,4 @@
-#include "io/import/csv_text.hpp"
+#include "io/csv/csv_text.hpp"
 
 #include <algorithm>
 

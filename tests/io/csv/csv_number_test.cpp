@@ -1,5 +1,5 @@
 // Numbers as text files write them: decimal marks, marks of thousands, words for a missing value.
-#include "io/import/csv_number.hpp"
+#include "io/csv/csv_number.hpp"
 
 #include <gtest/gtest.h>
 

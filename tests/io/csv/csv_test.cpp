@@ -1,4 +1,4 @@
-#include "io/import/csv.hpp"
+#include "io/csv/csv.hpp"
 
 #include "io/table/number.hpp"
 #include "modebank/base/error.hpp"

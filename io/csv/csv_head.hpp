@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/import/csv_dialect.hpp"
+#include "io/csv/csv_dialect.hpp"
 
 namespace modebank {
 

@@ -9,7 +9,7 @@
 
 namespace modebank {
 
-/// Comma-separated values (RFC 4180, read by libcsv) and their relatives (io/import/csv_dialect.hpp): a header row
+/// Comma-separated values (RFC 4180, read by libcsv) and their relatives (io/csv/csv_dialect.hpp): a header row
 /// names the columns, in any order and with exact case. Fields may be quoted ("" is a quote; separators and line breaks
 /// are text there). UTF-16, a byte-order mark, CRLF, blanks around fields, a missing last line break and empty lines
 /// before the header or after the last row are accepted; malformed quotes, rows of another width than the header and

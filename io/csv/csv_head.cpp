@@ -1,13 +1,13 @@
-#include "io/import/csv_head.hpp"
+#include "io/csv/csv_head.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdint>
 #include <utility>
 
+#include "io/csv/csv_pass.hpp"
+#include "io/csv/csv_text.hpp"
 #include "io/files/read_file.hpp"
-#include "io/import/csv_pass.hpp"
-#include "io/import/csv_text.hpp"
 #include "io/table/name_unit.hpp"
 #include "modebank/base/error.hpp"
 
