@@ -1,6 +1,7 @@
 #include "io/arrays/array_reader.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@
 
 #include "ident/base/not_a_number.hpp"
 #include "io/arrays/stored_columns.hpp"
+#include "io/table/name_unit.hpp"
 #include "io/table/stamp_column.hpp"
 #include "modebank/base/error.hpp"
 
@@ -71,7 +73,8 @@ class ArrayReader : public TableReader {
 
   std::vector<TableInfo> tables() const override { return tables_; }
 
-  std::vector<std::string> left_out() const override { return store_->objects(); }
+  std::vector<std::string> left_out() const override { return store_->left_out(); }
+  std::string why_without(const std::string& column) const override { return store_->why_without(column); }
 
   InputFile describe(const std::vector<TableRequest>&) const override { return describe_file(path_); }
 
@@ -118,19 +121,29 @@ class ArrayReader : public TableReader {
 
   Table read_table(const TableRequest& request) const {
     Table table;
-    const std::uint64_t rows = tables_.at(request.table).rows;
-    if (rows > (std::filesystem::file_size(path_) + 4096) * most_expansion)
-      throw DataError(
-          fmt::format("{}: {} declares more content than the file holds", path_.string(), tables_[request.table].name));
     for (std::size_t i = 0; i < request.numbers.size(); ++i)
       table.numbers.push_back(
           numbers(stored(request, request.numbers[i]), i < request.may_miss.size() && request.may_miss[i]));
     for (const std::string& name : request.texts) table.texts.push_back(texts(stored(request, name)));
-    // Only now: columns that are there vouch for as many rows.
-    table.line.resize(static_cast<std::size_t>(rows));
+    table.line.resize(static_cast<std::size_t>(tables_.at(request.table).rows));
     std::iota(table.line.begin(), table.line.end(), std::uint64_t{1});
     if (!request.time.column.empty()) times(request, table);
+    note_unwritten(request, table);
     return table;
+  }
+
+  /// One note for the columns that lack the same rows.
+  void note_unwritten(const TableRequest& request, Table& table) const {
+    std::vector<std::string> names = request.numbers;
+    names.insert(names.end(), request.texts.begin(), request.texts.end());
+    if (!request.time.column.empty()) names.push_back(request.time.column);
+    std::map<std::string, std::vector<std::string>> by_rows;
+    for (const std::string& name : names)
+      if (const auto ranges = store_->unwritten(stored(request, name)); !ranges.empty())
+        by_rows[rows_text(ranges)].push_back(name);
+    for (const auto& [rows, columns] : by_rows)
+      table.notes.push_back(fmt::format("{} of {} were never written: they read as the file's fill value", rows,
+                                        fmt::join(columns, ", ")));
   }
 
   std::vector<double> numbers(std::size_t column, bool may_miss) const {
@@ -140,8 +153,8 @@ class ArrayReader : public TableReader {
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (std::isfinite(values[k])) continue;
       if (!may_miss)
-        throw DataError(
-            fmt::format("{}:{}: column {}: missing value ({})", path_.string(), k + 1, stored.path(), values[k]));
+        throw DataError(fmt::format("{}:{}: column {}: missing value ({}){}", path_.string(), k + 1, stored.path(),
+                                    values[k], unwritten_text(store_->unwritten(column), k + 1)));
       values[k] = not_a_number;
     }
     return values;
@@ -158,9 +171,26 @@ class ArrayReader : public TableReader {
     return result;
   }
 
+  /// A row whose time was never written and reads as NaN has no place: where values may miss, it is left out.
+  static void leave_out_untimed(const TableRequest& request, const std::vector<double>& times, Table& table) {
+    const bool may_miss = std::find(request.may_miss.begin(), request.may_miss.end(), true) != request.may_miss.end();
+    if (!may_miss || table.unwritten.empty() || times.empty()) return;
+    std::vector<std::size_t> kept;
+    for (std::size_t k = 0; k < times.size(); ++k)
+      if (!std::isnan(times[k]) || range_of(table.unwritten, k + 1) == table.unwritten.end()) kept.push_back(k);
+    const auto keep = [&kept](auto& column) {
+      for (std::size_t i = 0; i < kept.size(); ++i) std::swap(column[i], column[kept[i]]);
+      column.resize(kept.size());
+    };
+    for (std::vector<double>& column : table.numbers) keep(column);
+    for (std::vector<std::string>& column : table.texts) keep(column);
+    keep(table.line);
+  }
+
   void times(const TableRequest& request, Table& table) const {
     const std::size_t column = stored(request, request.time.column);
     const StoredColumn& from = store_->columns()[column];
+    table.unwritten = store_->unwritten(column);
     StampColumn stamps(request.time, from.type == nanoseconds_type ? "ns" : std::string_view(from.unit));
     stamps.reserve(table.rows());
     const bool two = !request.time.second.empty();
@@ -168,7 +198,9 @@ class ArrayReader : public TableReader {
     const std::vector<std::string> second = two ? texts(stored(request, request.time.second)) : first;
     const std::vector<std::int64_t> whole = from.whole ? store_->whole_numbers(column) : std::vector<std::int64_t>();
     const std::vector<double> values = from.whole || from.text ? std::vector<double>() : values_of(column);
-    for (std::size_t k = 0; k < table.rows(); ++k) {
+    if (!request.time.may_miss) leave_out_untimed(request, values, table);
+    for (const std::uint64_t line : table.line) {
+      const auto k = static_cast<std::size_t>(line - 1);
       const NumberStatus status = two          ? stamps.add(first[k], second[k])
                                   : from.text  ? stamps.add(first[k])
                                   : from.whole ? stamps.add(whole[k])
@@ -176,10 +208,11 @@ class ArrayReader : public TableReader {
       if (status == NumberStatus::missing && request.time.may_miss)
         stamps.add_missing();
       else if (status != NumberStatus::ok)
-        throw DataError(fmt::format("{}:{}: column {}: {}", path_.string(), k + 1, from.path(),
+        throw DataError(fmt::format("{}:{}: column {}: {}{}", path_.string(), k + 1, from.path(),
                                     stamps.complaint(status, !first.empty() ? first[k]
                                                              : from.whole   ? fmt::to_string(whole[k])
-                                                                            : fmt::format("{}", values[k]))));
+                                                                            : fmt::format("{}", values[k])),
+                                    unwritten_text(table.unwritten, k + 1)));
     }
     stamps.finish(path_.string(), table);
   }
@@ -187,18 +220,13 @@ class ArrayReader : public TableReader {
 
 }  // namespace
 
-bool is_hdf5(std::string_view first) {
-  constexpr std::string_view magic = "\x89HDF\r\n\x1A\n";
-  for (const std::size_t at : {0U, 512U, 1024U, 2048U})
-    if (first.size() >= at + magic.size() && first.substr(at, magic.size()) == magic) return true;
-  return false;
-}
-
 bool is_mat(const std::filesystem::path& path, std::string_view first) {
-  return first.starts_with("MATLAB 5.0 MAT-file") || (path.extension() == ".mat" && !is_hdf5(first));
+  return first.starts_with("MATLAB 5.0 MAT-file") || path.extension() == ".mat";
 }
 
 bool is_time_name(std::string_view name) {
+  name = split_unit(name).name;
+  if (constexpr std::string_view octave = ".value"; name.ends_with(octave)) name.remove_suffix(octave.size());
   std::string lower(name.substr(name.rfind('.') + 1));
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

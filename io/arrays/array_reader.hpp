@@ -8,9 +8,10 @@
 
 namespace modebank {
 
-/// Whether a file's first bytes are HDF5's (MATLAB's v7.3 files are HDF5 behind 512 bytes of their own).
-bool is_hdf5(std::string_view first);
-/// Whether they are a MATLAB file's of version 6 or 7, or, by its name, 4.
+/// Whether HDF5 finds its signature in a file: at the front, or behind a user block of 512 bytes or any larger power of
+/// two (MATLAB's v7.3 files have one).
+bool is_hdf5(const std::filesystem::path& path);
+/// Whether a file that is not HDF5 is MATLAB's: of version 6 or 7 by its first bytes, or by its name 4.
 bool is_mat(const std::filesystem::path& path, std::string_view first);
 
 /// Tables of a file of arrays: columns of equal length in one group (struct) form one, and go to the nearest group
@@ -18,7 +19,7 @@ bool is_mat(const std::filesystem::path& path, std::string_view first);
 std::shared_ptr<const TableReader> open_hdf5_tables(const std::filesystem::path& path);
 std::shared_ptr<const TableReader> open_mat_tables(const std::filesystem::path& path);
 
-/// Whether a column of that name holds times: t, time, Time, stamp, timestamp, tout, ...
+/// Whether a column of that name holds times: t, time, Time (s), stamp, timestamp, tout, ...
 bool is_time_name(std::string_view name);
 
 }  // namespace modebank

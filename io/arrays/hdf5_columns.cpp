@@ -1,8 +1,6 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <set>
-
+#include "io/arrays/array_reader.hpp"
 #include "io/arrays/hdf5_objects.hpp"
 #include "io/arrays/hdf5_walk.hpp"
 #include "modebank/base/error.hpp"
@@ -19,9 +17,8 @@ class Hdf5Columns : public ColumnStore {
     const hdf5::Quiet quiet;
     const Hdf5Place& place = places_.at(column);
     try {
-      const Handle file = hdf5::open_file(path_);
+      const Handle file = hdf5_open_log(path_);
       const Handle data(H5Dopen2(file.id(), place.object.c_str(), H5P_DEFAULT), H5Dclose, "open the dataset");
-      check_once(data.id(), place.object);
       return read(data.id(), place);
     } catch (const DataError& error) {
       throw DataError(fmt::format("{}: column {}: {}", path_, columns_[column].path(), error.what()));
@@ -31,11 +28,10 @@ class Hdf5Columns : public ColumnStore {
  public:
   explicit Hdf5Columns(const std::filesystem::path& path) : path_(path.string()) {
     const hdf5::Quiet quiet;
-    H5PLset_loading_state(0);  // no file names code of ours
     Hdf5Walk walk(path_);
     try {
-      const Handle file = hdf5::open_file(path_);
-      const Handle root = hdf5::open_group(file.id(), "/");
+      const Handle file = hdf5_open_log(path_);
+      const Handle root(H5Gopen2(file.id(), "/", H5P_DEFAULT), H5Gclose, "open the file's groups");
       refuse_archive(root.id());
       walk.group(root.id(), "", "", 0);
     } catch (const DataError& error) {
@@ -46,13 +42,24 @@ class Hdf5Columns : public ColumnStore {
     if (walk.columns.empty()) fail_empty(walk);
     columns_ = std::move(walk.columns);
     places_ = std::move(walk.places);
-    objects_ = std::move(walk.objects);
+    left_out_ = std::move(walk.left_out);
+    unwritten_ = std::move(walk.unwritten);
     add_sample_times(columns_, sample_times(walk));
     if (walk.tables == 1) leave_out_only_group();
   }
 
   const std::vector<StoredColumn>& columns() const override { return columns_; }
-  const std::vector<std::string>& objects() const override { return objects_; }
+  const std::vector<std::string>& left_out() const override { return left_out_; }
+  std::string why_without(const std::string& column) const override {
+    const auto found = unwritten_.find(column);
+    return found == unwritten_.end() ? std::string() : found->second;
+  }
+  std::vector<LineRange> unwritten(std::size_t column) const override {
+    if (columns_.at(column).step_s > 0.0) return {};  // computed, not stored
+    return at_column(column, [](hid_t data, const Hdf5Place& place) {
+      return hdf5_unwritten_lines(data, place.rows_along, place.element);
+    });
+  }
   std::vector<double> numbers(std::size_t column) const override { return read<double>(column, H5T_NATIVE_DOUBLE); }
   std::vector<std::int64_t> whole_numbers(std::size_t column) const override {
     return read<std::int64_t>(column, H5T_NATIVE_INT64);
@@ -65,28 +72,15 @@ class Hdf5Columns : public ColumnStore {
   std::string path_;
   std::vector<StoredColumn> columns_;
   std::vector<Hdf5Place> places_;
-  std::vector<std::string> objects_;
-  mutable std::filesystem::file_time_type written_;
-  mutable std::set<std::string> sound_;  // datasets that were looked at; changed under HDF5's lock (Quiet) alone
-
-  /// A table's columns share their dataset, which is unpacked to be looked at.
-  void check_once(hid_t data, const std::string& object) const {
-    std::error_code unknown;
-    const auto written = std::filesystem::last_write_time(path_, unknown);
-    if (unknown || written != written_) sound_.clear();
-    written_ = written;
-    if (sound_.count(object) > 0) return;
-    hdf5_check_readable(data);
-    sound_.insert(object);
-  }
+  std::vector<std::string> left_out_;
+  std::map<std::string, std::string> unwritten_;
 
   std::map<std::string, double> sample_times(const Hdf5Walk& walk) const {
     std::map<std::string, double> result;
     for (const auto& [group, place] : walk.sample_times) try {
-        const Handle file = hdf5::open_file(path_);
+        const Handle file = hdf5_open_log(path_);
         const Handle data(H5Dopen2(file.id(), place.object.c_str(), H5P_DEFAULT), H5Dclose, "open the dataset");
-        hdf5_check_readable(data.id());
-        hdf5::check(H5Dread(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &result[group]), "read Ts");
+        hdf5_read(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, &result[group]);
       } catch (const DataError&) {
         result.erase(group);  // no sample time then
       }
@@ -103,9 +97,7 @@ class Hdf5Columns : public ColumnStore {
 
   [[noreturn]] void fail_empty(const Hdf5Walk& walk) const {
     std::string why;
-    for (const std::string& object : walk.objects) why += "; " + object;
-    if (!walk.foreign.empty())
-      why += fmt::format("; {} lies in another file, which is not followed", fmt::join(walk.foreign, ", "));
+    for (const std::string& line : walk.left_out) why += "; " + line;
     throw ConfigurationError(fmt::format("{}: no column of numbers of two rows or more{}", path_, why));
   }
 
@@ -137,6 +129,11 @@ class Hdf5Columns : public ColumnStore {
 };
 
 }  // namespace
+
+bool is_hdf5(const std::filesystem::path& path) {
+  const hdf5::Quiet quiet;
+  return H5Fis_hdf5(path.c_str()) > 0;
+}
 
 std::unique_ptr<ColumnStore> open_hdf5_columns(const std::filesystem::path& path) {
   return std::make_unique<Hdf5Columns>(path);

@@ -1,9 +1,9 @@
 #include "io/arrays/hdf5_objects.hpp"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "io/arrays/stored_columns.hpp"
 #include "modebank/base/error.hpp"
@@ -109,114 +109,102 @@ hsize_t hdf5_array_elements(hid_t array_type) {
   return hdf5::element_count(shape);
 }
 
+Handle hdf5_open_log(const std::string& path) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file >= 0) return {file, H5Fclose, "open the file"};
+  // A logger in SWMR mode (single writer, multiple readers) still writes to the file, or was killed.
+  const hid_t written = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT);
+  return written >= 0 ? Handle(written, H5Fclose, "open the file") : hdf5::open_file(path);
+}
+
+bool hdf5_lies_outside(hid_t dataset) {
+  const Handle made(H5Dget_create_plist(dataset), H5Pclose, "look at a dataset");
+  return H5Pget_layout(made.id()) == H5D_VIRTUAL || H5Pget_external_count(made.id()) > 0;
+}
+
 namespace {
 
-void check_filters(hid_t made) {
-  for (int i = 0; i < H5Pget_nfilters(made); ++i) {
+/// The filter of a dataset that is not installed, and a line of Python that copies the file without it; empty where all
+/// are installed.
+std::string missing_filter(hid_t dataset) {
+  constexpr H5Z_filter_t lzf = 32000;
+  const Handle made(H5Dget_create_plist(dataset), H5Pclose, "look at a dataset");
+  for (int i = 0; i < H5Pget_nfilters(made.id()); ++i) {
     unsigned flags = 0, config = 0;
     std::size_t values = 0;
     std::string name(64, '\0');
-    const H5Z_filter_t filter =
-        H5Pget_filter2(made, static_cast<unsigned>(i), &flags, &values, nullptr, name.size(), name.data(), &config);
-    if (filter <= H5Z_FILTER_SCALEOFFSET) continue;
+    const H5Z_filter_t filter = H5Pget_filter2(made.id(), static_cast<unsigned>(i), &flags, &values, nullptr,
+                                               name.size(), name.data(), &config);
+    if (H5Zfilter_avail(filter) > 0) continue;
     name.resize(std::min(name.find('\0'), name.size()));
-    throw DataError(
-        fmt::format("is compressed by filter {} ({}), which HDF5 does not bring: write it with zlib (gzip), or "
-                    "`h5repack -f GZIP=5`",
-                    filter, name.empty() ? "no name" : name));
+    std::string file(static_cast<std::size_t>(std::max<ssize_t>(H5Fget_name(dataset, nullptr, 0), 0)) + 1, '\0');
+    H5Fget_name(dataset, file.data(), file.size());
+    file.pop_back();
+    return fmt::format(
+        "filter {} ({}) is not installed; copy the file without it: python3 -c \"import h5py{}; a = h5py.File('{}'); b "
+        "= h5py.File('{}', 'w'); a.visititems(lambda n, o: (b.create_dataset(n, data=o[()]) if isinstance(o, "
+        "h5py.Dataset) else b.create_group(n)).attrs.update(o.attrs))\"{}",
+        filter, name.empty() ? "no name" : name, filter == lzf ? "" : ", hdf5plugin", file,
+        std::filesystem::path(file).replace_extension("plain.h5").string(),
+        filter == lzf ? "" : " (Debian's h5py: import tables in place of hdf5plugin)");
   }
-}
-
-/// Bytes that zlib makes of `packed`, at most `most`.
-std::size_t inflated_bytes(const std::string& packed, std::size_t most) {
-  z_stream stream{};
-  if (inflateInit(&stream) != Z_OK) return 0;
-  std::string piece(1 << 16, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // NOLINT: zlib only reads it
-  stream.avail_in = static_cast<uInt>(packed.size());
-  int status = Z_OK;
-  while (status == Z_OK && stream.total_out < most) {
-    stream.next_out = reinterpret_cast<Bytef*>(piece.data());
-    stream.avail_out = static_cast<uInt>(piece.size());
-    status = inflate(&stream, Z_NO_FLUSH);
-  }
-  inflateEnd(&stream);
-  return stream.total_out;
-}
-
-/// HDF5 reads a chunk as long as it is declared, whatever its filters made of it.
-void check_chunks(hid_t dataset, hid_t made, const Shape& chunk, hsize_t element_bytes) {
-  const hsize_t declared = hdf5::element_count(chunk) * element_bytes;
-  const int filters = H5Pget_nfilters(made);
-  std::size_t values = 0;
-  unsigned flags = 0, config = 0;
-  const H5Z_filter_t last = filters == 0 ? 0
-                                         : H5Pget_filter2(made, static_cast<unsigned>(filters - 1), &flags, &values,
-                                                          nullptr, 0, nullptr, &config);
-  const Handle space(H5Dget_space(dataset), H5Sclose, "read a shape");
-  hsize_t count = 0, file_bytes = 0;
-  const Handle file(H5Iget_file_id(dataset), H5Fclose, "look at the file");
-  hdf5::check(H5Fget_filesize(file.id(), &file_bytes), "measure the file");
-  hdf5::check(H5Dget_num_chunks(dataset, space.id(), &count), "count its chunks");
-  for (hsize_t i = 0; i < count; ++i) {
-    Shape offset(chunk.size());
-    unsigned mask = 0;
-    haddr_t at = 0;
-    hsize_t stored = 0;
-    hdf5::check(H5Dget_chunk_info(dataset, space.id(), i, offset.data(), &mask, &at, &stored), "look at a chunk");
-    if (stored > file_bytes) throw DataError("declares chunks larger than the file");
-    hsize_t unpacked = stored;
-    if (mask == 0 && last == H5Z_FILTER_DEFLATE) {
-      std::string packed(stored, '\0');
-      unsigned unused = 0;
-      hdf5::check(H5Dread_chunk(dataset, H5P_DEFAULT, offset.data(), &unused, packed.data()), "read a chunk");
-      unpacked = inflated_bytes(packed, declared);
-    } else if (mask == 0 && filters > 0) {
-      continue;  // checksums and HDF5's own codes say their lengths
-    }
-    if (unpacked < declared) throw DataError("holds a chunk shorter than it declares");
-  }
+  return {};
 }
 
 }  // namespace
 
-namespace {
-
-/// HDF5 copies members from where the type says that they are, inside it or not.
-void check_members(hid_t type) {
-  if (H5Tget_class(type) != H5T_COMPOUND) return;
-  const std::size_t bytes = H5Tget_size(type);
-  for (int i = 0; i < H5Tget_nmembers(type); ++i) {
-    const auto member = static_cast<unsigned>(i);
-    const Handle part(H5Tget_member_type(type, member), H5Tclose, "read a member's type");
-    const std::size_t at = H5Tget_member_offset(type, member);
-    if (at > bytes || H5Tget_size(part.id()) > bytes - at) throw DataError("has members that lie outside its rows");
-    check_members(part.id());
-  }
+void hdf5_read(hid_t dataset, hid_t memory_type, hid_t memory_space, hid_t file_space, void* to) {
+  if (H5Dread(dataset, memory_type, memory_space, file_space, H5P_DEFAULT, to) >= 0) return;
+  if (const std::string missing = missing_filter(dataset); !missing.empty()) throw DataError(missing);
+  hdf5::check(H5Dread(dataset, memory_type, memory_space, file_space, H5P_DEFAULT, to), "read its values");
 }
 
-}  // namespace
-
-void hdf5_check_readable(hid_t dataset) {
-  constexpr std::uint64_t slack_bytes = 1 << 16, most_chunk_bytes = 1 << 30;
-  if (hdf5::lies_outside(dataset)) throw DataError("lies outside the file, which is not followed");
+std::vector<LineRange> hdf5_unwritten_lines(hid_t dataset, hsize_t along, hsize_t across) {
   const Handle made(H5Dget_create_plist(dataset), H5Pclose, "look at a dataset");
-  check_filters(made.id());
-  const Handle type(H5Dget_type(dataset), H5Tclose, "read a type");
-  check_members(type.id());
-  const hsize_t elements = hdf5::element_count(hdf5_shape(dataset)),
-                bytes = std::max<hsize_t>(H5Tget_size(type.id()), 1);
-  const hsize_t stored = H5Dget_storage_size(dataset);
-  // HDF5 copies compact content without looking at its size, and no filter unpacks any but chunks.
-  const bool packed = H5Pget_layout(made.id()) == H5D_CHUNKED && H5Pget_nfilters(made.id()) > 0;
-  const hsize_t most = packed ? (stored + slack_bytes) * most_expansion : stored;
-  if (elements > most / bytes) throw DataError("declares more content than the file holds");
-  if (H5Pget_layout(made.id()) != H5D_CHUNKED) return;
-  Shape chunk(hdf5_shape(dataset).size());
+  const Shape shape = hdf5_shape(dataset);
+  if (H5Pget_layout(made.id()) != H5D_CHUNKED) return {};
+  Shape chunk(shape.size()), offset(shape.size());
   H5Pget_chunk(made.id(), static_cast<int>(chunk.size()), chunk.data());
-  if (hdf5::element_count(chunk) > std::min<hsize_t>(most_chunk_bytes, (stored + slack_bytes) * most_expansion) / bytes)
-    throw DataError("declares chunks larger than the file can fill");
-  check_chunks(dataset, made.id(), chunk, bytes);
+  hsize_t all = 1, written = 0;
+  for (std::size_t d = 0; d < shape.size(); ++d) all *= (shape[d] + chunk[d] - 1) / chunk[d];
+  const Handle space(H5Dget_space(dataset), H5Sclose, "read a shape");
+  hdf5::check(H5Dget_num_chunks(dataset, space.id(), &written), "count its chunks");
+  std::vector<LineRange> ranges;
+  if (written >= all) return ranges;
+  if (shape.size() == 2) offset[1 - along] = across / chunk[1 - along] * chunk[1 - along];
+  for (hsize_t row = 0; row < shape[along]; row += chunk[along]) {
+    offset[along] = row;
+    unsigned mask = 0;
+    haddr_t address = HADDR_UNDEF;
+    hsize_t bytes = 0;
+    hdf5::check(H5Dget_chunk_info_by_coord(dataset, offset.data(), &mask, &address, &bytes), "look for a chunk");
+    if (address != HADDR_UNDEF) continue;
+    const LineRange missing{row + 1, std::min(row + chunk[along], shape[along])};
+    if (!ranges.empty() && ranges.back().last + 1 == missing.first)
+      ranges.back().last = missing.last;
+    else
+      ranges.push_back(missing);
+  }
+  return ranges;
+}
+
+Handle hdf5_member_type(hid_t compound, const std::vector<std::string>& member) {
+  Handle type(H5Tcopy(compound), H5Tclose, "read a table's type");
+  for (const std::string& name : member) {
+    const int position = H5Tget_member_index(type.id(), name.c_str());
+    hdf5::check(position, "find the member");
+    type = Handle(H5Tget_member_type(type.id(), static_cast<unsigned>(position)), H5Tclose, "read a member's type");
+  }
+  return type;
+}
+
+Handle hdf5_only_member(const std::vector<std::string>& member, Handle cell) {
+  for (auto name = member.rbegin(); name != member.rend(); ++name) {
+    Handle row(H5Tcreate(H5T_COMPOUND, H5Tget_size(cell.id())), H5Tclose, "make a type");
+    hdf5::check(H5Tinsert(row.id(), name->c_str(), 0, cell.id()), "make a type");
+    cell = std::move(row);
+  }
+  return cell;
 }
 
 std::vector<std::string> pickled_names(const std::string& pickle) {
@@ -251,19 +239,14 @@ std::string without_padding(std::string text) {
 
 }  // namespace
 
-std::vector<std::string> hdf5_read_texts(hid_t dataset, const std::string& member) {
+std::vector<std::string> hdf5_read_texts(hid_t dataset, const std::vector<std::string>& member) {
   const auto rows = static_cast<std::size_t>(hdf5::element_count(hdf5_shape(dataset)));
   const Handle whole(H5Dget_type(dataset), H5Tclose, "read a type");
-  const int position = member.empty() ? 0 : H5Tget_member_index(whole.id(), member.c_str());
-  hdf5::check(position, "find the member");
-  const Handle type(
-      member.empty() ? H5Tcopy(whole.id()) : H5Tget_member_type(whole.id(), static_cast<unsigned>(position)), H5Tclose,
-      "read a type");
+  const Handle type = hdf5_member_type(whole.id(), member);
   const std::size_t bytes = H5Tget_size(type.id());
-  const Handle memory(member.empty() ? H5Tcopy(type.id()) : H5Tcreate(H5T_COMPOUND, bytes), H5Tclose, "make a type");
-  if (!member.empty()) hdf5::check(H5Tinsert(memory.id(), member.c_str(), 0, type.id()), "make a type");
+  const Handle memory = hdf5_only_member(member, Handle(H5Tcopy(type.id()), H5Tclose, "make a type"));
   std::string cells(rows * bytes, '\0');
-  hdf5::check(H5Dread(dataset, memory.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, cells.data()), "read its texts");
+  hdf5_read(dataset, memory.id(), H5S_ALL, H5S_ALL, cells.data());
   std::vector<std::string> texts(rows);
   const bool variable = H5Tis_variable_str(type.id()) > 0;
   for (std::size_t k = 0; k < rows; ++k) {

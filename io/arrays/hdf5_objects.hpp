@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "io/hdf5/array.hpp"
+#include "io/table/table_reader.hpp"
 
 /// What logs in HDF5 are made of: types, attributes and lines of datasets that others wrote.
 namespace modebank {
@@ -27,10 +28,23 @@ std::string hdf5_type_name(hid_t type);
 std::string hdf5_member_name(hid_t compound, unsigned member);
 hsize_t hdf5_array_elements(hid_t array_type);
 
-/// Throws DataError for a dataset whose values lie outside the file, that declares more than its stored bytes can
-/// unpack to, or that needs a filter that HDF5 does not bring. Unpacks what is compressed: once for a dataset is
-/// enough.
-void hdf5_check_readable(hid_t dataset);
+/// Opens a log for reading, also one that is being written in SWMR mode.
+hdf5::Handle hdf5_open_log(const std::string& path);
+/// Whether a dataset's values are in another file or in other datasets.
+bool hdf5_lies_outside(hid_t dataset);
+
+/// H5Dread. Throws DataError with HDF5's reason; where a filter is not installed, with the line that copies the file
+/// without it.
+void hdf5_read(hid_t dataset, hid_t memory_type, hid_t memory_space, hid_t file_space, void* to);
+
+/// Rows (from 1) whose chunks were never written, of a line of a dataset of one or two dimensions: HDF5 gives the fill
+/// value for them.
+std::vector<LineRange> hdf5_unwritten_lines(hid_t dataset, hsize_t along, hsize_t across);
+
+/// The type of a member of a compound; names lead through compounds in compounds. No name: the type itself.
+hdf5::Handle hdf5_member_type(hid_t compound, const std::vector<std::string>& member);
+/// A type of rows in memory that hold that member alone, as `cell`.
+hdf5::Handle hdf5_only_member(const std::vector<std::string>& member, hdf5::Handle cell);
 
 /// Texts of a list that Python pickled in its oldest, plain form (protocol 0), as PyTables does; empty for any other
 /// content: nothing is executed.
@@ -51,32 +65,28 @@ std::vector<T> hdf5_read_line(hid_t dataset, hsize_t along, hsize_t line, hid_t 
               "select a column");
   const hsize_t total = rows;
   const hdf5::Handle flat(H5Screate_simple(1, &total, nullptr), H5Sclose, "make a shape");
-  hdf5::check(H5Dread(dataset, memory, flat.id(), space.id(), H5P_DEFAULT, values.data()), "read its values");
+  hdf5_read(dataset, memory, flat.id(), space.id(), values.data());
   return values;
 }
 
 /// One element of a member of every row of a table.
 template <class T>
-std::vector<T> hdf5_read_member(hid_t dataset, const std::string& member, hsize_t element, hid_t memory,
+std::vector<T> hdf5_read_member(hid_t dataset, const std::vector<std::string>& member, hsize_t element, hid_t memory,
                                 std::size_t rows) {
   const hdf5::Handle type(H5Dget_type(dataset), H5Tclose, "read a table's type");
-  const int position = H5Tget_member_index(type.id(), member.c_str());
-  hdf5::check(position, "find the member");
-  const hdf5::Handle stored(H5Tget_member_type(type.id(), static_cast<unsigned>(position)), H5Tclose,
-                            "read a member's type");
+  const hdf5::Handle stored = hdf5_member_type(type.id(), member);
   const bool array = H5Tget_class(stored.id()) == H5T_ARRAY;
-  const hsize_t elements = array ? hdf5_array_elements(stored.id()) : 1;
-  const hdf5::Handle cell(array ? H5Tarray_create2(memory, 1, &elements) : H5Tcopy(memory), H5Tclose, "make a type");
-  const hdf5::Handle row(H5Tcreate(H5T_COMPOUND, static_cast<std::size_t>(elements) * sizeof(T)), H5Tclose,
-                         "make a type");
-  hdf5::check(H5Tinsert(row.id(), member.c_str(), 0, cell.id()), "make a type");
+  const hsize_t elements = array ? hdf5_array_elements(stored.id()) : 1, total = rows;
+  const hdf5::Handle row = hdf5_only_member(
+      member, {array ? H5Tarray_create2(memory, 1, &elements) : H5Tcopy(memory), H5Tclose, "make a type"});
+  const hdf5::Handle flat(H5Screate_simple(1, &total, nullptr), H5Sclose, "make a shape");
   std::vector<T> all(rows * static_cast<std::size_t>(elements)), values(rows);
-  hdf5::check(H5Dread(dataset, row.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()), "read its values");
+  hdf5_read(dataset, row.id(), flat.id(), H5S_ALL, all.data());
   for (std::size_t k = 0; k < rows; ++k) values[k] = all[k * static_cast<std::size_t>(elements) + element];
   return values;
 }
 
 /// All texts of a dataset, or of a member of a table, without blanks and zeros at their ends.
-std::vector<std::string> hdf5_read_texts(hid_t dataset, const std::string& member);
+std::vector<std::string> hdf5_read_texts(hid_t dataset, const std::vector<std::string>& member = {});
 
 }  // namespace modebank

@@ -1,6 +1,7 @@
 #include "io/arrays/hdf5_walk.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -19,6 +20,8 @@ void Hdf5Walk::group(hid_t id, const std::string& path, const std::string& name,
   if (pandas.ends_with("_table")) return table_frame(id, path, name);
   if (const std::string made = hdf5_text_attribute(id, "MATLAB_class"); is_object(id, made))
     return note_object(made, name);
+  if (hdf5::has_attribute(id, "OCTAVE_NEW_FORMAT") && hdf5::has_link(id, "value"))
+    return octave_variable(id, path, name, depth);
   for (const std::string& member : hdf5::member_names(id)) {
     if (member.starts_with("#")) continue;  // where MATLAB keeps what others refer to
     if (columns.size() > most_objects)
@@ -38,7 +41,7 @@ void Hdf5Walk::turn_matrices() {
       StoredColumn column = matrix.column;
       column.name += fmt::format("[{}]", j);
       column.rows = matrix.shape[along];
-      add(std::move(column), {matrix.object, "", j, along});
+      add(std::move(column), {matrix.object, {}, j, along});
     }
   }
 }
@@ -53,14 +56,25 @@ bool Hdf5Walk::is_object(hid_t id, const std::string& made) {
 }
 
 void Hdf5Walk::note_object(const std::string& made, const std::string& name) {
-  objects.push_back(matlab_object(made, name, made == "iddata" ? "" : file));
+  left_out.push_back(matlab_object(made, name, made == "iddata" ? "" : file));
+}
+
+void Hdf5Walk::note_foreign(const std::string& path) {
+  left_out.push_back(path + " lies in another file, which is not followed");
+}
+
+void Hdf5Walk::octave_variable(hid_t id, const std::string& path, const std::string& name, int depth) {
+  const Handle value(H5Oopen(id, "value", H5P_DEFAULT), H5Oclose, "open '" + path + "/value'");
+  if (H5Iget_type(value.id()) == H5I_GROUP) return group(value.id(), path + "/value", name, depth + 1);
+  const std::size_t dot = name.rfind('.'), last = dot == std::string::npos ? 0 : dot + 1;
+  dataset(value.id(), path + "/value", name.substr(0, last == 0 ? 0 : dot), name.substr(last) + ".value", depth);
 }
 
 void Hdf5Walk::link(hid_t parent, const std::string& member, const std::string& path, const std::string& group_name,
                     int depth) {
   H5L_info_t info{};
   hdf5::check(H5Lget_info(parent, member.c_str(), &info, H5P_DEFAULT), "look at the link '" + path + "'");
-  if (info.type == H5L_TYPE_EXTERNAL) foreign.push_back(path);
+  if (info.type == H5L_TYPE_EXTERNAL) note_foreign(path);
   if (info.type != H5L_TYPE_HARD) return;
   const Handle object(H5Oopen(parent, member.c_str(), H5P_DEFAULT), H5Oclose, "open '" + path + "'");
   const std::string name = group_name.empty() ? member : group_name + "." + member;
@@ -74,7 +88,7 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
   const std::string made = hdf5_text_attribute(id, "MATLAB_class");
   const std::string full = group_name.empty() ? name : group_name + "." + name;
   if (is_object(id, made)) return note_object(made, full);
-  if (hdf5::lies_outside(id)) return foreign.push_back(path);
+  if (hdf5_lies_outside(id)) return note_foreign(path);
   const Handle type(H5Dget_type(id), H5Tclose, "read the type of '" + path + "'");
   const Shape shape = hdf5_shape(id);
   if (made == "char") return note_label(id, full, shape);
@@ -82,49 +96,64 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
     return struct_array(id, type.id(), shape, group_name, name, depth);
   if (!made.empty() && made != "logical" && !hdf5_is_number(type.id())) return;
   StoredColumn column{group_name, name, hdf5_type_name(type.id()), hdf5_unit(id)};
-  if (H5Tget_class(type.id()) == H5T_COMPOUND) return compound(type.id(), shape, path, full, {});
   column.text = hdf5_is_text(type.id());
   column.whole = hdf5_is_whole(type.id());
-  if (!column.text && !hdf5_is_number(type.id())) return;
+  const bool table = H5Tget_class(type.id()) == H5T_COMPOUND;
+  if (!table && !column.text && !hdf5_is_number(type.id())) return;
+  if (hdf5::element_count(shape) > 1 && H5Dget_storage_size(id) == 0) {  // HDF5 allocates late: nothing was written
+    unwritten[full] = fmt::format("its {} values were never written", hdf5::element_count(shape));
+    return left_out.push_back(fmt::format("{} is left out: {}", full, unwritten[full]));
+  }
+  if (table) return compound(type.id(), shape, {path, {}, 0, 0}, full, {});
   plain(std::move(column), path, shape, made.empty() ? 0 : 1);
 }
 
 void Hdf5Walk::plain(StoredColumn column, const std::string& path, const Shape& shape, hsize_t habit) {
   if (column.name == "Ts" && !column.text && hdf5::element_count(shape) == 1)
-    sample_times[column.group] = {path, "", 0, 0};
+    sample_times[column.group] = {path, {}, 0, 0};
   if (shape.size() == 1 && shape[0] > 1) {
     column.rows = shape[0];
-    return add(std::move(column), {path, "", 0, 0});
+    return add(std::move(column), {path, {}, 0, 0});
   }
   if (shape.size() != 2 || shape[0] * shape[1] <= 1 || (column.text && shape[1] != 1)) return;
   if (shape[0] > 1 && shape[1] > 1) return matrices_.push_back({std::move(column), path, shape, habit});
   const hsize_t along = shape[0] > 1 ? 0 : 1;
   column.rows = shape[along];
-  add(std::move(column), {path, "", 0, along});
+  add(std::move(column), {path, {}, 0, along});
 }
 
-void Hdf5Walk::compound(hid_t type, const Shape& shape, const std::string& path, const std::string& group_name,
+void Hdf5Walk::compound(hid_t type, const Shape& shape, const Hdf5Place& place, const std::string& group_name,
                         const std::map<std::string, std::vector<std::string>>& names) {
   if (shape.size() != 1 || shape[0] < 2) return;
-  ++tables;
+  if (place.member.empty()) ++tables;
   for (int i = 0; i < H5Tget_nmembers(type); ++i) {
-    const std::string member = hdf5_member_name(type, static_cast<unsigned>(i));
-    const Handle whole(H5Tget_member_type(type, static_cast<unsigned>(i)), H5Tclose, "read a member's type");
-    const bool array = H5Tget_class(whole.id()) == H5T_ARRAY;
-    const Handle part(array ? H5Tget_super(whole.id()) : H5Tcopy(whole.id()), H5Tclose, "read a member's type");
-    const hsize_t elements = array ? hdf5_array_elements(whole.id()) : 1;
-    const auto known = names.find(member);
-    if (!hdf5_is_number(part.id()) && !(hdf5_is_text(part.id()) && elements == 1)) continue;
-    for (hsize_t e = 0; e < std::min<hsize_t>(elements, most_columns); ++e) {
-      StoredColumn column{group_name, member, hdf5_type_name(part.id()), "", shape[0]};
-      if (known != names.end() && e < known->second.size())
-        column.name = known->second[e];
-      else if (array)
-        column.name += fmt::format("[{}]", e);
-      column.text = hdf5_is_text(part.id());
-      column.whole = hdf5_is_whole(part.id());
-      add(std::move(column), {path, member, e, 0});
-    }
+    Hdf5Place inner = place;
+    inner.member.push_back(hdf5_member_name(type, static_cast<unsigned>(i)));
+    const Handle part(H5Tget_member_type(type, static_cast<unsigned>(i)), H5Tclose, "read a member's type");
+    const auto known = names.find(inner.member.back());
+    if (H5Tget_class(part.id()) == H5T_COMPOUND)
+      compound(part.id(), shape, inner, group_name, {});
+    else
+      member(part.id(), shape[0], inner, group_name, known == names.end() ? std::vector<std::string>() : known->second);
+  }
+}
+
+void Hdf5Walk::member(hid_t type, hsize_t rows, const Hdf5Place& place, const std::string& group_name,
+                      const std::vector<std::string>& names) {
+  const bool array = H5Tget_class(type) == H5T_ARRAY;
+  const Handle part(array ? H5Tget_super(type) : H5Tcopy(type), H5Tclose, "read a member's type");
+  const hsize_t elements = array ? hdf5_array_elements(type) : 1;
+  if (!hdf5_is_number(part.id()) && !(hdf5_is_text(part.id()) && elements == 1)) return;
+  for (hsize_t e = 0; e < std::min<hsize_t>(elements, most_columns); ++e) {
+    StoredColumn column{group_name, fmt::format("{}", fmt::join(place.member, ".")), hdf5_type_name(part.id()), "",
+                        rows};
+    if (e < names.size())
+      column.name = names[e];
+    else if (array)
+      column.name += fmt::format("[{}]", e);
+    column.text = hdf5_is_text(part.id());
+    column.whole = hdf5_is_whole(part.id());
+    add(std::move(column), {place.object, place.member, e, 0});
   }
 }
 
@@ -132,9 +161,8 @@ void Hdf5Walk::struct_array(hid_t id, hid_t type, const Shape& shape, const std:
                             const std::string& name, int depth) {
   const hsize_t count = hdf5::element_count(shape);
   if (H5Tequal(type, H5T_STD_REF_OBJ) <= 0 || count == 0 || count > most_columns) return;
-  hdf5_check_readable(id);
   std::vector<hobj_ref_t> references(static_cast<std::size_t>(count));
-  hdf5::check(H5Dread(id, H5T_STD_REF_OBJ, H5S_ALL, H5S_ALL, H5P_DEFAULT, references.data()), "read references");
+  hdf5_read(id, H5T_STD_REF_OBJ, H5S_ALL, H5S_ALL, references.data());
   for (std::size_t i = 0; i < references.size(); ++i) {
     const Handle object(H5Rdereference2(id, H5P_DEFAULT, H5R_OBJECT, &references[i]), H5Oclose,
                         "follow a reference of '" + name + "'");
@@ -148,9 +176,8 @@ void Hdf5Walk::note_label(hid_t id, const std::string& full, const Shape& shape)
   constexpr hsize_t longest = 200;
   const hsize_t count = hdf5::element_count(shape);
   if (!full.ends_with(".label") || count > longest) return;
-  hdf5_check_readable(id);
   std::vector<std::uint64_t> letters(static_cast<std::size_t>(count));
-  hdf5::check(H5Dread(id, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, letters.data()), "read a label");
+  hdf5_read(id, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, letters.data());
   std::string& label = labels[full];
   for (const std::uint64_t letter : letters)
     if (letter >= 32) label += letter < 127 ? static_cast<char>(letter) : '_';
@@ -181,12 +208,13 @@ void Hdf5Walk::fixed_block(hid_t id, const std::string& path, const std::string&
   const Handle type(H5Dget_type(data.id()), H5Tclose, "read the type of '" + member + "'");
   const Shape shape = hdf5_shape(data.id());
   if (!hdf5_is_number(type.id()) || shape.size() != 2 || shape[0] < 2) return;  // text lies there as a pickle
-  const std::vector<std::string> items =
-      hdf5::StoredArray(id, hdf5::Place::dataset, fmt::format("block{}_items", block)).texts();
+  const Handle names(H5Dopen2(id, fmt::format("block{}_items", block).c_str(), H5P_DEFAULT), H5Dclose,
+                     "open the items");
+  const std::vector<std::string> items = hdf5_read_texts(names.id());
   for (hsize_t j = 0; j < std::min<hsize_t>(shape[1], items.size()); ++j) {
     StoredColumn column{name, items[static_cast<std::size_t>(j)], hdf5_type_name(type.id()), "", shape[0]};
     column.whole = hdf5_is_whole(type.id());
-    add(std::move(column), {path + "/" + member, "", j, 0});
+    add(std::move(column), {path + "/" + member, {}, j, 0});
   }
 }
 
@@ -200,7 +228,7 @@ void Hdf5Walk::table_frame(hid_t id, const std::string& path, const std::string&
     names[member] = pickled_names(hdf5_text_attribute(data.id(), member + "_kind"));
   }
   const std::size_t first = columns.size();
-  compound(type.id(), hdf5_shape(data.id()), path + "/table", name, names);
+  compound(type.id(), hdf5_shape(data.id()), {path + "/table", {}, 0, 0}, name, names);
   const bool dated = hdf5_text_attribute(data.id(), "index_kind").starts_with("datetime64");
   for (std::size_t i = first; i < columns.size(); ++i)
     if (dated && columns[i].name == "index") columns[i].type = "datetime64[ns]";

@@ -12,8 +12,9 @@ namespace modebank {
 
 /// Where a column lies: a line of a dataset of one or two dimensions, or an element of a member of a table's rows.
 struct Hdf5Place {
-  std::string object;      ///< the dataset's path in HDF5
-  std::string member;      ///< of a compound type; empty: the dataset is of numbers or texts itself
+  std::string object;  ///< the dataset's path in HDF5
+  std::vector<std::string>
+      member;              ///< of a compound type, in compounds; empty: the dataset is of numbers or texts itself
   hsize_t element = 0;     ///< of a member that is an array; else which line of a matrix
   hsize_t rows_along = 0;  ///< the dimension along which rows run
 };
@@ -28,9 +29,9 @@ class Hdf5Walk {
   std::vector<StoredColumn> columns;
   std::vector<Hdf5Place> places;
   std::map<std::string, std::string> labels;
-  std::vector<std::string> objects;               ///< MATLAB's, with the lines that convert each
+  std::vector<std::string> left_out;              ///< a line for each object that gives no columns
+  std::map<std::string, std::string> unwritten;   ///< by name of a column: datasets that were never written, why
   std::map<std::string, Hdf5Place> sample_times;  ///< of groups that hold a scalar Ts
-  std::vector<std::string> foreign;               ///< what lies outside the file
   int tables = 0;                                 ///< of pandas or of compound rows
 
   void group(hid_t id, const std::string& path, const std::string& name, int depth);
@@ -55,15 +56,22 @@ class Hdf5Walk {
 
   void note_object(const std::string& made, const std::string& name);
 
+  void note_foreign(const std::string& path);
+
+  /// A group that Octave's `save -hdf5` makes of a variable.
+  void octave_variable(hid_t id, const std::string& path, const std::string& name, int depth);
+
   void link(hid_t parent, const std::string& member, const std::string& path, const std::string& group_name, int depth);
 
   void dataset(hid_t id, const std::string& path, const std::string& group_name, const std::string& name, int depth);
 
   void plain(StoredColumn column, const std::string& path, const hdf5::Shape& shape, hsize_t habit);
 
-  /// Members of a table's rows; `names`: of a member's elements.
-  void compound(hid_t type, const hdf5::Shape& shape, const std::string& path, const std::string& group_name,
+  /// Members of a table's rows, those of compounds in them too; `names`: of a member's elements.
+  void compound(hid_t type, const hdf5::Shape& shape, const Hdf5Place& place, const std::string& group_name,
                 const std::map<std::string, std::vector<std::string>>& names);
+  void member(hid_t type, hsize_t rows, const Hdf5Place& place, const std::string& group_name,
+              const std::vector<std::string>& names);
 
   /// Each field of MATLAB's array of structs is a dataset of references, one per struct.
   void struct_array(hid_t id, hid_t type, const hdf5::Shape& shape, const std::string& group_name,

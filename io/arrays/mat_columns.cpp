@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "io/arrays/mat_check.hpp"
 #include "io/arrays/stored_columns.hpp"
 #include "modebank/base/error.hpp"
 
@@ -22,15 +21,24 @@ struct FreeVariable {
 using MatFile = std::unique_ptr<mat_t, CloseFile>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
+thread_local std::string last_reason;  ///< matio's last words in this thread
+
 /// A template, because matio 1.5.28 passes its text as `const`.
 template <class Text>
-void be_silent(int, Text*) {}
+void keep_reason(int, Text* text) {
+  last_reason = text;
+}
 
+/// Throws DataError with matio's reason.
 MatFile open_mat(const std::string& path) {
-  Mat_LogInitFunc("modebank", be_silent);
+  Mat_LogInitFunc("modebank", keep_reason);
+  last_reason.clear();
   MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
-  if (!file) throw DataError(fmt::format("{}: no MATLAB file that could be read, or a damaged one", path));
-  return file;
+  if (file) return file;
+  throw DataError(
+      fmt::format("{}: not a MATLAB file that matio reads{}{}; in MATLAB or Octave: s = load('{}'); save plain "
+                  "-struct s -v7",
+                  path, last_reason.empty() ? "" : ": ", last_reason, path));
 }
 
 bool is_number(const matvar_t& v) {
@@ -74,36 +82,29 @@ matvar_t* follow(matvar_t* v, const std::vector<MatStep>& steps) {
 /// Walks through the variables' headers and lists their columns.
 class MatWalk {
  public:
-  /// `classes`: of the variables that are objects; libmatio lists these without their classes, or not at all.
-  MatWalk(const std::string& file, const std::map<std::string, std::string>& classes)
-      : file_(file), most_bytes_((std::filesystem::file_size(file) + 4096) * most_expansion) {
-    for (const auto& [variable, made] : classes) objects.push_back(matlab_object(made, variable, file));
-  }
+  explicit MatWalk(const std::string& file) : file_(file) {}
 
   std::vector<StoredColumn> columns;
   std::vector<MatPlace> places;
   std::map<std::string, MatPlace> label_places, sample_time_places;
-  std::vector<std::string> objects;
+  std::vector<std::string> left_out;
 
   void variable(const matvar_t& v) {
+    if (v.class_type == MAT_C_OPAQUE) return left_out.push_back(matlab_objects_without_name());
     if (!v.name) return;
     part(v, "", v.name, {v.name, {}}, 0);
   }
 
  private:
   const std::string& file_;
-  std::uint64_t most_bytes_, bytes_ = 0;
 
   void part(const matvar_t& v, const std::string& group, const std::string& name, const MatPlace& place, int depth) {
     const std::string path = group.empty() ? name : group + "." + name;
     if (v.class_type == MAT_C_STRUCT) return fields(v, path, place, depth);
-    if (v.class_type == MAT_C_OBJECT || v.class_type == MAT_C_OPAQUE) {
-      if (!group.empty()) objects.push_back(matlab_object("", path, file_));
-      return;
-    }
+    if (v.class_type == MAT_C_OBJECT || v.class_type == MAT_C_OPAQUE)
+      return left_out.push_back(matlab_object("", path, file_));
     if (v.class_type == MAT_C_CHAR && name == "label") label_places[path] = place;
     if (!is_number(v)) return;
-    check_size(v, path);
     if (name == "Ts" && elements(v) == 1) sample_time_places[group] = place;
     if (v.rank != 2 || elements(v) < 2) return;
     const std::size_t rows = v.dims[0], wide = v.dims[1];
@@ -134,33 +135,23 @@ class MatWalk {
         part(*field, count == 1 ? path : fmt::format("{}[{}]", path, e), names[f], inner, depth + 1);
       }
   }
-
-  void check_size(const matvar_t& v, const std::string& path) {
-    const std::uint64_t count = elements(v);
-    if (count > most_bytes_ || (bytes_ += count) > most_bytes_)
-      throw DataError(fmt::format("{} declares more content than the file holds", path));
-  }
 };
 
 class MatColumns : public ColumnStore {
  public:
   explicit MatColumns(const std::filesystem::path& path) : path_(path.string()) {
-    MatWalk walk(path_, check_mat(path));
+    MatWalk walk(path_);
     const MatFile file = open_mat(path_);
-    try {
-      for (Variable v(Mat_VarReadNextInfo(file.get())); v; v.reset(Mat_VarReadNextInfo(file.get()))) walk.variable(*v);
-    } catch (const DataError& error) {
-      throw DataError(fmt::format("{}: {}", path_, error.what()));
-    }
+    for (Variable v(Mat_VarReadNextInfo(file.get())); v; v.reset(Mat_VarReadNextInfo(file.get()))) walk.variable(*v);
     std::map<std::string, std::string> labels;
     for (const auto& [name, place] : walk.label_places) labels[name] = text_at(place);
     name_signals(walk.columns, labels);
     columns_ = std::move(walk.columns);
     places_ = std::move(walk.places);
-    objects_ = std::move(walk.objects);
+    left_out_ = std::move(walk.left_out);
     if (columns_.empty())
       throw ConfigurationError(fmt::format("{}: no column of numbers of two rows or more{}{}", path_,
-                                           objects_.empty() ? "" : "; ", fmt::join(objects_, "; ")));
+                                           left_out_.empty() ? "" : "; ", fmt::join(left_out_, "; ")));
     std::map<std::string, double> sample_time;
     for (const auto& [group, place] : walk.sample_time_places)
       sample_time[group] = values_at<double>(place, 1, "Ts")[0];
@@ -168,7 +159,7 @@ class MatColumns : public ColumnStore {
   }
 
   const std::vector<StoredColumn>& columns() const override { return columns_; }
-  const std::vector<std::string>& objects() const override { return objects_; }
+  const std::vector<std::string>& left_out() const override { return left_out_; }
 
   std::vector<double> numbers(std::size_t column) const override { return read<double>(column); }
   std::vector<std::int64_t> whole_numbers(std::size_t column) const override { return read<std::int64_t>(column); }
@@ -180,7 +171,7 @@ class MatColumns : public ColumnStore {
   std::string path_;
   std::vector<StoredColumn> columns_;
   std::vector<MatPlace> places_;
-  std::vector<std::string> objects_;
+  std::vector<std::string> left_out_;
 
   /// Whether so many elements were read: a damaged file may declare more.
   static bool holds(const matvar_t& part, std::uint64_t count) {
@@ -212,7 +203,8 @@ class MatColumns : public ColumnStore {
     const Variable v(Mat_VarRead(file.get(), place.variable.c_str()));
     const matvar_t* part = v ? follow(v.get(), place.steps) : nullptr;
     if (!part || !is_number(*part) || elements(*part) < place.first + rows || !holds(*part, place.first + rows))
-      throw DataError(fmt::format("{}: column {} cannot be read: the file is damaged", path_, name));
+      throw DataError(fmt::format("{}: column {}: matio gave fewer values than it declared{}{}", path_, name,
+                                  last_reason.empty() ? "" : ": ", last_reason));
     return converted<T>(*part, place.first, rows);
   }
 

@@ -83,24 +83,44 @@ std::string matlab_conversion(const std::string& class_name, const std::string& 
   return "";
 }
 
+namespace {
+
+std::string read_iddata_line(const std::string& file) {
+  return fmt::format(
+      "import modebank; [run.to_csv(name + '.csv', index=False) for name, run in modebank.read_iddata('{}').items()]",
+      file);
+}
+
+}  // namespace
+
 std::string matlab_object(const std::string& class_name, const std::string& variable, const std::string& file) {
   const std::string what = fmt::format("{} is a MATLAB {}", variable, class_name.empty() ? "object" : class_name);
   const std::string line = matlab_conversion(class_name, variable);
+  if (class_name.empty())  // which matio does not give
+    return fmt::format(
+        "{} (class({}) names its kind): convert an iddata in MATLAB with {}   or by python3 -c \"{}\"; a timeseries "
+        "with {}",
+        what, variable, matlab_conversion("iddata", variable), read_iddata_line(file),
+        matlab_conversion("timeseries", variable));
   if (line.empty())
     return fmt::format("{}, whose numbers these files do not give: take them out in MATLAB, as of a timeseries with {}",
                        what, matlab_conversion("timeseries", variable));
   std::string python;
-  if (class_name == "iddata" && !file.empty())
-    python = fmt::format(
-        "import modebank; [run.to_csv(name + '.csv', index=False) for name, run in "
-        "modebank.read_iddata('{}').items()]",
-        file);
+  if (class_name == "iddata" && !file.empty()) python = read_iddata_line(file);
   if (class_name == "table" || class_name == "timetable")
     python = fmt::format("import matio; matio.load_from_mat('{}')['{}'].to_csv('{}.csv')", file, variable, variable);
   return fmt::format("{}: convert it in MATLAB with {}{}", what, line,
                      python.empty() ? ""
                                     : fmt::format("   or by python3 -c \"{}\"{}", python,
                                                   class_name == "iddata" ? "" : " (package mat-io)"));
+}
+
+std::string matlab_objects_without_name() {
+  return fmt::format(
+      "the file holds MATLAB objects (table, timetable, timeseries, string, ...), of which matio gives no name: "
+      "convert "
+      "them in MATLAB, a table T with {}; a timeseries x with {}",
+      matlab_conversion("table", "T"), matlab_conversion("timeseries", "x"));
 }
 
 }  // namespace modebank

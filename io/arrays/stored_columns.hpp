@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/table/table_reader.hpp"
+
 namespace modebank {
 
 /// What a file of arrays (HDF5, MATLAB) holds in one column: a vector, a column of a matrix, a member of a table.
@@ -33,8 +35,13 @@ class ColumnStore {
  public:
   virtual ~ColumnStore() = default;
   virtual const std::vector<StoredColumn>& columns() const = 0;
-  /// A line for every object of MATLAB, which gives no columns, with the lines that convert it.
-  virtual const std::vector<std::string>& objects() const = 0;
+  /// A line for everything that gives no columns, saying what helps: objects of MATLAB with the lines that convert
+  /// them, datasets that were never written or lie in another file.
+  virtual const std::vector<std::string>& left_out() const = 0;
+  /// Why a column of that name is not there; empty when there is nothing to say.
+  virtual std::string why_without(const std::string& /*column*/) const { return {}; }
+  /// Rows of a column that were never written: they read as the file's fill value.
+  virtual std::vector<LineRange> unwritten(std::size_t /*column*/) const { return {}; }
   /// Throw DataError, naming the column, when it cannot be read. Of columns that the file stores.
   virtual std::vector<double> numbers(std::size_t column) const = 0;
   virtual std::vector<std::int64_t> whole_numbers(std::size_t column) const = 0;
@@ -42,13 +49,13 @@ class ColumnStore {
 };
 
 /// Datasets of one or two dimensions (h5py, HDF5's own tools), compound tables, pandas' fixed and table formats, and
-/// MATLAB's v7.3 files, which are HDF5. Nothing outside the file is followed (external links and storage, virtual
-/// datasets), no filter is loaded that HDF5 does not bring, no pickle is executed. Throws ConfigurationError for an
-/// archive of ours and for a file without any column, saying how to convert what it does hold; DataError for a damaged
-/// one.
+/// MATLAB's v7.3 files, which are HDF5. External links, external storage and virtual datasets are not followed, and no
+/// pickle is executed. Throws ConfigurationError for an archive of ours and for a file without any column, saying how
+/// to convert what it does hold; DataError, with HDF5's reason, where HDF5 fails.
 std::unique_ptr<ColumnStore> open_hdf5_columns(const std::filesystem::path& path);
 
-/// MATLAB's v4, v6 and v7 files: vectors and matrices, also of nested structs. Throws as open_hdf5_columns does.
+/// MATLAB's v4, v6 and v7 files, by matio: vectors and matrices, also of nested structs. Throws as open_hdf5_columns
+/// does.
 std::unique_ptr<ColumnStore> open_mat_columns(const std::filesystem::path& path);
 
 /// Simulink's structure with time: values of signals get the signal's label and stand beside the time. `labels`: text
@@ -66,8 +73,9 @@ std::string matlab_conversion(const std::string& class_name, const std::string& 
 /// `file` empty: Python's scipy does not read it.
 std::string matlab_object(const std::string& class_name, const std::string& variable, const std::string& file);
 
-/// Compressed data is at most this many times smaller than what it unpacks to (deflate's limit is 1032).
-constexpr std::uint64_t most_expansion = 1100;
+/// The same for objects of the newer class system in files of version 7, of which matio gives neither name nor class.
+std::string matlab_objects_without_name();
+
 /// Of a matrix wider than this nobody names a column.
 constexpr std::uint64_t most_columns = 1000;
 constexpr int deepest_group = 20;

@@ -45,6 +45,16 @@ const ColumnInfo* find_time(const TableInfo& table, const DataOptions& options) 
   return options.time == DataOptions().time ? own_stamps(table) : nullptr;
 }
 
+/// Where the full name of another table's times is given ("log.imu.t"): the table's own of that name ("log.cmd.t").
+const ColumnInfo* find_time_of_another(const TableInfo& table, const std::vector<TableInfo>& tables,
+                                       const std::string& name) {
+  for (const TableInfo& other : tables)
+    if (!other.name.empty() && name.size() > other.name.size() + 1 && find_column(other, name) != nullptr &&
+        name.starts_with(other.name))
+      return find_within(table, name.substr(other.name.size() + 1));
+  return nullptr;
+}
+
 /// What a file has: its columns, or where they are too many to read through its tables.
 std::string listing(const std::vector<TableInfo>& tables) {
   constexpr std::size_t most_columns = 100;
@@ -203,6 +213,8 @@ void ColumnFinder::time(std::size_t source, const DataOptions& options) {
   const TableInfo& table = table_of(source);
   TimeRequest& request = plan_.sources[source].request.time;
   const ColumnInfo* column = find_time(table, options);
+  if (column == nullptr)
+    column = find_time_of_another(table, tables_[plan_.sources[source].path], options.time.front());
   if (column == nullptr) fail(options.time.front(), {plan_.sources[source].path});
   column_position(path_of(source), column_names(table), column->name);  // throws where it is there twice
   request.column = column->name;

@@ -1,3 +1,5 @@
+#include "io/import/open_table.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,7 +12,6 @@
 #include "io/csv/csv.hpp"
 #include "io/csv/csv_text.hpp"
 #include "io/files/read_file.hpp"
-#include "io/import/open_table.hpp"
 #include "io/recording/recording_reader.hpp"
 #include "io/recording/split_recording.hpp"
 #include "modebank/base/error.hpp"
@@ -36,7 +37,7 @@ constexpr std::array formats{
            [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
              return std::make_shared<RecordingReader>(recording_files(path), options.definitions);
            }},
-    Format{[](const Path&, std::string_view first) { return is_hdf5(first); },
+    Format{[](const Path& path, std::string_view) { return is_hdf5(path); },
            [](const Path& path, const FormatOptions&) { return open_hdf5_tables(path); }},
     Format{[](const Path& path, std::string_view first) { return is_mat(path, first); },
            [](const Path& path, const FormatOptions&) { return open_mat_tables(path); }},
@@ -58,6 +59,8 @@ constexpr std::array foreign{
             "git lfs pull fetches it"},
     Foreign{"/annex/objects/"sv, "a git-annex pointer, the place of a file that was not fetched",
             "git annex get '{0}'"},
+    Foreign{"Octave-1-"sv, "in Octave's binary format",
+            "octave --eval \"s = load('{0}'); save('-v7', '{0}.mat', '-struct', 's')\""},
     Foreign{"PAR1"sv, "an Apache Parquet file",
             "python3 -c \"import pandas; pandas.read_parquet('{0}').to_csv('{0}.csv')\""},
     Foreign{"ARROW1"sv, "an Apache Arrow file",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "modebank/base/error.hpp"
 
@@ -50,15 +51,23 @@ Piece stamp_piece(std::size_t table, std::size_t column, const std::string& name
   return piece;
 }
 
+/// How often each name of a table stands there. Nobody can ask for a column whose name comes twice.
+std::map<std::string, int> name_counts(const TableInfo& table) {
+  std::map<std::string, int> counts;
+  for (const ColumnInfo& column : table.columns) ++counts[column.name];
+  return counts;
+}
+
 /// Stamps and what the format calls text one by one, all others as numbers together.
 std::vector<Piece> pieces_of(const std::vector<TableInfo>& tables, const ColumnChoice& wanted) {
   std::vector<Piece> pieces;
   for (std::size_t t = 0; t < tables.size(); ++t) {
     Piece numbers;
     numbers.request.table = t;
+    const std::map<std::string, int> counts = name_counts(tables[t]);
     for (std::size_t c = 0; c < tables[t].columns.size(); ++c) {
       const ColumnInfo& column = tables[t].columns[c];
-      if (!wanted(tables[t], column)) continue;
+      if (!wanted(tables[t], column) || counts.at(column.name) > 1) continue;
       if (column.type == "time")
         pieces.push_back(stamp_piece(t, c, column.name));
       else if (column.type == "text")
@@ -127,6 +136,10 @@ ColumnChoice choice_of(const std::string& file, const std::vector<TableInfo>& ta
   }
   for (const std::string& name : chosen)
     if (std::find(all.begin(), all.end(), name) == all.end()) column_position(file, all, name);  // throws
+  for (const TableInfo& table : tables)
+    for (const auto& [name, count] : name_counts(table))
+      if (count > 1 && std::find(chosen.begin(), chosen.end(), name) != chosen.end())
+        column_position(file, column_names(table), name);  // throws
   return [chosen](const TableInfo& table, const ColumnInfo& column) {
     const auto has = [&](const std::string& name) {
       return !name.empty() && std::find(chosen.begin(), chosen.end(), name) != chosen.end();
@@ -137,7 +150,11 @@ ColumnChoice choice_of(const std::string& file, const std::vector<TableInfo>& ta
 
 FileColumns read_columns(const TableReader& reader, const std::vector<TableInfo>& tables, const ColumnChoice& wanted) {
   FileColumns result;
-  for (const TableInfo& table : tables) result.tables.emplace_back(table.columns.size());
+  for (const TableInfo& table : tables) {
+    result.tables.emplace_back(table.columns.size());
+    for (const auto& [name, count] : name_counts(table))
+      if (count > 1) result.notes.push_back(fmt::format("left out: column \"{}\", which comes {} times", name, count));
+  }
   result.alternation.resize(tables.size());
   const std::vector<Piece> pieces = pieces_of(tables, wanted);
   if (try_read(reader, pieces, result)) return result;

@@ -220,6 +220,7 @@ FileStream RowReader::own_stream(std::size_t clock, const std::vector<ColumnRef>
   result.file = plan_.paths[plan_.sources[clock].path].string();
   result.time_column = plan_.sources[clock].request.time.column;
   result.origin_ns = run.origin_ns;
+  result.unwritten = tables_[clock].unwritten;
   return result;
 }
 

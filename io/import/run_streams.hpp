@@ -7,6 +7,7 @@
 #include "ident/data/streams.hpp"
 #include "ident/data/trajectory.hpp"
 #include "io/import/options.hpp"
+#include "io/table/table_reader.hpp"
 
 namespace modebank {
 
@@ -15,7 +16,8 @@ struct FileStream {
   Stream stream;                    ///< times may repeat or go backwards until put_in_order
   std::vector<std::uint64_t> line;  ///< per sample, of the file
   std::string file, time_column;
-  std::int64_t origin_ns = 0;  ///< of the times, which are seconds since then
+  std::int64_t origin_ns = 0;        ///< of the times, which are seconds since then
+  std::vector<LineRange> unwritten;  ///< lines whose times were never written
 
   /// Time of a sample as the file has it.
   std::string time_text(Index k) const;

@@ -83,6 +83,9 @@ std::size_t rows_before_clock_was_set(const std::vector<std::int64_t>& stamps_ns
 
 std::string disorder_hint(const FileStream& source, Index k) {
   const Eigen::VectorXd& time_s = source.stream.time_s;
+  if (const std::string never = unwritten_text(source.unwritten, source.line[static_cast<std::size_t>(k)]);
+      !never.empty())
+    return never;
   const Index N = time_s.size();
   constexpr Index fewest = 4;
   if (N < fewest) return {};

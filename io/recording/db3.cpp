@@ -19,9 +19,10 @@ struct SqlError : std::runtime_error {
 
 class Database {
  public:
-  explicit Database(const std::filesystem::path& path) {
+  /// `immutable`: no locks, no journal, and nothing is ever written beside the file.
+  Database(const std::filesystem::path& path, bool immutable) {
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE;
-    const int status = sqlite3_open_v2(uri(path).c_str(), &handle_, flags, nullptr);
+    const int status = sqlite3_open_v2(uri(path, immutable).c_str(), &handle_, flags, nullptr);
     if (status != SQLITE_OK) {
       const std::string why = sqlite3_errstr(status);
       sqlite3_close(handle_);
@@ -42,8 +43,7 @@ class Database {
   sqlite3* handle() const { return handle_; }
 
  private:
-  /// `immutable`: no locks, no journal, and the file is never written to.
-  static std::string uri(const std::filesystem::path& path) {
+  static std::string uri(const std::filesystem::path& path, bool immutable) {
     std::string text = "file:";
     for (const char c : std::filesystem::absolute(path).string()) {
       if (c == '?' || c == '#' || c == '%')
@@ -51,7 +51,7 @@ class Database {
       else
         text += c;
     }
-    return text + "?mode=ro&immutable=1";
+    return text + (immutable ? "?mode=ro&immutable=1" : "?mode=ro");
   }
 
   sqlite3* handle_ = nullptr;
@@ -86,9 +86,29 @@ class Query {
   sqlite3_stmt* statement_ = nullptr;
 };
 
+/// Whether messages lie in the journal beside the file, as a recorder leaves them that is killed.
+bool has_journal(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::file_size(path.string() + "-wal", error) > 0 && !error;
+}
+
+/// With its journal where there is one that can be read: SQLite needs a third file beside both, FILE-shm.
+std::unique_ptr<Database> open_database(const std::filesystem::path& path, std::vector<std::string>& notes) {
+  if (!has_journal(path)) return std::make_unique<Database>(path, true);
+  try {
+    auto database = std::make_unique<Database>(path, false);
+    Query(*database, "SELECT count(*) FROM sqlite_master").next();
+    return database;
+  } catch (const SqlError& error) {
+    notes.push_back(fmt::format("{0}-wal holds messages that were never moved into {0}; they are not read ({1})",
+                                path.string(), error.what()));
+    return std::make_unique<Database>(path, true);
+  }
+}
+
 class Db3 : public Container {
  public:
-  explicit Db3(const std::filesystem::path& path) : path_(path), database_(std::make_unique<Database>(path)) {
+  explicit Db3(const std::filesystem::path& path) : path_(path), database_(open_database(path, notes_)) {
     try {
       check_tables();
       read_topics();
@@ -96,13 +116,6 @@ class Db3 : public Container {
     } catch (const SqlError& error) {
       throw DataError(damage(error));
     }
-    std::error_code ignored;
-    const auto journal = std::filesystem::file_size(path_.string() + "-wal", ignored);
-    if (!ignored && journal > 0)
-      notes_.push_back(
-          fmt::format("{0}: {0}-wal holds messages that were never moved into it; they are not read "
-                      "(`sqlite3 {0} 'PRAGMA wal_checkpoint'` moves them)",
-                      path_.string()));
     count_messages();
   }
 
@@ -194,7 +207,8 @@ class Db3 : public Container {
   }
 
   std::string run(const std::string& sql, const MessageSink& sink) {
-    if (!database_) database_ = std::make_unique<Database>(path_);
+    std::vector<std::string> stated;
+    if (!database_) database_ = open_database(path_, stated);
     try {
       Query query(*database_, sql);
       while (query.next()) {

@@ -11,6 +11,22 @@
 
 namespace modebank {
 
+std::string rows_text(const std::vector<LineRange>& ranges) {
+  std::string text = fmt::format("rows {} to {}", ranges.front().first, ranges.front().last);
+  if (ranges.size() > 1) text += fmt::format(" and {} more ranges", ranges.size() - 1);
+  return text;
+}
+
+std::vector<LineRange>::const_iterator range_of(const std::vector<LineRange>& ranges, std::uint64_t line) {
+  return std::find_if(ranges.begin(), ranges.end(),
+                      [line](const LineRange& range) { return range.first <= line && line <= range.last; });
+}
+
+std::string unwritten_text(const std::vector<LineRange>& ranges, std::uint64_t line) {
+  const auto found = range_of(ranges, line);
+  return found == ranges.end() ? std::string() : fmt::format("; {} were never written", rows_text({*found}));
+}
+
 std::vector<std::string> column_names(const TableInfo& table) {
   std::vector<std::string> names;
   for (const ColumnInfo& column : table.columns) names.push_back(column.name);

@@ -50,6 +50,18 @@ struct TableRequest {
   TimeRequest time = {};
 };
 
+/// Rows `first` to `last` of a file, as Table::line counts.
+struct LineRange {
+  std::uint64_t first = 0, last = 0;
+};
+
+/// "rows 3 to 7 and 2 more ranges"; of one range at least.
+std::string rows_text(const std::vector<LineRange>& ranges);
+/// The range that holds the line, or the end.
+std::vector<LineRange>::const_iterator range_of(const std::vector<LineRange>& ranges, std::uint64_t line);
+/// "; rows 3 to 7 were never written" where a range holds the line, else empty.
+std::string unwritten_text(const std::vector<LineRange>& ranges, std::uint64_t line);
+
 inline constexpr std::int64_t missing_stamp = std::numeric_limits<std::int64_t>::min();
 
 struct Table {
@@ -63,6 +75,8 @@ struct Table {
   StampForm form = {};                               ///< of the times, where they were found in numbers or text
   std::vector<std::string> notes;  ///< what the reader found out and the user should know; without the file's name, so
                                    ///< that many files say it once
+
+  std::vector<LineRange> unwritten;  ///< lines whose times the file declares and never got: they read as a fill value
 
   /// In words, where rows that follow one another are of different frames, and the key that takes them apart.
   std::string alternation;

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "io/import/bring.hpp"
+#include "io/import/open_table.hpp"
+#include "io/import/read_columns.hpp"
 #include "io/import/split.hpp"
 #include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -160,6 +162,18 @@ TEST_F(ImportSplit, BlocksTrainInTurnWithAGapBetweenThem) {
   EXPECT_EQ(data.recording.runs[1].time_s(0), 12.5);
   EXPECT_EQ(data.recording.runs[3].state(0, data.recording.runs[3].samples() - 1), 100) << "nothing follows the last";
   EXPECT_THAT(data.notes, testing::Contains(HasSubstr("split into 4 blocks")));
+}
+
+TEST(ReadColumns, LeaveOutANameThatComesTwice) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "log.csv";
+  test::write_file(file, "time,x,spare,spare\n0,1,7,8\n1,2,9,10\n");
+  const auto reader = open_table(file, {});
+  const FileColumns read = read_columns(*reader, reader->tables(), choice_of(file.string(), reader->tables(), {}));
+  EXPECT_EQ(std::get<std::vector<double>>(read.tables.at(0).at(1)), (std::vector<double>{1, 2}));
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(read.tables.at(0).at(3)));
+  EXPECT_THAT(read.notes, ElementsAre("left out: column \"spare\", which comes 2 times"));
+  EXPECT_THROW(choice_of(file.string(), reader->tables(), {"spare"}), ConfigurationError);
 }
 
 TEST_F(ImportSplit, TheLastPercentsAreHeldOut) {

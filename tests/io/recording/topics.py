@@ -9,6 +9,7 @@ import ctypes
 import json
 import pathlib
 import random
+import shutil
 import sqlite3
 import struct
 import sys
@@ -135,13 +136,19 @@ def write_mcap(path, chunks, chunked=True, summary=True):
     path.write_bytes(out + mcap_record(2, struct.pack("<QQI", at if summary and chunked else 0, 0, 0)) + b"\x89MCAP0\r\n")
 
 
-def write_db3(path, topics, messages):
-    database = sqlite3.connect(path)
+def write_db3(path, topics, messages, killed=False):
+    """killed: as a recorder leaves it that never moved its journal into the file."""
+    database = sqlite3.connect(path.with_suffix(".live") if killed else path)
+    if killed:
+        database.execute("PRAGMA journal_mode = WAL")
+        database.execute("PRAGMA wal_autocheckpoint = 0")
     database.executescript("CREATE TABLE topics(id INTEGER PRIMARY KEY,name TEXT,type TEXT,serialization_format TEXT,offered_qos_profiles TEXT);"
                            "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER,timestamp INTEGER,data BLOB);")
     database.executemany("INSERT INTO topics VALUES(?,?,'std_msgs/msg/Float64','cdr','')", topics.items())
     database.executemany("INSERT INTO messages VALUES(NULL,?,?,?)", [(t, time, CDR_FLOAT[2](v)) for t, time, v in messages])
     database.commit()
+    for end in ("", "-wal", "-shm") if killed else ():
+        shutil.copy(f"{path.with_suffix('.live')}{end}", f"{path}{end}")
     database.close()
 
 
@@ -165,7 +172,8 @@ def write(folder):
     for name, options in {"reused": {}, "reused_no_summary": {"summary": False}, "reused_loose": {"chunked": False}}.items():
         write_mcap(folder / f"{name}.mcap", again, **options)
     drive(folder)
-    write_db3(folder / "repeated.db3", {3: "/cmd", 1: "/speed", 7: "/cmd"}, [({0: 3, 1: 1, 2: 7}[c], t, v) for c, t, v in three])
+    for name, killed in {"repeated": False, "killed": True}.items():
+        write_db3(folder / f"{name}.db3", {3: "/cmd", 1: "/speed", 7: "/cmd"}, [({0: 3, 1: 1, 2: 7}[c], t, v) for c, t, v in three], killed)
 
 
 def drive(folder):

@@ -76,6 +76,15 @@ TEST_F(Topics, OfMcapAndDb3AreThoseOfTheirChannels) {
   }
 }
 
+TEST_F(Topics, OfADb3WithItsJournalAreThoseOfBoth) {
+  const json expected = reference(file("repeated.db3"));
+  const RosLog log(file("killed.db3"), KnownDefinitions());
+  for (int visit = 0; visit < 2; ++visit) expect_reference(log, expected, "killed.db3");
+  std::filesystem::remove(file("killed.db3-wal"));
+  EXPECT_THAT(message_of<DataError>([&] { RosLog(file("killed.db3"), KnownDefinitions()); }),
+              HasSubstr("no recording of rosbag2"));
+}
+
 /// A number that is given again is another channel's from there on, whatever the summary says of it.
 TEST_F(Topics, AChannelsNumberMayBeGivenAgain) {
   for (const char* name : {"reused.mcap", "reused_no_summary.mcap", "reused_loose.mcap"}) {
