@@ -202,7 +202,7 @@ int submit(const StudyCommand& command) {
 int do_study(const StudyCall& call) {
   const TrialStore store(call.config.study.output);
   store.look_again();
-  const StudyCommand command{call, call.config, store, process_word(this_process()), store.failures()};
+  const StudyCommand command{call, call.config, store, random_word(), store.failures()};
   switch (call.config.study.stage) {
     case StudyStage::all:
       return run_all(command);

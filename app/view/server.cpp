@@ -209,11 +209,10 @@ void tend_at_once(asio::signal_set& ended, Viewer& viewer) {
   });
 }
 
-/// Nobody else's folder; those of servers that were killed go first.
+/// Nobody else's folder.
 class OwnFolder {
  public:
   OwnFolder() : path_(temporary_path(fs::temp_directory_path() / "modebank_view")) {
-    remove_leftovers(path_.parent_path());
     if (::mkdir(path_.c_str(), S_IRWXU) != 0) throw std::system_error(errno, std::generic_category(), path_.string());
   }
   ~OwnFolder() {

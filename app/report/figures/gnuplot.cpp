@@ -35,8 +35,8 @@ namespace fs = std::filesystem;
   throw ConfigurationError(what);
 }
 
-/// A folder inside the one that figures go to, so that finished files only have to be renamed; gone at the end, or, of
-/// a process that was killed, when the next one draws there.
+/// A folder inside the one that figures go to, so that finished files only have to be renamed; gone at the end; what a
+/// killed process left is removed after a day by the next one that draws there.
 class WorkFolder {
  public:
   explicit WorkFolder(const fs::path& parent) : path_(temporary_path(fs::absolute(parent) / "figures")) {

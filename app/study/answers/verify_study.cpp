@@ -96,9 +96,7 @@ void check_others(const TrialStore& store, const std::optional<StudyPlan>& plan,
     for (const TrialRow& row : plan->table.rows) planned[row.key + ".h5"] = true;
   for (const fs::directory_entry& entry : fs::directory_iterator(store.folder() / "trials")) {
     const fs::path& file = entry.path();
-    if (const auto temporary = parse_temporary_name(file.filename().string());
-        temporary && state_of(temporary->owner) == ProcessState::gone)
-      result.problems.push_back({file, "was left by a process that was killed", "", true});
+    if (is_leftover(file)) result.problems.push_back({file, "was left by a process that was killed", "", true});
     const bool is_trial = file.extension() == ".h5" && is_sha256(file.stem().string());
     if (!is_trial || planned.count(file.filename().string())) continue;
     for (const std::string& problem : store.problems(file.stem().string()))

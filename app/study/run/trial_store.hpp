@@ -18,7 +18,7 @@ inline constexpr const char* plan_lock = "plan";
 /// Why a trial failed, and in which execution of the study.
 struct FailureRecord {
   std::string message;
-  std::string execution;  ///< the process_word of the program that was started; empty in records of older versions
+  std::string execution;  ///< the random word of the program that was started; empty in records of older versions
 
   bool operator==(const FailureRecord&) const = default;
 };

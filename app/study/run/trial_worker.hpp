@@ -35,7 +35,7 @@ struct WorkerSettings {
   TrialStore store;
   std::vector<std::string> varied_keys;
   std::string version;
-  std::string execution;                                  ///< the program's process_word
+  std::string execution;                                  ///< a random word of its own
   std::map<std::string, FailureRecord> earlier_failures;  ///< by key; those recorded since are not tried again
 };
 

@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 #include <iterator>
 
@@ -27,56 +30,51 @@ std::size_t entries(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-TEST(TemporaryFile, ItsNameSaysWhoseItIsAndWhatItWasToBecome) {
-  for (const std::string target : {"k.h5", "a~b~1.tmp", "with blank.csv", ".hidden"}) {
+TEST(TemporaryFile, StandsBesideItsTargetUnderANewName) {
+  for (const std::string target : {"k.h5", "with blank.csv", ".hidden"}) {
     const fs::path path = temporary_path(fs::path("/some/where") / target);
     EXPECT_EQ(path.parent_path(), "/some/where");
-    const auto name = parse_temporary_name(path.filename().string());
-    ASSERT_TRUE(name.has_value()) << path;
-    EXPECT_EQ(name->target, target);
-    EXPECT_EQ(name->owner, this_process());
+    EXPECT_THAT(path.filename().string(), testing::MatchesRegex("\\." + target + "\\.modebank-[0-9a-f]+\\.tmp"));
   }
   EXPECT_NE(temporary_path("k.h5"), temporary_path("k.h5"));
-  EXPECT_LE(temporary_path(std::string(255, 'k')).string().size(), 255u);
-  EXPECT_TRUE(parse_temporary_name(temporary_path(std::string(255, 'k')).string()).has_value());
-}
-
-TEST(TemporaryFile, OtherNamesAreNotTaken) {
-  for (const char* name : {"", ".tmp", "..tmp", ".k.h5.1-0.tmp", "k.h5~h~b~1~2~3~4.tmp", ".k.h5~h~b~1~-2~3~4.tmp",
-                           ".k.h5~h~b~1~0~3~4.tmp", ".k.h5~h~b~1~2~3~x.tmp", ".k.h5~h~b~1~2~3~4.tmp2", ".~~~~~~.tmp"})
-    EXPECT_FALSE(parse_temporary_name(name).has_value()) << name;
-}
-
-TEST(TemporaryFile, OnlyAProcessOfThisMachineBootAndContainerIsJudged) {
-  ProcessIdentity mine = this_process();
-  EXPECT_EQ(state_of(mine), ProcessState::living);
-  const auto changed = [&](auto change) {
-    ProcessIdentity other = mine;
-    change(other);
-    return state_of(other);
-  };
-  EXPECT_EQ(changed([](auto& p) { p.host += "x"; }), ProcessState::unknown);
-  EXPECT_EQ(changed([](auto& p) { p.boot = "0"; }), ProcessState::unknown);
-  EXPECT_EQ(changed([](auto& p) { p.space += "1"; }), ProcessState::unknown);
-  EXPECT_EQ(changed([](auto& p) { p.start_tick += 1; }), ProcessState::gone);  // the number was given again
-  EXPECT_EQ(changed([](auto& p) { p.process = 2'000'000'000; }), ProcessState::gone);
+  EXPECT_EQ(temporary_path(std::string(255, 'k')).string().size(), 255u);
 }
 
 TEST(Robustness, D16TheNextRunTakesAwayWhatAKilledOneLeft) {
   const TemporaryFolder folder;
   const fs::path left = leave_behind(folder.path() / "k.h5"), other_target = leave_behind(folder.path() / "x.csv");
-  // What another machine, a living process or nobody of ours made stays.
-  const std::string mine = temporary_path(folder.path() / "k.h5").filename().string();
-  const fs::path living = folder.path() / mine,
-                 foreign = folder.path() / ("." + std::string("k.h5~elsewhere~b~1~2~3~4.tmp")),
-                 old = folder.path() / ".k.h5.1-0.tmp";
-  for (const fs::path& path : {living, foreign, old}) std::ofstream(path) << "half";
-  ASSERT_TRUE(fs::exists(left));
+  // A file that is being written stays, and so does one of another name.
+  const fs::path living = temporary_path(folder.path() / "k.h5"), old = folder.path() / ".k.h5.1-0.tmp",
+                 other = folder.path() / ".k.modebank-0123456789ag.tmp";
+  for (const fs::path& path : {living, old, other}) std::ofstream(path) << "half";
+  for (const fs::path& path : {old, other})
+    fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(48));
+  ASSERT_TRUE(is_leftover(left));
   replace_file(folder.path() / "k.h5", {"whole"});
   EXPECT_FALSE(fs::exists(left));
   EXPECT_FALSE(fs::exists(other_target));
-  for (const fs::path& path : {living, foreign, old}) EXPECT_TRUE(fs::exists(path)) << path;
+  for (const fs::path& path : {living, old, other}) EXPECT_TRUE(fs::exists(path)) << path;
   EXPECT_EQ(text_of(folder.path() / "k.h5"), "whole");
+}
+
+/// Killed between any two writes: the target is absent or whole.
+TEST(Robustness, AKilledWriterLeavesTheTargetAsItWas) {
+  const TemporaryFolder folder;
+  const fs::path target = folder.path() / "k.h5";
+  for (const std::string before : {"", "old"}) {
+    if (!before.empty()) replace_file(target, {before});
+    const pid_t child = ::fork();
+    if (child == 0)
+      replace_file(target, [](const fs::path& temporary) {
+        std::ofstream(temporary) << "half";
+        ::raise(SIGKILL);
+      });
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(fs::exists(target), !before.empty());
+    EXPECT_EQ(text_of(target), before);
+  }
 }
 
 TEST(Robustness, D16SymbolicLinksThatAUserNamesAreWrittenThrough) {
