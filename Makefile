@@ -3,7 +3,7 @@
 JOBS := $(shell awk -v cores=$$(nproc) '/^MemAvailable/ { most = int($$2 / 2500000); print most < 1 ? 1 : most < cores ? most : cores }' /proc/meminfo)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test dist dist-test pip-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale cost features track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz-build fuzz fuzz-campaign faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
+.PHONY: all api build demo packages package-test dist dist-test pip-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale cost features track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
 
 all: build
 
@@ -243,21 +243,10 @@ sanitize: packages-build packages-test
 	cmake --build --preset sanitize -j $(JOBS)
 	ctest --preset sanitize -j $(JOBS)
 
-# Every reader under mutated inputs, with sanitizers: ten minutes (FUZZ_SECONDS) with the day's seed. It keeps what it finds in build/findings;
-# `make nightly` does the same for a minute.
+# Readers whose bytes we parse under libFuzzer: FUZZ_SECONDS for all together; its findings go to build/findings. `make nightly` takes a minute.
 FUZZ_SECONDS ?= 600
-FUZZ_SEED ?= $(shell date +%Y%m%d)
-fuzz: fuzz-build
-	build/sanitize/fuzz all --seconds $(FUZZ_SECONDS) --seed $(FUZZ_SEED) --findings build/findings
-
-# As many inputs as docs/developing/fuzzing.md tells of, by number; hours.
-fuzz-campaign: fuzz-build
-	build/sanitize/fuzz all --part 1 --seed $(FUZZ_SEED) --findings build/findings
-
-fuzz-build: packages-build packages-test
-	cmake --preset sanitize >/dev/null
-	cmake --build --preset sanitize -j $(JOBS) --target fuzz
-	@mkdir -p build/findings
+fuzz: packages-build packages-test
+	tests/fuzz/run $(FUZZ_SECONDS) $(JOBS)
 
 # Every command on a disk that runs full at every one of its calls; `make nightly` takes a sample of them.
 faults: packages-build packages-test build/build.ninja

@@ -1,0 +1,25 @@
+// Configurations, with the points of their studies.
+#include "app/config/config_file.hpp"
+#include "app/study/space/study_space.hpp"
+#include "tests/fuzz/entry.hpp"
+
+namespace modebank::fuzz {
+
+namespace {
+
+/// A configuration file as every command reads it. What it was resolved to is a configuration of the same meaning.
+void read_configuration(std::string_view text) {
+  const app::Config config = app::load_config(scratch_file("fuzz.ini", text), {});
+  const std::string resolved = app::resolved_text(config);
+  require(app::resolved_text(app::resolved_config(resolved)) == resolved,
+          "the resolved configuration reads back as another one");
+  app::validate(config);
+  constexpr Index few_points = 1000;
+  if (config.study.sample <= few_points) app::lay_out(config);
+}
+
+const Entry ini("ini", read_configuration);
+
+}  // namespace
+
+}  // namespace modebank::fuzz

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "io/table/format_options.hpp"
+
+namespace modebank::fuzz {
+
+/// Opens a log as `run` does and reads all columns of its tables. `way` chooses which columns are texts, whether values
+/// may miss, and whether two columns are imported besides.
+void read_log(const std::filesystem::path& file, const FormatOptions& format, std::size_t way);
+
+}  // namespace modebank::fuzz

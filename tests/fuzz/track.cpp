@@ -1,0 +1,61 @@
+// Inputs of `track`: lines of samples, and checkpoints.
+#include <cmath>
+
+#include "app/cli/track_input.hpp"
+#include "io/archive/filter_checkpoint.hpp"
+#include "modebank/base/error.hpp"
+#include "tests/fuzz/entry.hpp"
+#include "tests/io/archive/archive_fixture.hpp"
+
+namespace modebank::fuzz {
+
+namespace {
+
+/// A bank of three modes with one state and one input.
+BankFilter new_filter(bool adaptive) {
+  static const Bank bank = *test::full_archive(1, 1).bank;
+  FilterOptions options;
+  options.noise = adaptive ? FilterNoise::adaptive : FilterNoise::gaussian;
+  return {bank, options};
+}
+
+void track_lines(std::string_view text) {
+  DataOptions columns;
+  columns.input = {"u0"};
+  columns.state = {"x0"};
+  app::SampleReader reader(columns, app::LineFormat::automatic);
+  BankFilter filter = new_filter(text.size() % 2 == 0);
+  double last_s = -INFINITY;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    reader.read({std::string(text.substr(begin, end - begin))}, [&](std::size_t, app::SampleReader::Line kind) {
+      const TimedSample& sample = reader.sample();
+      if (kind != app::SampleReader::Line::sample || !(sample.time_s > last_s)) return;
+      last_s = sample.time_s;
+      filter.step(sample.time_s, sample.input, sample.measurement);
+    });
+    begin = end + 1;
+  }
+}
+
+/// Goes on from a checkpoint for a few samples. No estimate from finite samples may be infinite.
+void resume(std::string_view text) {
+  BankFilter filter = new_filter(text.size() % 2 == 0);
+  try {
+    filter.restore(load_checkpoint(scratch_file("fuzz.json", text), "fuzz"));
+  } catch (const std::invalid_argument& error) {
+    throw DataError(error.what());
+  }
+  for (int k = 0; k < 4; ++k) {
+    const FilterEstimate& estimate =
+        filter.step(NAN, Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.2));
+    require(!filter.started() || (estimate.state.allFinite() && estimate.mode_probability.allFinite()),
+            "an estimate is not finite");
+  }
+}
+
+const Entry track("track", track_lines), checkpoint("checkpoint", resume);
+
+}  // namespace
+
+}  // namespace modebank::fuzz
