@@ -12,7 +12,7 @@ skbuild.setup(
     version=project[1],
     description=project[2],
     python_requires=">=3.11",
-    install_requires=["numpy", "pandas"],
+    install_requires=["numpy", "pandas", "h5py"],
     packages=["modebank"],
     package_dir={"": "python"},
     cmake_install_dir="python",

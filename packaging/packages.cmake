@@ -121,7 +121,7 @@ if(TARGET modebank_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-      "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy, python3-pandas")
+      "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy, python3-pandas, python3-h5py")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS modebank)
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION "motion with changing character: modebank for Python 3
 ${what}

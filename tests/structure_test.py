@@ -12,7 +12,7 @@ IDENT = ["ident/base", "ident/data", "ident/model"]
 FIT = IDENT + ["ident/model/models", "ident/fit"]
 STEP = IDENT + ["filter/step"]
 LIBRARIES = FIT + ["ident/lag", "ident/terms", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/judge", "filter/learn"]
-IO = ["io/files", "io/hdf5", "io/table", "io/csv", "io/arrays", "io/archive/bank", "io/archive", "io/recording", "io/import", "io/simulation"]
+IO = ["io/files", "io/hdf5", "io/table", "io/csv", "io/arrays", "io/archive/groups", "io/archive/bank", "io/archive", "io/recording", "io/import", "io/simulation"]
 BELOW_APP = LIBRARIES + IO
 MAY_INCLUDE = {
     "ident/base": [],
@@ -33,8 +33,9 @@ MAY_INCLUDE = {
     "io/table": IDENT[:1] + ["io/files"],
     "io/csv": IDENT[:1] + ["io/files", "io/table"],
     "io/arrays": IDENT[:1] + ["io/files", "io/hdf5", "io/table"],
-    "io/archive/bank": STEP + ["io/files", "io/hdf5"],
-    "io/archive": LIBRARIES + ["io/files", "io/hdf5", "io/archive/bank"],
+    "io/archive/groups": IDENT[:1] + ["io/hdf5"],
+    "io/archive/bank": STEP + ["io/files", "io/hdf5", "io/archive/groups"],
+    "io/archive": LIBRARIES + ["io/files", "io/hdf5", "io/archive/groups", "io/archive/bank"],
     "io/recording": IDENT[:1] + ["io/files", "io/table"],
     "io/import": FIT + ["ident/lag", "ident/check", "io/files", "io/table", "io/csv", "io/arrays", "io/recording"],
     "io/simulation": IDENT + ["ident/simulate", "io/files"],

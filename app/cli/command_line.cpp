@@ -48,6 +48,7 @@ po::options_description describe_options(CommandLine& line) {
   add("output,o", po::value(&line.output));
   add("to", po::value(&line.exported.to));
   add("table", po::value(&line.exported.table));
+  add("run", po::value(&line.run));
   add("wheel_separation_m", po::value(&line.exported.wheel_separation_m));
   add("wheel_radius_m", po::value(&line.exported.wheel_radius_m));
   add("words", po::value<std::vector<std::string>>());

@@ -35,6 +35,7 @@ struct CommandLine {
   bool yes = false;                ///< init: ask nothing
   bool open = false;               ///< view: in the browser
   int port = 0;                    ///< view: 0, the kernel's choice
+  std::string run = {};            ///< whose rows `show` and `export` give; empty: all
   std::string form = "increment";  ///< of models that `show` prints: increment or full
   std::string
       output;  ///< -o: the file that `report`, `predict`, `init`, `export` or `check --apply` writes, demo's folder

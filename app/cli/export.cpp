@@ -39,17 +39,17 @@ double input_lag_of(const Archive& archive, const Config& config) {
 
 /// The filter as the archive ran it: other options would be another filter than the one that was judged.
 ExportedBank read_bank(const CommandLine& line) {
-  const std::string& file = line.files.front();
+  const OpenArchive file(line.files.front());
   const Config config = stored_config(load_configuration(file), line.overrides);
   require_bank(config, fmt::format("track.filter = {}", name_of(config.track.filter)));
-  const Archive archive = read_archive(file);
+  const Archive archive = read_archive(file, Evaluations::in_file);
   ExportedBank bank =
       exported_bank(archive, file, tracked_bank(config), tracked_options(config), input_lag_of(archive, config));
   if (!bank.may_be_trusted() && !line.force)
     throw DataError(
         fmt::format("{}: the verdict on {} is {}. What takes its uncertainty for true would be misled; --force exports "
                     "it all the same, the verdict on top",
-                    file, bank.filter, bank.verdict_text()));
+                    file.path().string(), bank.filter, bank.verdict_text()));
   return bank;
 }
 
@@ -81,13 +81,34 @@ json export_casadi(const CommandLine& line) {
   return write_text(line, bank_form(), [&] { return to_casadi(read_bank(line)); });
 }
 
+/// All arrays of a group over the samples of a run, as a table with a row per sample.
+json samples_of(const OpenArchive& archive, const std::string& group, const std::string& run, const json& members) {
+  json table = {{"columns", json::array()}, {"value", json::array()}};
+  const auto add = [&](const std::string& name) {
+    const json values = inspect(archive, group + "/" + name, run).at("value");
+    table["columns"].push_back(name);
+    for (std::size_t k = 0; k < values.size(); ++k) table["value"][k][name] = values[k];
+  };
+  if (members.contains("time")) add("time");
+  for (const auto& [name, member] : members.items())
+    if (name != "time") add(name);
+  return table;
+}
+
+/// The object that the command line asks for; of a run all data without a path.
+json asked_table(const CommandLine& line, const std::string& path) {
+  const OpenArchive archive(line.files.front());
+  json object = inspect(archive, path, line.run);
+  const bool is_group = !line.run.empty() && object.contains("members");
+  return is_group ? samples_of(archive, path, line.run, object.at("members")) : object;
+}
+
 json export_csv(const CommandLine& line) {
-  const std::string& table = line.exported.table;
+  const std::string table = line.exported.table.empty() && !line.run.empty() ? "/data" : line.exported.table;
   if (table.empty())
     throw ConfigurationError(
-        "export --to csv needs --table PATH, such as /evaluation/summary (modebank show ARCHIVE /)");
-  judge_archive(line.files.front());
-  const std::string text = to_csv(inspect(line.files.front(), table), table);
+        "export --to csv needs --table PATH, such as /evaluation/summary (modebank show ARCHIVE /), or --run NAME");
+  const std::string text = to_csv(asked_table(line, table), table);
   const std::string header = text.substr(0, text.find('\n') + 1);
   return write_text(line, form_by_front("a table with these columns", header, header.size()), [&] { return text; });
 }
@@ -159,7 +180,7 @@ const std::map<std::string, json (*)(const CommandLine&)> forms{{"c", export_c},
 /// Options that belong to one form.
 void check_form_options(const CommandLine& line) {
   const std::map<std::string, std::string> belongs{
-      {"table", "csv"}, {"float", "c"}, {"wheel_separation_m", "ros2"}, {"wheel_radius_m", "ros2"}};
+      {"table", "csv"}, {"run", "csv"}, {"float", "c"}, {"wheel_separation_m", "ros2"}, {"wheel_radius_m", "ros2"}};
   for (const std::string& option : line.given)
     if (const auto only = belongs.find(option); only != belongs.end() && only->second != line.exported.to)
       throw ConfigurationError(

@@ -58,11 +58,12 @@ FilterOptions tracked_options(const Config& config) {
   return competitor_filter(std::string(name_of(config.track.filter)), config.filter);
 }
 
-void check_columns(const Config& config, const Bank& bank, const std::string& archive) {
+void check_columns(const Config& config, const Bank& bank, const OpenArchive& archive) {
   if (std::ssize(config.data.state) == bank.C.rows() && std::ssize(config.data.input) == bank.structure.inputs) return;
   throw ConfigurationError(
       fmt::format("data.state and data.input name {} and {} columns, the bank of {} has {} states and {} inputs",
-                  config.data.state.size(), config.data.input.size(), archive, bank.C.rows(), bank.structure.inputs));
+                  config.data.state.size(), config.data.input.size(), archive.path().string(), bank.C.rows(),
+                  bank.structure.inputs));
 }
 
 void require_bank(const Config& config, const std::string& what) {
@@ -76,24 +77,24 @@ void require_bank(const Config& config, const std::string& what) {
 
 namespace {
 
-OpenedFilter open_drifting(const std::string& archive, const FilterOptions& options) {
+OpenedFilter open_drifting(const OpenArchive& archive, const FilterOptions& options) {
   const DriftingModel model = load_drifting(archive);
   return {fixed_bank(model), options, any_filter(model, options.time_steps)};
 }
 
-OpenedFilter open_bank(const std::string& archive, const std::string& which, const FilterOptions& options) {
+OpenedFilter open_bank(const OpenArchive& archive, const std::string& which, const FilterOptions& options) {
   Bank bank = load_bank(archive, which);
   auto filter = any_filter(bank, options);
   return {std::move(bank), options, std::move(filter)};
 }
 
-OpenedFilter open_one(const std::string& archive, const std::string& which, const Config& config) {
+OpenedFilter open_one(const OpenArchive& archive, const std::string& which, const Config& config) {
   const FilterOptions options = which == "bank" ? config.filter : competitor_filter(which, config.filter);
   return which == "drifting" ? open_drifting(archive, options) : open_bank(archive, which, options);
 }
 
 /// The filters that the archive has combined one sample ahead, the bank first, with the weights that training left.
-OpenedFilter open_combined(const std::string& archive, const Config& config) {
+OpenedFilter open_combined(const OpenArchive& archive, const Config& config) {
   const CombinedMembers members = combined_members(archive, 1);
   std::vector<std::unique_ptr<AnyFilter>> filters;
   std::optional<OpenedFilter> bank;
@@ -108,7 +109,7 @@ OpenedFilter open_combined(const std::string& archive, const Config& config) {
 
 }  // namespace
 
-CombinedMembers combined_members(const std::string& archive, Index horizon) {
+CombinedMembers combined_members(const OpenArchive& archive, Index horizon) {
   const std::vector<CombinationRow> rows = load_combination(archive);
   Index at = -1;
   for (const CombinationRow& row : rows)
@@ -116,12 +117,12 @@ CombinedMembers combined_members(const std::string& archive, Index horizon) {
   CombinedMembers members;
   for (const CombinationRow& row : rows)
     if (row.role == Role::train && row.horizon == at) members.names.push_back(row.filter);
-  if (members.names.empty()) throw DataError(archive + ": holds no combined forecasts; run it again");
+  if (members.names.empty()) throw DataError(archive.path().string() + ": holds no combined forecasts; run it again");
   members.weights = start_weights(rows, at, members.names);
   return members;
 }
 
-OpenedFilter open_filter(const std::string& archive, const Config& config) {
+OpenedFilter open_filter(const OpenArchive& archive, const Config& config) {
   OpenedFilter opened = config.track.filter == TrackedFilter::combined ? open_combined(archive, config)
                         : config.track.filter == TrackedFilter::drifting
                             ? open_drifting(archive, tracked_options(config))

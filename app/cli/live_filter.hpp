@@ -6,6 +6,7 @@
 
 #include "app/config/config.hpp"
 #include "filter/step/any_filter.hpp"
+#include "io/archive/bank/open_archive.hpp"
 
 namespace modebank::app {
 
@@ -33,15 +34,15 @@ std::string tracked_bank(const Config& config);
 /// How it steps: competitors run as evaluate runs them.
 FilterOptions tracked_options(const Config& config);
 /// Throws ConfigurationError when the columns named are more or fewer than the bank has.
-void check_columns(const Config& config, const Bank& bank, const std::string& archive);
+void check_columns(const Config& config, const Bank& bank, const OpenArchive& archive);
 /// The filters that an archive has combined at a horizon (0: in free run), the bank first, and the weights that they
 /// start with; of the longest horizon where it has none of this one. Throws DataError where it has none at all.
 struct CombinedMembers {
   std::vector<std::string> names;
   std::vector<double> weights;
 };
-CombinedMembers combined_members(const std::string& archive, Eigen::Index horizon);
+CombinedMembers combined_members(const OpenArchive& archive, Eigen::Index horizon);
 /// Throws as load_bank does, and ConfigurationError for what the filter cannot do.
-OpenedFilter open_filter(const std::string& archive, const Config& config);
+OpenedFilter open_filter(const OpenArchive& archive, const Config& config);
 
 }  // namespace modebank::app

@@ -34,8 +34,7 @@ void turn_to_new_files(const CommandLine& line, DataOptions& data) {
   if (!given(line, "data.split")) data.split = {};
 }
 
-AveragedColumns take_sampling(const CommandLine& line, double period_s, DataOptions& data) {
-  const std::string& archive = line.files.front();
+AveragedColumns take_sampling(const CommandLine& line, const OpenArchive& archive, double period_s, DataOptions& data) {
   AveragedColumns averaged;
   if (data.rate_hz > 0.0) averaged = load_averaged(archive);
   if (!data.lag_auto || given(line, "data.lag_s")) return averaged;
@@ -46,7 +45,8 @@ AveragedColumns take_sampling(const CommandLine& line, double period_s, DataOpti
   averaged.further_lag_s = 0.5 * period_s;
   data.lag_s = lag->lag.mean - averaged.further_lag_s;
   if (lag->correction == LagCorrection::drift)
-    spdlog::warn("{}: its lag drifts; new data have the constant lag of {:.3g} s", archive, lag->lag.mean);
+    spdlog::warn("{}: its lag drifts; new data have the constant lag of {:.3g} s", archive.path().string(),
+                 lag->lag.mean);
   return averaged;
 }
 

@@ -18,6 +18,6 @@ void turn_to_new_files(const CommandLine& line, DataOptions& data);
 /// How new data are brought to the archive's rate: which columns are averaged. Where the archive's lag was estimated,
 /// sets data.lag_s to the pooled one, as held-out runs had it, taken in the middle of each step of `period_s`. A lag
 /// that is stated stays.
-AveragedColumns take_sampling(const CommandLine& line, double period_s, DataOptions& data);
+AveragedColumns take_sampling(const CommandLine& line, const OpenArchive& archive, double period_s, DataOptions& data);
 
 }  // namespace modebank::app

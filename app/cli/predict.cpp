@@ -24,13 +24,13 @@
 namespace modebank::app {
 namespace {
 
-double period_of(const std::string& archive, const Config& config) {
+double period_of(const OpenArchive& archive, const Config& config) {
   return config.track.filter == TrackedFilter::drifting ? fixed_bank(load_drifting(archive)).dt_s
                                                         : load_bank(archive, tracked_bank(config)).dt_s;
 }
 
 /// By one filter of the archive.
-std::vector<FreeRun> predict_alone(const std::string& archive, const Config& config, const Recording& recording) {
+std::vector<FreeRun> predict_alone(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const FilterOptions options = tracked_options(config);
   const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
   if (config.track.filter == TrackedFilter::drifting)
@@ -40,7 +40,7 @@ std::vector<FreeRun> predict_alone(const std::string& archive, const Config& con
 
 /// By all of them, with the weights that made the training runs' free runs most likely: nothing is measured on the way
 /// by which weights could move.
-std::vector<FreeRun> predict_together(const std::string& archive, const Config& config, const Recording& recording) {
+std::vector<FreeRun> predict_together(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const CombinedMembers members = combined_members(archive, 0);
   std::vector<std::vector<FreeRun>> of_filters;
   for (const std::string& name : members.names) {
@@ -57,11 +57,12 @@ std::vector<FreeRun> predict_together(const std::string& archive, const Config& 
   return mixed;
 }
 
-std::vector<FreeRun> predict_all(const std::string& archive, const Config& config, const Recording& recording) {
+std::vector<FreeRun> predict_all(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const Bank bank = config.track.filter == TrackedFilter::drifting ? fixed_bank(load_drifting(archive))
                                                                    : load_bank(archive, tracked_bank(config));
   check_columns(config, bank, archive);
-  if (const std::string remark = period_remark(archive, bank, recording); !remark.empty()) spdlog::warn("{}", remark);
+  if (const std::string remark = period_remark(archive.path().string(), bank, recording); !remark.empty())
+    spdlog::warn("{}", remark);
   return config.track.filter == TrackedFilter::combined ? predict_together(archive, config, recording)
                                                         : predict_alone(archive, config, recording);
 }
@@ -81,9 +82,7 @@ struct Task {
   AveragedColumns averaged;
 };
 
-Task task_of(const CommandLine& line) {
-  const std::string& archive = line.files.front();
-  judge_archive(archive);
+Task task_of(const CommandLine& line, const OpenArchive& archive) {
   Task task{stored_config(load_configuration(archive), line.overrides), {}};
   Config& config = task.config;
   if (config.scoring.free_run.samples == 0)
@@ -91,12 +90,12 @@ Task task_of(const CommandLine& line) {
         "predict needs the number of measured samples that it starts from: --samples N (filter.simulate)");
   if (given(line, "data.inputs")) {
     turn_to_new_files(line, config.data);
-    task.averaged = take_sampling(line, config.data.lag_auto ? period_of(archive, config) : 0.0, config.data);
+    task.averaged = take_sampling(line, archive, config.data.lag_auto ? period_of(archive, config) : 0.0, config.data);
   } else if (config.data.rate_hz > 0.0) {
     task.averaged = load_averaged(archive);
   }
   if (line.output.empty()) return task;
-  std::vector<std::filesystem::path> sources{archive};
+  std::vector<std::filesystem::path> sources{archive.path()};
   for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);
   check_output({"-o", line.output, predictions_form()}, sources);
   return task;
@@ -107,12 +106,13 @@ Task task_of(const CommandLine& line) {
 int run_predict(const CommandLine& line) {
   if (line.files.size() != 1)
     throw ConfigurationError("predict needs one archive: modebank predict ARCHIVE --data.inputs FILES --samples N");
-  const Task task = task_of(line);
+  const OpenArchive archive(line.files.front());
+  const Task task = task_of(line, archive);
   const Config& config = task.config;
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   const ImportedData data = import_data(data_options_of(config), nullptr, &task.averaged);
   for (const std::string& note : data.notes) spdlog::warn("{}", note);
-  const std::vector<FreeRun> predicted = predict_all(line.files.front(), config, data.recording);
+  const std::vector<FreeRun> predicted = predict_all(archive, config, data.recording);
   for (const std::string& remark : remarks("bank", data.recording.runs, predicted)) spdlog::warn("{}", remark);
   if (predicted_samples(predicted) == 0) throw DataError("nothing could be predicted");
   nlohmann::json result;

@@ -28,10 +28,11 @@ std::filesystem::path page_if_asked(const CommandLine& line, const ReportConfig&
   return options.figures.empty() || !line.output.empty() ? page_path(line) : "";
 }
 
-void report_run(const std::filesystem::path& file, const std::filesystem::path& page, const ReportConfig& options,
+void report_run(const OpenArchive& opened, const std::filesystem::path& page, const ReportConfig& options,
                 report::Written& written) {
+  const std::filesystem::path& file = opened.path();
   if (!page.empty()) report::check_page_path(page, {file});
-  const Archive archive = read_archive_by_runs(file);
+  const Archive archive = read_archive(opened, Evaluations::in_file);
   const report::FigureSet figures =
       options.figures.empty() ? report::FigureSet() : report::run_figures(archive, options.run);
   if (!options.figures.empty()) report::check_figures(figures, options, {file});
@@ -46,11 +47,14 @@ void report_files(const CommandLine& line, const std::filesystem::path& page, co
   if (line.files.size() > 1) {
     if (!options.figures.empty()) throw ConfigurationError("report.figures are drawn of one archive or study");
     report::report_comparison({line.files.begin(), line.files.end()}, page, options, written);
-  } else if (report::is_study(line.files.front())) {
-    report::report_study(line.files.front(), page, options, written);
-  } else {
-    report_run(line.files.front(), page, options, written);
+    return;
   }
+  const std::string& name = line.files.front();
+  const OpenArchive file(report::study_file(name));
+  if (std::filesystem::is_directory(name) || report::is_study(file))
+    report::report_study(name, file, page, options, written);
+  else
+    report_run(file, page, options, written);
 }
 
 }  // namespace

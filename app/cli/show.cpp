@@ -23,13 +23,13 @@ namespace {
 using nlohmann::json;
 
 void print_overview(const CommandLine& line) {
-  const std::string& file = line.files[0];
+  const OpenArchive file(line.files[0]);
   const bool full_form = line.form == "full";
   const Terminal terminal = standard_output();
   const int width = terminal.width;
-  const Archive archive = read_overview(file, std::max(width, 100));  // a run has columns in a strip
+  const Archive archive = read_archive(file, Evaluations::in_file);
   if (has_first_screen(archive))
-    fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), file, width, line.program));
+    fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), line.files[0], width, line.program));
   fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
   fmt::print("{}", wrapped(free_run_text(archive, width), width));
   if (const std::string strip = mode_strip_text(archive, terminal); !strip.empty()) fmt::print("\n{}", strip);
@@ -56,12 +56,12 @@ void add_identity_to_theta(json& rows, const LinearStructure& structure) {
     }
 }
 
-void convert_to_full_form(const std::string& file, const std::string& path, json& object) {
+void convert_to_full_form(const OpenArchive& file, const std::string& path, json& object) {
   const std::string name = path.substr(path.find_last_of('/') + 1);
   if (name == "A") {
     add_identity(object["value"]);
   } else if (name == "parameters") {
-    const Archive archive = read_archive(file);
+    const Archive archive = read_archive(file, Evaluations::in_file);
     const LinearStructure structure = archive.windows ? archive.windows->structure : archive.bank.value().structure;
     const bool one_row = object["shape"].size() == 1;
     json rows = one_row ? json::array({object["value"]}) : object["value"];
@@ -78,14 +78,13 @@ void convert_to_full_form(const std::string& file, const std::string& path, json
 int run_show(const CommandLine& line) {
   if (line.files.empty() || line.files.size() > 2)
     throw ConfigurationError("show needs an archive and at most one path in it: modebank show ARCHIVE [PATH]");
-  const std::string& file = line.files[0];
-  if (line.files.size() == 1 && !line.json) {
+  if (line.files.size() == 1 && !line.json && line.run.empty()) {
     print_overview(line);
     return 0;
   }
   const std::string path = line.files.size() == 2 ? line.files[1] : "/";
-  judge_archive(file);
-  json object = inspect(file, path);
+  const OpenArchive file(line.files[0]);
+  json object = inspect(file, path, line.run);
   if (line.form == "full") convert_to_full_form(file, path, object);
   if (line.json)
     print_json(line, object);

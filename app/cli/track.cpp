@@ -18,11 +18,11 @@ namespace modebank::app {
 namespace {
 
 /// Runs as `run` imports them, but in one piece each: what is missing is predicted.
-std::vector<Trajectory> read_runs(const std::string& archive, const Config& config, const Bank& bank,
+std::vector<Trajectory> read_runs(const OpenArchive& archive, const Config& config, const Bank& bank,
                                   const AveragedColumns& averaged) {
   const ImportedData data = import_data(data_options_of(config), nullptr, &averaged);
   for (const std::string& note : data.notes) spdlog::warn("{}", note);
-  if (const std::string remark = period_remark(archive, bank, data.recording); !remark.empty())
+  if (const std::string remark = period_remark(archive.path().string(), bank, data.recording); !remark.empty())
     spdlog::warn("{}", remark);
   return data.recording.runs;
 }
@@ -42,14 +42,13 @@ int run_track(const CommandLine& line) {
   if (line.files.size() != 1)
     throw ConfigurationError(
         "track needs one archive: modebank track ARCHIVE < LOG, or modebank track ARCHIVE --data.inputs LOG");
-  const std::string& archive = line.files.front();
-  judge_archive(archive);
+  const OpenArchive archive(line.files.front());
   Config config = stored_config(load_configuration(archive), line.overrides);
   const bool files = given(line, "data.inputs");
   if (files) turn_to_new_files(line, config.data);
-  check_checkpoint(archive, config, files);
+  check_checkpoint(line.files.front(), config, files);
   OpenedFilter opened = open_filter(archive, config);
-  const AveragedColumns averaged = take_sampling(line, opened.bank.dt_s, config.data);
+  const AveragedColumns averaged = take_sampling(line, archive, opened.bank.dt_s, config.data);
   const Alignment alignment{config.data.rate_hz, config.data.lag_s, averaged};
   const std::vector<Trajectory> runs =
       files ? read_runs(archive, config, opened.bank, averaged) : std::vector<Trajectory>();

@@ -19,10 +19,9 @@ namespace {
 double now_s() { return std::chrono::duration<double>(LineStream::Clock::now().time_since_epoch()).count(); }
 
 /// Names the archive and all options of the filter's steps, which a checkpoint must share.
-std::string identity_of(const std::string& archive, const Config& config, const FilterOptions& options) {
-  return fmt::format("{} {} {} {} {} {}", archive_digest(archive), name_of(config.track.filter),
-                     name_of(options.variant), name_of(options.noise), options.parameter_noise,
-                     name_of(options.time_steps));
+std::string identity_of(const OpenArchive& archive, const Config& config, const FilterOptions& options) {
+  return fmt::format("{} {} {} {} {} {}", archive.digest(), name_of(config.track.filter), name_of(options.variant),
+                     name_of(options.noise), options.parameter_noise, name_of(options.time_steps));
 }
 
 /// Seconds of a sample as its file has them.
@@ -34,7 +33,7 @@ double stamp_s(const Trajectory& run, Eigen::Index k) {
 
 }  // namespace
 
-Tracker::Tracker(const std::string& archive, const Config& config, OpenedFilter opened, const Alignment& alignment)
+Tracker::Tracker(const OpenArchive& archive, const Config& config, OpenedFilter opened, const Alignment& alignment)
     : config_(config),
       opened_(std::move(opened)),
       judge_(bank_, config.track.level, config.track.alarm),

@@ -27,7 +27,7 @@ class Tracker {
  public:
   /// `alignment`: of the samples that follow. Throws ConfigurationError where the bank has other columns or a
   /// checkpoint cannot be written, and as resume does.
-  Tracker(const std::string& archive, const Config& config, OpenedFilter opened, const Alignment& alignment);
+  Tracker(const OpenArchive& archive, const Config& config, OpenedFilter opened, const Alignment& alignment);
 
   /// Samples from standard input, line by line, until it ends.
   void follow_lines();

@@ -76,14 +76,14 @@ std::string ExportedBank::verdict_text() const {
                      judged_on);
 }
 
-ExportedBank exported_bank(const Archive& archive, const std::string& file, const std::string& filter,
+ExportedBank exported_bank(const Archive& archive, const OpenArchive& file, const std::string& filter,
                            const FilterOptions& options, double input_lag_s) {
   const std::optional<Bank> bank = archive.bank_of(filter);
-  if (!bank) throw DataError(fmt::format("{}: holds no {}", file, filter));
+  if (!bank) throw DataError(fmt::format("{}: holds no {}", file.path().string(), filter));
   ExportedBank exported;
   exported.filter = filter;
-  exported.archive = std::filesystem::path(file).filename().string();
-  exported.sha256 = archive_digest(file);
+  exported.archive = file.path().filename().string();
+  exported.sha256 = file.digest();
   exported.provenance = archive.provenance;
   exported.options = options;
   exported.bank = *bank;

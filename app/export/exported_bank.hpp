@@ -62,7 +62,7 @@ inline constexpr const char* transition_meaning =
     "T[i][j] = P(mode j next | mode i now): a row is the mode that is left, and sums to one";
 
 /// The filter's bank with what is known of it. Throws DataError when the archive holds none of this name.
-ExportedBank exported_bank(const Archive& archive, const std::string& file, const std::string& filter,
+ExportedBank exported_bank(const Archive& archive, const OpenArchive& file, const std::string& filter,
                            const FilterOptions& options, double input_lag_s);
 
 }  // namespace modebank::app

@@ -82,7 +82,7 @@ const Archive& run_and_write(Chain& chain, const ChainOptions& options, Stage la
     const Archive* archive = nullptr;
     const auto make_streamed = [&](const EvaluationSink& sink) -> const Archive& { return *(archive = &make(&sink)); };
     if (streams_evaluations(recording)) {
-      stream_archive(final_target(output), recording, make_streamed);
+      write_archive(final_target(output), recording, make_streamed);
       return *archive;
     }
   }

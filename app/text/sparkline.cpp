@@ -16,17 +16,23 @@ constexpr int width_of_files = 100;  // where nothing limits the width
 constexpr int shortest_run = 4;      // characters
 
 struct StripRun {
-  std::string name;
-  const RunEvaluation* evaluation;
+  const Trajectory* run;
+  std::size_t position;  ///< in the recording
   Index characters = 0;
 };
+
+/// The bank's evaluation; null without one.
+const FilterEvaluation* bank_evaluation(const Archive& archive) {
+  const auto found = std::find_if(archive.evaluations.begin(), archive.evaluations.end(),
+                                  [](const FilterEvaluation& filter) { return filter.filter == "bank"; });
+  return found == archive.evaluations.end() || found->runs.empty() ? nullptr : &*found;
+}
 
 /// Runs of the role, in the recording's order.
 std::vector<StripRun> runs_of(const Archive& archive, Role role) {
   std::vector<StripRun> runs;
-  for (const FilterEvaluation& filter : archive.evaluations)
-    for (std::size_t i = 0; filter.filter == "bank" && i < filter.runs.size(); ++i)
-      if (archive.recording->runs[i].role == role) runs.push_back({archive.recording->runs[i].run, &filter.runs[i]});
+  for (std::size_t i = 0; i < archive.recording->runs.size(); ++i)
+    if (const Trajectory& run = archive.recording->runs[i]; run.role == role) runs.push_back({&run, i});
   return runs;
 }
 
@@ -36,13 +42,13 @@ void share_width(std::vector<StripRun>& runs, Index width) {
   const auto most = static_cast<std::size_t>(std::max<Index>(1, (width + 1) / (shortest_run + 1)));
   if (runs.size() > most) runs.resize(most);
   Index samples = 0;
-  for (const StripRun& run : runs) samples += run.evaluation->mode_probability.cols();
+  for (const StripRun& run : runs) samples += run.run->samples();
   const auto count = static_cast<Index>(runs.size());
   const Index spare = std::max<Index>(0, width - (count - 1) - count * shortest_run);
   Index seen = 0;
   for (StripRun& run : runs) {
     const Index before = spare * seen / std::max<Index>(1, samples);
-    seen += run.evaluation->mode_probability.cols();
+    seen += run.run->samples();
     run.characters = shortest_run + spare * seen / std::max<Index>(1, samples) - before;
   }
 }
@@ -50,7 +56,7 @@ void share_width(std::vector<StripRun>& runs, Index width) {
 std::string names_line(const std::vector<StripRun>& runs) {
   std::string line;
   for (const StripRun& run : runs) {
-    const std::string name = first_columns(run.name, static_cast<int>(run.characters));
+    const std::string name = first_columns(run.run->run, static_cast<int>(run.characters));
     line += name + std::string(static_cast<std::size_t>(run.characters - columns_of(name)) + 1, ' ');
   }
   line.erase(line.find_last_not_of(' ') + 1);
@@ -77,6 +83,8 @@ std::string sparkline(const Eigen::VectorXd& values, bool utf8) {
 
 std::string mode_strip_text(const Archive& archive, const Terminal& terminal) {
   if (!archive.bank || !archive.recording) return "";
+  const FilterEvaluation* const bank = bank_evaluation(archive);
+  if (bank == nullptr) return "";
   const Role role = judged_role(archive);
   std::vector<StripRun> runs = runs_of(archive, role);
   if (runs.empty()) return "";
@@ -89,7 +97,9 @@ std::string mode_strip_text(const Archive& archive, const Terminal& terminal) {
                                  label, names_line(runs));
   std::vector<std::string> lines(static_cast<std::size_t>(archive.bank->mode_count()));
   for (const StripRun& run : runs) {
-    const Eigen::MatrixXd means = stretch_means(run.evaluation->mode_probability, run.characters);
+    Eigen::MatrixXd means;
+    bank->with_run(run.position, {"mode_probability"},
+                   [&](const RunEvaluation& said) { means = stretch_means(said.mode_probability, run.characters); });
     const std::string space(static_cast<std::size_t>(run.characters - means.cols()), ' ');
     for (std::size_t k = 0; k < lines.size(); ++k)
       lines[k] += (lines[k].empty() ? ""

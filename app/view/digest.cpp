@@ -24,12 +24,12 @@ std::string text_in(const json& object, const char* name) {
   return found.is_string() ? found.get<std::string>() : std::string();
 }
 
-bool has(const fs::path& archive, const std::string& group, const char* name) {
+bool has(const OpenArchive& archive, const std::string& group, const char* name) {
   return inspect(archive, group).at("members").contains(name);
 }
 
 /// The name of the file that was read, or of the folder of the first and how many there are.
-std::string data_name(const fs::path& archive) {
+std::string data_name(const OpenArchive& archive) {
   if (!has(archive, "/provenance", "inputs")) return {};
   const json rows = inspect(archive, "/provenance/inputs").at("value");
   if (!rows.is_array() || rows.empty()) return {};
@@ -38,13 +38,13 @@ std::string data_name(const fs::path& archive) {
   return fmt::format("{}, {} files", first.parent_path().filename().string(), rows.size());
 }
 
-void add_verdict(const fs::path& archive, json& digest) {
+void add_verdict(const OpenArchive& archive, json& digest) {
   if (!has(archive, "/evaluation", "evidence")) return;
   const json found = inspect(archive, "/evaluation/evidence").at("attributes");
   for (const char* name : {"answer", "text", "modes", "gain", "standard_error"}) digest[name] = member(found, name);
 }
 
-void add_scores(const fs::path& archive, json& digest) {
+void add_scores(const OpenArchive& archive, json& digest) {
   if (!has(archive, "/evaluation", "summary")) return;
   const json rows = inspect(archive, "/evaluation/summary").at("value");
   for (const json& row : rows)
@@ -54,8 +54,8 @@ void add_scores(const fs::path& archive, json& digest) {
 
 }  // namespace
 
-json digest_of(const fs::path& archive) {
-  judge_archive(archive);
+json digest_of(const fs::path& file) {
+  const OpenArchive archive(file);
   const json root = inspect(archive, "/");
   json digest = {{"created", text_in(root.at("attributes"), "created")}, {"data", data_name(archive)}};
   const bool is_study = root.at("members").contains("study");

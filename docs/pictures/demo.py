@@ -38,10 +38,12 @@ def stretches(values):
 def main():
     archive = h5py.File(sys.argv[1])
     run = sys.argv[2] if len(sys.argv) > 2 else "01"
-    data, bank = archive["data"][run], archive["evaluation/bank"][run]
-    time, measured = data["time"][:], data["state"][:, 0]
-    prediction, sd = bank["prediction"][:, 0], np.sqrt(bank["innovation_covariance"][:, 0, 0])
-    probability, label = bank["mode_probability"][:], data["label"][:]
+    data, bank = archive["data"], archive["evaluation/bank"]
+    (row,) = [row for row in data["runs"][:] if row["name"].decode() == run]
+    rows = slice(row["first"], row["first"] + row["samples"])
+    time, measured = data["time"][rows], data["state"][rows, 0]
+    prediction, sd = bank["prediction"][rows, 0], np.sqrt(bank["innovation_covariance"][rows, 0, 0])
+    probability, label = bank["mode_probability"][rows], data["label"][rows]
     names = [name.decode() if isinstance(name, bytes) else name for name in archive["data"].attrs["label_names"]]
     confusion = archive["evaluation/confusion"][:]
     grip = next(name for name in names if GROUNDS[name][1] == "grip")

@@ -8,6 +8,7 @@ Trajectory stretch(const Trajectory& run, Eigen::Index first, Eigen::Index count
   part.role = run.role;
   part.lag_s = run.lag_s;
   part.time_origin_ns = run.time_origin_ns;
+  part.file = run.file;
   part.time_s = run.time_s.segment(first, count);
   part.state = run.state.middleCols(first, count);
   part.input = run.input.middleCols(first, count);

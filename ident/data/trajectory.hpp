@@ -41,6 +41,7 @@ struct Trajectory {
   Eigen::MatrixXd truth;            ///< n x N true state, or empty
   double lag_s = 0.0;               ///< lag that was applied to the inputs
   std::int64_t time_origin_ns = 0;  ///< since 1970 where stamps were: what time_s counts from
+  std::string file = {};            ///< that its inputs were read from; empty where there was none
   /// N or empty (all one). weight(k) belongs to the transition that ends in sample k, whose error it multiplies the
   /// loss of; weight(0) is unused. At least 0, finite; 0 leaves the transition out. Only ratios matter: every fit
   /// divides by the mean over its transitions.

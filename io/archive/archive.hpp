@@ -52,7 +52,7 @@ struct FilterEvaluation {
   using Fields = std::set<std::string>;  ///< names of arrays in the archive
   /// Reads these of a run; its other arrays stay empty.
   using Reading = std::function<void(std::size_t run, const Fields& fields, RunEvaluation& said, FreeRun& free_run)>;
-  Reading in_file = {};  ///< where read_archive_by_runs left the runs in their file
+  Reading in_file = {};  ///< where the runs were left in their file (Evaluations::in_file)
 
   /// Hands on what the filter said of a run: what is in memory, or these fields of what is in the file.
   void with_run(std::size_t run, const Fields& fields, const std::function<void(const RunEvaluation&)>& body) const;
@@ -135,27 +135,16 @@ WindowFits write_archive(const std::filesystem::path& path, const Archive& archi
 
 /// The same for an archive whose evaluations are written while they are made: `make` hands them to the sink, from one
 /// thread, and returns the archive of the rest. Throws what `make` throws.
-void stream_archive(const std::filesystem::path& path, const Recording& recording,
-                    const std::function<const Archive&(const EvaluationSink&)>& make);
+void write_archive(const std::filesystem::path& path, const Recording& recording,
+                   const std::function<const Archive&(const EvaluationSink&)>& make);
 
-/// Reads all stages that the file holds, bit by bit as written. Throws DataError for a file that is unreadable,
-/// truncated, damaged (its hash does not match), not a modebank archive, or of a newer major schema; ConfigurationError
-/// when it does not exist.
-Archive read_archive(const std::filesystem::path& path);
+/// Where the evaluations of an archive that is read are: `in_file`: read when they are asked for
+/// (FilterEvaluation::with_run); of windows, arrays that no page shows are left out, too.
+enum class Evaluations { in_memory, in_file };
 
-/// The same, but what filters said of runs stays in the file where the runs have more samples than so many together,
-/// and is read when it is asked for (FilterEvaluation::with_run); and of windows what no page tells is left empty then.
-/// All of it is judged here as read_archive does, array by array.
-Archive read_archive_by_runs(const std::filesystem::path& path, Index most_in_memory = 100'000);
-
-/// The same as read_archive, but of the filters' evaluations only the bank's of the first `runs` judged runs are kept,
-/// and residual tests of the global model and the bank alone; what is judged alone is empty. For overviews: of many
-/// runs these take most of the memory.
-Archive read_overview(const std::filesystem::path& path, Index runs);
-
-/// Throws as read_archive does and keeps nothing: for whoever then reads a part of an archive, so that all parts of the
-/// program take the same archives.
-void judge_archive(const std::filesystem::path& path);
+/// Reads all stages that the file holds, bit by bit as written. Throws DataError where shapes disagree or a position
+/// lies outside of what it points into; values are verification's (verify_archive).
+Archive read_archive(const OpenArchive& file, Evaluations evaluations = Evaluations::in_memory);
 
 /// What verification found; empty `problems` means the archive is whole.
 struct Verification {
@@ -163,8 +152,10 @@ struct Verification {
   bool ok() const { return problems.empty(); }
 };
 
-/// Checks the hash and zeros of the user block, format, schema version and that the layout's required members are
-/// there.
+/// Checks hash, format and schema version, that the layout's required members are there, and every value: finite,
+/// definite, summing to one. Throws ConfigurationError when the file is missing.
 Verification verify_archive(const std::filesystem::path& path);
+/// Problems of the members and values of an open archive.
+std::vector<std::string> problems_of(const OpenArchive& file);
 
 }  // namespace modebank

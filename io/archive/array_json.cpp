@@ -47,10 +47,7 @@ json real_at(hid_t type, const char* bytes) {
 }
 
 json text_at(hid_t type, const char* bytes) {
-  if (H5Tis_variable_str(type) > 0) {
-    const char* text = number_at<const char*>(bytes);
-    return text ? text_json(text) : json("");
-  }
+  if (H5Tis_variable_str(type) != 0) return nullptr;  // which no archive holds
   std::string text(bytes, H5Tget_size(type));
   const char padding = H5Tget_strpad(type) == H5T_STR_SPACEPAD ? ' ' : '\0';
   if (H5Tget_strpad(type) == H5T_STR_NULLTERM) text.resize(std::min(text.size(), text.find('\0')));
@@ -115,25 +112,6 @@ json value_at(hid_t type, const char* bytes) {
   }
 }
 
-/// Frees what HDF5 allocated for strings of variable length.
-class Reclaim {
- public:
-  Reclaim(hid_t type, const StoredArray& array, void* data) : type_(type), array_(array), data_(data) {}
-  ~Reclaim() {
-    const hsize_t count = array_.elements();
-    const hid_t space = H5Screate_simple(1, &count, nullptr);
-    if (space >= 0 && count > 0) H5Dvlen_reclaim(type_, space, H5P_DEFAULT, data_);
-    if (space >= 0) H5Sclose(space);
-  }
-  Reclaim(const Reclaim&) = delete;
-  Reclaim& operator=(const Reclaim&) = delete;
-
- private:
-  hid_t type_;
-  const StoredArray& array_;
-  void* data_;
-};
-
 }  // namespace
 
 json text_json(const std::string& text) {
@@ -151,9 +129,17 @@ json to_json(const StoredArray& array) {
   const Handle type(H5Tget_native_type(array.type(), H5T_DIR_ASCEND), H5Tclose, "find a type in memory");
   std::vector<char> bytes(static_cast<std::size_t>(array.elements()) * H5Tget_size(type.id()));
   array.read(type.id(), bytes.data());
-  const Reclaim reclaim(type.id(), array, bytes.data());
   if (array.elements() == 0 && array.shape().empty()) return nullptr;
   return nested(type.id(), array.shape(), 0, bytes.data());
+}
+
+json to_json(const StoredArray& array, const Rows& rows) {
+  const Handle type(H5Tget_native_type(array.type(), H5T_DIR_ASCEND), H5Tclose, "find a type in memory");
+  Shape shape = array.shape();
+  shape.front() = rows.count;
+  std::vector<char> bytes(static_cast<std::size_t>(element_count(shape)) * H5Tget_size(type.id()));
+  array.read_rows(rows, type.id(), bytes.data());
+  return nested(type.id(), shape, 0, bytes.data());
 }
 
 }  // namespace modebank::hdf5

@@ -11,6 +11,8 @@ namespace modebank::hdf5 {
 /// Every value of an array, nested as its shape; a table is a list of row objects. Integers stay exact, what JSON
 /// cannot hold (NaN, infinities, references, opaque bytes) becomes null, text that is not UTF-8 is repaired.
 nlohmann::json to_json(const StoredArray& array);
+/// Values of some rows.
+nlohmann::json to_json(const StoredArray& array, const Rows& rows);
 
 /// A table's columns in their order, as the row objects name them.
 std::vector<std::string> column_names(const StoredArray& table);

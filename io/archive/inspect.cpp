@@ -5,8 +5,9 @@
 
 #include <vector>
 
+#include "ident/base/nearest_name.hpp"
 #include "io/archive/array_json.hpp"
-#include "io/archive/bank/open_archive.hpp"
+#include "io/hdf5/table.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -33,21 +34,45 @@ bool is_hard_link(const hdf5::Handle& group, const std::string& name) {
   return info.type == H5L_TYPE_HARD;
 }
 
-json members_of(const hdf5::Handle& group, int levels);
+/// The run that was asked for, if any: its row of /data/runs and its rows in arrays over samples.
+struct AskedRun {
+  std::string name;
+  json row;
+  hdf5::Rows rows;
+
+  explicit operator bool() const { return !name.empty(); }
+};
+
+/// Whether a group's arrays are over the samples of all runs: /data, /evaluation/FILTER.
+bool is_of_samples(const std::string& group) {
+  return group == "/data" || (group.starts_with("/evaluation/") && group.find('/', 1) == group.rfind('/') &&
+                              group != "/evaluation/evidence");
+}
+
+/// Whether it is an array of such a group with a row per sample.
+bool has_samples(const std::string& group, const std::string& name) {
+  return is_of_samples(group) && !(group == "/data" && (name == "runs" || name == "quantum"));
+}
+
+json members_of(const hdf5::Handle& group, const std::string& path, const AskedRun& run, int levels);
 
 /// How a member appears in the listing of its group.
-json listing(const hdf5::Handle& group, const std::string& name, int levels) {
+json listing(const hdf5::Handle& group, const std::string& path, const std::string& name, const AskedRun& run,
+             int levels) {
   if (!is_hard_link(group, name)) return {{"kind", "link"}};
   const hdf5::Handle object = open_object(group, name);
   switch (H5Iget_type(object.id())) {
     case H5I_GROUP: {
       json entry = {{"kind", "group"}};
-      if (levels > 1) entry["members"] = members_of(hdf5::open_group(group.id(), name), levels - 1);
+      const std::string below = (path == "/" ? "" : path) + "/" + name;
+      if (levels > 1) entry["members"] = members_of(hdf5::open_group(group.id(), name), below, run, levels - 1);
       return entry;
     }
     case H5I_DATASET: {
       const hdf5::StoredArray array(group.id(), hdf5::Place::dataset, name);
-      json entry = {{"kind", array.type_class() == H5T_COMPOUND ? "table" : "dataset"}, {"shape", array.shape()}};
+      hdf5::Shape shape = array.shape();
+      if (run) shape.front() = run.rows.count;
+      json entry = {{"kind", array.type_class() == H5T_COMPOUND ? "table" : "dataset"}, {"shape", shape}};
       if (hdf5::has_attribute(object.id(), "units"))
         entry["units"] = hdf5::to_json(hdf5::StoredArray(object.id(), hdf5::Place::attribute, "units"));
       return entry;
@@ -57,24 +82,49 @@ json listing(const hdf5::Handle& group, const std::string& name, int levels) {
   }
 }
 
-json members_of(const hdf5::Handle& group, int levels) {
+json members_of(const hdf5::Handle& group, const std::string& path, const AskedRun& run, int levels) {
   json members = json::object();
   for (const std::string& name : hdf5::member_names(group.id()))
-    members[hdf5::text_json(name).get<std::string>()] = listing(group, name, levels);
+    if (!run || has_samples(path, name))
+      members[hdf5::text_json(name).get<std::string>()] = listing(group, path, name, run, levels);
   return members;
 }
 
-json dataset_json(const hdf5::Handle& group, const std::string& name) {
+[[noreturn]] void refuse_run(const std::string& path) {
+  throw ConfigurationError(path +
+                           " holds nothing of single runs; --run goes with /data, /evaluation/FILTER, what is in them, "
+                           "and tables with the column run");
+}
+
+/// The rows of a table that are of the run.
+json rows_of_run(const json& rows, const std::string& path, const AskedRun& run) {
+  const char* const key = path == "/data" ? "name" : "run";
+  json kept = json::array();
+  for (const json& row : rows)
+    if (row.value(key, "") == run.name) kept.push_back(row);
+  return kept;
+}
+
+json dataset_json(const hdf5::Handle& group, const std::string& path, const std::string& name, const AskedRun& run) {
   const hdf5::StoredArray array(group.id(), hdf5::Place::dataset, name);
-  json dataset = {
-      {"attributes", attributes_of(array.object())}, {"shape", array.shape()}, {"value", hdf5::to_json(array)}};
-  if (array.type_class() == H5T_COMPOUND) dataset["columns"] = hdf5::column_names(array);
+  const bool of_samples = has_samples(path, name), is_table = array.type_class() == H5T_COMPOUND;
+  json dataset = {{"attributes", attributes_of(array.object())}};
+  dataset["value"] = run && of_samples ? hdf5::to_json(array, run.rows) : hdf5::to_json(array);
+  hdf5::Shape shape = array.shape();
+  if (is_table) dataset["columns"] = hdf5::column_names(array);
+  if (run && is_table && (hdf5::has_column(array, "run") || path == "/data"))
+    dataset["value"] = rows_of_run(dataset["value"], path, run);
+  else if (run && !of_samples)
+    refuse_run((path == "/" ? "" : path) + "/" + name);
+  if (run) shape.front() = dataset["value"].size();
+  dataset["shape"] = shape;
   return dataset;
 }
 
-json group_json(const hdf5::Handle& group) {
+json group_json(const hdf5::Handle& group, const std::string& path, const AskedRun& run) {
   constexpr int listed_levels = 2;
-  return {{"attributes", attributes_of(group.id())}, {"members", members_of(group, listed_levels)}};
+  if (run && !is_of_samples(path)) refuse_run(path);
+  return {{"attributes", attributes_of(group.id())}, {"members", members_of(group, path, run, listed_levels)}};
 }
 
 std::vector<std::string> components(const std::string& path) {
@@ -88,8 +138,7 @@ std::vector<std::string> components(const std::string& path) {
 }
 
 /// Goes down group by group, so that a wrong path can be answered with what is there.
-json json_at(const hdf5::Handle& file, const std::string& path) {
-  hdf5::Handle group = open_root(file);
+json json_at(hdf5::Handle group, const std::string& path, const AskedRun& run) {
   std::string so_far = "/";
   const std::vector<std::string> parts = components(path);
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -100,25 +149,59 @@ json json_at(const hdf5::Handle& file, const std::string& path) {
     if (H5Iget_type(open_object(group, parts[i]).id()) == H5I_DATASET) {
       if (i + 1 < parts.size())
         throw ConfigurationError(fmt::format("'{}' in {} is a dataset and has no members", parts[i], so_far));
-      return dataset_json(group, parts[i]);
+      return dataset_json(group, so_far, parts[i], run);
     }
     group = hdf5::open_group(group.id(), parts[i]);
     so_far += (i == 0 ? "" : "/") + parts[i];
   }
-  return group_json(group);
+  return group_json(group, so_far, run);
+}
+
+AskedRun asked_run(const hdf5::Handle& root, const std::string& name) {
+  if (name.empty()) return {};
+  if (!hdf5::has_link(root.id(), "data")) throw ConfigurationError("holds no data, and so no run " + name);
+  const hdf5::Handle data = hdf5::open_group(root.id(), "data");
+  AskedRun run{name, {}, {}};
+  std::vector<std::string> names;
+  for (const json& row : hdf5::to_json(hdf5::StoredArray(data.id(), hdf5::Place::dataset, "runs"))) {
+    names.push_back(row.at("name").get<std::string>());
+    if (names.back() == name) run = {name, row, {row.at("first").get<hsize_t>(), row.at("samples").get<hsize_t>()}};
+  }
+  if (run.row.is_null())
+    throw ConfigurationError(
+        fmt::format("holds no run '{}'{}; its runs are {}", name, did_you_mean(name, names), fmt::join(names, ", ")));
+  return run;
+}
+
+/// All that the archive holds of a run.
+json overview_of(const hdf5::Handle& root, const AskedRun& run) {
+  json members = json::object();
+  const auto add = [&](const std::string& path) {
+    members[path] = members_of(hdf5::open_group(root.id(), path), path, run, 1);
+  };
+  add("/data");
+  if (hdf5::has_link(root.id(), "evaluation"))
+    for (const std::string& name : hdf5::member_names(hdf5::open_group(root.id(), "evaluation").id()))
+      if (is_of_samples("/evaluation/" + name) &&
+          H5Iget_type(open_object(root, "evaluation/" + name).id()) == H5I_GROUP)
+        add("/evaluation/" + name);
+  return {{"run", run.row}, {"members", members}};
 }
 
 }  // namespace
 
-nlohmann::json inspect(const std::filesystem::path& archive, const std::string& path) {
+nlohmann::json inspect(const OpenArchive& archive, const std::string& path, const std::string& run) {
   const hdf5::Quiet quiet;
-  const hdf5::Handle file = open_archive(archive, HashCheck::before);
+  const std::string place = archive.path().string() + ": ";
   try {
-    return json_at(file, path);
+    hdf5::Handle root = archive.root();
+    const AskedRun asked = asked_run(root, run);
+    if (asked && components(path).empty()) return overview_of(root, asked);
+    return json_at(std::move(root), path, asked);
   } catch (const DataError& error) {
-    throw DataError(archive.string() + ": " + error.what());
+    throw DataError(place + error.what());
   } catch (const ConfigurationError& error) {
-    throw ConfigurationError(archive.string() + ": " + error.what());
+    throw ConfigurationError(place + error.what());
   }
 }
 

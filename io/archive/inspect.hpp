@@ -1,16 +1,21 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "io/archive/bank/open_archive.hpp"
 
 namespace modebank {
 
 /// One object of an archive as JSON: a group becomes {"attributes": {...}, "members": {name: {kind, shape, units}}}, a
-/// dataset
-/// {"attributes": ..., "shape": ..., "value": nested arrays or, for tables, an array of row objects, whose "columns"
-/// are listed in the file's order}. NaN becomes null. Throws ConfigurationError when the path is not in the file
-/// (naming the members of the deepest group that exists) and DataError as read_archive does.
-nlohmann::json inspect(const std::filesystem::path& archive, const std::string& path);
+/// dataset {"attributes": ..., "shape": ..., "value": nested arrays or, for tables, an array of row objects, whose
+/// "columns" are listed in the file's order}. NaN becomes null.
+///
+/// With the name of a run, arrays over samples have the run's rows alone, and tables with the column `run` its rows;
+/// the root becomes {"run": its row of /data/runs, "members": of /data and of every filter's evaluation, by path}.
+///
+/// Throws ConfigurationError when the path is not in the file (naming the members of the deepest group that exists),
+/// when the run is unknown (naming those that exist), and for a path that holds nothing of single runs.
+nlohmann::json inspect(const OpenArchive& archive, const std::string& path, const std::string& run = "");
 
 }  // namespace modebank

@@ -12,8 +12,9 @@
 
 /// The one description of the archive's layout; its other parts are layout_data.hpp, layout_evaluation.hpp and, for
 /// programs that load banks alone, bank/layout_bank.hpp. Every function names members once; `Io` is GroupWriter or
-/// GroupReader, so writing, reading and verification cannot drift apart. Letters: M windows, K modes, n states, m
-/// inputs, n_y outputs, p parameters, N samples, F features.
+/// GroupReader, or for arrays over samples SampleWriter or SampleReader, so writing, reading and verification cannot
+/// drift apart. Letters: M windows, K modes, n states, m
+/// inputs, n_y outputs, p parameters, S samples of all runs, F features.
 namespace modebank::layout {
 
 template <class Io, class G>
@@ -187,7 +188,7 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "drifting", archive.drifting, {},
                 [&](auto& member, auto& part) { exchange_drifting(member, part, units); });
   exchange_part(io, "nonlinear", archive.nonlinear, {}, exchange_one);
-  io.optional_group("residual_tests", !archive.residual_tests.empty(), {},
+  io.optional_group("residual_tests", !archive.residual_tests.empty(), channels.only({"samples"}),
                     [&](auto& member) { exchange_residual_tests(member, archive.residual_tests, recording); });
   io.optional_group("evaluation", !archive.evaluations.empty() || !archive.summary.empty(),
                     sizes_of_evaluation(archive, recording),

@@ -6,9 +6,10 @@
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/open_archive.hpp"
 #include "io/archive/bank/units.hpp"
+#include "io/archive/groups/columns.hpp"
+#include "io/archive/groups/over_runs.hpp"
 #include "io/archive/stored.hpp"
 #include "io/files/run_names.hpp"
-#include "io/hdf5/columns.hpp"
 
 /// The layout of where everything comes from, of the data, and of what data.lag_s = auto found; see
 /// io/archive/layout.hpp.
@@ -49,48 +50,45 @@ void exchange_channels(Io& io, R& recording) {
   channels(recording.inputs, "input");
 }
 
+/// The arrays of one run.
+template <class Io, class T, class L>
+void exchange_run(Io& samples, T& run, L& label, const Units& units) {
+  samples.field("time", run.time_s, {"S"}, {"s"}, rule::increasing);
+  samples.field("state", run.state, {"S", "n"}, units.states(), rule::finite_or_missing);
+  samples.field("input", run.input, {"S", "m"}, units.inputs(), rule::finite_or_missing);
+  samples.optional_field("truth", run.truth, {"S", "n"}, units.states(), rule::finite_or_missing);
+  samples.optional_field("weight", run.weight, {"S"}, {}, rule::not_negative_or_missing);
+  samples.optional_field("label", label, {"S"});  // positions in label_names
+}
+
 /// `labels`: with data.label.
 template <class Io, class R, class L, class S>
 void exchange_recording(Io& io, R& recording, L& labels, S& step_scatter) {
   exchange_channels(io, recording);
-  const auto named_runs = [](const std::vector<std::string>& names) {
-    check_run_names(names);
-    std::vector<Trajectory> runs(names.size());
-    for (std::size_t i = 0; i < names.size(); ++i) runs[i].run = names[i];
-    return runs;
-  };
-  io.through(recording.runs, run_names<Trajectory>, named_runs,
-             [&](auto& names) { io.attribute_texts("runs", names); });
+  std::vector<RunRow> rows = Io::reads ? std::vector<RunRow>() : store_runs(recording.runs);
+  io.table("runs", rows, column("name", &RunRow::name), column("role", &RunRow::role),
+           column("first", &RunRow::first).obeying(rule::not_negative),
+           column("samples", &RunRow::samples).obeying(rule::not_negative),
+           column("lag_s", &RunRow::lag_s, "s").obeying(rule::finite),
+           column("time_origin_ns", &RunRow::time_origin_ns), column("file", &RunRow::file));
   io.attribute_unless(0.0, "step_scatter", step_scatter);
-  Sizes known;
-  known.set("n", recording.states.size());
-  known.set("m", recording.inputs.size());
   std::vector<std::string> label_names = labels ? labels->names : std::vector<std::string>();
   io.optional_attribute_texts("label_names", label_names);
-  if constexpr (Io::reads)
-    if (!label_names.empty()) labels = RunLabels{label_names, std::vector<Eigen::VectorXi>(recording.runs.size())};
+  io.set_size("n", recording.states.size());
+  io.set_size("m", recording.inputs.size());
   const Units units(recording);
-  for (std::size_t i = 0; i < recording.runs.size(); ++i) {
-    auto& run = recording.runs[i];
-    Eigen::VectorXi label = labels && !label_names.empty() ? labels->of_runs[i] : Eigen::VectorXi();
-    io.group(run.run, known, [&](auto& member) {
-      member.attribute("role", run.role);
-      member.attribute("lag_s", run.lag_s, rule::finite);
-      member.attribute_unless(std::int64_t{0}, "time_origin_ns", run.time_origin_ns);
-      member.field("time", run.time_s, {"N"}, {"s"}, rule::increasing);
-      member.field("state", run.state, {"N", "n"}, units.states(), rule::finite_or_missing);
-      member.field("input", run.input, {"N", "m"}, units.inputs(), rule::finite_or_missing);
-      member.optional_field("truth", run.truth, {"N", "n"}, units.states(), rule::finite_or_missing);
-      member.optional_field("weight", run.weight, {"N"}, {}, rule::not_negative);
-      member.optional_field("quantum", recording.quantum, {"n"}, units.states(), rule::not_negative);  // of all runs
-      member.optional_field("label", label, {"N"});  // positions in label_names
-    });
-    if constexpr (Io::reads)
-      if (labels) {
-        check_label_positions(label, label_names.size(), run.run);
-        labels->of_runs[i] = label;
-      }
+  io.optional_field("quantum", recording.quantum, {"n"}, units.states(), rule::not_negative);
+  if constexpr (Io::reads) {
+    io.finish([&] { recording.runs = restore_runs(rows); });
+    if (!label_names.empty()) labels = RunLabels{label_names, std::vector<Eigen::VectorXi>(recording.runs.size())};
   }
+  const bool labelled = labels && !label_names.empty();
+  over_runs(io, rows_of(recording.runs.empty() ? std::vector<RunRow>() : rows), [&](auto& samples, std::size_t i) {
+    Eigen::VectorXi label = labelled ? labels->of_runs[i] : Eigen::VectorXi();
+    exchange_run(samples, recording.runs[i], label, units);
+    if constexpr (Io::reads)
+      if (labelled) samples.finish([&] { labels->of_runs[i] = restore_label(label, rows[i], label_names.size()); });
+  });
 }
 
 /// /lag: what data.lag_s = auto found.

@@ -8,8 +8,9 @@
 
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/units.hpp"
+#include "io/archive/groups/columns.hpp"
+#include "io/archive/groups/over_runs.hpp"
 #include "io/archive/stored.hpp"
-#include "io/hdf5/columns.hpp"
 
 /// The layout of what filters and models said of the runs; see io/archive/layout.hpp. T lags, from 0 on.
 namespace modebank::layout {
@@ -37,23 +38,23 @@ void exchange_left_out(Io& io, R& rows, const Unit& states) {
 
 template <class Io, class E>
 void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
-  io.field("prediction", evaluation.prediction, {"N", "n"}, states);
-  io.field("innovation", evaluation.innovation, {"N", "n_y"}, states);
-  io.field("innovation_covariance", evaluation.innovation_covariance, {"N", "n_y", "n_y"}, outer(states),
+  io.field("prediction", evaluation.prediction, {"S", "n"}, states);
+  io.field("innovation", evaluation.innovation, {"S", "n_y"}, states);
+  io.field("innovation_covariance", evaluation.innovation_covariance, {"S", "n_y", "n_y"}, outer(states),
            rule::spreads);
-  io.field("state", evaluation.state, {"N", "n"}, states);
-  io.field("covariance", evaluation.covariance, {"N", "n", "n"}, outer(states), rule::spreads);
-  io.field("nis", evaluation.nis, {"N"}, {}, rule::not_negative_or_missing);
-  io.field("pit", evaluation.pit, {"N", "n_y"}, {}, rule::share_or_missing);
-  io.field("log_density", evaluation.log_density, {"N"}, {"nat"});
-  io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"N", "K"}, {},
+  io.field("state", evaluation.state, {"S", "n"}, states);
+  io.field("covariance", evaluation.covariance, {"S", "n", "n"}, outer(states), rule::spreads);
+  io.field("nis", evaluation.nis, {"S"}, {}, rule::not_negative_or_missing);
+  io.field("pit", evaluation.pit, {"S", "n_y"}, {}, rule::share_or_missing);
+  io.field("log_density", evaluation.log_density, {"S"}, {"nat"});
+  io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"S", "K"}, {},
            rule::probabilities_or_missing);
-  io.field("mode_probability", evaluation.mode_probability, {"N", "K"}, {}, rule::probabilities_or_missing);
-  io.optional_field("spread_share", evaluation.spread_share, {"N"}, {}, rule::share_or_missing);
-  io.optional_field("smoothed_state", evaluation.smoothed_state, {"N", "n"}, states);
-  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"N", "n", "n"}, outer(states),
+  io.field("mode_probability", evaluation.mode_probability, {"S", "K"}, {}, rule::probabilities_or_missing);
+  io.optional_field("spread_share", evaluation.spread_share, {"S"}, {}, rule::share_or_missing);
+  io.optional_field("smoothed_state", evaluation.smoothed_state, {"S", "n"}, states);
+  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"S", "n", "n"}, outer(states),
                     rule::spreads);
-  io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"N"}, {}, rule::position_or_none("K"));
+  io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"S"}, {}, rule::position_or_none("K"));
   if constexpr (Io::reads)
     io.finish([&] {
       check_together("smoothed_state and smoothed_covariance",
@@ -63,11 +64,11 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
 
 template <class Io, class F>
 void exchange_free_run(Io& io, F& run, const Unit& states) {
-  io.optional_field("free_run_mean", run.mean, {"N", "n_y"}, states);
-  io.optional_field("free_run_sd", run.deviation, {"N", "n_y"}, states, rule::not_negative_or_missing);
-  io.optional_field("free_run_lower", run.lower, {"N", "n_y"}, states);
-  io.optional_field("free_run_upper", run.upper, {"N", "n_y"}, states);
-  io.optional_field("free_run_mode", run.mode, {"N"}, {}, rule::position_or_none("K"));
+  io.optional_field("free_run_mean", run.mean, {"S", "n_y"}, states);
+  io.optional_field("free_run_sd", run.deviation, {"S", "n_y"}, states, rule::not_negative_or_missing);
+  io.optional_field("free_run_lower", run.lower, {"S", "n_y"}, states);
+  io.optional_field("free_run_upper", run.upper, {"S", "n_y"}, states);
+  io.optional_field("free_run_mode", run.mode, {"S"}, {}, rule::position_or_none("K"));
   if constexpr (Io::reads)
     io.finish([&] {
       check_together("free_run_mean, free_run_sd, free_run_lower and free_run_upper",
@@ -75,34 +76,37 @@ void exchange_free_run(Io& io, F& run, const Unit& states) {
     });
 }
 
-/// One run of one filter.
+/// One filter's evaluation of one run, or of all where arrays are judged as a whole.
 template <class Io, class E, class F>
-void exchange_filter_run(Io& io, const std::string& run, Index samples, const Sizes& of_bank, E& evaluation,
-                         F& free_run, const Unit& states) {
-  Sizes known = of_bank;
-  if (samples > 0) known.set("N", static_cast<hsize_t>(samples));
-  io.group(run, known, [&](auto& member) {
-    exchange_run_evaluation(member, evaluation, states);
-    exchange_free_run(member, free_run, states);
-  });
+void exchange_filter_run(Io& samples, E& evaluation, F& free_run, const Unit& states) {
+  exchange_run_evaluation(samples, evaluation, states);
+  exchange_free_run(samples, free_run, states);
 }
 
 /// One filter's evaluation of every run of the recording.
 template <class Io, class F>
-void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Sizes& of_bank, const Unit& states) {
-  auto free_runs = evaluation.free_runs;
-  free_runs.resize(recording.runs.size());  // without any they are empty, and left out
-  if constexpr (Io::reads) evaluation.runs.resize(recording.runs.size());
-  if (evaluation.runs.size() != recording.runs.size())
+void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Unit& states) {
+  const std::vector<hdf5::Rows> rows = rows_of(store_runs(recording.runs));
+  std::vector<FreeRun> free_runs = evaluation.free_runs;
+  free_runs.resize(rows.size());  // without any they are empty, and left out
+  if constexpr (Io::reads) {
+    evaluation.runs.resize(rows.size());
+    if (io.has("free_run_mean")) evaluation.free_runs.resize(rows.size());
+    if (io.leaves_evaluations()) return;
+    if (io.verifies()) {
+      RunEvaluation all;
+      io.set_size("S", rows.empty() ? 0 : rows.back().end());
+      return exchange_filter_run(io, all, free_runs.front(), states);
+    }
+  }
+  if (evaluation.runs.size() != rows.size())
     throw std::invalid_argument("filter " + evaluation.filter + " has evaluated " +
-                                std::to_string(evaluation.runs.size()) + " runs of " +
-                                std::to_string(recording.runs.size()));
-  for (std::size_t i = 0; i < recording.runs.size(); ++i)
-    exchange_filter_run(io, recording.runs[i].run, recording.runs[i].samples(), of_bank, evaluation.runs[i],
-                        free_runs[i], states);
+                                std::to_string(evaluation.runs.size()) + " runs of " + std::to_string(rows.size()));
+  over_runs(io, rows, [&](auto& samples, std::size_t i) {
+    exchange_filter_run(samples, evaluation.runs[i], free_runs[i], states);
+  });
   if constexpr (Io::reads)
-    if (std::any_of(free_runs.begin(), free_runs.end(), [](const FreeRun& run) { return run.mean.rows() > 0; }))
-      evaluation.free_runs = std::move(free_runs);
+    if (!evaluation.free_runs.empty()) evaluation.free_runs = std::move(free_runs);
 }
 
 template <class Io, class S>
@@ -238,9 +242,8 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   io.through(archive.evaluations, names, named, [&](auto& filters) { io.attribute_texts("filters", filters); });
   for (auto& evaluation : archive.evaluations)
     if (!evaluation.streamed)
-      io.group(evaluation.filter, {}, [&](auto& member) {
-        exchange_filter(member, evaluation, recording, sizes_of_filter(archive, evaluation.filter), units.states());
-      });
+      io.group(evaluation.filter, sizes_of_filter(archive, evaluation.filter),
+               [&](auto& member) { exchange_filter(member, evaluation, recording, units.states()); });
   exchange_summary(io, archive.summary, units.states());
   exchange_horizon(io, archive.horizons, units.states());
   exchange_combination(io, archive.combination);
@@ -249,49 +252,32 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   exchange_confusion(io, archive.confusion);
   exchange_part(io, "evidence", archive.finding, io.known({"samples"}),
                 [](auto& member, auto& part) { exchange_finding(member, part); });
-  if constexpr (Io::reads) io.finish([&] { check_score_names(archive); });
+  if constexpr (Io::reads) {
+    io.finish([&] { check_modes(archive); });
+    io.judge([&] { check_score_names(archive); });
+  }
 }
 
-template <class Io, class R>
-void exchange_run_residuals(Io& io, R& tests) {
-  io.attribute("samples", tests.samples, rule::count_of("samples"));
-  io.attribute("level", tests.level, rule::share);
-  io.attribute("autocorrelation_band", tests.autocorrelation_band, rule::not_negative_or_missing);
-  io.field("autocorrelation", tests.autocorrelation, {"T", "n"}, {}, rule::finite_or_missing);
-  io.field("cross_correlation", tests.cross_correlation, {"T", "n", "m"}, {}, rule::finite_or_missing);
-  io.field("cross_correlation_band", tests.cross_correlation_band, {"n", "m"}, {}, rule::not_negative_or_missing);
-  io.field("ljung_box_p", tests.ljung_box_p, {"n"}, {}, rule::share_or_missing);
-}
-
-/// residual_tests/<model>/<run>/, every run of the recording in its order.
+/// /residual_tests: tables of all models and runs. Lags are below T of their run.
 template <class Io, class S>
 void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {
-  const auto names = [](const std::vector<ResidualTestSet>& list) {
-    std::vector<std::string> models;
-    for (const ResidualTestSet& set : list) models.push_back(set.model);
-    return models;
-  };
-  const auto named = [](const std::vector<std::string>& models) {
-    check_different("models", models);
-    std::vector<ResidualTestSet> list;
-    for (const std::string& model : models) list.push_back({model, {}});
-    return list;
-  };
-  io.through(sets, names, named, [&](auto& models) { io.attribute_texts("models", models); });
-  Sizes known;
-  known.set("n", recording.states.size());
-  known.set("m", recording.inputs.size());
-  for (auto& set : sets)
-    io.group(set.model, {}, [&](auto& member) {
-      if constexpr (Io::reads) set.runs.resize(recording.runs.size());
-      if (set.runs.size() != recording.runs.size())
-        throw std::invalid_argument("residual tests of " + std::to_string(set.runs.size()) + " runs of " +
-                                    std::to_string(recording.runs.size()));
-      for (std::size_t i = 0; i < recording.runs.size(); ++i) {
-        known.set("samples", static_cast<hsize_t>(recording.runs[i].samples()));
-        member.group(recording.runs[i].run, known, [&](auto& run) { exchange_run_residuals(run, set.runs[i]); });
-      }
-    });
+  using Run = ResidualRunRow;
+  using Lag = ResidualLagRow;
+  const std::vector<Trajectory>& runs = recording.runs;
+  RestoredResiduals restored(recording);
+  const auto take = [&](const auto& row) { restored.take(row); };
+  io.table_rows(
+      "runs", [&] { return store_residual_runs(sets, runs); }, take, column("model", &Run::model),
+      column("run", &Run::run), column("samples", &Run::samples).obeying(rule::count_of("samples")),
+      share_column("level", &Run::level), amount_column("autocorrelation_band", &Run::autocorrelation_band),
+      column("lags", &Run::lags).obeying(rule::not_negative), share_column("ljung_box_p", &Run::ljung_box_p),
+      amount_column("cross_correlation_band", &Run::cross_correlation_band));
+  io.table_rows(
+      "lags", [&] { return store_residual_lags(sets, runs); }, take, column("model", &Lag::model),
+      column("run", &Lag::run), column("lag", &Lag::lag, "samples").obeying(rule::not_negative),
+      column("autocorrelation", &Lag::autocorrelation).obeying(rule::finite_or_missing),
+      column("cross_correlation", &Lag::cross_correlation).obeying(rule::finite_or_missing));
+  if constexpr (Io::reads) io.finish([&] { sets = restored.sets(); });
 }
 
 }  // namespace modebank::layout

@@ -1,14 +1,14 @@
 #include "io/archive/load_averaged.hpp"
 
 #include "io/archive/bank/load_bank.hpp"
+#include "io/archive/groups/group_reader.hpp"
 #include "io/archive/layout_data.hpp"
-#include "io/hdf5/group_reader.hpp"
 
 namespace modebank {
 
-AveragedColumns load_averaged(const std::filesystem::path& path) {
+AveragedColumns load_averaged(const OpenArchive& archive) {
   Recording recording;
-  read_root(path, [&](GroupReader& root) {
+  read_root(archive, [&](GroupReader& root) {
     root.optional_group("data", true, {}, [&](GroupReader& member) { layout::exchange_channels(member, recording); });
   });
   const auto positions = [](const std::vector<Channel>& channels) {

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 
 #include "ident/lag/report.hpp"
+#include "io/archive/bank/open_archive.hpp"
 
 namespace modebank {
 
 /// The lag report of an archive made with data.lag_s = auto; empty for others. Nothing else of the file is decoded.
 /// Throws as load_bank does.
-std::optional<LagReport> load_lag(const std::filesystem::path& path);
+std::optional<LagReport> load_lag(const OpenArchive& archive);
 
 }  // namespace modebank

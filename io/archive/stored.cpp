@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <type_traits>
 
-#include "io/files/sha256.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "io/files/run_names.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -34,6 +36,47 @@ std::vector<Channel> restore_channels(const StoredChannels& stored) {
     channel->averaged = true;
   }
   return channels;
+}
+
+std::vector<RunRow> store_runs(const std::vector<Trajectory>& runs) {
+  std::vector<RunRow> rows;
+  Index first = 0;
+  for (const Trajectory& run : runs) {
+    rows.push_back({run.run, run.role, first, run.samples(), run.lag_s, run.time_origin_ns, run.file});
+    first += run.samples();
+  }
+  return rows;
+}
+
+std::vector<Trajectory> restore_runs(const std::vector<RunRow>& rows) {
+  std::vector<Trajectory> runs;
+  Index first = 0;
+  for (const RunRow& row : rows) {
+    if (row.first != first || row.samples < 0 || row.samples > std::numeric_limits<Index>::max() - first)
+      throw DataError("run '" + row.name + "' has rows " + std::to_string(row.first) + " and " +
+                      std::to_string(row.samples) + " on, must follow row " + std::to_string(first - 1));
+    first += row.samples;
+    Trajectory& run = runs.emplace_back();
+    run.run = row.name;
+    run.role = row.role;
+    run.lag_s = row.lag_s;
+    run.time_origin_ns = row.time_origin_ns;
+    run.file = row.file;
+  }
+  check_run_names(run_names(runs));
+  return runs;
+}
+
+std::vector<hdf5::Rows> rows_of(const std::vector<RunRow>& rows) {
+  std::vector<hdf5::Rows> result;
+  for (const RunRow& row : rows) result.push_back({static_cast<hsize_t>(row.first), static_cast<hsize_t>(row.samples)});
+  return result;
+}
+
+Eigen::VectorXi restore_label(const Eigen::VectorXi& stored, const RunRow& run, std::size_t names) {
+  if (stored.size() == 0) return Eigen::VectorXi::Constant(run.samples, -1);
+  if (stored.minCoeff() >= -1 && stored.maxCoeff() < static_cast<int>(names)) return stored;
+  throw DataError("labels of run '" + run.name + "' reach beyond the " + std::to_string(names) + " label_names");
 }
 
 StoredWindows store_windows(const std::vector<Window>& windows, const std::vector<Trajectory>& runs) {
@@ -187,6 +230,11 @@ void check_different(const std::string& what, const std::vector<std::string>& na
     if (!seen.insert(name).second) throw DataError(what + " names '" + name + "' twice");
 }
 
+void check_modes(const Archive& archive) {
+  check_modes(archive.diagnostics, archive, "diagnostics");
+  check_modes(archive.confusion, archive, "confusion");
+}
+
 void check_score_names(const Archive& archive) {
   std::set<std::string> runs;
   if (archive.recording)
@@ -199,20 +247,9 @@ void check_score_names(const Archive& archive) {
   check_rows(archive.free_runs, runs, "free_run");
   check_rows(archive.diagnostics, runs, "diagnostics");
   check_rows(archive.confusion, runs, "confusion");
-  check_modes(archive.diagnostics, archive, "diagnostics");
-  check_modes(archive.confusion, archive, "confusion");
   check_labels(archive);
   check_finding(archive);
 }
-
-bool is_trial_link(const std::string& place, const std::string& file, const std::string& object) {
-  constexpr std::string_view folder = "trials/", suffix = ".h5";
-  if (!file.starts_with(folder) || !file.ends_with(suffix) || object != "/") return false;
-  const std::string key = file.substr(folder.size(), file.size() - folder.size() - suffix.size());
-  return is_sha256(key) && place.starts_with("/trials/");
-}
-
-hdf5::LinkAllowed links_of(const Archive& archive) { return archive.recording ? hdf5::LinkAllowed() : is_trial_link; }
 
 void set_samples(Sizes& sizes, const Recording& recording) {
   Index samples = 0;
@@ -241,9 +278,97 @@ Sizes sizes_of_evaluation(const Archive& archive, const Recording& recording) {
   return sizes;
 }
 
-void check_label_positions(const Eigen::VectorXi& label, std::size_t names, const std::string& run) {
-  if (label.size() == 0 || (label.minCoeff() >= -1 && label.maxCoeff() < static_cast<int>(names))) return;
-  throw DataError("labels of run '" + run + "' reach beyond the " + std::to_string(names) + " label_names");
+namespace {
+
+/// The entries of a matrix that is stored column by column.
+Eigen::VectorXd entries(const Eigen::MatrixXd& matrix) {
+  return Eigen::Map<const Eigen::VectorXd>(matrix.data(), matrix.size());
+}
+
+/// HDF5 has no arrays of length 0, which the inputs of a system without any would make.
+Eigen::VectorXd at_least_one(const Eigen::VectorXd& values) {
+  return values.size() > 0 ? values : Eigen::VectorXd::Constant(1, not_a_number);
+}
+
+void check_run_count(const ResidualTestSet& set, std::size_t runs) {
+  if (set.runs.size() != runs)
+    throw std::invalid_argument("residual tests of " + std::to_string(set.runs.size()) + " runs of " +
+                                std::to_string(runs));
+}
+
+}  // namespace
+
+std::vector<ResidualRunRow> store_residual_runs(const std::vector<ResidualTestSet>& sets,
+                                                const std::vector<Trajectory>& runs) {
+  std::vector<ResidualRunRow> rows;
+  for (const ResidualTestSet& set : sets) {
+    check_run_count(set, runs.size());
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const ResidualTests& tests = set.runs[i];
+      rows.push_back({set.model, runs[i].run, tests.samples, tests.level, tests.autocorrelation_band,
+                      tests.autocorrelation.cols(), tests.ljung_box_p,
+                      at_least_one(entries(tests.cross_correlation_band))});
+    }
+  }
+  return rows;
+}
+
+std::vector<ResidualLagRow> store_residual_lags(const std::vector<ResidualTestSet>& sets,
+                                                const std::vector<Trajectory>& runs) {
+  std::vector<ResidualLagRow> rows;
+  for (const ResidualTestSet& set : sets)
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      for (Index lag = 0; lag < set.runs[i].autocorrelation.cols(); ++lag)
+        rows.push_back({set.model, runs[i].run, lag, set.runs[i].autocorrelation.col(lag),
+                        at_least_one(set.runs[i].cross_correlation.col(lag))});
+  return rows;
+}
+
+RestoredResiduals::RestoredResiduals(const Recording& recording)
+    : n_(recording.state_count()), m_(recording.input_count()) {
+  for (std::size_t i = 0; i < recording.runs.size(); ++i) runs_.emplace(recording.runs[i].run, i);
+}
+
+ResidualTests& RestoredResiduals::tests_of(const std::string& model, const std::string& run) {
+  const auto position = runs_.find(run);
+  if (position == runs_.end()) throw DataError("names the unknown run '" + run + "'");
+  auto set = std::find_if(sets_.rbegin(), sets_.rend(), [&](const ResidualTestSet& s) { return s.model == model; });
+  if (set != sets_.rend()) return set->runs[position->second];
+  sets_.push_back({model, std::vector<ResidualTests>(runs_.size())});
+  return sets_.back().runs[position->second];
+}
+
+void RestoredResiduals::take(const ResidualRunRow& row) {
+  constexpr Index most_lags = 1'000'000;  // so that sizes made of them are numbers
+  if (row.ljung_box_p.size() != n_ || row.cross_correlation_band.size() != std::max(Index{1}, n_ * m_) ||
+      row.lags < 0 || row.lags > most_lags)
+    throw DataError("the row of " + row.model + " and run '" + row.run + "' does not fit " + std::to_string(n_) +
+                    " states and " + std::to_string(m_) + " inputs");
+  ResidualTests& tests = tests_of(row.model, row.run);
+  tests.samples = row.samples;
+  tests.level = row.level;
+  tests.autocorrelation_band = row.autocorrelation_band;
+  tests.ljung_box_p = row.ljung_box_p;
+  tests.cross_correlation_band = Eigen::Map<const Eigen::MatrixXd>(row.cross_correlation_band.data(), m_, n_);
+  tests.autocorrelation.setConstant(n_, row.lags, not_a_number);
+  tests.cross_correlation.setConstant(n_ * m_, row.lags, not_a_number);
+  missing_lags_ += row.lags;
+}
+
+void RestoredResiduals::take(const ResidualLagRow& row) {
+  ResidualTests& tests = tests_of(row.model, row.run);
+  if (row.lag < 0 || row.lag >= tests.autocorrelation.cols() || row.autocorrelation.size() != n_ ||
+      row.cross_correlation.size() != std::max(Index{1}, n_ * m_))
+    throw DataError("lag " + std::to_string(row.lag) + " of " + row.model + " and run '" + row.run +
+                    "' is not among the lags of its row in runs");
+  tests.autocorrelation.col(row.lag) = row.autocorrelation;
+  tests.cross_correlation.col(row.lag) = row.cross_correlation.head(n_ * m_);
+  --missing_lags_;
+}
+
+std::vector<ResidualTestSet> RestoredResiduals::sets() {
+  if (missing_lags_ != 0) throw DataError("lags has another number of rows than runs states");
+  return std::move(sets_);
 }
 
 }  // namespace modebank

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,7 @@
 #include "ident/model/local_model.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/stored_bank.hpp"
-#include "io/hdf5/links.hpp"
-#include "io/hdf5/sizes.hpp"
+#include "io/archive/groups/sizes.hpp"
 
 namespace modebank {
 
@@ -19,6 +19,24 @@ namespace modebank {
 
 StoredChannels store_channels(const std::vector<Channel>& channels);
 std::vector<Channel> restore_channels(const StoredChannels& stored);
+
+/// A row of /data/runs.
+struct RunRow {
+  std::string name;
+  Role role = Role::train;
+  Index first = 0;  ///< row of its first sample in all arrays over samples
+  Index samples = 0;
+  double lag_s = 0.0;
+  std::int64_t time_origin_ns = 0;
+  std::string file;
+};
+std::vector<RunRow> store_runs(const std::vector<Trajectory>& runs);
+/// Without their samples. The rows must follow each other without a gap.
+std::vector<Trajectory> restore_runs(const std::vector<RunRow>& rows);
+std::vector<hdf5::Rows> rows_of(const std::vector<RunRow>& rows);
+
+/// A run's labels, -1 where nothing is known; throws DataError for one that none of so many names belongs to.
+Eigen::VectorXi restore_label(const Eigen::VectorXi& stored, const RunRow& run, std::size_t names);
 
 /// Windows by the name of their run.
 struct StoredWindows {
@@ -44,7 +62,9 @@ void check_mixture(const MixtureResult& result);
 
 /// The members of these sizes, which may be missing, are all there or none is.
 void check_together(const char* what, std::initializer_list<Eigen::Index> sizes);
-/// Tables speak of runs, labels and modes that are there and of filters that are known.
+/// Tables name modes that are there.
+void check_modes(const Archive& archive);
+/// Tables name runs and labels that are there and filters that are known.
 void check_score_names(const Archive& archive);
 /// Groups of these names are there once each.
 void check_different(const std::string& what, const std::vector<std::string>& names);
@@ -56,12 +76,41 @@ Sizes sizes_of_filter(const Archive& archive, const std::string& filter);
 /// Of the tables over all filters.
 Sizes sizes_of_evaluation(const Archive& archive, const Recording& recording);
 
-/// Whether a link to another file is one of a study's to its trials: /trials/KEY to the root of trials/KEY.h5.
-bool is_trial_link(const std::string& place, const std::string& file, const std::string& object);
-/// The links to other files that what was read may have: runs' archives have none.
-hdf5::LinkAllowed links_of(const Archive& archive);
+/// Residual tests as two tables: one row per model and run, and one per lag of these.
+struct ResidualRunRow {
+  std::string model, run;
+  Index samples = 0;
+  double level = 0.0, autocorrelation_band = 0.0;
+  Index lags = 0;                          ///< T
+  Eigen::VectorXd ljung_box_p;             ///< n
+  Eigen::VectorXd cross_correlation_band;  ///< n*m, row by row
+};
+struct ResidualLagRow {
+  std::string model, run;
+  Index lag = 0;
+  Eigen::VectorXd autocorrelation;    ///< n
+  Eigen::VectorXd cross_correlation;  ///< n*m, row by row
+};
+std::vector<ResidualRunRow> store_residual_runs(const std::vector<ResidualTestSet>& sets,
+                                                const std::vector<Trajectory>& runs);
+std::vector<ResidualLagRow> store_residual_lags(const std::vector<ResidualTestSet>& sets,
+                                                const std::vector<Trajectory>& runs);
+/// Takes the rows of both tables one by one, those of runs first.
+class RestoredResiduals {
+ public:
+  explicit RestoredResiduals(const Recording& recording);
+  void take(const ResidualRunRow& row);
+  void take(const ResidualLagRow& row);
+  /// Throws DataError where a row of either table is missing.
+  std::vector<ResidualTestSet> sets();
 
-/// Throws DataError for a label of the run that none of so many names belongs to; -1: nothing is known.
-void check_label_positions(const Eigen::VectorXi& label, std::size_t names, const std::string& run);
+ private:
+  ResidualTests& tests_of(const std::string& model, const std::string& run);
+
+  Index n_, m_;
+  std::map<std::string, std::size_t> runs_;
+  std::vector<ResidualTestSet> sets_;
+  Index missing_lags_ = 0;
+};
 
 }  // namespace modebank

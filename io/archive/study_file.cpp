@@ -4,11 +4,11 @@
 
 #include "io/archive/archive_file.hpp"
 #include "io/archive/bank/open_archive.hpp"
+#include "io/archive/groups/group_reader.hpp"
+#include "io/archive/groups/group_writer.hpp"
 #include "io/archive/layout.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/files/sha256.hpp"
-#include "io/hdf5/group_reader.hpp"
-#include "io/hdf5/group_writer.hpp"
 #include "io/hdf5/table.hpp"
 #include "modebank/base/error.hpp"
 
@@ -59,8 +59,8 @@ void link_archives(const hdf5::Handle& file, const StudyFile& study, const std::
 void copy_archives(const hdf5::Handle& file, const StudyFile& study) {
   const hdf5::Handle trials = make_group(file, trials_group);
   for (const auto& [name, path] : study.archives) {
-    const hdf5::Handle archive = open_archive(path, HashCheck::before);
-    hdf5::check(H5Ocopy(archive.id(), "/", trials.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+    const OpenArchive archive(path);
+    hdf5::check(H5Ocopy(archive.root().id(), ".", trials.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
                 "copy " + path.string());
   }
 }
@@ -86,14 +86,14 @@ std::string member_name(const hdf5::StoredArray& table, unsigned member) {
 }
 
 std::vector<NamedColumn> read_columns(const hdf5::StoredArray& table) {
-  if (table.type_class() != H5T_COMPOUND) throw DataError("it is not a table");
+  const hdf5::TableRows rows = hdf5::read_all_rows(table);
   std::vector<NamedColumn> columns;
   for (unsigned member = 0; member < static_cast<unsigned>(H5Tget_nmembers(table.type())); ++member) {
     NamedColumn column{member_name(table, member), empty_column(table, member)};
     std::visit(
         [&](auto& values) {
           hdf5::TableColumn stored{column.name, values};
-          hdf5::read_column(table, stored);
+          hdf5::read_column(rows, stored);
           values = std::get<std::decay_t<decltype(values)>>(stored.values);
         },
         column.values);
@@ -139,30 +139,17 @@ void write_study_file(const std::filesystem::path& path, const StudyFile& study,
     write_copied(path, study);
 }
 
-namespace {
-
-/// Nobody follows them here, but a reader who was sent the table might.
-void check_trial_links(const hdf5::Handle& trials) {
-  for (const hdf5::Link& link : hdf5::links_of(trials.id()))
-    hdf5::check_link(trials.id(), std::string("/") + trials_group, link, is_trial_link);
-}
-
-}  // namespace
-
-StudyFile read_study_file(const std::filesystem::path& path, const std::string& table) {
+StudyFile read_study_file(const OpenArchive& file, const std::string& table) {
   const hdf5::Quiet quiet;
-  const hdf5::Handle file = open_archive(path, HashCheck::before);
   try {
     Archive origin;
-    GroupReader root(open_root(file), nullptr);
+    GroupReader root(file.root(), nullptr);
     layout::exchange_origin(root, origin);
-    root.check_links(is_trial_link);
-    if (root.has(trials_group)) check_trial_links(hdf5::open_group(open_root(file).id(), trials_group));
     StudyFile study{std::move(origin.provenance), std::move(origin.config), table, {}, {}, {}};
-    study.columns = read_columns(hdf5::StoredArray(open_root(file).id(), hdf5::Place::dataset, table));
+    study.columns = read_columns(hdf5::StoredArray(file.root().id(), hdf5::Place::dataset, table));
     return study;
   } catch (const DataError& error) {
-    throw DataError(path.string() + ": " + error.what());
+    throw DataError(file.path().string() + ": " + error.what());
   }
 }
 
@@ -204,11 +191,10 @@ std::vector<std::pair<std::string, double>> pooled_scores(const std::vector<Summ
   return std::move(collector.scores);
 }
 
-TrialScores read_trial_scores(const std::filesystem::path& path) {
+TrialScores read_trial_scores(const OpenArchive& archive) {
   const hdf5::Quiet quiet;
-  const hdf5::Handle file = open_archive(path, HashCheck::before);
   try {
-    const hdf5::Handle root = open_root(file);
+    const hdf5::Handle root = archive.root();
     const hdf5::Handle data = hdf5::open_group(root.id(), "data");
     const hdf5::Handle bank = hdf5::open_group(root.id(), "bank");
     std::vector<SummaryRow> summary;
@@ -220,13 +206,13 @@ TrialScores read_trial_scores(const std::filesystem::path& path) {
     scores.modes = static_cast<std::int64_t>(weights.elements());
     scores.pooled = pooled_scores(summary, states);
     evaluation.optional_group("evidence", true, {}, [&](auto& member) { member.attribute("answer", scores.evidence); });
-    GroupReader attributes(open_root(file), nullptr);
+    GroupReader attributes(archive.root(), nullptr);
     attributes.attribute("modebank_version", scores.modebank_version);
     attributes.attribute("config_hash", scores.config_hash);
     attributes.attribute("data_hash", scores.data_hash);
     return scores;
   } catch (const DataError& error) {
-    throw DataError(path.string() + ": " + error.what());
+    throw DataError(archive.path().string() + ": " + error.what());
   }
 }
 

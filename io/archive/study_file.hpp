@@ -42,7 +42,7 @@ enum class ArchiveUse { link, copy };
 void write_study_file(const std::filesystem::path& path, const StudyFile& study, ArchiveUse use = ArchiveUse::link);
 
 /// Reads everything but the archives. Throws as read_archive does, and DataError when there is no such table.
-StudyFile read_study_file(const std::filesystem::path& path, const std::string& table);
+StudyFile read_study_file(const OpenArchive& file, const std::string& table);
 
 /// What a study's table takes from a trial's archive.
 struct TrialScores {
@@ -53,7 +53,7 @@ struct TrialScores {
 };
 
 /// Reads those alone. Throws as read_archive does.
-TrialScores read_trial_scores(const std::filesystem::path& archive);
+TrialScores read_trial_scores(const OpenArchive& archive);
 
 /// The names and values of pooled scores, from a summary in memory.
 std::vector<std::pair<std::string, double>> pooled_scores(const std::vector<SummaryRow>& summary,

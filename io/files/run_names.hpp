@@ -13,8 +13,9 @@ std::vector<std::string> run_names(const std::vector<Run>& runs) {
   return names;
 }
 
-/// Run names become groups of the archive. Throws DataError for a name that cannot be one ('/' is a level there, "."
-/// and ".." are groups already, texts end at a zero byte, "*" is all runs in the summary) or that two runs share.
+/// Run names are texts of the archive and names of files. Throws DataError for a name that cannot be one ('/' separates
+/// folders, "." and ".." are folders already, texts end at a zero byte, "*" is all runs in the summary) or that two
+/// runs share.
 void check_run_names(const std::vector<std::string>& names);
 
 }  // namespace modebank

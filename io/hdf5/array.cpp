@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "io/hdf5/links.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::hdf5 {
@@ -30,14 +29,10 @@ Handle make_space(const Shape& shape) {
 
 }  // namespace
 
-Storage storage_of(hid_t dataset) {
+bool lies_outside(hid_t dataset) {
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose, "read a layout");
-  const H5D_layout_t layout = H5Pget_layout(creation.id());
-  if (H5Pget_external_count(creation.id()) != 0 || layout == H5D_VIRTUAL) return Storage::outside;
-  return layout == H5D_COMPACT ? Storage::header : Storage::file;
+  return H5Pget_external_count(creation.id()) != 0 || H5Pget_layout(creation.id()) == H5D_VIRTUAL;
 }
-
-bool lies_outside(hid_t dataset) { return storage_of(dataset) == Storage::outside; }
 
 Handle string_type(std::size_t bytes) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a string type");
@@ -86,55 +81,79 @@ hsize_t element_count(const Shape& shape) {
 
 namespace {
 
-Handle without_times(H5D_layout_t layout) {
+Handle creation_of_arrays() {
   Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare datasets");
   check(H5Pset_obj_track_times(creation.id(), false), "prepare datasets");
-  check(H5Pset_layout(creation.id(), layout), "prepare datasets");
+  check(H5Pset_layout(creation.id(), H5D_CONTIGUOUS), "prepare datasets");
   return creation;
 }
 
-/// A dataset without time stamps. `bytes`: of its values; few lie in its header, which takes less room and time.
-Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type, const Handle& space, hsize_t bytes) {
-  constexpr hsize_t most_compact = 4096;
-  // Made once: an archive has a thousand datasets. They stay until HDF5 itself ends, which may be before our statics
-  // do.
-  static const Handle &contiguous = *new Handle(without_times(H5D_CONTIGUOUS)),
-                      &compact = *new Handle(without_times(H5D_COMPACT));
-  const Handle& creation = bytes > 0 && bytes <= most_compact ? compact : contiguous;
-  return {H5Dcreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose,
-          "create " + quoted(Place::dataset, name)};
+Handle create_dataset(hid_t parent, const std::string& name, hid_t file_type, const Shape& shape,
+                      const Handle& creation) {
+  return {H5Dcreate2(parent, name.c_str(), file_type, make_space(shape).id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+          H5Dclose, "create " + quoted(Place::dataset, name)};
 }
 
 }  // namespace
 
-void write_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
-                hsize_t first, hsize_t count, const void* data) {
-  const std::string what = quoted(Place::dataset, name);
-  const Handle space = make_space(shape);
-  const Handle dataset = first == 0 ? create_dataset(parent, name, file_type, space, H5S_UNLIMITED)
-                                    : Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
-  Shape offset(shape.size(), 0), extent = shape;
-  offset.front() = first;
+Handle create_rows(hid_t parent, const std::string& name, hid_t file_type, const Shape& shape) {
+  return create_dataset(parent, name, file_type, shape, creation_of_arrays());
+}
+
+Handle create_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
+                   const void* missing, bool prefill) {
+  const Handle creation = creation_of_arrays();
+  check(H5Pset_fill_value(creation.id(), memory_type, missing), "prepare datasets");
+  check(H5Pset_fill_time(creation.id(), prefill ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER), "prepare datasets");
+  return create_dataset(parent, name, file_type, shape, creation);
+}
+
+namespace {
+
+Shape shape_of(const Handle& space) {
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  check(rank, "read a rank");
+  Shape shape(static_cast<std::size_t>(rank));
+  check(H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr), "read a shape");
+  return shape;
+}
+
+/// Selects rows in a dataset's space and returns the shape of what was selected.
+Shape select_rows(const Handle& space, const std::vector<Rows>& rows) {
+  Shape extent = shape_of(space), first(extent.size(), 0);
+  hsize_t count = 0;
+  for (const Rows& part : rows) {
+    first.front() = part.first;
+    extent.front() = part.count;
+    check(H5Sselect_hyperslab(space.id(), count == 0 ? H5S_SELECT_SET : H5S_SELECT_OR, first.data(), nullptr,
+                              extent.data(), nullptr),
+          "select rows");
+    count += part.count;
+  }
   extent.front() = count;
-  check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, offset.data(), nullptr, extent.data(), nullptr),
-        "select rows of " + what);
-  const Handle memory = make_space(extent);
-  if (element_count(extent) > 0)
-    check(H5Dwrite(dataset.id(), memory_type, memory.id(), space.id(), H5P_DEFAULT, data), "write " + what);
+  return extent;
+}
+
+}  // namespace
+
+void write_rows(const Handle& dataset, hid_t memory_type, const std::vector<Rows>& rows, const void* data) {
+  const Handle space(H5Dget_space(dataset.id()), H5Sclose, "read a shape");
+  const Shape extent = select_rows(space, rows);
+  if (element_count(extent) == 0) return;
+  check(H5Dwrite(dataset.id(), memory_type, make_space(extent).id(), space.id(), H5P_DEFAULT, data), "write rows");
 }
 
 Handle write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
                    const Shape& shape, const void* data) {
   const std::string what = quoted(place, name);
-  const Handle space = make_space(shape);
   if (place == Place::attribute) {
+    const Handle space = make_space(shape);
     Handle attribute(H5Acreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
                      "create " + what);
     check(H5Awrite(attribute.id(), memory_type, data), "write " + what);
     return attribute;
   }
-  Handle dataset =
-      create_dataset(parent, name, file_type, space, saturating_product(element_count(shape), H5Tget_size(file_type)));
+  Handle dataset = create_rows(parent, name, file_type, shape);
   if (element_count(shape) > 0)
     check(H5Dwrite(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write " + what);
   return dataset;
@@ -152,12 +171,9 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
   const std::string what = quoted(place, name);
   Handle space;
   if (place == Place::dataset) {
-    require_hard(parent, name);
     object_ = Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
-    require_single(object(), name);
     // Our own archives hold all their data; a layout that points elsewhere must not make us read other files.
-    storage_ = storage_of(object());
-    if (storage_ == Storage::outside) throw DataError(what + " keeps its content in another file");
+    if (lies_outside(object())) throw DataError(what + " keeps its content in another file");
     type_ = Handle(H5Dget_type(object()), H5Tclose, "read the type of " + what);
     space = Handle(H5Dget_space(object()), H5Sclose, "read the shape of " + what);
   } else {
@@ -165,10 +181,7 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
     type_ = Handle(H5Aget_type(object()), H5Tclose, "read the type of " + what);
     space = Handle(H5Aget_space(object()), H5Sclose, "read the shape of " + what);
   }
-  const int rank = H5Sget_simple_extent_ndims(space.id());
-  check(rank, "read the rank of " + what);
-  shape_.resize(static_cast<std::size_t>(rank));
-  check(H5Sget_simple_extent_dims(space.id(), shape_.data(), nullptr), "read the shape of " + what);
+  shape_ = shape_of(space);
   elements_ = H5Sget_simple_extent_type(space.id()) == H5S_NULL ? 0 : element_count(shape_);
   check_plausible();
 }
@@ -178,10 +191,6 @@ void StoredArray::check_plausible() const {
   const std::size_t element_bytes = H5Tget_size(type());  // by which HDF5 divides
   if (element_bytes == 0) throw DataError(quoted(place_, name_) + " has elements of no size");
   const hsize_t bytes = saturating_product(elements_, element_bytes);
-  // Content in the header is as long as that says, and HDF5 copies it without looking.
-  const bool in_header = storage_ == Storage::header;
-  if (in_header && bytes > H5Dget_storage_size(object())) refuse();
-  if (in_header && elements_ > 0) return;  // no extent is longer then than there are elements
   hsize_t file_bytes = 0;
   const Handle file(H5Iget_file_id(object()), H5Fclose, "find the file");
   check(H5Fget_filesize(file.id(), &file_bytes), "read the size of the file");
@@ -195,6 +204,14 @@ void StoredArray::read(hid_t memory_type, void* data) const {
   const std::string what = "read " + quoted(place_, name_);
   if (place_ == Place::attribute) return check(H5Aread(object(), memory_type, data), what);
   check(H5Dread(object(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), what);
+}
+
+void StoredArray::read_rows(const Rows& rows, hid_t memory_type, void* data) const {
+  const Handle space(H5Dget_space(object()), H5Sclose, "read a shape");
+  const Shape extent = select_rows(space, {rows});
+  if (element_count(extent) == 0) return;
+  check(H5Dread(object(), memory_type, make_space(extent).id(), space.id(), H5P_DEFAULT, data),
+        "read rows of " + quoted(place_, name_));
 }
 
 namespace {
@@ -212,14 +229,12 @@ bool is_plain(hid_t type) {
 
 }  // namespace
 
-const std::string& StoredArray::bytes() const {
-  if (bytes_.empty()) {
-    if (!is_plain(type()))
-      throw DataError(quoted(place_, name_) + " holds values that are neither numbers nor texts of fixed length");
-    bytes_.resize(static_cast<std::size_t>(elements_) * H5Tget_size(type()));
-    read(type(), bytes_.data());
-  }
-  return bytes_;
+std::string StoredArray::row_bytes(const Rows& rows) const {
+  if (!is_plain(type()))
+    throw DataError(quoted(place_, name_) + " holds values that are neither numbers nor texts of fixed length");
+  std::string bytes(static_cast<std::size_t>(rows.count) * H5Tget_size(type()), '\0');
+  read_rows(rows, type(), bytes.data());
+  return bytes;
 }
 
 std::vector<std::string> StoredArray::texts() const {

@@ -47,10 +47,6 @@ hsize_t saturating_product(hsize_t a, hsize_t b);
 /// Number of elements; the largest hsize_t when the product does not fit.
 hsize_t element_count(const Shape& shape);
 
-/// Where a dataset's values are: in its header, elsewhere in the file, or in another file or other datasets.
-enum class Storage { header, file, outside };
-Storage storage_of(hid_t dataset);
-
 /// Whether a dataset's values are in another file or in other datasets.
 bool lies_outside(hid_t dataset);
 
@@ -58,9 +54,21 @@ bool lies_outside(hid_t dataset);
 /// is a scalar.
 Handle write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
                    const Shape& shape, const void* data);
-/// Writes rows first .. first + count - 1 of a dataset of the full `shape`, which is created with row 0.
-void write_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
-                hsize_t first, hsize_t count, const void* data);
+
+/// `count` rows of a dataset from `first` on.
+struct Rows {
+  hsize_t first = 0, count = 0;
+  hsize_t end() const { return first + count; }
+};
+/// Creates a dataset that is written in rows. Rows that are never written hold what HDF5 leaves there.
+Handle create_rows(hid_t parent, const std::string& name, hid_t file_type, const Shape& shape);
+/// The same for rows of which some may be missing: they hold `missing`, a value of `memory_type`, in every entry.
+/// `prefill`: some rows will not be written.
+Handle create_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
+                   const void* missing, bool prefill);
+/// Writes several stretches of rows by one call; `data` holds them one after the other.
+void write_rows(const Handle& dataset, hid_t memory_type, const std::vector<Rows>& rows, const void* data);
+
 Handle write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
                    const Shape& shape);
 
@@ -76,9 +84,11 @@ class StoredArray {
   const Shape& shape() const { return shape_; }
   hsize_t elements() const { return elements_; }
   void read(hid_t memory_type, void* data) const;
-  /// The elements as the file has them, of `type()`; read once. DataError where any of it is neither a number nor a
-  /// text of fixed length.
-  const std::string& bytes() const;
+  /// Some rows of a dataset, which lie within its first extent.
+  void read_rows(const Rows& rows, hid_t memory_type, void* data) const;
+  /// Rows of a table as the file has them, of `type()`. DataError where any of it is neither a number nor a text of
+  /// fixed length.
+  std::string row_bytes(const Rows& rows) const;
   /// All texts in order; DataError unless the type is a fixed-length string.
   std::vector<std::string> texts() const;
 
@@ -86,13 +96,11 @@ class StoredArray {
   void check_plausible() const;
 
   Place place_;
-  Storage storage_ = Storage::file;  ///< attributes', too, for what they may declare
   std::string name_;
   Handle object_;
   Handle type_;
   Shape shape_;
   hsize_t elements_ = 0;
-  mutable std::string bytes_;
 };
 
 }  // namespace modebank::hdf5

@@ -54,7 +54,7 @@ class Quiet {
 /// Opens an existing file for reading. No lock is taken (archives never change under their final name, and many file
 /// systems refuse locks).
 Handle open_file(const std::string& path);
-/// A member group itself, not what a link leads to; "/": the root.
+/// A member group; "/": the root.
 Handle open_group(hid_t parent, const std::string& name);
 /// Names of a group's members and of an object's attributes, in byte order.
 std::vector<std::string> member_names(hid_t group);

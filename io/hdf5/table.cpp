@@ -73,10 +73,10 @@ struct StoredColumn {
   std::string cells;
 };
 
-/// Of a member, after its kind has been checked. Whole rows are read, once for all columns: member by member HDF5 would
-/// take and clear a megabyte for each.
-StoredColumn stored_column(const StoredArray& table, const std::string& name, H5T_class_t expected) {
-  if (table.type_class() != H5T_COMPOUND || table.shape().size() != 1) throw DataError("it is not a table");
+/// The cells of a member, after its kind has been checked. Rows are read once for all columns: member by member HDF5
+/// would take and clear a megabyte for each.
+StoredColumn stored_column(const TableRows& all, const std::string& name, H5T_class_t expected) {
+  const StoredArray& table = all.table;
   const int index = H5Tget_member_index(table.type(), name.c_str());
   if (index < 0) throw DataError("column '" + name + "' is missing");
   const auto member = static_cast<unsigned>(index);
@@ -86,12 +86,10 @@ StoredColumn stored_column(const StoredArray& table, const std::string& name, H5
       {H5Tget_member_type(table.type(), member), H5Tclose, "read the type of column '" + name + "'"}, 0, {}};
   column.cell_bytes = H5Tget_size(column.type.id());
   const std::size_t row_bytes = H5Tget_size(table.type()), offset = H5Tget_member_offset(table.type(), member);
-  if (column.cell_bytes == 0 || offset > row_bytes || column.cell_bytes > row_bytes - offset)
-    throw DataError("column '" + name + "' lies outside its row");
-  const auto rows = static_cast<std::size_t>(table.elements());
+  const auto rows = static_cast<std::size_t>(all.rows.count);
   column.cells.resize(rows * column.cell_bytes);
   for (std::size_t row = 0; row < rows; ++row)
-    table.bytes().copy(column.cells.data() + row * column.cell_bytes, column.cell_bytes, row * row_bytes + offset);
+    all.bytes.copy(column.cells.data() + row * column.cell_bytes, column.cell_bytes, row * row_bytes + offset);
   return column;
 }
 
@@ -103,25 +101,25 @@ const std::string& converted(StoredColumn& column, hid_t stored, hid_t wanted, s
 }
 
 template <class T>
-void read_values(const StoredArray& table, const std::string& name, Vector<T>& values) {
-  StoredColumn stored = stored_column(table, name, std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER);
+void read_values(const TableRows& rows, const std::string& name, Vector<T>& values) {
+  StoredColumn stored = stored_column(rows, name, std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER);
   // A narrower number would let a small file ask for much memory.
   if (stored.cell_bytes != sizeof(T)) throw DataError("column '" + name + "' holds numbers of another width");
-  values.resize(static_cast<std::size_t>(table.elements()));
+  values.resize(static_cast<std::size_t>(rows.rows.count));
   const std::string& cells = converted(stored, stored.type.id(), memory_type<T>(), values.size());
   std::copy_n(cells.data(), cells.size(), reinterpret_cast<char*>(values.data()));
 }
 
-void read_values(const StoredArray& table, const std::string& name, Vector<std::string>& values) {
-  StoredColumn stored = stored_column(table, name, H5T_STRING);
+void read_values(const TableRows& rows, const std::string& name, Vector<std::string>& values) {
+  StoredColumn stored = stored_column(rows, name, H5T_STRING);
   const Handle padded(H5Tcopy(stored.type.id()), H5Tclose, "copy a string type");
   check(H5Tset_strpad(padded.id(), H5T_STR_NULLPAD), "pad a string type");
-  values = unpack_texts(converted(stored, stored.type.id(), padded.id(), static_cast<std::size_t>(table.elements())),
+  values = unpack_texts(converted(stored, stored.type.id(), padded.id(), static_cast<std::size_t>(rows.rows.count)),
                         stored.cell_bytes);
 }
 
-void read_values(const StoredArray& table, const std::string& name, Eigen::MatrixXd& values) {
-  StoredColumn stored = stored_column(table, name, H5T_ARRAY);
+void read_values(const TableRows& rows, const std::string& name, Eigen::MatrixXd& values) {
+  StoredColumn stored = stored_column(rows, name, H5T_ARRAY);
   const Handle element(H5Tget_super(stored.type.id()), H5Tclose, "read an array type");
   hsize_t length = 0;
   if (H5Tget_array_ndims(stored.type.id()) != 1 || H5Tget_class(element.id()) != H5T_FLOAT)
@@ -129,7 +127,7 @@ void read_values(const StoredArray& table, const std::string& name, Eigen::Matri
   check(H5Tget_array_dims2(stored.type.id(), &length), "read an array type");
   if (H5Tget_size(element.id()) != sizeof(double) || length != stored.cell_bytes / sizeof(double))
     throw DataError("column '" + name + "' holds numbers of another width");
-  values.resize(static_cast<Eigen::Index>(length), static_cast<Eigen::Index>(table.elements()));
+  values.resize(static_cast<Eigen::Index>(length), static_cast<Eigen::Index>(rows.rows.count));
   const std::string& cells =
       converted(stored, element.id(), H5T_NATIVE_DOUBLE, static_cast<std::size_t>(values.size()));
   std::copy_n(cells.data(), cells.size(), reinterpret_cast<char*>(values.data()));
@@ -160,8 +158,15 @@ bool has_column(const StoredArray& table, const std::string& name) {
   return table.type_class() == H5T_COMPOUND && H5Tget_member_index(table.type(), name.c_str()) >= 0;
 }
 
-void read_column(const StoredArray& table, TableColumn& column) {
-  std::visit([&](auto& values) { read_values(table, column.name, values); }, column.values);
+TableRows read_rows(const StoredArray& table, const Rows& rows) {
+  if (table.type_class() != H5T_COMPOUND || table.shape().size() != 1) throw DataError("it is not a table");
+  return {table, rows, table.row_bytes(rows)};
+}
+
+TableRows read_all_rows(const StoredArray& table) { return read_rows(table, {0, table.elements()}); }
+
+void read_column(const TableRows& rows, TableColumn& column) {
+  std::visit([&](auto& values) { read_values(rows, column.name, values); }, column.values);
 }
 
 }  // namespace modebank::hdf5

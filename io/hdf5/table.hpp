@@ -25,8 +25,18 @@ Handle write_table(hid_t group, const std::string& name, const std::vector<Table
 /// Whether a compound dataset has a member of that name.
 bool has_column(const StoredArray& table, const std::string& name);
 
-/// Fills `column.values`, whose alternative says what is expected, from the member of that name. Throws DataError when
-/// the member is missing or of another kind. Members nobody asks for are ignored.
-void read_column(const StoredArray& table, TableColumn& column);
+/// Rows of a table as they are in the file, read once for all columns.
+struct TableRows {
+  const StoredArray& table;
+  Rows rows;
+  std::string bytes;
+};
+/// Throws DataError when the dataset is not a table.
+TableRows read_rows(const StoredArray& table, const Rows& rows);
+TableRows read_all_rows(const StoredArray& table);
+
+/// Fills `column.values`, whose alternative states the expected kind, from the member of that name. Throws DataError
+/// when the member is missing or of another kind. Other members are ignored.
+void read_column(const TableRows& rows, TableColumn& column);
 
 }  // namespace modebank::hdf5

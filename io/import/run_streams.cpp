@@ -105,6 +105,7 @@ Trajectory join_run(const RunStreams& run, const DataOptions& options, const Log
   joined.role = run.role;
   joined.lag_s = applied.lag_s;
   joined.time_origin_ns = run.states.origin_ns;
+  joined.file = run.inputs.file;
   joined.time_s =
       joint_times(states.time_s, inputs.time_s, {sampling.rate_hz, applied.lag_s, applied.drift, applied.reference_s});
   const AveragedColumns& averaged = sampling.averaged;

@@ -5,7 +5,7 @@
 /// Each part of the module, in a file of its name.
 namespace modebank::python {
 
-void bind_archive_file(pybind11::module_& module);
+void bind_archive(pybind11::module_& module);
 void bind_bank(pybind11::module_& module);
 void bind_filter(pybind11::module_& module);
 void bind_free_run(pybind11::module_& module);

@@ -14,7 +14,7 @@ PYBIND11_MODULE(_modebank, module) {
   modebank::python::bind_free_run(module);
   modebank::python::bind_windows(module);
   modebank::python::bind_mixture(module);
-  modebank::python::bind_archive_file(module);
+  modebank::python::bind_archive(module);
   modebank::python::bind_tables(module);
   modebank::python::bind_run(module);
 }

@@ -23,14 +23,14 @@ import numpy as np
 import pandas
 
 from . import _modebank
-from ._archive import Archive, Array
+from ._archive import Archive, Array, Run
 from ._modebank import Bank, ConfigurationError, DataError, Estimate, Filter, FreeRun, Mixture, Windows, __version__
 
 Path = Union[str, os.PathLike]
 Frames = Mapping[str, Union[pandas.DataFrame, Sequence[pandas.DataFrame]]]
 
 __all__ = ["Archive", "Array", "Bank", "ConfigurationError", "DataError", "Estimate", "Filter", "FreeRun", "Mixture",
-           "Windows", "fit_mixture", "identify", "read", "read_iddata", "run", "simulate"]
+           "Run", "Windows", "fit_mixture", "identify", "read", "read_iddata", "run", "simulate"]
 
 
 def _flat(keys):

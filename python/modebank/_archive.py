@@ -1,8 +1,9 @@
-"""An archive's content as numpy and pandas have it. What is read, and how, is the library's: its hash is checked first."""
+"""An archive's content as numpy and pandas have it. h5py reads it, after its hash was checked once."""
 from __future__ import annotations
 
 import os
 
+import h5py
 import numpy as np
 import pandas
 
@@ -38,9 +39,47 @@ class Array(np.ndarray):
 
 def _text(value):
     """Texts for bytes, numbers for arrays of one."""
+    value = np.asarray(value)
     if value.dtype.kind == "S":
         value = np.char.decode(value, "utf-8")
     return value.item() if value.ndim == 0 else value.tolist() if value.dtype.kind == "U" else value
+
+
+class Run:
+    """The samples of one run of an archive: run["time"], run["state"] and run["input"] of the data, run["bank"] or another
+    filter as a dictionary of its arrays, all with a row per sample."""
+
+    def __init__(self, archive: Archive, name: str):
+        """Throws KeyError where the archive has no such run."""
+        self._archive = archive
+        table = archive["/data/runs"]
+        row = table[table["name"] == name]
+        if len(row) == 0:
+            raise KeyError(f"{archive.path} holds no run {name!r}; its runs are {', '.join(table['name'])}")
+        self.name, self.role, self.file = name, row["role"].iloc[0], row["file"].iloc[0]
+        self.lag_s = float(row["lag_s"].iloc[0])
+        first = int(row["first"].iloc[0])
+        self.rows = slice(first, first + int(row["samples"].iloc[0]))
+
+    def __repr__(self):
+        return f"{self._archive!r}.run({self.name!r})"
+
+    def keys(self) -> list[str]:
+        """Names of the arrays of the data and of the filters."""
+        data = [name for name in self._archive["/data"] if name not in ("runs", "quantum")]
+        filters = self._archive.attributes("/evaluation").get("filters", []) if "/evaluation" in self._archive else []
+        return data + list(filters)
+
+    def __getitem__(self, name: str) -> Array | dict[str, Array]:
+        if name not in self.keys():
+            raise KeyError(f"{name} is none of {', '.join(self.keys())}")
+        if f"/data/{name}" in self._archive:
+            return self._rows(f"/data/{name}")
+        group = f"/evaluation/{name}"
+        return {array: self._rows(f"{group}/{array}") for array in self._archive[group]}
+
+    def _rows(self, path):
+        return self._archive._values(path, self._archive._at(path), self.rows)
 
 
 class Archive:
@@ -48,9 +87,10 @@ class Archive:
     archive["/config"] text, archive["/bank"] the names of a group's members."""
 
     def __init__(self, path: str | os.PathLike):
-        """Throws DataError for a file that is no archive, is damaged (its hash does not match) or of a newer schema."""
+        """Throws DataError for a file that is not an archive, is damaged (its hash does not match) or of another schema."""
         self.path = os.fspath(path)
-        self._file = _modebank.ArchiveFile(self.path)
+        _modebank.check_archive(self.path)
+        self._file = h5py.File(self.path)
 
     def __repr__(self):
         return f"modebank.Archive({self.path!r})"
@@ -59,16 +99,21 @@ class Archive:
         return self.screen()
 
     def __contains__(self, path: str) -> bool:
-        try:
-            self._file.attributes(path)
-        except KeyError:
-            return False
-        return True
+        return path in self._file
+
+    def _at(self, path):
+        if path not in self._file:
+            raise KeyError(f"{self.path} holds no {path}")
+        return self._file[path]
 
     def __getitem__(self, path: str) -> pandas.DataFrame | Array | list[str] | str:
-        values = self._file.read(path)
-        if isinstance(values, list):
-            return values
+        thing = self._at(path)
+        if isinstance(thing, h5py.Group):
+            return sorted(thing)
+        return self._values(path, thing, slice(None) if thing.shape else ())
+
+    def _values(self, path, dataset, rows):
+        values = np.asarray(dataset[rows])
         if values.dtype.names is not None:
             return self._table(values)
         if values.dtype.kind == "S":
@@ -78,7 +123,11 @@ class Archive:
 
     def attributes(self, path: str = "/") -> dict:
         """Of a group or dataset, by name: texts, lists of texts, numbers."""
-        return {name: _text(value) for name, value in self._file.attributes(path).items()}
+        return {name: _text(value) for name, value in self._at(path).attrs.items()}
+
+    def run(self, name: str) -> Run:
+        """The samples of one run."""
+        return Run(self, name)
 
     def _table(self, records):
         columns = {}
@@ -118,7 +167,7 @@ class Archive:
     @property
     def runs(self) -> list[str]:
         """Names of the runs."""
-        return self.attributes("/data")["runs"]
+        return [name.decode() for name in self._file["/data/runs"]["name"]]
 
     @property
     def modes(self) -> int:

@@ -180,9 +180,8 @@ def halves(bench, given):
         path = os.path.join(folder, "runs.h5")
         bench.call("identify", bench.config, *flags({**{k: v for k, v in given.items() if k.startswith(("data.", "window."))}, "window.step": "100"}),
                    "--archive.output", path)
-        names = json.loads(bench.call("show", path, "/data", "--json"))["members"]
-        roles = {name: json.loads(bench.call("show", path, "/data/" + name, "--json"))["attributes"]["role"]
-                 for name in names}
+        runs = json.loads(bench.call("show", path, "/data/runs", "--json"))["value"]
+        roles = {run["name"]: run["role"] for run in runs}
     chosen = {role: ",".join(name for name in roles if roles[name] == role) for role in ("train", "test")}
     return [given, {**given, "data.train": chosen["test"], "data.test": chosen["train"]}]
 

@@ -84,7 +84,7 @@ def trial(program, name, seed):
         if done.returncode != 0:
             return {"name": name, "seed": seed, "failed": done.stderr.strip().splitlines()[-1:]}
         with h5py.File(folder / "out.h5") as file:
-            ours = [file[f"evaluation/bank/{run}/log_density"][:] for run in file["data"] if file[f"data/{run}"].attrs["role"] == b"test"]
+            ours = [file["evaluation/bank/log_density"][run["first"]:run["first"] + run["samples"]] for run in file["data/runs"] if run["role"] == b"test"]
             truth = [system.log_density(*runs[i]) for i in range(1, RUNS, 2)]
             regret = float(np.nanmean(np.concatenate([t - o for t, o in zip(truth, ours)])))
             bank = file["bank"]

@@ -100,9 +100,9 @@ def row(command, folder, archive=None, limit=None):
 def check_readable(path):
     """Every dataset opens in h5py, by the paths that the layout promises."""
     with h5py.File(path) as archive:
-        run = next(iter(archive["data"]))
-        assert archive[f"evaluation/bank/{run}/prediction"].shape[0] == archive[f"data/{run}/time"].shape[0]
-        assert np.isfinite(archive[f"evaluation/bank/{run}/prediction"][-1]).all()
+        samples = archive["data/runs"]["samples"].sum()
+        assert archive["evaluation/bank/prediction"].shape[0] == archive["data/time"].shape[0] == samples
+        assert np.isfinite(archive["evaluation/bank/prediction"][-1]).all()
 
 
 def main():

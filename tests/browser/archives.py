@@ -61,6 +61,12 @@ def ice(modebank):
                         "--mixture.components", "1..4", "--mixture.restarts", "2")
 
 
+def rows(file, run):
+    """The rows of a run in arrays over samples of an open archive."""
+    (row,) = [row for row in file["data/runs"][:] if row["name"].decode() == run]
+    return slice(row["first"], row["first"] + row["samples"])
+
+
 def held_out(file):
     """Names of the runs of an open archive that were held out."""
     return [row["run"].decode() for row in file["evaluation/summary"][:] if row["filter"] == b"bank" and row["role"] == b"test" and row["run"] != b"*"]

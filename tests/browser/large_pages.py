@@ -59,8 +59,8 @@ class LargePages(PageTest):
         self.assert_whole(page, RUN_SECTIONS)
         session.browser.screenshot("million", whole=False)
         with h5py.File(session.work / "million/big.h5") as file:
-            (run,) = [name.decode() for name in file["data"].attrs["runs"]]
-            state, times = file[f"data/{run}/state"][:, 0], file[f"data/{run}/time"][:]
+            self.assertEqual(len(file["data/runs"]), 1)
+            state, times = file["data/state"][:, 0], file["data/time"][:]
         self.assertEqual(len(state), page_drag.SAMPLES)
         self.assertEqual(self.plot_range("data"), [times[0], times[-1]])
         low, high, points = session.browser.driver.execute_async_script(EXTREMES, [float(times[0]), float(times[-1])])

@@ -5,6 +5,7 @@ import io
 import time
 import xml.etree.ElementTree
 
+import archives
 import h5py
 import numpy
 import session
@@ -37,7 +38,7 @@ class LookingAround(PageTest):
         """Of the run that is shown."""
         with h5py.File(session.made["demo"]) as file:
             run = session.browser.run(f"return {PLOT}.timePlot.state.current.name")
-            return [file[name.format(run)][:] for name in names]
+            return [file[name][archives.rows(file, run)] for name in names]
 
     def wait_range(self, what, test):
         """Until the range that is shown passes; returns it."""
@@ -85,9 +86,9 @@ class LookingAround(PageTest):
         self.assert_quiet()
 
     def test_the_crosshair_reads_the_archives_numbers(self):
-        times, state, truth, inputs = self.stored("data/{}/time", "data/{}/state", "data/{}/truth", "data/{}/input")
+        times, state, truth, inputs = self.stored("data/time", "data/state", "data/truth", "data/input")
         nis, innovation, prediction, probability, spread = self.stored(
-            *(f"evaluation/bank/{{}}/{name}" for name in ("nis", "innovation", "prediction", "mode_probability", "innovation_covariance")))
+            *(f"evaluation/bank/{name}" for name in ("nis", "innovation", "prediction", "mode_probability", "innovation_covariance")))
         area = self.plot_area("data")
         k = 148  # onto it: an event's place is a whole pixel, less than half a sample
         session.browser.move(area["left"] + (times[k] - times[0]) / (times[-1] - times[0]) * area["width"] + 0.5, area["top"] + 20)
@@ -128,7 +129,7 @@ class LookingAround(PageTest):
         self.assert_quiet()
 
     def test_jumps_go_to_the_worst_sample_and_to_mode_switches(self):
-        times, nis, probability = self.stored("data/{}/time", "evaluation/bank/{}/nis", "evaluation/bank/{}/mode_probability")
+        times, nis, probability = self.stored("data/time", "evaluation/bank/nis", "evaluation/bank/mode_probability")
         self.press("Next worst sample")
         session.browser.wait(f"return {PLOT}.timePlot.state.at !== null")
         self.assertAlmostEqual(self.crosshair(), times[numpy.nanargmax(nis)], places=6)

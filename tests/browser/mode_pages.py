@@ -16,8 +16,9 @@ class ModePages(PageTest):
         with h5py.File(session.made["demo"]) as file:
             names = [name.decode() for name in file["data"].attrs["label_names"]]
             for run in archives.held_out(file):
-                modes = file[f"evaluation/bank/{run}/mode_probability"][:].argmax(1)
-                for label, mode in zip(file[f"data/{run}/label"][:], modes):
+                rows = archives.rows(file, run)
+                modes = file["evaluation/bank/mode_probability"][rows].argmax(1)
+                for label, mode in zip(file["data/label"][rows], modes):
                     counts.setdefault(names[label], [0] * len(file["bank/weight"]))[mode] += 1
         table = self.table("Most probable mode of each label’s samples")
         self.assertEqual([row["Label"][0] for row in table], names)

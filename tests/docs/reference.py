@@ -65,8 +65,7 @@ def archive():
 def dataset_names():
     names = set()
     with h5py.File(archive()) as file:
-        runs = set(file["data"])
-        file.visit(lambda path: names.update(part for part in path.split("/") if part not in runs))
+        file.visit(lambda path: names.update(path.split("/")))
         file.visititems(lambda path, thing: names.update(thing.dtype.names or ()) if isinstance(thing, h5py.Dataset) else None)
     return names
 

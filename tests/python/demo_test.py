@@ -62,7 +62,8 @@ class Demo(unittest.TestCase):
             column = theirs[name]
             if column.ndim == 2:
                 states = self.archive.state_names
-                np.testing.assert_array_equal(ours[[f"{name}[{state}]" for state in states]].to_numpy(), column, path)
+                labels = states if len(states) == column.shape[1] else range(column.shape[1])
+                np.testing.assert_array_equal(ours[[f"{name}[{label}]" for label in labels]].to_numpy(), column, path)
             elif column.dtype.kind == "S":
                 self.assertEqual(ours[name].tolist(), np.char.decode(column, "utf-8").tolist(), path)
             else:
@@ -93,12 +94,32 @@ class Demo(unittest.TestCase):
     def test_filter_steps_as_the_evaluation_did(self):
         for which in ("bank", "baseline"):
             step = modebank.Filter(self.archive, which=which).step
-            data, said = self.file["data/01"], self.file[f"evaluation/{which}/01"]
-            for k, (t, u, y) in enumerate(zip(data["time"][()], data["input"][()], data["state"][()])):
+            data = self.archive.run("01")
+            said = data[which]
+            for k, (t, u, y) in enumerate(zip(data["time"], data["input"], data["state"])):
                 estimate = step(t, u, y)
                 for name in ("prediction", "innovation_covariance", "state", "covariance", "mode_probability"):
                     np.testing.assert_allclose(getattr(estimate, name), said[name][k], rtol=1e-12, atol=1e-300,
                                                err_msg=f"{which} {name} {k}")
+
+    def test_a_run_is_its_rows(self):
+        table = self.file["data/runs"][:]
+        for row in table:
+            run = self.archive.run(row["name"].decode())
+            rows = slice(row["first"], row["first"] + row["samples"])
+            self.assertEqual((run.role, run.lag_s, run.file), (row["role"].decode(), row["lag_s"], row["file"].decode()))
+            for name in ("time", "state", "input"):
+                np.testing.assert_array_equal(run[name], self.file["data"][name][rows], name)
+            for filter in ("bank", "baseline"):
+                self.assertEqual(sorted(run[filter]), sorted(self.file["evaluation"][filter]))
+                for name, values in run[filter].items():
+                    np.testing.assert_array_equal(values, self.file["evaluation"][filter][name][rows], name)
+        self.assertEqual(self.archive.runs, [name.decode() for name in table["name"]])
+        self.assertIn("bank", self.archive.run("01").keys())
+        with self.assertRaisesRegex(KeyError, "no run 'x'"):
+            self.archive.run("x")
+        with self.assertRaisesRegex(KeyError, "velocity is none of"):
+            self.archive.run("01")["velocity"]
 
     def test_what_is_missing_is_said(self):
         with self.assertRaises(KeyError):

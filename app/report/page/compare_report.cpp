@@ -12,7 +12,7 @@ void report_comparison(const std::vector<std::filesystem::path>& files, const st
   std::vector<Archive> archives;
   std::set<std::filesystem::path> names;
   for (const std::filesystem::path& file : files) {
-    archives.push_back(read_archive_by_runs(file));
+    archives.push_back(read_archive(file, Evaluations::in_file));
     names.insert(file.filename());
   }
   std::vector<ComparedRun> runs;

@@ -47,7 +47,7 @@ std::vector<Rows> ranked_settings(const StudyTable& table, std::size_t score, co
 std::optional<Archive> archive_of(const TrialPlace& place) {
   if (place.archive.empty()) return {};
   try {
-    return read_archive_by_runs(place.archive);
+    return read_archive(place.archive, Evaluations::in_file);
   } catch (const std::exception&) {
     return {};
   }

@@ -18,19 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// study.h5 of what the user named.
-fs::path study_file(const fs::path& study) {
-  if (!fs::is_directory(study)) return study;
-  const fs::path file = study / "study.h5";
-  if (fs::exists(file)) return file;
-  if (fs::exists(plan_file(study)))
-    throw DataError(
-        fmt::format("{}: the study is not merged yet: modebank study CONFIG --study.stage merge makes "
-                    "study.h5 of the runs that are done",
-                    study.string()));
-  throw ConfigurationError(fmt::format("{}: no study's folder: it holds neither study.h5 nor plan.h5", study.string()));
-}
-
 /// Finished runs, the best by the headline score first; none without that score.
 std::vector<std::size_t> ranked_rows(const StudyTable& table) {
   const std::string headline = answer(table).headline;
@@ -67,7 +54,7 @@ void write_run_pages(const StudyTable& table, const fs::path& page, const Report
     if (pages == options.runs) break;
     if (places[row].archive.empty()) continue;
     const fs::path archive = places[row].archive, file = folder / (table.rows[row].key + ".html");
-    const Page run = run_page(read_archive_by_runs(archive), archive.filename().string(), options);
+    const Page run = run_page(read_archive(archive, Evaluations::in_file), archive.filename().string(), options);
     fs::create_directories(folder);
     write_page(file, run, written);
     places[row].page = (folder.filename() / file.filename()).string();
@@ -100,15 +87,25 @@ void write_running_study(const fs::path& folder, const StudyFile& file, const St
   replace_file(path, {html_of(page)});
 }
 
-bool is_study(const fs::path& path) {
-  if (fs::is_directory(path)) return true;
-  return inspect(path.string(), "/").at("members").contains("study");
+fs::path study_file(const fs::path& study) {
+  if (!fs::is_directory(study)) return study;
+  const fs::path file = study / "study.h5";
+  if (fs::exists(file)) return file;
+  if (fs::exists(plan_file(study)))
+    throw DataError(
+        fmt::format("{}: the study is not merged yet: modebank study CONFIG --study.stage merge makes "
+                    "study.h5 of the runs that are done",
+                    study.string()));
+  throw ConfigurationError(fmt::format("{}: no study's folder: it holds neither study.h5 nor plan.h5", study.string()));
 }
 
-void report_study(const fs::path& study, const fs::path& page, const ReportConfig& options, Written& written) {
-  const fs::path path = study_file(study);
+bool is_study(const OpenArchive& file) { return inspect(file, "/").at("members").contains("study"); }
+
+void report_study(const fs::path& study, const OpenArchive& opened, const fs::path& page, const ReportConfig& options,
+                  Written& written) {
+  const fs::path& path = opened.path();
   if (!page.empty()) check_page_path(page, {path});
-  const StudyFile file = read_study_file(path, "study");
+  const StudyFile file = read_study_file(opened, "study");
   const StudyTable table = study_table_of(file);
   const FigureSet figures = options.figures.empty() ? FigureSet() : study_figures(table);
   if (!options.figures.empty()) check_figures(figures, options, {path});

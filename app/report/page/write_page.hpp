@@ -32,9 +32,10 @@ void check_figures(const FigureSet& set, const ReportConfig& options,
 /// be drawn, after the others.
 void write_figures(const FigureSet& set, const ReportConfig& options, Written& written);
 
-/// A study's figures, where report.figures asks for them, and its page, unless `page` is empty.
-void report_study(const std::filesystem::path& study, const std::filesystem::path& page, const ReportConfig& options,
-                  Written& written);
+/// A study's figures, where report.figures asks for them, and its page, unless `page` is empty. `file`: its study.h5,
+/// which `study` or this file in its folder names.
+void report_study(const std::filesystem::path& study, const OpenArchive& file, const std::filesystem::path& page,
+                  const ReportConfig& options, Written& written);
 /// Writes study.html into a study's folder, by renaming, and says where it is when the study has ended; see
 /// StudyPageWriter.
 void write_running_study(const std::filesystem::path& folder, const StudyFile& file, const StudyTable& table,
@@ -44,7 +45,9 @@ void write_running_study(const std::filesystem::path& folder, const StudyFile& f
 void report_comparison(const std::vector<std::filesystem::path>& files, const std::filesystem::path& page,
                        const ReportConfig& options, Written& written);
 
-/// Whether the path is a study's folder or its study.h5; throws as read_archive does for a file that cannot be opened.
-bool is_study(const std::filesystem::path& path);
+/// The file that a name of the command line stands for: study.h5 of a folder.
+std::filesystem::path study_file(const std::filesystem::path& study);
+/// Whether an open file is a study's table.
+bool is_study(const OpenArchive& file);
 
 }  // namespace modebank::app::report

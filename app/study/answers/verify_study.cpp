@@ -23,9 +23,9 @@ namespace fs = std::filesystem;
 /// What is wrong with the archive of a planned trial; empty when nothing is.
 std::string trial_problem(const TrialStore& store, const Config& study, const StudyTable& table, const TrialRow& row) {
   try {
-    if (const auto problems = verify_archive(store.archive(row.key)).problems; !problems.empty())
-      return problems.front();
-    const TrialScores stored = read_trial_scores(store.archive(row.key));
+    const OpenArchive archive(store.archive(row.key));
+    if (const auto problems = problems_of(archive); !problems.empty()) return problems.front();
+    const TrialScores stored = read_trial_scores(archive);
     const Config trial = trial_config(study, table.varied_keys, row);
     if (stored.config_hash != config_hash(trial)) return "its configuration is not that of its name";
     if (trial_key(trial, stored.data_hash, stored.modebank_version) != row.key)

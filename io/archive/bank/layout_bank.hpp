@@ -6,7 +6,7 @@
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/bank/stored_bank.hpp"
 #include "io/archive/bank/units.hpp"
-#include "io/hdf5/columns.hpp"
+#include "io/archive/groups/columns.hpp"
 
 /// The layout of banks; see io/archive/layout.hpp.
 namespace modebank::layout {

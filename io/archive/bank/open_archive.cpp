@@ -1,15 +1,15 @@
 #include "io/archive/bank/open_archive.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <charconv>
+#include <fstream>
 #include <system_error>
 
+#include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
 #include "io/hdf5/array.hpp"
 #include "modebank/base/error.hpp"
@@ -47,111 +47,83 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail_reading() { throw DataError("cannot read the file: " + std::generic_category().message(errno)); }
+constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 
-/// One opening of a file, through which it is hashed and handed to HDF5: a file that takes its name in between is not
-/// the one that was judged. Nothing but a regular file is waited for or read.
-class OpenedFile {
- public:
-  explicit OpenedFile(const fs::path& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-    if (descriptor_ < 0) throw DataError("cannot open the file: " + std::generic_category().message(errno));
-    struct stat status {};
-    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
-      ::close(descriptor_);
-      throw DataError(S_ISDIR(status.st_mode) ? "is a folder, not an archive" : "is not a regular file");
-    }
-    bytes_ = static_cast<std::uintmax_t>(status.st_size);
+/// How many of `count` bytes at the offset of an open file there are.
+std::size_t read_at(int descriptor, char* to, std::size_t count, std::uintmax_t offset) {
+  std::size_t done = 0;
+  while (done < count) {
+    const ssize_t got = ::pread(descriptor, to + done, count - done, static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw DataError("cannot read the file: " + std::generic_category().message(errno));
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
   }
-  ~OpenedFile() { ::close(descriptor_); }
-  OpenedFile(const OpenedFile&) = delete;
-  OpenedFile& operator=(const OpenedFile&) = delete;
-
-  std::uintmax_t bytes() const { return bytes_; }
-  /// How many of `count` bytes at the offset there are.
-  std::size_t read(char* to, std::size_t count, std::uintmax_t offset) const {
-    std::size_t done = 0;
-    while (done < count) {
-      const ssize_t got = ::pread(descriptor_, to + done, count - done, static_cast<off_t>(offset + done));
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) fail_reading();
-      if (got == 0) break;
-      done += static_cast<std::size_t>(got);
-    }
-    return done;
-  }
-  std::string bytes_at(std::uintmax_t offset, std::size_t count) const {
-    std::string text(count, '\0');
-    text.resize(read(text.data(), count, offset));
-    return text;
-  }
-  /// A name that leads to this very file, whatever its own leads to by now; the path where there is no /proc.
-  std::string name(const fs::path& path) const {
-    const std::string own = "/proc/self/fd/" + std::to_string(descriptor_);
-    std::error_code error;
-    return fs::exists(own, error) ? own : path.string();
-  }
-
- private:
-  int descriptor_;
-  std::uintmax_t bytes_ = 0;
-};
+  return done;
+}
 
 /// Of everything after the user block.
-std::string content_hash(const OpenedFile& file) {
+std::string content_hash(int descriptor) {
   Sha256 hash;
   std::vector<char> buffer(std::size_t{1} << 20);
   std::uintmax_t offset = user_block_bytes;
-  while (const std::size_t got = file.read(buffer.data(), buffer.size(), offset)) {
+  while (const std::size_t got = read_at(descriptor, buffer.data(), buffer.size(), offset)) {
     hash.update(buffer.data(), got);
     offset += got;
   }
   return hash.hex();
 }
 
-std::vector<std::string> hash_problems(const OpenedFile& file) {
-  UserBlock block{};
-  if (file.read(block.data(), block.size(), 0) < block.size()) return {"the file is shorter than its user block"};
-  return user_block_problems(block, content_hash(file));
+/// The descriptor of HDF5's own driver.
+int descriptor_of(const hdf5::Handle& file) {
+  void* descriptor = nullptr;
+  hdf5::check(H5Fget_vfd_handle(file.id(), H5P_DEFAULT, &descriptor), "find the open file");
+  return *static_cast<int*>(descriptor);
 }
 
-}  // namespace
-
-std::string content_hash(const fs::path& path) { return content_hash(OpenedFile(path)); }
-
-std::vector<std::string> hash_problems(const fs::path& path) try {
-  return hash_problems(OpenedFile(path));
-} catch (const DataError& error) {
-  return {error.what()};
+void require_readable(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) throw ConfigurationError(path.string() + ": no such file");
+  if (error) throw DataError(error.message());
+  if (fs::is_directory(status)) throw DataError("is a folder, not an archive");
+  if (!fs::is_regular_file(status)) throw DataError("is not a regular file");
 }
 
-namespace {
-
-constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
-
-/// Where HDF5's superblock, which the signature begins, says that the file ends; 0 where it is not one that we write.
-std::uintmax_t stated_end(const OpenedFile& file) {
-  constexpr std::size_t version_at = 8, address_size_at = 9, end_at = 28, address_bytes = 8;
-  const std::string superblock = file.bytes_at(user_block_bytes, end_at + address_bytes);
-  if (superblock.size() < end_at + address_bytes || superblock[version_at] != 2 ||
-      superblock[address_size_at] != address_bytes)
-    return 0;
-  std::uintmax_t end = 0;
-  for (std::size_t i = address_bytes; i-- > 0;) end = end << 8 | static_cast<unsigned char>(superblock[end_at + i]);
-  return end;
+/// Why HDF5 does not open a file: what its first bytes and its hash show, else HDF5's own reason.
+[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
+  std::string bytes(user_block_bytes + hdf5_signature.size(), '\0');
+  std::ifstream stream = open_file(path);
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  if (bytes.empty()) throw DataError("the file is empty");
+  const bool is_ours = bytes.size() > user_block_bytes && is_sha256(bytes.substr(0, hash_bytes));
+  if (!is_ours && bytes.substr(0, hdf5_signature.size()) != hdf5_signature &&
+      (bytes.size() < user_block_bytes || bytes.substr(user_block_bytes) != hdf5_signature))
+    throw DataError("not a modebank archive");
+  throw DataError("damaged, or cut off: " + reason);
 }
 
-/// Before HDF5 sees the file: most foreign files are told apart here, and those that were cut off.
-void check_signature(const OpenedFile& file) {
-  if (file.bytes() == 0) throw DataError("the file is empty");
-  if (file.bytes_at(user_block_bytes, hdf5_signature.size()) == hdf5_signature) {
-    if (const std::uintmax_t end = stated_end(file); file.bytes() < end)
-      throw DataError("truncated file: " + std::to_string(file.bytes()) + " of " + std::to_string(end) +
-                      " bytes are there");
-    return;
+hdf5::Handle open_checked(const fs::path& path) {
+  require_readable(path);
+  try {
+    return hdf5::open_file(path.string());
+  } catch (const DataError& error) {
+    refuse(path, error.what());
   }
-  if (file.bytes_at(0, hdf5_signature.size()) == hdf5_signature)
+}
+
+/// Throws DataError unless the hash is right; returns it.
+std::string checked_hash(const hdf5::Handle& file) {
+  const int descriptor = descriptor_of(file);
+  UserBlock block{};
+  read_at(descriptor, block.data(), block.size(), 0);
+  if (std::string_view(block.data(), hdf5_signature.size()) == hdf5_signature)
     throw DataError("not a modebank archive (an HDF5 file of another program)");
-  throw DataError("not a modebank archive");
+  std::string hash = content_hash(descriptor);
+  if (const std::vector<std::string> problems = user_block_problems(block, hash); !problems.empty())
+    throw DataError("damaged: " + problems.front());
+  return hash;
 }
 
 std::string root_text(const hdf5::Handle& root, const std::string& name) {
@@ -177,41 +149,51 @@ void check_schema(const hdf5::Handle& root) {
   if (major > major_version(schema_version))
     throw DataError("the archive's schema " + version + " is newer than " + schema_version +
                     ", which this version of modebank reads");
-  if (major < major_version(schema_version))
-    throw DataError(
-        "the archive's schema " + version + " is older than " + schema_version +
-        ": scores had other names then (tail_above, tail_below) and fewer competitors; run its /config again");
-}
-
-void check_hash(const OpenedFile& file) {
-  if (const std::vector<std::string> problems = hash_problems(file); !problems.empty())
-    throw DataError("damaged: " + problems.front());
+  if (major < major_version(schema_version)) throw DataError("made by modebank 0.1; run again");
 }
 
 }  // namespace
 
-void require_readable(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throw ConfigurationError(path.string() + ": no such file");
-  if (error) throw DataError(path.string() + ": " + error.message());
-  if (fs::is_directory(status)) throw DataError(path.string() + ": is a folder, not an archive");
-  if (!fs::is_regular_file(status)) throw DataError(path.string() + ": is not a regular file");
+std::string content_hash(const fs::path& path) {
+  std::ifstream stream = open_file(path);
+  stream.seekg(user_block_bytes);
+  Sha256 hash;
+  std::vector<char> buffer(std::size_t{1} << 20);
+  while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || stream.gcount() > 0)
+    hash.update(buffer.data(), static_cast<std::size_t>(stream.gcount()));
+  if (stream.bad()) throw DataError(path.string() + ": cannot be read");
+  return hash.hex();
 }
 
-hdf5::Handle open_archive(const fs::path& path, HashCheck hash) {
-  require_readable(path);
-  try {
-    const OpenedFile opened(path);
-    check_signature(opened);
-    if (hash == HashCheck::before) check_hash(opened);
-    hdf5::Handle file = hdf5::open_file(opened.name(path));
-    check_schema(open_root(file));
-    return file;
-  } catch (const DataError& error) {
-    throw DataError(path.string() + ": " + error.what());
+struct OpenArchive::File {
+  fs::path path;
+  hdf5::Handle file;
+  std::string digest;
+
+  explicit File(const fs::path& path_of_file) : path(path_of_file) {
+    const hdf5::Quiet quiet;
+    try {
+      file = open_checked(path);
+      digest = checked_hash(file);
+      check_schema(open_root(file));
+    } catch (const DataError& error) {
+      file.reset();
+      throw DataError(path.string() + ": " + error.what());
+    }
   }
-}
+  ~File() {
+    const hdf5::Quiet quiet;
+    file.reset();
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+};
+
+OpenArchive::OpenArchive(const fs::path& path) : file_(std::make_shared<const File>(path)) {}
+
+const fs::path& OpenArchive::path() const { return file_->path; }
+const std::string& OpenArchive::digest() const { return file_->digest; }
+hdf5::Handle OpenArchive::root() const { return open_root(file_->file); }
 
 hdf5::Handle open_root(const hdf5::Handle& file) { return hdf5::open_group(file.id(), "/"); }
 

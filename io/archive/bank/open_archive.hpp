@@ -3,16 +3,16 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/hdf5/handle.hpp"
-#include "io/hdf5/links.hpp"
 
 namespace modebank {
 
-inline constexpr const char *archive_format = "modebank", *schema_version = "2.0";
+inline constexpr const char *archive_format = "modebank", *schema_version = "3.0";
 
 /// The HDF5 user block in front of an archive's content: the lowercase hex SHA-256 of all bytes after the block in
 /// bytes 0-63, zeros in the rest.
@@ -27,20 +27,28 @@ std::vector<std::string> user_block_problems(const UserBlock& block, std::string
 /// SHA-256 of everything after a file's user block. Throws DataError when the file cannot be read.
 std::string content_hash(const std::filesystem::path& path);
 
-/// What is wrong with a file's user block and content; a file that cannot be read is a problem, too.
-std::vector<std::string> hash_problems(const std::filesystem::path& path);
+/// An archive that is open for reading. It is opened once, and its hash is checked once through the descriptor that
+/// HDF5 reads by; copies share it. A path stands for the archive where it is read only once.
+class OpenArchive {
+ public:
+  /// Throws ConfigurationError when the file is missing, and DataError, which names the path, for one that is
+  /// unreadable, truncated, damaged (its hash does not match), not a modebank archive, or of another major schema.
+  OpenArchive(const std::filesystem::path& path);  // NOLINT(google-explicit-constructor): see above
+  OpenArchive(const std::string& path) : OpenArchive(std::filesystem::path(path)) {}  // NOLINT
+  OpenArchive(const char* path) : OpenArchive(std::filesystem::path(path)) {}         // NOLINT
 
-/// Throws ConfigurationError when there is no such path and DataError when it is not a regular file that can be read.
-void require_readable(const std::filesystem::path& path);
+  const std::filesystem::path& path() const;
+  /// SHA-256 of its content, as its user block states it: tells archives apart.
+  const std::string& digest() const;
+  /// The root group. Calls of HDF5 need a hdf5::Quiet.
+  hdf5::Handle root() const;
 
-/// before: HDF5 sees no byte of a file whose hash is wrong. unchecked: for those that have just checked it themselves.
-enum class HashCheck { before, unchecked };
+ private:
+  struct File;
+  std::shared_ptr<const File> file_;
+};
 
-/// Opens an existing archive for reading, after it has been seen to be one: a regular file with a user block, HDF5's
-/// signature, our format and a schema no newer than ours. Throws as read_archive does; messages name the path.
-hdf5::Handle open_archive(const std::filesystem::path& path, HashCheck hash);
-
-/// The root group of an open archive.
+/// The root group of an open file.
 hdf5::Handle open_root(const hdf5::Handle& file);
 
 }  // namespace modebank

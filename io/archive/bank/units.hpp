@@ -7,7 +7,7 @@
 #include "ident/model/linear_model.hpp"
 #include "ident/model/local_model.hpp"
 #include "ident/model/motion_model.hpp"
-#include "io/hdf5/sizes.hpp"
+#include "io/archive/groups/sizes.hpp"
 
 namespace modebank {
 

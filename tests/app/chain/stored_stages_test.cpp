@@ -66,7 +66,7 @@ TEST_F(StoredStages, EvaluationsWrittenAsTheyAreMadeAreTheSame) {
   const Listener silent;
   Chain chain(computed, silent);
   const Recording& recording = *chain.run(options, Stage::data, {}).recording;
-  stream_archive(streamed, recording, [&](const EvaluationSink& sink) -> const Archive& {
+  write_archive(streamed, recording, [&](const EvaluationSink& sink) -> const Archive& {
     return chain.run(options, Stage::bank_scores, {}, &sink);
   });
   EXPECT_EQ(all_stages(streamed), all_stages(archive()));

@@ -37,10 +37,12 @@ TEST_F(OwnLog, IsReadSplitAndComparedWithItsLabels) {
        {"semicolons", "decimal commas", "units in the second row", "counts nanoseconds", "log is split into 4 blocks"})
     EXPECT_NE(result.err.find(said), std::string::npos) << said << " in\n" << result.err;
   EXPECT_EQ(inspect(archive(), "/data").at("attributes").at("label_names"), nlohmann::json({"grit", "ice"}));
-  const nlohmann::json block = inspect(archive(), "/data/log.b2");
-  EXPECT_EQ(block.at("attributes").at("role"), "test");
-  EXPECT_EQ(block.at("attributes").at("time_origin_ns"), 1'714'557'600'000'000'000);
-  EXPECT_EQ(inspect(archive(), "/data/log.b2/label").at("shape"), inspect(archive(), "/data/log.b2/time").at("shape"));
+  const nlohmann::json block = inspect(archive(), "/data/runs", "log.b2").at("value").at(0);
+  EXPECT_EQ(block.at("role"), "test");
+  EXPECT_EQ(block.at("time_origin_ns"), 1'714'557'600'000'000'000);
+  EXPECT_EQ(block.at("file"), (folder() / "log.csv").string());
+  EXPECT_EQ(inspect(archive(), "/data/label", "log.b2").at("shape"),
+            inspect(archive(), "/data/time", "log.b2").at("shape"));
   const std::string shown = modebank({"show", archive()}).out;
   EXPECT_NE(shown.find("most probable mode of each label's samples, held-out runs"), std::string::npos) << shown;
   EXPECT_EQ(modebank({"verify", archive()}).status, 0);

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/text/number_text.hpp"
@@ -110,6 +111,26 @@ TEST_F(Show, SparklineIsTheArchivesProbabilities) {
   EXPECT_EQ(lines[1], "run  01");
   EXPECT_EQ(lines[2].substr(0, 5 + 10 * 3 + 10), "   0 ██████████          ");
   EXPECT_EQ(lines[3].substr(0, 5 + 10 + 10 * 3), "   1           ██████████");
+}
+
+TEST_F(Show, OfARunItShowsItsRows) {
+  ASSERT_EQ(run().status, 0);
+  const Trajectory stored = read_archive(archive()).recording->runs.at(1);
+  const auto shown = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> all{"show", archive(), "--run", stored.run};
+    all.insert(all.end(), words.begin(), words.end());
+    const ProgramResult result = modebank(all);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  const nlohmann::json all = shown({});
+  EXPECT_EQ(all.at("run").at("role"), "test");
+  EXPECT_EQ(all.at("members").at("/evaluation/bank").at("nis").at("shape"), nlohmann::json({stored.samples()}));
+  const nlohmann::json times = shown({"/data/time"}).at("value");
+  ASSERT_EQ(std::ssize(times), stored.samples());
+  EXPECT_EQ(times.back().get<double>(), stored.time_s(stored.samples() - 1));
+  EXPECT_EQ(modebank({"show", archive(), "--run", "none"}).status, 2);
+  EXPECT_EQ(modebank({"show", archive(), "/windows", "--run", stored.run}).status, 2);
 }
 
 TEST_F(Show, IsPlainWithoutUtf8) {

@@ -101,7 +101,7 @@ TEST_F(Export, ModesHaveTheirNames) {
   stored.mode_names.assign(static_cast<std::size_t>(stored.bank->mode_count()), "");
   stored.mode_names[0] = "ice\n*/";
   write_archive(archive(), stored);
-  EXPECT_EQ(exported("json").status, 1) << "names have one line";
+  EXPECT_EQ(modebank({"verify", archive()}).status, 1) << "names have one line";
   stored.mode_names[0] = "ice */ \"grit\"";
   write_archive(archive(), stored);
   const json modes = json::parse(exported("json").out).at("modes");
@@ -126,6 +126,35 @@ TEST_F(Export, CsvIsAnyTableAsItStands) {
   const ProgramResult group = exported("csv", {"--table", "/evaluation"});
   EXPECT_EQ(group.status, 2);
   EXPECT_THAT(group.err, HasSubstr("it holds: bank"));
+}
+
+TEST_F(Export, CsvOfARunHasARowPerSample) {
+  const Archive stored = read_archive(archive());
+  const Trajectory& run = stored.recording->runs.at(1);
+  const auto lines_of = [&](const std::vector<std::string>& options) {
+    const ProgramResult result = exported("csv", options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    std::vector<std::string> lines;
+    std::istringstream stream(result.out);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+  };
+  const std::vector<std::string> data = lines_of({"--run", run.run});
+  ASSERT_EQ(std::ssize(data), run.samples() + 1);
+  EXPECT_EQ(data.front(), "time,input[0],input[1],state[0]");
+  std::istringstream first(data[1]);
+  std::string cell;
+  for (const double expected : {run.time_s(0), run.input(0, 0), run.input(1, 0), run.state(0, 0)}) {
+    std::getline(first, cell, ',');
+    EXPECT_EQ(std::stod(cell), expected);
+  }
+  EXPECT_EQ(std::ssize(lines_of({"--run", run.run, "--table", "/evaluation/bank"})), run.samples() + 1);
+  EXPECT_EQ(lines_of({"--run", run.run, "--table", "/evaluation/bank/nis"}).at(0), "nis");
+  for (const std::string& line : lines_of({"--run", run.run, "--table", "/evaluation/summary"}))
+    EXPECT_TRUE(line.starts_with("filter,") || line.find("," + run.run + ",") != std::string::npos) << line;
+  EXPECT_EQ(exported("csv", {"--run", "none"}).status, 2);
+  EXPECT_EQ(exported("csv", {"--run", run.run, "--table", "/bank/A"}).status, 2);
+  EXPECT_EQ(exported("json", {"--run", run.run}).status, 2);
 }
 
 TEST_F(Export, WritesFilesWholeOrNotAtAll) {

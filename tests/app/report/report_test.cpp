@@ -173,7 +173,7 @@ TEST_F(Report, PageHoldsTheArchivesNumbersAndReachesNowhere) {
 
 TEST_F(Report, IsTheSameOfRunsThatStayInTheFile) {
   ASSERT_EQ(run({"--filter.simulate", "10"}).status, 0);
-  const Archive by_runs = read_archive_by_runs(archive(), 0);
+  const Archive by_runs = read_archive(archive(), Evaluations::in_file);
   ASSERT_TRUE(by_runs.evaluations.front().in_file && !by_runs.evaluations.front().free_runs.empty());
   app::ReportConfig options;
   for (options.size_mb = 64.0; options.size_mb >= 8.0; options.size_mb /= 8.0)

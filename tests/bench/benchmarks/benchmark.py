@@ -54,6 +54,11 @@ def filters(archive, *but):
         return [name for name in map(decoded, file["evaluation"].attrs["filters"]) if name not in but]
 
 
+def rows_of_runs(file, role):
+    """Names of an open archive's runs of a role, and their rows in arrays over samples."""
+    return {decoded(row["name"]): slice(row["first"], row["first"] + row["samples"]) for row in file["data/runs"][:] if decoded(row["role"]) == role}
+
+
 def title_of(name):
     """The name of a filter's row beside those of banks."""
     return "all of them combined" if name == "combined" else f"competitor: {name}"

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 
-from benchmark import SOURCES, Arguments, decoded, filters, head, held_out, line, modes, numbers, run, title_of
+from benchmark import SOURCES, Arguments, filters, head, held_out, line, modes, numbers, rows_of_runs, run, title_of
 
 PROTOCOL = """DATA/dart/README.md: configs/dart.ini: 10 Hz, v_steer = speed * steering derived, two lags of state and inputs, delay 0, no intercept; folds by parity of the run's name; a sample
 counts from the third of a run on (h ahead: from sample 2 + h on). Nats per sample / RMSE in rad/s; jumps: RMSE one step ahead where v_steer moved by more than 0.5.
@@ -19,12 +19,10 @@ def jump_errors(archive, name):
     """A filter's errors of the mean one step ahead where the driver's v_steer jumped, held-out samples that all filters score."""
     every, found = filters(archive), []
     with h5py.File(archive) as file:
-        for run_name, data in file["data"].items():
-            if decoded(data.attrs["role"]) != "test":
-                continue
-            jumped = np.abs(np.diff(data["input"][:, 0], prepend=np.nan)) > JUMP
-            scored = np.all([np.isfinite(file[f"evaluation/{f}/{run_name}/log_density"][:]) for f in every], axis=0)
-            found.append(file[f"evaluation/{name}/{run_name}/innovation"][:, 0][jumped & scored])
+        for rows in rows_of_runs(file, "test").values():
+            jumped = np.abs(np.diff(file["data/input"][rows, 0], prepend=np.nan)) > JUMP
+            scored = np.all([np.isfinite(file[f"evaluation/{f}/log_density"][rows]) for f in every], axis=0)
+            found.append(file[f"evaluation/{name}/innovation"][rows, 0][jumped & scored])
     return np.concatenate(found)
 
 

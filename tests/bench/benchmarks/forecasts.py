@@ -8,7 +8,7 @@ import subprocess
 import h5py
 import numpy as np
 
-from benchmark import SOURCES, Arguments, decoded, filters, head, held_out, line, modes, significant
+from benchmark import SOURCES, Arguments, decoded, filters, head, held_out, line, modes, rows_of_runs, significant
 from hybrid_systems import INPUTS, simulator
 
 PROTOCOL = """[data] of the configuration of each data set alone, defaults otherwise, one thread; either half of the runs trains. Held-out log score [nats/sample] / RMSE. `named`: the filter
@@ -47,7 +47,7 @@ def run(program, config, archive):
 
 def runs_of(archive, role):
     with h5py.File(archive) as file:
-        names = [name for name, data in file["data"].items() if decoded(data.attrs["role"]) == role]
+        names = rows_of_runs(file, role)
     return ", ".join(dict.fromkeys(name.split(".")[0] for name in names))  # a recording's parts, NAME.1, NAME.2, go with it
 
 

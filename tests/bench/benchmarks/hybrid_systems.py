@@ -4,7 +4,7 @@ import importlib.util
 import h5py
 import numpy as np
 
-from benchmark import filters, held_out, modes, run
+from benchmark import filters, held_out, modes, rows_of_runs, run
 
 CONFIG = """[data]
 inputs = {folder}/run_*.csv
@@ -74,7 +74,6 @@ def accuracy(archive, truth):
     """Share of samples whose most probable filtered mode is the true one that led to it, each of the bank's modes taken for the true one
     that it meets most often. The true filter's is 1: states are measured exactly, so that it knows what the guard says."""
     with h5py.File(archive) as file:
-        names = [name for name in file["data"] if file[f"data/{name}"].attrs["role"] == b"test"]
-        said = [np.argmax(file[f"evaluation/bank/{name}/mode_probability"][:], axis=1)[1:] for name in names]
+        said = [np.argmax(file["evaluation/bank/mode_probability"][rows], axis=1)[1:] for rows in rows_of_runs(file, "test").values()]
     said, led = np.concatenate(said), np.concatenate([m[:-1] for m in truth])
     return float(sum(np.bincount(led[said == mode]).max() for mode in np.unique(said)) / len(led))

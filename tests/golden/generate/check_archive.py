@@ -85,7 +85,7 @@ def check_user_block(path):
 def check_root(file):
     expect("user block size", file.userblock_size, 512)
     expect("format", file.attrs["format"], b"modebank")
-    expect("schema_version", file.attrs["schema_version"], b"2.0")
+    expect("schema_version", file.attrs["schema_version"], b"3.0")
     expect("modebank_version", file.attrs["modebank_version"], b"0.1.0")
     expect("created", file.attrs["created"], b"2026-08-01T12:00:00Z")
     expect("command_line", file.attrs["command_line"], b'modebank run "a b.ini" --window.length 5')
@@ -104,25 +104,48 @@ def check_root(file):
     expect("inputs sha256", inputs["sha256"][0], b"1" * 64)
 
 
+def rows_of_runs(file):
+    """The rows of each run in arrays over samples."""
+    table = file["data/runs"]
+    return {row["name"].decode(): slice(row["first"], row["first"] + row["samples"]) for row in table}
+
+
 def check_data(file):
-    expect("runs", set(file["data"]), set(RUNS))
-    for position, (run, N) in enumerate(RUNS.items()):
-        group = file["data"][run]
-        expect(f"{run} role", group.attrs["role"], b"test" if position == 1 else b"train")
-        expect(f"{run} lag_s", group.attrs["lag_s"], 0.1 * position)
-        expect_array(group["time"], (N,), "<f8", b"s")
-        expect_array(group["state"], (N, n), "<f8", STATE_UNITS)
-        expect_array(group["input"], (N, m), "<f8", b"m/s")
-        expect(f"{run} truth", "truth" in group, position != 2)
+    group, S = file["data"], sum(RUNS.values())
+    table = group["runs"]
+    expect("runs columns", table.dtype.names, ("name", "role", "first", "samples", "lag_s", "time_origin_ns", "file"))
+    expect("runs", [name.decode() for name in table["name"]], list(RUNS))
+    expect("first rows", table["first"], np.array([0, 12, 25]))
+    expect("samples", table["samples"], np.array(list(RUNS.values())))
+    expect("roles", table["role"], np.array([b"train", b"test", b"train"]))
+    expect("lag_s", table["lag_s"], 0.1 * np.arange(3))
+    expect("origin", table["time_origin_ns"], np.full(3, 1714557600000000001))
+    expect("file", table["file"], np.array([b"/data/pro_00.csv", b"", b""]))
+    expect("arrays", sorted(group), ["input", "label", "runs", "state", "time", "truth", "weight"])
+    expect_array(group["time"], (S,), "<f8", b"s")
+    expect_array(group["state"], (S, n), "<f8", STATE_UNITS)
+    expect_array(group["input"], (S, m), "<f8", b"m/s")
+    expect_array(group["truth"], (S, n), "<f8", STATE_UNITS)
+    expect_array(group["weight"], (S,), "<f8")
+    expect_array(group["label"], (S,), "<i4")
+    expect("no truth", np.isnan(group["truth"].fillvalue), True)
+    expect("no label", group["label"].fillvalue, -1)
+    for position, (run, rows) in enumerate(rows_of_runs(file).items()):
+        N = RUNS[run]
         state = pattern(N, n, 1000.0 * position)
         if position == 0:
             state[3, 0] = np.nan
-        expect(f"{run} state bits", group["state"][()].tobytes(), state.tobytes())
-        expect(f"{run} input", group["input"][()], pattern(N, m, 0.0))
-    expect("weighted runs", [run for run in RUNS if "weight" in file["data"][run]], ["run 2"])
-    expect_array(file["data/run 2/weight"], (12,), "<f8")
-    expect("weight", file["data/run 2/weight"][()], pattern(1, 12, 0.5)[0])
-    expect_array(file["data/run 2/truth"], (12, n), "<f8", STATE_UNITS)
+        expect(f"{run} state bits", group["state"][rows].tobytes(), state.tobytes())
+        expect(f"{run} input", group["input"][rows], pattern(N, m, 0.0))
+        expect(f"{run} time", group["time"][rows], np.linspace(0.1, 3.0, N))
+        if position == 2:
+            expect(f"{run} has no truth", np.isnan(group["truth"][rows]).all(), True)
+        else:
+            expect(f"{run} truth", group["truth"][rows], pattern(N, n, 7.0))
+        if position == 0:
+            expect(f"{run} weight", group["weight"][rows], pattern(1, N, 0.5)[0])
+        else:
+            expect(f"{run} has no weight", np.isnan(group["weight"][rows]).all(), True)
 
 
 def check_lag(file):
@@ -255,31 +278,37 @@ def check_bank(group, modes, uncertain):
 
 
 def check_evaluation(file):
+    S = sum(RUNS.values())
     for name, modes in (("bank", K), ("baseline", 1), ("noise_only", K), ("one_motion", K)):
-        for run, N in RUNS.items():
-            group = file["evaluation"][name][run]
-            expect_array(group["prediction"], (N, n), "<f8", STATE_UNITS)
-            expect_array(group["innovation"], (N, n_y), "<f8", STATE_UNITS)
-            expect_array(group["innovation_covariance"], (N, n_y, n_y), "<f8", outer(STATE_UNITS))
-            expect_array(group["state"], (N, n), "<f8", STATE_UNITS)
-            expect_array(group["covariance"], (N, n, n), "<f8", outer(STATE_UNITS))
-            expect_array(group["nis"], (N,), "<f8")
-            expect_array(group["pit"], (N, n_y), "<f8")
-            expect_array(group["log_density"], (N,), "<f8", b"nat")
-            expect_array(group["mode_probability_predicted"], (N, modes), "<f8")
-            expect_array(group["mode_probability"], (N, modes), "<f8")
-            expect(f"{name} {run} mode_probability", group["mode_probability"][()], probabilities(N, modes, 79.0))
-            expect(f"{name} {run} nis[0]", np.isnan(group["nis"][0]), True)
-            expect_array(group["spread_share"], (N,), "<f8")
-            expect(f"{name} {run} smoothed", "smoothed_state" in group, modes > 1)
-            for which in ("mean", "sd", "lower", "upper"):
-                expect_array(group[f"free_run_{which}"], (N, n), "<f8", STATE_UNITS)
-            expect_array(group["free_run_mode"], (N,), "<i4")
+        group = file["evaluation"][name]
+        expect_array(group["prediction"], (S, n), "<f8", STATE_UNITS)
+        expect_array(group["innovation"], (S, n_y), "<f8", STATE_UNITS)
+        expect_array(group["innovation_covariance"], (S, n_y, n_y), "<f8", outer(STATE_UNITS))
+        expect_array(group["state"], (S, n), "<f8", STATE_UNITS)
+        expect_array(group["covariance"], (S, n, n), "<f8", outer(STATE_UNITS))
+        expect_array(group["nis"], (S,), "<f8")
+        expect_array(group["pit"], (S, n_y), "<f8")
+        expect_array(group["log_density"], (S,), "<f8", b"nat")
+        expect_array(group["mode_probability_predicted"], (S, modes), "<f8")
+        expect_array(group["mode_probability"], (S, modes), "<f8")
+        expect_array(group["spread_share"], (S,), "<f8")
+        expect(f"{name} smoothed", "smoothed_state" in group, modes > 1)
+        for which in ("mean", "sd", "lower", "upper"):
+            expect_array(group[f"free_run_{which}"], (S, n), "<f8", STATE_UNITS)
+        expect_array(group["free_run_mode"], (S,), "<i4")
+        if modes > 1:
+            expect_array(group["smoothed_state"], (S, n), "<f8", STATE_UNITS)
+            expect_array(group["smoothed_covariance"], (S, n, n), "<f8", outer(STATE_UNITS))
+            expect_array(group["viterbi_mode"], (S,), "<i4")
+        for run, rows in rows_of_runs(file).items():
+            N = RUNS[run]
+            expect(f"{name} {run} prediction", group["prediction"][rows], pattern(N, n, 70.0))
+            expect(f"{name} {run} covariance", group["covariance"][rows], spread(N, n, 74.0))
+            expect(f"{name} {run} mode_probability", group["mode_probability"][rows], probabilities(N, modes, 79.0))
+            expect(f"{name} {run} nis[0]", np.isnan(group["nis"][rows.start]), True)
+            expect(f"{name} {run} free_run_sd", group["free_run_sd"][rows], pattern(N, n, 61.0))
             if modes > 1:
-                expect_array(group["smoothed_state"], (N, n), "<f8", STATE_UNITS)
-                expect_array(group["smoothed_covariance"], (N, n, n), "<f8", outer(STATE_UNITS))
-                expect_array(group["viterbi_mode"], (N,), "<i4")
-                expect(f"{name} {run} viterbi_mode", group["viterbi_mode"][()], np.arange(N) % (modes + 1) - 1)
+                expect(f"{name} {run} viterbi_mode", group["viterbi_mode"][rows], np.arange(N) % (modes + 1) - 1)
     table = file["evaluation/summary"]
     expect("summary columns", table.dtype.names,
            ("filter", "role", "run", "samples", "log_score", "rmse", "nis_mean", "nis_above", "nis_below",
@@ -320,20 +349,24 @@ def check_evidence(group):
 
 
 def check_residual_tests(file):
-    expect("models", list(file["residual_tests"].attrs["models"]), [b"global", b"bank"])
-    T = 4
-    for model in ("global", "bank"):
-        for position, run in enumerate(RUNS):
-            group = file["residual_tests"][model][run]
-            expect_array(group["autocorrelation"], (T, n), "<f8")
-            expect_array(group["cross_correlation"], (T, n, m), "<f8")
-            expect_array(group["cross_correlation_band"], (n, m), "<f8")
-            expect_array(group["ljung_box_p"], (n,), "<f8")
-            expect("autocorrelation", group["autocorrelation"][()], pattern(T, n, 90.0 + position))
-            expect("cross_correlation", group["cross_correlation"][()], pattern(T, n * m, 91.0).reshape(T, n, m))
-            expect("band", group.attrs["autocorrelation_band"], 0.25)
-            expect("level", group.attrs["level"], 0.99)
-            expect("samples", group.attrs["samples"], 10 + position)
+    T, models = 4, [b"global", b"bank"]
+    names = np.array([run.encode() for run in RUNS] * 2)
+    table = file["residual_tests/runs"]
+    expect("residual runs columns", table.dtype.names,
+           ("model", "run", "samples", "level", "autocorrelation_band", "lags", "ljung_box_p", "cross_correlation_band"))
+    expect("models", table["model"], np.repeat(models, 3))
+    expect("residual runs", table["run"], names)
+    expect("residual samples", table["samples"], np.array([10, 11, 12] * 2))
+    expect("level", table["level"], np.full(6, 0.99))
+    expect("band", table["autocorrelation_band"], np.full(6, 0.25))
+    expect("lags", table["lags"], np.full(6, T))
+    lags = file["residual_tests/lags"]
+    expect("lags columns", lags.dtype.names, ("model", "run", "lag", "autocorrelation", "cross_correlation"))
+    expect("model of a lag", lags["model"], np.repeat(models, 3 * T))
+    expect("run of a lag", lags["run"], np.repeat(names, T))
+    expect("lag", lags["lag"], np.tile(np.arange(T), 6))
+    expect("autocorrelation", lags["autocorrelation"], np.concatenate([pattern(T, n, 90.0 + run) for run in (0, 1, 2)] * 2))
+    expect("cross_correlation", lags["cross_correlation"], np.tile(pattern(T, n * m, 91.0), (6, 1)))
 
 
 def main():

@@ -53,12 +53,11 @@ TEST_F(ArchiveDamage, TruncatedFilesAreErrorsAtEveryLength) {
   expect_unreadable("truncated file");
 }
 
-TEST_F(ArchiveDamage, TheHashIsCheckedBeforeHdf5SeesTheFile) {
+TEST_F(ArchiveDamage, AFileThatHdf5CannotOpenIsCalledDamaged) {
   std::string bytes = read_file(path);
-  bytes[bytes.find("OHDR") + 5] ^= 1;  // of the root group: HDF5 could not open the file
+  bytes[bytes.find("OHDR") + 5] ^= 1;  // of the root group
   test::write_file(path, bytes);
-  const auto says =
-      ThrowsMessage<DataError>(AllOf(HasSubstr(path.string()), HasSubstr("damaged: the content's SHA-256")));
+  const auto says = ThrowsMessage<DataError>(AllOf(HasSubstr(path.string()), HasSubstr("damaged")));
   EXPECT_THAT([&] { read_archive(path); }, says);
   EXPECT_THAT([&] { load_bank(path); }, says);
 }
@@ -78,7 +77,7 @@ TEST_F(ArchiveDamage, WhatIsNotAnArchiveIsNamed) {
   test::write_file(path, std::string(4096, 'x'));
   expect_unreadable("not a modebank archive");
   EXPECT_THAT([&] { read_archive(folder.path()); }, ThrowsMessage<DataError>(HasSubstr("is a folder")));
-  EXPECT_THAT([&] { verify_archive(folder.path()); }, ThrowsMessage<DataError>(HasSubstr("is a folder")));
+  EXPECT_THAT(verify_archive(folder.path()).problems, Contains(HasSubstr("is a folder")));
   EXPECT_THAT([&] { read_archive("/dev/null"); }, ThrowsMessage<DataError>(HasSubstr("not a regular file")));
   EXPECT_THROW(read_archive(folder.path() / "none.h5"), ConfigurationError);
   EXPECT_THROW(verify_archive(folder.path() / "none.h5"), ConfigurationError);
@@ -90,15 +89,15 @@ TEST_F(ArchiveDamage, ForeignHdf5AndOtherSchemasAreNamed) {
   test::write_foreign_hdf5(path, 512);
   expect_unreadable("not a modebank archive");
   write_archive(path, test::full_archive(2, 1));
-  test::patch_text_attribute(path, "/", "schema_version", "2.7");
+  test::patch_text_attribute(path, "/", "schema_version", "3.7");
   EXPECT_NO_THROW(read_archive(path));
-  test::patch_text_attribute(path, "/", "schema_version", "3.0");
-  expect_unreadable("schema 3.0 is newer than 2.0");
-  test::patch_text_attribute(path, "/", "schema_version", "1.0");
-  expect_unreadable("schema 1.0 is older than 2.0: scores had other names then");
+  test::patch_text_attribute(path, "/", "schema_version", "4.0");
+  expect_unreadable("schema 4.0 is newer than 3.0");
+  test::patch_text_attribute(path, "/", "schema_version", "2.0");
+  expect_unreadable("made by modebank 0.1; run again");
   test::patch_text_attribute(path, "/", "schema_version", "two");
   expect_unreadable("is not a version");
-  test::patch_text_attribute(path, "/", "schema_version", "2.0");
+  test::patch_text_attribute(path, "/", "schema_version", "3.0");
   test::patch_text_attribute(path, "/", "format", "othertool");
   expect_unreadable("not a modebank archive");
 }
@@ -120,11 +119,11 @@ TEST_F(ArchiveDamage, AnArchiveOfAnEarlierMinorVersionOpens) {
 TEST_F(ArchiveDamage, MissingMembersAreAllListed) {
   test::remove_member(path, "/windows/parameters");
   test::remove_member(path, "/bank/transition");
-  test::remove_member(path, "/evaluation/baseline/10/pit");
+  test::remove_member(path, "/evaluation/baseline/pit");
   EXPECT_THAT(
       verify_archive(path).problems,
       AllOf(Contains(HasSubstr("/windows/parameters: is missing")), Contains(HasSubstr("/bank/transition: is missing")),
-            Contains(HasSubstr("/evaluation/baseline/10/pit: is missing")), ::testing::SizeIs(3)));
+            Contains(HasSubstr("/evaluation/baseline/pit: is missing")), ::testing::SizeIs(3)));
   expect_unreadable("/windows/parameters: is missing");
 }
 
@@ -146,7 +145,6 @@ TEST_F(ArchiveDamage, HostileContentIsAnErrorAndNeverMore) {
   refuses("/windows/parameters", {9}, test::Kind::real, "must have the dimensions");
   refuses("/windows/parameters", {9, 8}, test::Kind::integer, "another kind");
   refuses("/windows/run", {9}, test::Kind::real, "fixed-length strings");
-  refuses("/bank/transition", {3, 3}, test::Kind::real, "probabilities that sum to 0");
   refuses("/bank/B", {3, 2, 2}, test::Kind::real, "inputs");
   refuses("/baseline/parameters", {1, 7}, test::Kind::real, "do not fit");
   refuses("/mixture/candidates", {2}, test::Kind::real, "not a table");

@@ -33,6 +33,7 @@ Recording make_recording(Index n, Index m) {
     recording.runs.push_back(run);
   }
   recording.runs[0].state(0, 3) = not_a_number;
+  recording.runs[0].file = "/data/pro_00.csv";
   return recording;
 }
 

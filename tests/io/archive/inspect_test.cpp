@@ -28,7 +28,7 @@ class Inspect : public ::testing::Test {
 TEST_F(Inspect, TheRootListsGroupsAndTheirMembers) {
   const json root = at("/");
   EXPECT_EQ(root["attributes"]["format"], "modebank");
-  EXPECT_EQ(root["attributes"]["schema_version"], "2.0");
+  EXPECT_EQ(root["attributes"]["schema_version"], "3.0");
   EXPECT_EQ(root["members"]["config"], json::parse(R"({"kind": "dataset", "shape": []})"));
   EXPECT_EQ(root["members"]["bank"]["kind"], "group");
   const json& members = root["members"]["bank"]["members"];
@@ -51,7 +51,7 @@ TEST_F(Inspect, DatasetsOfAnyRankAreNestedAsTheirShape) {
   EXPECT_TRUE(at("mixture/labels")["value"][3].is_number_integer());
   EXPECT_EQ(at("/config")["value"], "[window]\nlength = 5  # fünf\n");
   EXPECT_EQ(at("/windows/run")["value"][2], "10");
-  EXPECT_EQ(at("/data/Gelände.ä/time/")["attributes"]["units"], "s");
+  EXPECT_EQ(at("/data/time/")["attributes"]["units"], "s");
 }
 
 TEST_F(Inspect, NumbersThatJsonCannotHoldAreNull) {
@@ -84,9 +84,9 @@ TEST_F(Inspect, NamesLabelsAndOrigins) {
   EXPECT_EQ(at("/bank")["attributes"]["mode_names"], json({"ice", "", "Gelände, \"naß\""}));
   EXPECT_EQ(at("/data")["attributes"]["label_names"], json({"ice", "a, b"}));
   const Archive archive = test::full_archive(2, 1);
-  const std::string run = "/data/" + archive.recording->runs[0].run;
-  EXPECT_EQ(at(run)["attributes"]["time_origin_ns"], 1'714'557'600'000'000'001);
-  const json labels = at(run + "/label")["value"];
+  const std::string run = archive.recording->runs[0].run;
+  EXPECT_EQ(at("/data/runs")["value"][0]["time_origin_ns"], 1'714'557'600'000'000'001);
+  const json labels = inspect(path, "/data/label", run)["value"];
   ASSERT_EQ(std::ssize(labels), archive.recording->runs[0].samples());
   EXPECT_EQ(labels[0], 0);
   EXPECT_EQ(labels[1], -1);
@@ -96,6 +96,29 @@ TEST_F(Inspect, NamesLabelsAndOrigins) {
   EXPECT_EQ(confusion["value"][0]["label"], "a, b");
   EXPECT_EQ(confusion["value"][0]["samples"], 7);
   EXPECT_EQ(confusion["value"][3]["share"], 1.0);
+}
+
+TEST_F(Inspect, OfARunThereAreItsRows) {
+  const Archive archive = test::full_archive(2, 1);
+  const Trajectory& run = archive.recording->runs[1];
+  const json state = inspect(path, "/data/state", run.run);
+  EXPECT_EQ(state["shape"], json({run.samples(), 2}));
+  for (Index k = 0; k < run.samples(); ++k)
+    EXPECT_EQ(state["value"][static_cast<std::size_t>(k)], json({run.state(0, k), run.state(1, k)}));
+  EXPECT_EQ(inspect(path, "/evaluation/bank", run.run)["members"]["covariance"]["shape"], json({run.samples(), 2, 2}));
+  EXPECT_FALSE(inspect(path, "/data", run.run)["members"].contains("runs"));
+  const json whole = inspect(path, "/", run.run);
+  EXPECT_EQ(whole["run"]["name"], run.run);
+  EXPECT_EQ(whole["run"]["samples"], run.samples());
+  EXPECT_EQ(whole["members"]["/evaluation/baseline"]["nis"]["shape"], json({run.samples()}));
+  EXPECT_FALSE(whole["members"].contains("/evaluation/evidence"));
+  EXPECT_EQ(inspect(path, "/evaluation/summary", "run 2")["value"].size(), 4u);
+  EXPECT_EQ(inspect(path, "/residual_tests/lags", run.run)["value"].size(), 8u);  // 4 lags of 2 models
+  EXPECT_THAT([&] { inspect(path, "/bank/A", run.run); },
+              ThrowsMessage<ConfigurationError>(HasSubstr("/bank/A holds nothing of single runs")));
+  EXPECT_THAT([&] { inspect(path, "/bank", run.run); }, ThrowsMessage<ConfigurationError>(HasSubstr("/bank holds")));
+  EXPECT_THAT([&] { inspect(path, "/data/state", "run 3"); },
+              ThrowsMessage<ConfigurationError>(AllOf(HasSubstr("no run 'run 3'"), HasSubstr("did you mean run 2"))));
 }
 
 TEST_F(Inspect, AWrongPathIsAnsweredWithWhatIsThere) {

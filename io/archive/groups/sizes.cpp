@@ -1,4 +1,4 @@
-#include "io/hdf5/sizes.hpp"
+#include "io/archive/groups/sizes.hpp"
 
 namespace modebank {
 

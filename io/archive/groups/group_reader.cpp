@@ -1,4 +1,4 @@
-#include "io/hdf5/group_reader.hpp"
+#include "io/archive/groups/group_reader.hpp"
 
 #include <new>
 #include <stdexcept>
@@ -37,27 +37,22 @@ void GroupReader::finish(const std::function<void()>& step) {
   if (!problems_ || problems_->size() == problems_before_) guarded("", step);
 }
 
-const std::string& GroupReader::require(const std::string& name) const {
-  if (!has(name)) throw DataError("is missing");
-  return name;
-}
-
 GroupReader GroupReader::open_member(const std::string& name) const {
-  GroupReader member(hdf5::open_group(group_.id(), require(name)), problems_, path_ + "/" + name);
-  member.use_ = use_;
+  if (!has(name)) throw DataError("is missing");
+  GroupReader member(hdf5::open_group(group_.id(), name), problems_, path_ + "/" + name);
+  member.left_out_ = left_out_;
   return member;
 }
 
 hdf5::StoredArray GroupReader::open_array(const std::string& name) const {
-  return {group_.id(), hdf5::Place::dataset, require(name)};
+  if (!has(name)) throw DataError("is missing");
+  return {group_.id(), hdf5::Place::dataset, name};
 }
 
-hdf5::StoredArray GroupReader::open_numbers(const std::string& name, const Letters& letters, H5T_class_t kind) {
-  hdf5::StoredArray array = open_array(name);
+void GroupReader::check_numbers(const hdf5::StoredArray& array, const Letters& letters, H5T_class_t kind) {
   if (array.type_class() != kind) throw DataError("holds another kind of value");
   const std::string problem = sizes_.agree(letters, array.shape());
   if (!problem.empty()) throw DataError("has " + problem);
-  return array;
 }
 
 hdf5::StoredArray GroupReader::open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const {
@@ -83,7 +78,7 @@ void GroupReader::constant_attribute(const std::string& name, const std::string&
 void GroupReader::attribute_texts(const std::string& name, std::vector<std::string>& texts) {
   guarded(name, [&] {
     texts = open_attribute(name, H5T_STRING, false).texts();
-    if (const std::string problem = broken_text(texts); !problem.empty()) throw DataError(problem);
+    if (const std::string problem = verifies() ? broken_text(texts) : ""; !problem.empty()) throw DataError(problem);
   });
 }
 
@@ -111,33 +106,8 @@ void GroupReader::texts(const std::string& name, std::vector<std::string>& value
     const std::string problem = sizes_.agree(letters, array.shape());
     if (!problem.empty()) throw DataError("has " + problem);
     values = array.texts();
-    if (const std::string text = broken_text(values); !text.empty()) throw DataError(text);
+    if (const std::string text = verifies() ? broken_text(values) : ""; !text.empty()) throw DataError(text);
   });
-}
-
-GroupReader::Members& GroupReader::members() const {
-  if (members_) return *members_;
-  members_.emplace();
-  for (const hdf5::Link& link : hdf5::links_of(group_.id())) members_->emplace(link.name, Member{link.hard});
-  return *members_;
-}
-
-bool GroupReader::has(const std::string& name) const {
-  const auto found = members().find(name);
-  if (found == members().end()) return false;
-  found->second.asked = true;
-  return true;
-}
-
-void GroupReader::check_links(const hdf5::LinkAllowed& elsewhere) {
-  for (const auto& link : members())
-    guarded(link.first, [&] {
-      const Member& member = link.second;
-      if (!member.hard)
-        hdf5::check_link(group_.id(), path_, {link.first, member.hard}, elsewhere);
-      else if (!member.asked)
-        hdf5::check_below(group_.id(), path_, link.first, elsewhere);
-    });
 }
 
 }  // namespace modebank

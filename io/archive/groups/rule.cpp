@@ -1,4 +1,4 @@
-#include "io/hdf5/rule.hpp"
+#include "io/archive/groups/rule.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -24,13 +24,20 @@ std::string number_text(double value) {
   return text.str();
 }
 
-/// Where the i-th of all values stands: "(3, 0)"; nothing of a single one.
-std::string place(const hdf5::Shape& shape, std::size_t i) {
+/// Some rows of an array, and which row of the array they begin with.
+struct Stretch {
+  const hdf5::Shape& shape;
+  hsize_t first_row;
+};
+
+/// The place of the i-th value: "(3, 0)"; empty for a single one.
+std::string place(const Stretch& rows, std::size_t i) {
+  const hdf5::Shape& shape = rows.shape;
   if (shape.empty()) return {};
   std::string text;
   for (std::size_t d = shape.size(); d-- > 0;) {
     const auto extent = static_cast<std::size_t>(std::max<hsize_t>(shape[d], 1));
-    text = std::to_string(i % extent) + (text.empty() ? "" : ", ") + text;
+    text = std::to_string(d == 0 ? i + rows.first_row : i % extent) + (text.empty() ? "" : ", ") + text;
     i /= extent;
   }
   return " at (" + text + ")";
@@ -62,30 +69,30 @@ std::string demand(const Rule& rule) {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// How many values one matrix or row takes whose extents are the last `dimensions`.
-std::size_t stretch(const hdf5::Shape& shape, std::size_t dimensions) {
+std::size_t values_in(const hdf5::Shape& shape, std::size_t dimensions) {
   std::size_t count = 1;
   for (std::size_t d = shape.size() - std::min(dimensions, shape.size()); d < shape.size(); ++d)
     count *= static_cast<std::size_t>(shape[d]);
   return count;
 }
 
-std::string not_increasing(const hdf5::Shape& shape, std::span<const double> values) {
+std::string not_increasing(const Stretch& rows, std::span<const double> values) {
   for (std::size_t i = 1; i < values.size(); ++i)
     if (!(values[i] > values[i - 1]))
-      return "does not increase" + place(shape, i) + ": " + number_text(values[i]) + " after " +
+      return "does not increase" + place(rows, i) + ": " + number_text(values[i]) + " after " +
              number_text(values[i - 1]);
   return {};
 }
 
-std::string broken_sums(Rule::Form form, const hdf5::Shape& shape, std::span<const double> values) {
+std::string broken_sums(Rule::Form form, const Stretch& rows, std::span<const double> values) {
   constexpr double tolerance = 1e-6;
-  const std::size_t row = stretch(shape, 1);
+  const std::size_t row = values_in(rows.shape, 1);
   for (std::size_t begin = 0; row > 0 && begin < values.size(); begin += row) {
     double sum = 0.0;
     for (std::size_t i = begin; i < begin + row; ++i) sum += values[i];
     const bool above = sum > 1.0 + tolerance, below = sum < 1.0 - tolerance;  // neither where one is missing
     if (above || (below && form == Rule::Form::probabilities))
-      return "holds probabilities that sum to " + number_text(sum) + place(shape, begin);
+      return "holds probabilities that sum to " + number_text(sum) + place(rows, begin);
   }
   return {};
 }
@@ -106,30 +113,30 @@ bool is_spread(const MatrixOfFile& matrix) {
   return true;
 }
 
-std::string broken_matrices(Rule::Form form, const hdf5::Shape& shape, std::span<const double> values) {
-  const std::size_t matrix = stretch(shape, 2);
-  const auto side = static_cast<Eigen::Index>(shape.empty() ? 1 : shape.back());
+std::string broken_matrices(Rule::Form form, const Stretch& rows, std::span<const double> values) {
+  const std::size_t matrix = values_in(rows.shape, 2);
+  const auto side = static_cast<Eigen::Index>(rows.shape.empty() ? 1 : rows.shape.back());
   for (std::size_t begin = 0; matrix > 0 && begin + matrix <= values.size(); begin += matrix) {
     const MatrixOfFile here(values.data() + begin, side, side);
     const bool square = static_cast<std::size_t>(side * side) == matrix;
     if (!square || !(form == Rule::Form::covariances ? is_covariance(here) : is_spread(here)))
-      return "holds a matrix" + place(shape, begin) + " that is no covariance: not symmetric or not definite";
+      return "holds a matrix" + place(rows, begin) + " that cannot be a covariance: not symmetric or not definite";
   }
   return {};
 }
 
-std::string broken_form(Rule::Form form, const hdf5::Shape& shape, std::span<const double> values) {
+std::string broken_form(Rule::Form form, const Stretch& rows, std::span<const double> values) {
   switch (form) {
     case Rule::Form::none:
       return {};
     case Rule::Form::increasing:
-      return not_increasing(shape, values);
+      return not_increasing(rows, values);
     case Rule::Form::probabilities:
     case Rule::Form::parts:
-      return broken_sums(form, shape, values);
+      return broken_sums(form, rows, values);
     case Rule::Form::covariances:
     case Rule::Form::spreads:
-      return broken_matrices(form, shape, values);
+      return broken_matrices(form, rows, values);
   }
   return {};
 }
@@ -137,24 +144,26 @@ std::string broken_form(Rule::Form form, const hdf5::Shape& shape, std::span<con
 }  // namespace
 
 template <class Number>
-std::string broken(const Rule& given, const Sizes& sizes, const hdf5::Shape& shape, const Number* values) {
+std::string broken(const Rule& given, const Sizes& sizes, const hdf5::Shape& shape, const Number* values,
+                   hsize_t first_row) {
   const Rule rule = bound(given, sizes);
+  const Stretch rows{shape, first_row};
   const auto count = static_cast<std::size_t>(hdf5::element_count(shape));
   for (std::size_t i = 0; i < count; ++i)
     if (!holds(rule, static_cast<double>(values[i])))
-      return "holds " + number_text(static_cast<double>(values[i])) + place(shape, i) + ", " + demand(rule);
+      return "holds " + number_text(static_cast<double>(values[i])) + place(rows, i) + ", " + demand(rule);
   if (rule.form == Rule::Form::none) return {};
   if constexpr (std::is_same_v<Number, double>)
-    return broken_form(rule.form, shape, {values, count});
+    return broken_form(rule.form, rows, {values, count});
   else
-    return broken_form(rule.form, shape, std::vector<double>(values, values + count));
+    return broken_form(rule.form, rows, std::vector<double>(values, values + count));
 }
 
-template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const double*);
-template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::int8_t*);
-template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::int32_t*);
-template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::int64_t*);
-template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::uint64_t*);
+template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const double*, hsize_t);
+template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::int8_t*, hsize_t);
+template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::int32_t*, hsize_t);
+template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::int64_t*, hsize_t);
+template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const std::uint64_t*, hsize_t);
 
 std::string broken_text(const std::vector<std::string>& texts, bool whole) {
   for (const std::string& text : texts)

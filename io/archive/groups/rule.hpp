@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/hdf5/sizes.hpp"
+#include "io/archive/groups/sizes.hpp"
 
 namespace modebank {
 
@@ -30,6 +30,7 @@ struct Rule {
   std::string below = {};       ///< a letter: positions, below the extent that it has taken
   double beyond = 0.0;          ///< how far above the last position they may lie; 1: counts
   Form form = Form::none;
+  bool index = false;  ///< values become positions or sizes: every reader checks them, not verification alone
 };
 
 /// The rules that the layout speaks of.
@@ -47,7 +48,7 @@ inline const Rule share{.least = 0.0, .most = one};
 inline const Rule share_or_missing{.least = 0.0, .most = one, .may_be_missing = true};
 /// Infinite, too: what divides by it may be zero.
 inline const Rule at_most_one{.most = one, .finite = false, .may_be_missing = true};
-inline const Rule at_least_one{.least = 1.0};
+inline const Rule at_least_one{.least = 1.0, .index = true};
 inline const Rule increasing{.form = Rule::Form::increasing};
 inline const Rule probabilities{.least = 0.0, .most = one, .form = Rule::Form::probabilities};
 inline const Rule probabilities_or_missing{
@@ -57,15 +58,15 @@ inline const Rule covariances{.form = Rule::Form::covariances};
 inline const Rule spreads{.finite = false, .may_be_missing = true, .form = Rule::Form::spreads};
 
 /// Of a model, and of its channels: more than anybody asks for, and few enough that sizes made of them are numbers.
-inline const Rule lags{.least = 1.0, .most = 1000.0};
-inline const Rule delay{.least = 0.0, .most = 1000.0};
-inline const Rule channels{.least = 0.0, .most = 1e5};
+inline const Rule lags{.least = 1.0, .most = 1000.0, .index = true};
+inline const Rule delay{.least = 0.0, .most = 1000.0, .index = true};
+inline const Rule channels{.least = 0.0, .most = 1e5, .index = true};
 
-inline Rule between(double least, double most) { return {.least = least, .most = most}; }
+inline Rule between(double least, double most) { return {.least = least, .most = most, .index = true}; }
 /// Positions below the extent that the letter has taken; while no array has bound it, any position.
-inline Rule position(std::string letter) { return {.least = 0.0, .below = std::move(letter)}; }
+inline Rule position(std::string letter) { return {.least = 0.0, .below = std::move(letter), .index = true}; }
 /// The same, or -1 for none.
-inline Rule position_or_none(std::string letter) { return {.least = -1.0, .below = std::move(letter)}; }
+inline Rule position_or_none(std::string letter) { return {.least = -1.0, .below = std::move(letter), .index = true}; }
 /// How many of what the letter counts.
 inline Rule count_of(std::string letter) { return {.least = 0.0, .below = std::move(letter), .beyond = 1.0}; }
 
@@ -73,8 +74,10 @@ inline Rule count_of(std::string letter) { return {.least = 0.0, .below = std::m
 
 /// What of the values, `shape` in row-major order, breaks the rule, e.g. "holds 255 at (3), must lie in 0 .. 3"; empty
 /// when nothing does.
+/// `first_row`: the row of the whole array that the values begin with.
 template <class Number>
-std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::Shape& shape, const Number* values);
+std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::Shape& shape, const Number* values,
+                   hsize_t first_row = 0);
 
 /// What of the texts a terminal would obey, for names are printed; empty when nothing does. Line ends and tabs will do
 /// in a text that is no name, `whole`.

@@ -6,12 +6,29 @@
 #include <string>
 #include <vector>
 
+#include "io/archive/groups/columns.hpp"
+#include "io/archive/groups/rule.hpp"
+#include "io/archive/groups/sizes.hpp"
 #include "io/hdf5/array.hpp"
-#include "io/hdf5/columns.hpp"
-#include "io/hdf5/rule.hpp"
-#include "io/hdf5/sizes.hpp"
 
 namespace modebank {
+
+/// Binds the letters of an array; throws std::invalid_argument, which names its place, where extents disagree.
+void agree(Sizes& sizes, const std::string& place, const Letters& letters, const hdf5::Shape& shape);
+
+/// Shape of an array that holds one sample, window or mode per column; the middle of three extents must be known
+/// already. `all`: its first extent where `values` are some of its rows, else 0.
+hdf5::Shape shape_of(Sizes& sizes, const std::string& place, const Letters& letters, hsize_t rows, hsize_t cols,
+                     bool is_vector, hsize_t all);
+template <class Derived>
+hdf5::Shape shape_of(Sizes& sizes, const std::string& place, const Letters& letters,
+                     const Eigen::PlainObjectBase<Derived>& values, hsize_t all) {
+  return shape_of(sizes, place, letters, static_cast<hsize_t>(values.rows()), static_cast<hsize_t>(values.cols()),
+                  Derived::IsVectorAtCompileTime, all);
+}
+
+/// The attribute `units`: one for all entries, or one for each entry of the trailing extents.
+void write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape);
 
 /// The writing side of the layout's description (io/archive/layout.hpp): one group of a file in the making.
 /// Arrays hold one sample, window or mode per column, which in memory is just the row-major (count, ...) dataset.
@@ -21,7 +38,7 @@ class GroupWriter {
 
   explicit GroupWriter(hdf5::Handle group, std::string path = {}) : group_(std::move(group)), path_(std::move(path)) {}
 
-  /// Makes a member group and runs `body(writer)` on it.
+  /// Makes a member group, or goes on with one that is there, and runs `body(writer)` on it.
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
     if (!complete()) return;
@@ -40,9 +57,6 @@ class GroupWriter {
   void windows_from(hsize_t first, hsize_t count, hsize_t total, std::vector<std::string> texts) {
     part_ = Part{first, count, total, std::move(texts)};
   }
-
-  /// From here on member groups that are there are gone on with.
-  void go_on_with_groups() { goes_on_ = true; }
 
   template <class T>
   void attribute(const std::string& name, const T& value, const Rule& = rule::any) {
@@ -78,7 +92,7 @@ class GroupWriter {
   }
   void texts(const std::string& name, const std::vector<std::string>& values, const Letters& letters) {
     if (part_) return write_text_rows(name, values);
-    agree(name, letters, {values.size()});
+    agree(sizes_, path_ + "/" + name, letters, {values.size()});
     hdf5::write_texts(group_.id(), hdf5::Place::dataset, name, values, {values.size()});
   }
 
@@ -90,13 +104,12 @@ class GroupWriter {
     using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
     const bool rows_only = part_ && letters.front() == "M";
     if (!rows_only && !complete()) return;
-    hdf5::Shape shape = shape_of(name, letters, static_cast<hsize_t>(values.rows()),
-                                 static_cast<hsize_t>(values.cols()), Derived::IsVectorAtCompileTime);
+    const hsize_t all = rows_only ? part_->total : 0;
+    const hdf5::Shape shape = shape_of(sizes_, path_ + "/" + name, letters, values, all);
     if (rows_only) {
-      shape.front() = part_->total;
-      hdf5::write_rows(group_.id(), name, hdf5::file_type<Stored>(), hdf5::memory_type<Stored>(), shape, part_->first,
-                       part_->count, values.data());
-      return complete() ? write_unit(open_dataset(name), unit, shape) : void();
+      const hdf5::Handle dataset = rows_of(name, hdf5::file_type<Stored>(), shape);
+      hdf5::write_rows(dataset, hdf5::memory_type<Stored>(), {{part_->first, part_->count}}, values.data());
+      return complete() ? write_unit(dataset, unit, shape) : void();
     }
     const hdf5::Handle dataset = hdf5::write_array(group_.id(), hdf5::Place::dataset, name, hdf5::file_type<Stored>(),
                                                    hdf5::memory_type<Stored>(), shape, values.data());
@@ -107,11 +120,12 @@ class GroupWriter {
   void through_rows(const std::string& name, const Source& values, const Letters& letters, const Rule& = rule::any) {
     constexpr Eigen::Index rows_at_once = 16384;
     const hdf5::Shape shape{static_cast<hsize_t>(values.windows()), static_cast<hsize_t>(values.components())};
-    agree(name, letters, shape);
+    agree(sizes_, path_ + "/" + name, letters, shape);
+    const hdf5::Handle dataset = hdf5::create_rows(group_.id(), name, hdf5::file_type<double>(), shape);
     for (Eigen::Index first = 0; first == 0 || first < values.windows(); first += rows_at_once) {
       const Eigen::MatrixXd block = values.block(first, std::min(rows_at_once, values.windows() - first));
-      hdf5::write_rows(group_.id(), name, hdf5::file_type<double>(), hdf5::memory_type<double>(), shape,
-                       static_cast<hsize_t>(first), static_cast<hsize_t>(block.cols()), block.data());
+      hdf5::write_rows(dataset, hdf5::memory_type<double>(),
+                       {{static_cast<hsize_t>(first), static_cast<hsize_t>(block.cols())}}, block.data());
     }
   }
   /// An array computed from others: for readers of the file, ignored when read back.
@@ -145,6 +159,12 @@ class GroupWriter {
     if (!rows.empty()) table(name, rows, columns...);
   }
 
+  /// A long table, whose rows are made when they are written.
+  template <class Make, class Take, class Row, class... T>
+  void table_rows(const std::string& name, Make make, const Take& /*take*/, const Column<Row, T>&... columns) {
+    table(name, make(), columns...);
+  }
+
   /// Works on the stored form of a value: `to` makes it, `body` writes it.
   template <class Value, class To, class From, class Body>
   void through(const Value& value, To to, From, Body body) {
@@ -152,10 +172,14 @@ class GroupWriter {
     body(stored);
   }
 
+  /// Binds a letter from outside the arrays.
+  void set_size(const std::string& letter, std::size_t extent) { sizes_.set(letter, extent); }
   /// What the arrays so far have decided, to hand on to a member group.
   Sizes known(const Letters& letters) const { return sizes_.only(letters); }
 
  private:
+  friend class SampleWriter;
+
   hdf5::Handle make_group(const std::string& name);
   void write_attribute(const std::string& name, const std::string& value) {
     hdf5::write_texts(group_.id(), hdf5::Place::attribute, name, {value}, {});
@@ -165,10 +189,8 @@ class GroupWriter {
     hdf5::write_array(group_.id(), hdf5::Place::attribute, name, hdf5::file_type<Number>(), hdf5::memory_type<Number>(),
                       {}, &value);
   }
-  void agree(const std::string& name, const Letters& letters, const hdf5::Shape& shape);
-  hdf5::Shape shape_of(const std::string& name, const Letters& letters, hsize_t rows, hsize_t cols, bool is_vector);
-  hdf5::Handle open_dataset(const std::string& name) const;
-  void write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape);
+  /// The dataset that parts of windows are written into: made with the first of them.
+  hdf5::Handle rows_of(const std::string& name, hid_t file_type, const hdf5::Shape& shape) const;
   void write_column_units(const hdf5::Handle& table, const std::vector<std::string>& units);
 
   struct Part {
@@ -182,7 +204,6 @@ class GroupWriter {
   std::string path_;
   Sizes sizes_;
   std::optional<Part> part_;
-  bool goes_on_ = false;
 };
 
 }  // namespace modebank

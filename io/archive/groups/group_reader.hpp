@@ -2,23 +2,31 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <map>
-#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "io/archive/groups/columns.hpp"
+#include "io/archive/groups/rule.hpp"
+#include "io/archive/groups/sizes.hpp"
 #include "io/hdf5/array.hpp"
-#include "io/hdf5/columns.hpp"
-#include "io/hdf5/links.hpp"
-#include "io/hdf5/rule.hpp"
-#include "io/hdf5/sizes.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
 
-/// The reading side of the layout's description: the same calls as GroupWriter. Without a list of problems the first
-/// one is thrown as DataError; with one, problems are listed and reading goes on, which is what verification does.
+class SampleReader;
+
+/// Parts of an archive that a reader leaves in the file.
+struct LeftOut {
+  std::set<std::string> fields;  ///< paths
+  bool evaluations = false;      ///< arrays of filters over the samples
+};
+
+/// The reading side of the layout's description: the same calls as GroupWriter. Shapes must agree, and numbers that
+/// become positions or sizes must lie within bounds; the first problem is thrown as DataError. With a list of problems
+/// all values are judged, problems are listed and reading goes on, which is what verification does: it judges large
+/// arrays block by block and leaves them empty.
 class GroupReader {
  public:
   static constexpr bool reads = true;
@@ -29,11 +37,11 @@ class GroupReader {
         problems_before_(problems ? problems->size() : 0),
         path_(std::move(path)) {}
 
-  /// What becomes of an array's values. Those that are judged alone leave a matrix its rows, without columns.
-  enum class Values { kept, judged, unread };
-  using ValuesOf = std::function<Values(const std::string& path)>;
-  /// From here on fields fare as `use` says of their paths. It must outlive the reader.
-  void read_fields(const ValuesOf& use) { use_ = &use; }
+  /// Whether all values are judged.
+  bool verifies() const { return problems_ != nullptr; }
+  /// `parts` that this reader and its member groups leave out must outlive them.
+  void leave_out(const LeftOut& parts) { left_out_ = &parts; }
+  bool leaves_evaluations() const { return left_out_ && left_out_->evaluations; }
 
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
@@ -41,7 +49,6 @@ class GroupReader {
       GroupReader member = open_member(name);
       member.sizes_ = known;
       body(member);
-      member.check_links();
     });
   }
   /// Reads the part if it is there.
@@ -49,10 +56,7 @@ class GroupReader {
   void optional_group(const std::string& name, bool /*present*/, const Sizes& known, Body body) {
     if (has(name)) group(name, known, body);
   }
-  bool has(const std::string& name) const;
-  /// Reports members that lie elsewhere, also below members that nobody asked for.
-  /// `elsewhere`: whether a link to another file may be there, by its place, the file and the place in that.
-  void check_links(const hdf5::LinkAllowed& elsewhere = {});
+  bool has(const std::string& name) const { return hdf5::has_link(group_.id(), name); }
 
   template <class T>
   void attribute(const std::string& name, T& value, const Rule& rule = rule::any) {
@@ -85,23 +89,15 @@ class GroupReader {
   template <class Derived>
   void field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters, const Unit& = {},
              const Rule& rule = rule::any) {
-    const Values use = use_ ? (*use_)(path_ + "/" + name) : Values::kept;
-    if (use == Values::unread) return void(has(name));  // asked for all the same
+    if (left_out_ && left_out_->fields.contains(path_ + "/" + name)) return;
     guarded(name, [&] {
-      using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
-      constexpr bool real = std::is_floating_point_v<Stored>;
-      const hdf5::StoredArray array = open_numbers(name, letters, real ? H5T_FLOAT : H5T_INTEGER);
-      const auto extent = [&](std::size_t i) { return i < letters.size() ? array.shape()[i] : 1; };
-      if constexpr (Derived::IsVectorAtCompileTime)
-        values.resize(static_cast<Eigen::Index>(extent(0)));
-      else
-        values.resize(static_cast<Eigen::Index>(extent(1) * extent(2)), static_cast<Eigen::Index>(extent(0)));
-      array.read(hdf5::memory_type<Stored>(), values.data());
-      const std::string problem = broken(rule, sizes_, array.shape(), stored_values(values));
-      if (!problem.empty()) throw DataError(problem);
-      if (use == Values::judged)
-        values.derived() =
-            Derived(Derived::IsVectorAtCompileTime ? 0 : values.rows(), Derived::IsVectorAtCompileTime ? 1 : 0);
+      const hdf5::StoredArray array = open_array(name);
+      check_numbers(array, letters, kind_of<Derived>());
+      if (verifies() && array.elements() > most_at_once && !array.shape().empty())
+        return judge_by_blocks(array, rule, values);
+      shape_values(values, array.shape(), static_cast<Eigen::Index>(array.shape().front()));
+      array.read(hdf5::memory_type<StoredOf<Derived>>(), values.data());
+      check_values(rule, array.shape(), values, 0);
     });
   }
   /// One that is written block by block.
@@ -115,13 +111,13 @@ class GroupReader {
   void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>&, const Letters& letters,
                      const Unit& = {}, const Rule& rule = rule::any) {
     Derived unused;
-    field(name, unused, letters, {}, rule);
+    if (verifies()) field(name, unused, letters, {}, rule);
   }
   template <class Make>
   void optional_derived_field(const std::string& name, Make, const Letters& letters, const Unit& = {},
                               const Rule& rule = rule::any) {
     std::invoke_result_t<Make> unused;
-    if (has(name)) field(name, unused, letters, {}, rule);
+    if (verifies() && has(name)) field(name, unused, letters, {}, rule);
   }
   template <class Derived>
   void optional_field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
@@ -131,15 +127,27 @@ class GroupReader {
 
   template <class Row, class... T>
   void table(const std::string& name, std::vector<Row>& rows, const Column<Row, T>&... columns) {
-    guarded(name, [&] {
-      const hdf5::StoredArray array = open_array(name);
-      (guarded(name, [&] { decode(array, columns, sizes_, rows); }), ...);
-    });
+    rows.clear();
+    const auto take = [&](Row& row) { rows.push_back(std::move(row)); };
+    table_rows(name, nullptr, take, columns...);
   }
-
   template <class Row, class... T>
   void optional_table(const std::string& name, std::vector<Row>& rows, const Column<Row, T>&... columns) {
     if (has(name)) table(name, rows, columns...);
+  }
+  /// A long table, whose rows are handed over one by one: `take(row)`.
+  template <class Make, class Take, class Row, class... T>
+  void table_rows(const std::string& name, const Make& /*make*/, Take take, const Column<Row, T>&... columns) {
+    constexpr hsize_t rows_at_once = 16384;
+    guarded(name, [&] {
+      const hdf5::StoredArray array = open_array(name);
+      for (hsize_t first = 0; first == 0 || first < array.elements(); first += rows_at_once) {
+        const hdf5::TableRows read = hdf5::read_rows(array, {first, std::min(rows_at_once, array.elements() - first)});
+        std::vector<Row> rows;
+        (guarded(name, [&] { decode(read, columns, sizes_, verifies(), rows); }), ...);
+        for (Row& row : rows) take(row);
+      }
+    });
   }
 
   /// Works on the stored form of a value: `body` reads it, `from` makes the value of it, unless something is amiss.
@@ -151,7 +159,13 @@ class GroupReader {
   }
   /// Runs `step`, which relies on what has been read from this group, unless that had problems.
   void finish(const std::function<void()>& step);
+  /// The same for what is only judged.
+  void judge(const std::function<void()>& step) {
+    if (verifies()) finish(step);
+  }
 
+  /// Binds a letter from outside the arrays.
+  void set_size(const std::string& letter, std::size_t extent) { sizes_.set(letter, extent); }
   /// 0 for a letter that no array has bound.
   Eigen::Index size(const std::string& letter) const {
     return static_cast<Eigen::Index>(sizes_.find(letter).value_or(0));
@@ -161,14 +175,50 @@ class GroupReader {
   Sizes known(const Letters& letters) const { return sizes_.only(letters); }
 
  private:
-  /// Values as they were read: what is a 64-bit number to Eigen is one of ours.
+  friend class SampleReader;
+
+  static constexpr hsize_t most_at_once = hsize_t{1} << 20;  ///< elements that verification holds of an array
+
   template <class Derived>
-  static auto stored_values(const Eigen::PlainObjectBase<Derived>& values) {
-    using Stored = decltype(to_stored(std::declval<typename Derived::Scalar>()));
-    return reinterpret_cast<const Stored*>(values.data());
+  using StoredOf = decltype(to_stored(std::declval<typename Derived::Scalar>()));
+  template <class Derived>
+  static constexpr H5T_class_t kind_of() {
+    return std::is_floating_point_v<StoredOf<Derived>> ? H5T_FLOAT : H5T_INTEGER;
+  }
+  /// Makes room for rows of an array of this shape.
+  template <class Derived>
+  static void shape_values(Eigen::PlainObjectBase<Derived>& values, const hdf5::Shape& shape, Eigen::Index rows) {
+    if constexpr (Derived::IsVectorAtCompileTime)
+      values.resize(rows);
+    else
+      values.resize(static_cast<Eigen::Index>(hdf5::element_count({shape.begin() + 1, shape.end()})), rows);
+  }
+  /// `shape`: of these values, which begin with row `first` of the array.
+  template <class Derived>
+  void check_values(const Rule& rule, const hdf5::Shape& shape, const Eigen::PlainObjectBase<Derived>& values,
+                    hsize_t first) const {
+    if (!verifies() && !rule.index) return;
+    // Eigen's 64-bit integers are stored as std::int64_t.
+    const auto* stored = reinterpret_cast<const StoredOf<Derived>*>(values.data());
+    if (const std::string problem = broken(rule, sizes_, shape, stored, first); !problem.empty())
+      throw DataError(problem);
+  }
+  template <class Derived>
+  void judge_by_blocks(const hdf5::StoredArray& array, const Rule& rule, Eigen::PlainObjectBase<Derived>& values) {
+    hdf5::Shape shape = array.shape();
+    const hsize_t total = shape.front();
+    const hsize_t at_once = std::max<hsize_t>(1, most_at_once * total / array.elements());
+    for (hsize_t first = 0; first < total; first += at_once) {
+      shape.front() = std::min(at_once, total - first);
+      shape_values(values, shape, static_cast<Eigen::Index>(shape.front()));
+      array.read_rows({first, shape.front()}, hdf5::memory_type<StoredOf<Derived>>(), values.data());
+      check_values(rule, shape, values, first);
+    }
+    shape_values(values, shape, 0);
   }
   template <class Stored>
   void check(const Rule& rule, const Stored& stored) const {
+    if (!verifies() && !rule.index) return;
     std::string problem;
     if constexpr (std::is_same_v<Stored, std::string>)
       problem = broken_text({stored}, true);
@@ -177,10 +227,10 @@ class GroupReader {
     if (!problem.empty()) throw DataError(problem);
   }
   void guarded(const std::string& name, const std::function<void()>& step);
-  const std::string& require(const std::string& name) const;
   GroupReader open_member(const std::string& name) const;
   hdf5::StoredArray open_array(const std::string& name) const;
-  hdf5::StoredArray open_numbers(const std::string& name, const Letters& letters, H5T_class_t kind);
+  /// Throws DataError for values of another kind and for extents that disagree.
+  void check_numbers(const hdf5::StoredArray& array, const Letters& letters, H5T_class_t kind);
   hdf5::StoredArray open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const;
   void read_attribute(const std::string& name, std::string& value) const;
   template <class Number>
@@ -194,15 +244,7 @@ class GroupReader {
   std::size_t problems_before_;
   std::string path_;
   Sizes sizes_;
-  const ValuesOf* use_ = nullptr;
-  struct Member {
-    bool hard;
-    bool asked = false;
-  };
-  using Members = std::map<std::string, Member>;
-  /// Listed at the first question: asking HDF5 for each of ten thousand takes longer.
-  Members& members() const;
-  mutable std::optional<Members> members_;
+  const LeftOut* left_out_ = nullptr;
 };
 
 }  // namespace modebank

@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "io/hdf5/rule.hpp"
+#include "io/archive/groups/rule.hpp"
 #include "io/hdf5/table.hpp"
 #include "modebank/base/error.hpp"
 #include "modebank/base/names.hpp"
@@ -97,7 +97,7 @@ hdf5::TableColumn encode(const std::vector<Row>& rows, const Column<Row, T>& col
 }
 
 /// What of a column's stored values breaks its rule; empty when nothing does.
-inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::TableColumn& column) {
+inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::TableColumn& column, hsize_t first_row) {
   return std::visit(
       [&](const auto& values) {
         using Values = std::decay_t<decltype(values)>;
@@ -105,30 +105,33 @@ inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::Tabl
           return broken_text(values, true);  // messages have lines
         else if constexpr (std::is_same_v<Values, Eigen::MatrixXd>)
           return broken(rule, sizes, {static_cast<hsize_t>(values.cols()), static_cast<hsize_t>(values.rows())},
-                        values.data());
+                        values.data(), first_row);
         else
-          return broken(rule, sizes, {values.size()}, values.data());
+          return broken(rule, sizes, {values.size()}, values.data(), first_row);
       },
       column.values);
 }
 
-/// Reads one column into the rows, which become as many as the table has.
+/// Reads one column into the rows, which become as many as were read. `judged`: by all rules, not those of positions
+/// alone.
 template <class Row, class T>
-void decode(const hdf5::StoredArray& table, const Column<Row, T>& column, const Sizes& sizes, std::vector<Row>& rows) {
-  if (column.optional && !hdf5::has_column(table, column.name)) return;
+void decode(const hdf5::TableRows& read, const Column<Row, T>& column, const Sizes& sizes, bool judged,
+            std::vector<Row>& rows) {
+  if (column.optional && !hdf5::has_column(read.table, column.name)) return;
   hdf5::TableColumn stored = encode(std::vector<Row>(), column);
-  hdf5::read_column(table, stored);
+  hdf5::read_column(read, stored);
   if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
     // One value per measured signal, whatever the table; an empty table's column has the least length.
     const Eigen::Index length = std::get<Eigen::MatrixXd>(stored.values).rows();
     if (const auto signals = sizes.find("n_y");
-        signals && table.elements() > 0 && *signals != static_cast<hsize_t>(length))
+        signals && read.rows.count > 0 && *signals != static_cast<hsize_t>(length))
       throw DataError("column '" + column.name + "' has " + std::to_string(length) + " values a row, but n_y is " +
                       std::to_string(*signals));
   }
-  if (const std::string problem = broken(column.rule, sizes, stored); !problem.empty())
-    throw DataError("column '" + column.name + "' " + problem);
-  rows.resize(static_cast<std::size_t>(table.elements()));
+  if (judged || column.rule.index)
+    if (const std::string problem = broken(column.rule, sizes, stored, read.rows.first); !problem.empty())
+      throw DataError("column '" + column.name + "' " + problem);
+  rows.resize(static_cast<std::size_t>(read.rows.count));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if constexpr (std::is_same_v<T, Eigen::VectorXd>)
       rows[i].*column.member = std::get<Eigen::MatrixXd>(stored.values).col(static_cast<Eigen::Index>(i));
