@@ -7,6 +7,7 @@
 #include "app/config/config_file.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/summary_text.hpp"
+#include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
 namespace modebank::python {

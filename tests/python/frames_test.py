@@ -7,6 +7,7 @@ import warnings
 import h5py
 import numpy as np
 import pandas
+from numpy.lib.recfunctions import repack_fields
 
 import modebank
 from simulated import COLUMNS, QUICK, folder, frames
@@ -18,7 +19,9 @@ def content(archive):
 
     def take(path, item):
         if isinstance(item, h5py.Dataset) and path != "config" and not path.startswith("provenance"):
-            found[path] = item[["name", "role", "first", "samples"]] if path == "data/runs" else np.asarray(item[()])
+            found[path] = np.asarray(item[()])
+        if path == "data/runs":
+            found[path] = repack_fields(found[path][["name", "role", "first", "samples", "lag_s"]])  # but for the file
 
     with h5py.File(archive.path) as file:
         file.visititems(take)

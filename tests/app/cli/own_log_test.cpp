@@ -40,7 +40,7 @@ TEST_F(OwnLog, IsReadSplitAndComparedWithItsLabels) {
   const nlohmann::json block = inspect(archive(), "/data/runs", "log.b2").at("value").at(0);
   EXPECT_EQ(block.at("role"), "test");
   EXPECT_EQ(block.at("time_origin_ns"), 1'714'557'600'000'000'000);
-  EXPECT_EQ(block.at("file"), (folder() / "log.csv").string());
+  EXPECT_EQ(block.at("file"), file("log.csv").string());
   EXPECT_EQ(inspect(archive(), "/data/label", "log.b2").at("shape"),
             inspect(archive(), "/data/time", "log.b2").at("shape"));
   const std::string shown = modebank({"show", archive()}).out;

@@ -104,7 +104,7 @@ def compare(first, *others):
             for stage in (name for name in archive if name in stages):
                 archive[stage].visititems(lambda name, item: found.__setitem__(f"{stage}/{name}", item[()].tobytes() if item.dtype.kind != "O" else repr(item[()].tolist()))
                                           if isinstance(item, h5py.Dataset) else None)
-            found["data/runs"] = archive["data/runs"][["name", "role", "first", "samples"]].tolist()  # but for the file
+            found["data/runs"] = archive["data/runs"][()][["name", "role", "first", "samples"]].tolist()  # but for the file
         return found
 
     reference = contents(first)
