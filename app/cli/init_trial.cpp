@@ -21,17 +21,17 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A file while it lives.
-struct TemporaryFile {
+struct TrialFile {
   fs::path path;
-  TemporaryFile(const fs::path& beside, const std::string& text) : path(temporary_path(beside)) {
+  TrialFile(const fs::path& beside, const std::string& text) : path(temporary_path(beside)) {
     replace_file(path, {text});
   }
-  ~TemporaryFile() {
+  ~TrialFile() {
     std::error_code ignored;
     fs::remove(path, ignored);
   }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  TrialFile(const TrialFile&) = delete;
+  TrialFile& operator=(const TrialFile&) = delete;
 };
 
 void import_and_cut(const Config& config) {
@@ -87,7 +87,7 @@ std::vector<Remedy> remedies() {
 }  // namespace
 
 std::string refusal(const Proposal& proposal, const fs::path& target) {
-  const TemporaryFile file(target, configuration_text(proposal, "modebank init"));
+  const TrialFile file(target, configuration_text(proposal, "modebank init"));
   try {
     const Config config = load_config(file.path, {});
     validate(config);

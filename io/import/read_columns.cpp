@@ -12,7 +12,7 @@ namespace modebank {
 namespace {
 
 /// What is asked of a table at once, and the columns that it gives: numbers, or one of the other kinds.
-struct Piece {
+struct AskedColumns {
   TableRequest request;
   std::vector<std::size_t> columns;
 
@@ -36,15 +36,15 @@ struct Piece {
   }
 };
 
-Piece text_piece(std::size_t table, std::size_t column, const std::string& name) {
-  Piece piece{{}, {column}};
+AskedColumns text_piece(std::size_t table, std::size_t column, const std::string& name) {
+  AskedColumns piece{{}, {column}};
   piece.request.table = table;
   piece.request.texts = {name};
   return piece;
 }
 
-Piece stamp_piece(std::size_t table, std::size_t column, const std::string& name) {
-  Piece piece{{}, {column}};
+AskedColumns stamp_piece(std::size_t table, std::size_t column, const std::string& name) {
+  AskedColumns piece{{}, {column}};
   piece.request.table = table;
   piece.request.time.column = name;
   piece.request.time.may_miss = true;
@@ -59,10 +59,10 @@ std::map<std::string, int> name_counts(const TableInfo& table) {
 }
 
 /// Stamps and what the format calls text one by one, all others as numbers together.
-std::vector<Piece> pieces_of(const std::vector<TableInfo>& tables, const ColumnChoice& wanted) {
-  std::vector<Piece> pieces;
+std::vector<AskedColumns> pieces_of(const std::vector<TableInfo>& tables, const ColumnChoice& wanted) {
+  std::vector<AskedColumns> pieces;
   for (std::size_t t = 0; t < tables.size(); ++t) {
-    Piece numbers;
+    AskedColumns numbers;
     numbers.request.table = t;
     const std::map<std::string, int> counts = name_counts(tables[t]);
     for (std::size_t c = 0; c < tables[t].columns.size(); ++c) {
@@ -81,9 +81,9 @@ std::vector<Piece> pieces_of(const std::vector<TableInfo>& tables, const ColumnC
 }
 
 /// Whether the file has what the pieces ask for; `result` has it then.
-bool try_read(const TableReader& reader, const std::vector<Piece>& pieces, FileColumns& result) {
+bool try_read(const TableReader& reader, const std::vector<AskedColumns>& pieces, FileColumns& result) {
   std::vector<TableRequest> requests;
-  for (const Piece& piece : pieces) requests.push_back(piece.request);
+  for (const AskedColumns& piece : pieces) requests.push_back(piece.request);
   try {
     std::vector<Table> tables = reader.read(requests, nullptr);
     for (std::size_t i = 0; i < pieces.size(); ++i) pieces[i].into(std::move(tables[i]), result);
@@ -94,9 +94,9 @@ bool try_read(const TableReader& reader, const std::vector<Piece>& pieces, FileC
 }
 
 /// Columns [first, end) of a piece of numbers: halved until those that are none are alone, which are texts then.
-void read_numbers(const TableReader& reader, const Piece& piece, std::size_t first, std::size_t end,
+void read_numbers(const TableReader& reader, const AskedColumns& piece, std::size_t first, std::size_t end,
                   FileColumns& result) {
-  Piece part;
+  AskedColumns part;
   part.request.table = piece.request.table;
   for (std::size_t i = first; i < end; ++i) part.add_number(piece.columns[i], piece.request.numbers[i]);
   if (try_read(reader, {part}, result)) return;
@@ -109,11 +109,11 @@ void read_numbers(const TableReader& reader, const Piece& piece, std::size_t fir
   read_numbers(reader, piece, middle, end, result);
 }
 
-void read_apart(const TableReader& reader, const Piece& piece, FileColumns& result) {
+void read_apart(const TableReader& reader, const AskedColumns& piece, FileColumns& result) {
   if (!piece.request.numbers.empty()) {
     read_numbers(reader, piece, 0, piece.columns.size(), result);
   } else if (!piece.request.time.column.empty()) {  // what is called a time, but is none
-    Piece number;
+    AskedColumns number;
     number.request.table = piece.request.table;
     number.add_number(piece.columns.front(), piece.request.time.column);
     read_numbers(reader, number, 0, 1, result);
@@ -156,9 +156,9 @@ FileColumns read_columns(const TableReader& reader, const std::vector<TableInfo>
       if (count > 1) result.notes.push_back(fmt::format("left out: column \"{}\", which comes {} times", name, count));
   }
   result.alternation.resize(tables.size());
-  const std::vector<Piece> pieces = pieces_of(tables, wanted);
+  const std::vector<AskedColumns> pieces = pieces_of(tables, wanted);
   if (try_read(reader, pieces, result)) return result;
-  for (const Piece& piece : pieces)
+  for (const AskedColumns& piece : pieces)
     if (!try_read(reader, {piece}, result)) read_apart(reader, piece, result);
   return result;
 }
