@@ -39,12 +39,14 @@ TEST_F(Commands, ResidualTestsAreInTheArchiveAndInTheSummary) {
   const ProgramResult result = run();
   ASSERT_EQ(result.status, 0) << result.err;
   std::map<std::string, int> lags;
-  for (const char* name : {"00", "01"})
-    for (const nlohmann::json& row : inspect(archive(), "/residual_tests/lags", name).at("value")) {
+  for (const char* name : {"00", "01"}) {
+    const nlohmann::json rows = inspect(archive(), "/residual_tests/lags", name).at("value");
+    for (const nlohmann::json& row : rows) {
       EXPECT_EQ(row.at("autocorrelation").size(), 1u);
       EXPECT_EQ(row.at("cross_correlation").size(), 2u);
       ++lags[row.at("model").get<std::string>() + " " + name];
     }
+  }
   for (const std::string model : {"global", "bank", "baseline", "noise_only", "one_motion", "drifting"})
     for (const std::string name : {"00", "01"}) EXPECT_EQ(lags[model + " " + name], 26) << model << " " << name;
   const ProgramResult shown = modebank({"show", archive()});
