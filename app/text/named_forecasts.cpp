@@ -194,8 +194,6 @@ std::string worth(const NamedForecast& forecast) {
     text = fmt::format(", {:+.3f}{} nats over {}", forecast.gain, error, forecast.other);
     if (!std::isnan(forecast.error) && std::abs(forecast.gain) <= forecast.error) text += " (within its error)";
   }
-  if (forecast.point_filter != forecast.filter)
-    text += fmt::format(", least error `{}` (-{:.0f} %)", forecast.point_filter, 100.0 * forecast.point_gain);
   if (!forecast.c_filter.empty())
     text += std::isnan(forecast.c_loss) ? fmt::format(", in C {}", forecast.c_filter)
                                         : fmt::format(", in C {} ({:+.3f})", forecast.c_filter, -forecast.c_loss);
@@ -203,6 +201,16 @@ std::string worth(const NamedForecast& forecast) {
 }
 
 std::string steps_words(Index steps) { return fmt::format("{} step{}", steps, steps == 1 ? "" : "s"); }
+
+/// "; least error 10 steps: baseline (-4 %)"
+std::string least_errors(const std::vector<NamedForecast>& forecasts) {
+  std::string text;
+  for (const NamedForecast& forecast : forecasts)
+    if (forecast.point_filter != forecast.filter)
+      text += fmt::format("{} {}: {} (-{:.0f} %)", text.empty() ? "; least error" : ",", steps_words(forecast.steps),
+                          forecast.point_filter, 100.0 * forecast.point_gain);
+  return text;
+}
 
 }  // namespace
 
@@ -221,9 +229,8 @@ std::string use_words(const Archive& archive) {
   if (!archive.finding || !archive.bank) return "";
   const std::vector<NamedForecast> forecasts = named_forecasts(archive);
   std::string text = "to understand: " + understanding(archive);
-  const bool alike = std::all_of(forecasts.begin(), forecasts.end(), [&](const NamedForecast& f) {
-    return f.filter == forecasts.front().filter && f.point_filter == forecasts.front().point_filter;
-  });
+  const bool alike = std::all_of(forecasts.begin(), forecasts.end(),
+                                 [&](const NamedForecast& f) { return f.filter == forecasts.front().filter; });
   for (const NamedForecast& forecast : forecasts) {
     const bool first = &forecast == &forecasts.front();
     text += first ? "; to predict" : ";";
@@ -231,7 +238,7 @@ std::string use_words(const Archive& archive) {
     text += fmt::format("{} `--track.filter {}`{}", first || !alike ? ":" : "", forecast.filter, worth(forecast));
     if (alike) break;
   }
-  return text;
+  return text + least_errors(forecasts);
 }
 
 }  // namespace modebank::app

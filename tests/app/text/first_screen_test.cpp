@@ -187,7 +187,7 @@ TEST(FirstScreen, NamesTheFilterOfLeastErrorWhereItIsAnother) {
   EXPECT_EQ(named.filter, "bank");
   EXPECT_EQ(named.point_filter, "nonlinear");
   EXPECT_NEAR(named.point_gain, 0.2, 1e-12);
-  EXPECT_THAT(app::use_words(archive), HasSubstr("`--track.filter bank`, least error `nonlinear` (-20 %)"));
+  EXPECT_THAT(app::use_words(archive), testing::EndsWith("; least error 1 step: nonlinear (-20 %)"));
 }
 
 /// Halves and less: 0.5, 0.3, 0.18, ... falls below a hundredth after the eighth.
