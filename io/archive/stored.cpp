@@ -316,6 +316,10 @@ std::vector<ResidualRunRow> store_residual_runs(const std::vector<ResidualTestSe
 std::vector<ResidualLagRow> store_residual_lags(const std::vector<ResidualTestSet>& sets,
                                                 const std::vector<Trajectory>& runs) {
   std::vector<ResidualLagRow> rows;
+  std::size_t count = 0;
+  for (const ResidualTestSet& set : sets)
+    for (const ResidualTests& tests : set.runs) count += static_cast<std::size_t>(tests.autocorrelation.cols());
+  rows.reserve(count);  // two million of many short runs
   for (const ResidualTestSet& set : sets)
     for (std::size_t i = 0; i < runs.size(); ++i)
       for (Index lag = 0; lag < set.runs[i].autocorrelation.cols(); ++lag)

@@ -17,6 +17,11 @@ namespace {
 bool is_large(const Archive& archive) {
   constexpr Index most_in_memory = Index{32} << 20;  // doubles
   constexpr Index numbers_per_parameter = 8;  // of a window: value, error, covariances and what describes the fit
+  constexpr Index numbers_per_sample = 128;   // of a filter's evaluation, roughly
+  Index samples = 0;
+  if (archive.recording)
+    for (const Trajectory& run : archive.recording->runs) samples += run.samples();
+  if (samples * std::ssize(archive.evaluations) > most_in_memory / numbers_per_sample) return true;
   const Index parameters = archive.windows ? archive.windows->count() * archive.windows->parameter_count() : 0;
   if (parameters > most_in_memory / numbers_per_parameter) return true;
   if (!archive.mixture) return false;

@@ -19,7 +19,7 @@ sys.path.insert(0, str(ROOT / "docs/_ext"))
 import program  # noqa: E402  its folder is added above
 
 SMALL_DEMO = ["--data.label=mode", "--simulate.runs=4", "--simulate.samples=80", "--mixture.components=1..2", "--mixture.restarts=1", "--bank.restarts=0",
-              "--bank.max_iterations=5", "--filter.horizon=1,2", "--filter.simulate=5"]
+              "--bank.max_iterations=5", "--filter.horizon=1,2", "--filter.simulate=5", "--filter.smooth=true"]
 README_LINES = 150
 problems = []
 
@@ -70,6 +70,13 @@ def dataset_names():
     return names
 
 
+def sample_arrays():
+    """Arrays over the samples of all runs, by name: how many extents follow the samples'."""
+    with h5py.File(archive()) as file:
+        samples = int(file["data/runs"]["samples"].sum())
+        return {name: item.ndim - 1 for group in ("data", "evaluation/bank") for name, item in file[group].items() if item.shape[0] == samples}
+
+
 def has_words(name, text):
     return re.search(rf"(?<![A-Za-z0-9]){re.escape(name)}(?![A-Za-z0-9])", text) is not None
 
@@ -93,6 +100,9 @@ def check_names():
     families = re.findall(r"\b(\w+_)\*", text)
     for name in dataset_names():
         expect(has_words(name, text) or any(name.startswith(family) for family in families), f"docs/reference/archive.md has no {name}")
+    for name, extents in sample_arrays().items():
+        letters = "S" + r",\w+" * extents
+        expect(re.search(rf"\b{name} \({letters}\W", text), f"docs/reference/archive.md has {name} without its shape")
 
 
 def check_files():
