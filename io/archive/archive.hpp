@@ -124,8 +124,8 @@ struct Archive {
 /// Writes under a temporary name in the same folder, flushes, closes, hashes, renames. Throws DataError on failure and
 /// leaves nothing behind. The layout is described in docs/reference/archive.md; every number is stored as computed.
 void write_archive(const std::filesystem::path& path, const Archive& archive);
-/// The same, with the archive made in the file system rather than in memory; write_archive does so for responsibilities
-/// of more than 256 MB, which then are never in memory as a whole.
+/// The same, with the archive made in the file system rather than in memory; write_archive does so for evaluations
+/// of more than 128 MB, and for responsibilities of more than 256 MB, which then are never in memory as a whole.
 void write_large_archive(const std::filesystem::path& path, const Archive& archive);
 
 /// The same for an archive of data and windows alone whose `count` windows come from `produce` part by part

@@ -13,15 +13,24 @@
 namespace modebank {
 namespace {
 
+/// Numbers of all evaluations, which are most of an archive of long recordings.
+Index evaluated_numbers(const Archive& archive) {
+  constexpr Index numbers_beside_covariances = 64;  // of a sample
+  if (!archive.recording) return 0;
+  Index samples = 0, per_sample = 0;
+  for (const Trajectory& run : archive.recording->runs) samples += run.samples();
+  for (const FilterEvaluation& evaluation : archive.evaluations)
+    if (!evaluation.runs.empty() && !evaluation.streamed)
+      per_sample += numbers_beside_covariances + evaluation.runs.front().covariance.rows() +
+                    evaluation.runs.front().smoothed_covariance.rows();
+  return samples * per_sample;
+}
+
 /// Beyond this much an archive is made in the file system rather than in memory.
 bool is_large(const Archive& archive) {
   constexpr Index most_in_memory = Index{32} << 20;  // doubles
   constexpr Index numbers_per_parameter = 8;  // of a window: value, error, covariances and what describes the fit
-  constexpr Index numbers_per_sample = 128;   // of a filter's evaluation, roughly
-  Index samples = 0;
-  if (archive.recording)
-    for (const Trajectory& run : archive.recording->runs) samples += run.samples();
-  if (samples * std::ssize(archive.evaluations) > most_in_memory / numbers_per_sample) return true;
+  if (evaluated_numbers(archive) > most_in_memory / 2) return true;
   const Index parameters = archive.windows ? archive.windows->count() * archive.windows->parameter_count() : 0;
   if (parameters > most_in_memory / numbers_per_parameter) return true;
   if (!archive.mixture) return false;
