@@ -204,9 +204,10 @@ std::string steps_words(Index steps) { return fmt::format("{} step{}", steps, st
 
 /// "; least error 10 steps: baseline (-4 %)"
 std::string least_errors(const std::vector<NamedForecast>& forecasts) {
+  constexpr double worth_a_line = 0.05;  // of an error: a line on the screen takes the place of a mode
   std::string text;
   for (const NamedForecast& forecast : forecasts)
-    if (forecast.point_filter != forecast.filter)
+    if (forecast.point_gain > worth_a_line)
       text += fmt::format("{} {}: {} (-{:.0f} %)", text.empty() ? "; least error" : ",", steps_words(forecast.steps),
                           forecast.point_filter, 100.0 * forecast.point_gain);
   return text;
