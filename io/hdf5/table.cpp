@@ -135,7 +135,7 @@ void read_values(const TableRows& rows, const std::string& name, Eigen::MatrixXd
 
 }  // namespace
 
-Handle write_table(hid_t group, const std::string& name, const std::vector<TableColumn>& columns, hsize_t rows) {
+Handle write_table(hid_t group, const std::string& name, std::vector<TableColumn> columns, hsize_t rows) {
   std::vector<CellTypes> cells;
   for (const TableColumn& column : columns)
     cells.push_back(std::visit([](const auto& values) { return cell_types(values); }, column.values));
@@ -148,6 +148,7 @@ Handle write_table(hid_t group, const std::string& name, const std::vector<Table
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::string bytes = std::visit([](const auto& values) { return raw_bytes(values); }, columns[i].values);
     const std::size_t size = H5Tget_size(cells[i].memory.id());
+    columns[i].values = {};
     for (std::size_t row = 0; row < rows; ++row) bytes.copy(packed.data() + row * row_bytes + offset, size, row * size);
     offset += size;
   }

@@ -19,8 +19,9 @@ struct TableColumn {
   Values values;
 };
 
-/// Writes a 1-D compound dataset of `rows` packed rows and hands it over open.
-Handle write_table(hid_t group, const std::string& name, const std::vector<TableColumn>& columns, hsize_t rows);
+/// Writes a 1-D compound dataset of `rows` packed rows and hands it over open. Columns go as they are packed, so that a
+/// long table does not lie in memory twice.
+Handle write_table(hid_t group, const std::string& name, std::vector<TableColumn> columns, hsize_t rows);
 
 /// Whether a compound dataset has a member of that name.
 bool has_column(const StoredArray& table, const std::string& name);

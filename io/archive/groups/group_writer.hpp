@@ -162,7 +162,14 @@ class GroupWriter {
   /// A long table, whose rows are made when they are written.
   template <class Make, class Take, class Row, class... T>
   void table_rows(const std::string& name, Make make, const Take& /*take*/, const Column<Row, T>&... columns) {
-    table(name, make(), columns...);
+    std::vector<hdf5::TableColumn> encoded;
+    hsize_t count = 0;
+    {
+      const auto rows = make();  // gone before they are packed
+      encoded = {encode(rows, columns)...};
+      count = rows.size();
+    }
+    write_column_units(hdf5::write_table(group_.id(), name, std::move(encoded), count), {columns.unit...});
   }
 
   /// Works on the stored form of a value: `to` makes it, `body` writes it.
