@@ -59,7 +59,7 @@ std::vector<std::string> names_in(const std::string& failed) {
   std::vector<std::string> names;
   for (const fs::path& part : fs::path(failed.substr(failed.find(' ') + 1))) {
     std::string name = part.string();
-    if (name.size() > 1 && name.front() == '.') name = name.substr(1, name.find('~') - 1);
+    if (name.size() > 1 && name.front() == '.') name = name.substr(1, name.find(".modebank-") - 1);
     names.push_back(name);
   }
   return names;
