@@ -95,7 +95,7 @@ def guard(modebank):
         numpy.savetxt(folder / f"run_{run}.csv", numpy.c_[0.1 * numpy.arange(300), x, u], "%.9g", ",", header="time,x,u", comments="")
     config = folder / "guard.ini"
     config.write_text("[data]\ninputs = run_*.csv\nstate = x\ninput = u\ninput_unit = m/s\ntime = time\ntrain = 0, 1\ntest = 2, 3\n"
-                      "[mixture]\ncomponents = 2\nrestarts = 2\n[bank]\ntransition = logit\n", encoding="utf-8")
+                      "[window]\nmodel = linear\n[mixture]\ncomponents = 2\nrestarts = 2\n[bank]\ntransition = logit\n", encoding="utf-8")
     return modebank.run("guard", config, "--data.root", folder)
 
 
