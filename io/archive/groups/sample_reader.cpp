@@ -11,8 +11,9 @@ SampleReader::SampleReader(GroupReader& group, hsize_t total) : group_(group), t
 
 SampleReader::Column& SampleReader::column_of(const std::string& name) {
   const auto [found, is_new] = columns_.try_emplace(name);
-  if (is_new && group_.has(name)) group_.guarded(name, [&] { found->second.array.emplace(group_.open_array(name)); });
-  return found->second;
+  Column& column = found->second;
+  if (is_new && group_.has(name)) group_.guarded(name, [&] { column.array.emplace(group_.open_array(name)); });
+  return column;
 }
 
 void SampleReader::read_rows(Column& column, hid_t memory_type, std::size_t cell_bytes, void* values) const {
