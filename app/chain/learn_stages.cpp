@@ -100,8 +100,8 @@ std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure&
                               const CompetitorInputs& inputs, bool noise_by_input, const Listener& listener) {
   if (inputs.terms == "none") return {};
   const Stopwatch watch;
-  const FoundTerms found = inputs.terms == "auto" ? find_terms(recording, structure, inputs.window)
-                                                  : take_stated(recording, structure, inputs.terms);
+  const FoundTerms found = lists_terms(inputs.terms) ? take_stated(recording, structure, inputs.terms)
+                                                     : find_terms(recording, structure, inputs.window);
   for (const TriedTerms& tried : found.tried)
     listener.detail(fmt::format("nonlinear: {} terms with lags {}: {:.4f} nats/sample left out", tried.terms,
                                 lags_of(tried.structure), tried.log_score));

@@ -4,6 +4,7 @@
 
 #include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
+#include "ident/terms/stated_terms.hpp"
 #include "io/import/import.hpp"
 #include "mixture/select.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 
 BankInputs bank_inputs(const ChainOptions& options, const FitOptions& window) {
   BankInputs inputs{window, options.bank, options.filter.variant == FilterVariant::kf, {}};
-  inputs.terms_stated = options.terms != "auto" && options.terms != "none";
+  inputs.terms_stated = lists_terms(options.terms);
   inputs.bank.em.seed = options.seed;
   inputs.bank.em.most_modes = most_components(options.mixture.selection);
   inputs.bank.refine = refinement_asked(options.bank, is_linear(window));  // one key for what is the same

@@ -71,6 +71,11 @@ struct SimulateConfig {
 /// How a number of lags, the delay or the windows' length came into a configuration.
 enum class LagChoice { by_model, automatic, number };
 
+/// Whether the number is found: `by_model` where nothing is said of it.
+inline bool is_automatic(LagChoice choice, bool by_model) {
+  return choice == LagChoice::automatic || (choice == LagChoice::by_model && by_model);
+}
+
 /// The numbers of the model's structure that are searched for, and the length that follows from it.
 struct StructureConfig {
   bool automatic_model = true;  ///< window.model = auto: by_model means automatic
@@ -109,7 +114,7 @@ DataOptions data_options_of(const Config& config);
 FitOptions window_options_of(const Config& config);
 /// Which of its lags are found.
 SearchedLags searched_lags_of(const Config& config);
-/// Whether the windows' length follows from the structure and the data.
+/// Which numbers of windows follow from the structure and the data.
 AutomaticWindows automatic_windows_of(const Config& config);
 
 /// Checks values against each other, before any file of data is opened. Throws ConfigurationError naming the keys.

@@ -28,17 +28,13 @@ FitOptions window_options_of(const Config& c) {
 SearchedLags searched_lags_of(const Config& c) {
   // One whole window is simulated without lags.
   const bool by_model = c.structure.automatic_model && c.window.residual == ResidualKind::one_step;
-  const auto searched = [&](LagChoice choice) {
-    return choice == LagChoice::automatic || (choice == LagChoice::by_model && by_model);
-  };
+  const auto searched = [&](LagChoice choice) { return is_automatic(choice, by_model); };
   return {searched(c.structure.state), searched(c.structure.input), searched(c.structure.delay)};
 }
 
 AutomaticWindows automatic_windows_of(const Config& c) {
-  const auto automatic = [&](LagChoice choice) {
-    return choice == LagChoice::automatic || (choice == LagChoice::by_model && c.structure.automatic_model);
-  };
-  return {automatic(c.structure.length), automatic(c.structure.step)};
+  const bool by_model = c.structure.automatic_model;
+  return {is_automatic(c.structure.length, by_model), is_automatic(c.structure.step, by_model)};
 }
 
 ChainOptions chain_options(const Config& c) {

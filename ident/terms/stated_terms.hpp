@@ -17,6 +17,9 @@ struct StatedTerm {
   bool operator==(const StatedTerm&) const = default;
 };
 
+/// Whether window.terms lists terms: any text but auto and none.
+inline bool lists_terms(const std::string& choice) { return choice != "auto" && choice != "none"; }
+
 /// "vx * wz, |vx|, max(0, wz[k-1] - 0.3)", as equations print them. Throws std::invalid_argument, whose message states
 /// the part that cannot be read.
 std::vector<StatedTerm> read_terms(const std::string& text);

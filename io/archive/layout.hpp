@@ -13,8 +13,8 @@
 /// The one description of the archive's layout; its other parts are layout_data.hpp, layout_evaluation.hpp and, for
 /// programs that load banks alone, bank/layout_bank.hpp. Every function names members once; `Io` is GroupWriter or
 /// GroupReader, or for arrays over samples SampleWriter or SampleReader, so writing, reading and verification cannot
-/// drift apart. Letters: M windows, K modes, n states, m
-/// inputs, n_y outputs, p parameters, S samples of all runs, F features.
+/// drift apart. Letters: M windows, K modes, n states, m inputs, n_y outputs, p parameters, S samples of all runs, F
+/// features.
 namespace modebank::layout {
 
 template <class Io, class G>

@@ -86,9 +86,8 @@ void exchange_filter_run(Io& samples, E& evaluation, F& free_run, const Unit& st
 /// One filter's evaluation of every run of the recording.
 template <class Io, class F>
 void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Unit& states) {
-  const std::vector<hdf5::Rows> rows = rows_of(store_runs(recording.runs));
-  std::vector<FreeRun> free_runs = evaluation.free_runs;
-  free_runs.resize(rows.size());  // without any they are empty, and left out
+  const std::vector<hdf5::Rows> rows = rows_of(recording.runs);
+  std::conditional_t<Io::reads, FreeRun, const FreeRun> none{};  // where there are none: empty, and left out
   if constexpr (Io::reads) {
     evaluation.runs.resize(rows.size());
     if (io.has("free_run_mean")) evaluation.free_runs.resize(rows.size());
@@ -96,17 +95,16 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Un
     if (io.verifies()) {
       RunEvaluation all;
       io.set_size("S", rows.empty() ? 0 : rows.back().end());
-      return exchange_filter_run(io, all, free_runs.front(), states);
+      return exchange_filter_run(io, all, none, states);
     }
   }
   if (evaluation.runs.size() != rows.size())
     throw std::invalid_argument("filter " + evaluation.filter + " has evaluated " +
                                 std::to_string(evaluation.runs.size()) + " runs of " + std::to_string(rows.size()));
   over_runs(io, rows, [&](auto& samples, std::size_t i) {
-    exchange_filter_run(samples, evaluation.runs[i], free_runs[i], states);
+    exchange_filter_run(samples, evaluation.runs[i], evaluation.free_runs.empty() ? none : evaluation.free_runs[i],
+                        states);
   });
-  if constexpr (Io::reads)
-    if (!evaluation.free_runs.empty()) evaluation.free_runs = std::move(free_runs);
 }
 
 template <class Io, class S>

@@ -16,9 +16,7 @@ using Fields = FilterEvaluation::Fields;
 class EvaluationsInFile {
  public:
   EvaluationsInFile(OpenArchive file, const Archive& archive)
-      : file_(std::move(file)),
-        states_(Units(*archive.recording).states()),
-        rows_(rows_of(store_runs(archive.recording->runs))) {
+      : file_(std::move(file)), states_(Units(*archive.recording).states()), rows_(rows_of(archive.recording->runs)) {
     GroupReader root(file_.root(), nullptr);
     root.group("evaluation", {}, [&](GroupReader& evaluations) {
       for (const FilterEvaluation& evaluation : archive.evaluations)

@@ -34,6 +34,8 @@ std::vector<RunRow> store_runs(const std::vector<Trajectory>& runs);
 /// Without their samples. The rows must follow each other without a gap.
 std::vector<Trajectory> restore_runs(const std::vector<RunRow>& rows);
 std::vector<hdf5::Rows> rows_of(const std::vector<RunRow>& rows);
+/// Rows of runs that are in memory, one after the other.
+std::vector<hdf5::Rows> rows_of(const std::vector<Trajectory>& runs);
 
 /// A run's labels, -1 where nothing is known; throws DataError for one that none of so many names belongs to.
 Eigen::VectorXi restore_label(const Eigen::VectorXi& stored, const RunRow& run, std::size_t names);

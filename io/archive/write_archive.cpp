@@ -77,7 +77,7 @@ void write_in_file(const std::filesystem::path& path, const std::function<void(c
 class EvaluationFile {
  public:
   EvaluationFile(const hdf5::Handle& file, const Recording& recording)
-      : file_(file), states_(Units(recording).states()), rows_(rows_of(store_runs(recording.runs))) {}
+      : file_(file), states_(Units(recording).states()), rows_(rows_of(recording.runs)) {}
   ~EvaluationFile() {
     const hdf5::Quiet quiet;
     filters_.clear();

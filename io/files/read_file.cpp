@@ -1,5 +1,7 @@
 #include "io/files/read_file.hpp"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <system_error>
 
@@ -34,6 +36,18 @@ std::string read_file(const std::filesystem::path& path) {
   if (stream.bad()) fail(path, std::make_error_code(std::errc::io_error));
   content.resize(static_cast<std::size_t>(stream.gcount()));
   return content;
+}
+
+std::size_t read_at(int descriptor, char* to, std::size_t count, std::uintmax_t offset, std::error_code& error) {
+  std::size_t done = 0;
+  while (done < count) {
+    const ssize_t got = ::pread(descriptor, to + done, count - done, static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) error.assign(errno, std::generic_category());
+    if (got <= 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  return done;
 }
 
 void refuse_special_file(const std::filesystem::path& path) {

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "io/files/read_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -49,14 +50,9 @@ void FileBytes::close() {
 }
 
 std::size_t FileBytes::read(std::uint64_t at, std::size_t bytes, char* to) const {
-  std::size_t done = 0;
-  while (done < bytes) {
-    const ssize_t got = ::pread(file_, to + done, bytes - done, static_cast<off_t>(at + done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw Damage(at + done, std::error_code(errno, std::generic_category()).message());
-    if (got == 0) break;
-    done += static_cast<std::size_t>(got);
-  }
+  std::error_code error;
+  const std::size_t done = read_at(file_, to, bytes, at, error);
+  if (error) throw Damage(at + done, error.message());
   return done;
 }
 

@@ -42,9 +42,7 @@ Option number_or_auto(Option number, const std::string& means, std::ptrdiff_t me
     if (text == "auto") count.in(config) = meanwhile;
   };
   result.get = [get = result.get, choice](const Config& config) {
-    const LagChoice chosen = choice.of(config);
-    const bool by_model = chosen == LagChoice::by_model && config.structure.automatic_model;
-    return by_model || chosen == LagChoice::automatic ? "auto" : get(config);
+    return is_automatic(choice.of(config), config.structure.automatic_model) ? "auto" : get(config);
   };
   return result;
 }
@@ -62,7 +60,7 @@ Option terms_option() {
            "out ask for; or by these: NAME * NAME, |NAME|, max(0, NAME - NUMBER)",
            MODEBANK_FIELD(terms));
   result.set = [set = result.set](Config& config, const std::string& text) {
-    if (text != "auto" && text != "none") read_terms(text);
+    if (lists_terms(text)) read_terms(text);
     set(config, text);
   };
   return result;

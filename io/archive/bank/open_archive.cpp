@@ -1,10 +1,7 @@
 #include "io/archive/bank/open_archive.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cassert>
-#include <cerrno>
 #include <charconv>
 #include <fstream>
 #include <system_error>
@@ -49,17 +46,11 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 
-/// How many of `count` bytes at the offset of an open file there are.
-std::size_t read_at(int descriptor, char* to, std::size_t count, std::uintmax_t offset) {
-  std::size_t done = 0;
-  while (done < count) {
-    const ssize_t got = ::pread(descriptor, to + done, count - done, static_cast<off_t>(offset + done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw DataError("cannot read the file: " + std::generic_category().message(errno));
-    if (got == 0) break;
-    done += static_cast<std::size_t>(got);
-  }
-  return done;
+std::size_t read_bytes(int descriptor, char* to, std::size_t count, std::uintmax_t offset) {
+  std::error_code error;
+  const std::size_t got = read_at(descriptor, to, count, offset, error);
+  if (error) throw DataError("cannot read the file: " + error.message());
+  return got;
 }
 
 /// Of everything after the user block.
@@ -67,7 +58,7 @@ std::string content_hash(int descriptor) {
   Sha256 hash;
   std::vector<char> buffer(std::size_t{1} << 20);
   std::uintmax_t offset = user_block_bytes;
-  while (const std::size_t got = read_at(descriptor, buffer.data(), buffer.size(), offset)) {
+  while (const std::size_t got = read_bytes(descriptor, buffer.data(), buffer.size(), offset)) {
     hash.update(buffer.data(), got);
     offset += got;
   }
@@ -117,7 +108,7 @@ hdf5::Handle open_checked(const fs::path& path) {
 std::string checked_hash(const hdf5::Handle& file) {
   const int descriptor = descriptor_of(file);
   UserBlock block{};
-  read_at(descriptor, block.data(), block.size(), 0);
+  read_bytes(descriptor, block.data(), block.size(), 0);
   if (std::string_view(block.data(), hdf5_signature.size()) == hdf5_signature)
     throw DataError("not a modebank archive (an HDF5 file of another program)");
   std::string hash = content_hash(descriptor);
