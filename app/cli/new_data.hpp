@@ -5,6 +5,7 @@
 #include "app/cli/command_line.hpp"
 #include "app/config/config.hpp"
 #include "ident/data/streams.hpp"
+#include "io/archive/bank/open_archive.hpp"
 
 namespace modebank::app {
 
