@@ -17,7 +17,7 @@ void Chain::score(const std::string& filter, const FilterOptions& options, const
   const std::optional<EvaluationStream> stream = stream_to_sink();
   const EvaluationStream* const to = stream ? &*stream : nullptr;
   if (filter == "drifting" && archive_.drifting)
-    put(score_drifting(*archive_.drifting, *archive_.recording, options.time_steps, scoring, to));
+    put(score_drifting(*archive_.drifting, *archive_.recording, scoring, to));
   else if (const std::optional<Bank> bank = archive_.bank_of(filter))
     put(score_filter(filter, *bank, *archive_.recording, options, scoring, to));
 }

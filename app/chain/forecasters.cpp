@@ -5,16 +5,15 @@
 namespace modebank {
 
 std::unique_ptr<AnyFilter> Forecaster::start() const {
-  return drifting ? any_filter(*drifting, filter.time_steps) : any_filter(bank, filter);
+  return drifting ? any_filter(*drifting) : any_filter(bank, filter);
 }
 
 HorizonEvaluation Forecaster::ahead(const Trajectory& run, const std::vector<Index>& horizons) const {
-  return drifting ? evaluate_horizons(*drifting, run, filter.time_steps, horizons)
-                  : evaluate_horizons(bank, run, filter, horizons);
+  return drifting ? evaluate_horizons(*drifting, run, horizons) : evaluate_horizons(bank, run, filter, horizons);
 }
 
 std::vector<FreeRun> Forecaster::free(const std::vector<Trajectory>& runs, const FreeRunOptions& options) const {
-  return drifting ? free_runs(*drifting, runs, filter.time_steps, options) : free_runs(bank, runs, filter, options);
+  return drifting ? free_runs(*drifting, runs, options) : free_runs(bank, runs, filter, options);
 }
 
 std::vector<Forecaster> forecasters_of(const Archive& archive, const FilterOptions& filter) {

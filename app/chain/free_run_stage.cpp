@@ -33,11 +33,11 @@ std::vector<FreeRun> free_runs(const Bank& bank, const std::vector<Trajectory>& 
   return predict_runs(runs, [&](const Trajectory& run) { return free_run(bank, run, filter, options); });
 }
 
-std::vector<FreeRun> free_runs(const DriftingModel& model, const std::vector<Trajectory>& runs, TimeSteps time_steps,
+std::vector<FreeRun> free_runs(const DriftingModel& model, const std::vector<Trajectory>& runs,
                                const FreeRunOptions& options) {
   if (options.samples == 0) return {};
   check_free_run(model.structure, options);
-  return predict_runs(runs, [&](const Trajectory& run) { return free_run(model, run, time_steps, options); });
+  return predict_runs(runs, [&](const Trajectory& run) { return free_run(model, run, options); });
 }
 
 std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,

@@ -143,16 +143,16 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
                     });
 }
 
-FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
-                            const ScoringOptions& scoring, const EvaluationStream* stream) {
+FilterScores score_drifting(const DriftingModel& model, const Recording& recording, const ScoringOptions& scoring,
+                            const EvaluationStream* stream) {
   const std::vector<Trajectory>& runs = recording.runs;
   FilterOptions filter;
   filter.noise = FilterNoise::adaptive;  // its variance is learned on the way, so its NIS is not chi-square
   const std::string name = "drifting";
   const Bank bank = fixed_bank(model);
-  return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(model, runs, time_steps, scoring.free_run),
+  return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(model, runs, scoring.free_run),
                     [&](std::size_t i) {
-                      RunEvaluation said = evaluate_run(model, runs[i], time_steps);
+                      RunEvaluation said = evaluate_run(model, runs[i]);
                       draw_pit(runs[i], scoring.seed, said);
                       return said;
                     });

@@ -48,8 +48,7 @@ void tell_of_shrinking(const std::string& whose, const Bank& bank, const Listene
 DriftingModel drifting(const Recording& recording, const OneModel& of, const CompetitorInputs& inputs,
                        const Listener& listener) {
   const Stopwatch watch;
-  DriftingModel model =
-      learn_likeliest_drifting(recording, of.global, of.structure, inputs.filter.time_steps, inputs.horizon);
+  DriftingModel model = learn_likeliest_drifting(recording, of.global, of.structure, inputs.horizon);
   listener.progress(fmt::format("drifting: {} with {} lags, q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s",
                                 name_of(model.wandering), model.structure.state_lags, model.rates.q, model.rates.p0,
                                 model.rates.leak, model.lam, model.nu, watch.seconds()));
@@ -213,10 +212,6 @@ void tell_of(const Refinement& refined, const Listener& listener) {
         s.modes, s.rate, s.start, s.leak, s.gain, s.gain_standard_error, s.taken ? "taken" : "not taken"));
   if (const LookAheadStage& ahead = refined.look_ahead; ahead.taken || ahead.score != ahead.score_before)
     listener.progress("refine: fit to predictions up to the look-ahead: " + worth_of(ahead));
-  const Averaging& averaged = refined.averaging;
-  if (!std::isnan(averaged.score))
-    listener.progress(fmt::format("refine: {} fits averaged: {:.4f} -> {:.4f} nats/sample left out", averaged.members,
-                                  averaged.score_before, averaged.score));
 }
 
 /// Modes that a mixture makes of windows between two others. Refinement takes them apart.

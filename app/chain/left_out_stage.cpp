@@ -11,6 +11,7 @@
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/folds.hpp"
 #include "filter/learn/refine/learning_part.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/terms/find_terms.hpp"
 #include "modebank/base/error.hpp"
@@ -63,7 +64,8 @@ std::vector<LeftOutRow> score_left_out(const Archive& learned, const BankInputs&
   const Stopwatch watch;
   const RefineOptions& em = inputs.bank.em;
   const std::optional<Recording> part = learning_part(*learned.recording, em.transitions, em.seed);
-  const std::vector<ValidationSplit> splits = validation_splits(part ? *part : *learned.recording, em.folds, em.tuning);
+  const std::vector<ValidationSplit> splits =
+      validation_splits(part ? *part : *learned.recording, em.folds, refine_tuning);
   if (splits.empty() || std::any_of(of_splits.begin(), of_splits.end(),
                                     [&](const auto& one) { return one.second.size() != splits.size(); }))
     return {};

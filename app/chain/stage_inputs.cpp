@@ -28,7 +28,7 @@ NoiseByInput noise_by_input(const ChainOptions& options, const FitOptions& windo
   const BankOptions& bank = options.bank;
   const bool can = refinement_asked(bank, is_linear(window)) == Refine::em &&
                    bank.transition != TransitionSource::logit && !bank.measurement_variance &&
-                   bank.em.drift.how == Drift::none && bank.em.look_ahead == 1 &&
+                   bank.em.drift == Drift::none && bank.em.look_ahead == 1 &&
                    options.filter.variant == FilterVariant::imm && options.filter.noise == FilterNoise::gaussian;
   return can ? options.noise_by_input : NoiseByInput::none;
 }
@@ -66,7 +66,6 @@ std::optional<OneMotionInputs> one_motion_inputs(const ChainOptions& options) {
 FilterOptions competitor_filter(const std::string& name, const FilterOptions& of_bank) {
   FilterOptions filter;
   filter.variant = name == "baseline" ? FilterVariant::kf : FilterVariant::imm;
-  filter.time_steps = of_bank.time_steps;
   filter.noise = of_bank.noise;
   return filter;
 }

@@ -70,20 +70,11 @@ MODEBANK_KEY_FIELDS(EmOptions, covariance, start, restarts, start_runs, split_me
                     covariance_floor, noise_component)
 MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, heldout, em, bootstrap)
 MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, straddling, error_aware)
-MODEBANK_KEY_FIELDS(RefineTuning, checkpoints, falls, forgettings, noise_prior_samples, fewest_whole_runs,
-                    shortest_stretch, most_loss, Q_transitions, other_Q_transitions, Q_transitions_unvalidated,
-                    Q_transitions_with_R, least_information, alternations, start_stay, modes_kept,
-                    duplicate_significance, growth_slack, iterations_after_screening, weight_width, other_weight_widths,
-                    little_memory_sd, theta_transitions, one_motion_iterations, shrinkage_digits, drift_rates,
-                    drift_starts, drift_leaks, drift_forgettings, drift_noise_prior_samples, least_R_share,
-                    R_start_shares, R_start_share_with_theta, least_gain)
-MODEBANK_KEY_FIELDS(DriftOptions, how, rate, start, leak)
-MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, members, look_ahead,
-                    look_ahead_score, folds, measurement_noise, screen, guards, one_theta, noise_by_input, seed, drift,
-                    tuning, transitions)
+MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, look_ahead, look_ahead_score, folds,
+                    measurement_noise, screen, guards, one_theta, noise_by_input, seed, drift, transitions)
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, modes,
                     refine, em)
-MODEBANK_KEY_FIELDS(FilterOptions, variant, parameter_noise, time_steps, noise)
+MODEBANK_KEY_FIELDS(FilterOptions, variant, noise)
 MODEBANK_KEY_FIELDS(FreeRunOptions, samples, horizon, start, method, paths, seed)
 MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth, free_run, seed)
 

@@ -78,8 +78,7 @@ void let_drifting_choose(const Recording& recording, const StructureInputs& inpu
   for (const StructureScore& c : candidates)
     latest = std::max(latest, structure_of(c, recording, inputs.window).first_transition());
   const auto score = [&](const StructureScore& c, const DriftingGrid& grid) {
-    return drifting_training_score(recording, latest, structure_of(c, recording, inputs.window), TimeSteps::single,
-                                   grid);
+    return drifting_training_score(recording, latest, structure_of(c, recording, inputs.window), grid);
   };
   DriftingGrid constant = coarse_drifting_grid();
   constant.q = constant.p0 = {0.0};

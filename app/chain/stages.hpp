@@ -107,8 +107,8 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
                           const EvaluationStream* stream = nullptr);
 
 /// The same of the drifting competitor.
-FilterScores score_drifting(const DriftingModel& model, const Recording& recording, TimeSteps time_steps,
-                            const ScoringOptions& scoring, const EvaluationStream* stream = nullptr);
+FilterScores score_drifting(const DriftingModel& model, const Recording& recording, const ScoringOptions& scoring,
+                            const EvaluationStream* stream = nullptr);
 
 /// Scores all filters of the archive together, after score_ahead; none where there is one. Adds rows on their weights
 /// in free runs.
@@ -122,7 +122,7 @@ void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Arc
 /// needs more measured samples than the options have.
 std::vector<FreeRun> free_runs(const Bank& bank, const std::vector<Trajectory>& runs, const FilterOptions& filter,
                                const FreeRunOptions& options);
-std::vector<FreeRun> free_runs(const DriftingModel& model, const std::vector<Trajectory>& runs, TimeSteps time_steps,
+std::vector<FreeRun> free_runs(const DriftingModel& model, const std::vector<Trajectory>& runs,
                                const FreeRunOptions& options);
 /// What is to be said of them, one line each: of the bank's, runs of which nothing was predicted; of all, paths lost.
 std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,

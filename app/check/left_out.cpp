@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
@@ -134,7 +135,7 @@ LeftOutPlan plan_left_out(const DataCheck& check) {
     plan.runs.push_back(run.run);
     transitions.push_back(run.transitions);
   }
-  if (std::ssize(plan.runs) < RefineTuning{}.fewest_whole_runs) return plan;
+  if (std::ssize(plan.runs) < refine_tuning.fewest_whole_runs) return plan;
   plan.parts.resize(most_parts);
   const std::vector<Index> part = deal_by_length(transitions, most_parts);
   for (std::size_t i = 0; i < part.size(); ++i) plan.parts[static_cast<std::size_t>(part[i])].push_back(plan.runs[i]);

@@ -7,6 +7,7 @@
 
 #include "app/chain/stage_inputs.hpp"
 #include "app/check/left_out.hpp"
+#include "filter/learn/tuning.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -14,7 +15,7 @@ namespace {
 
 /// By more than what bounds each choice inside refinement: less would not survive on other runs.
 bool exceeds_its_error(const PairedGain& gain) {
-  return gain.gain > RefineTuning{}.least_gain && gain.gain > gain.standard_error;
+  return gain.gain > refine_tuning.least_gain && gain.gain > gain.standard_error;
 }
 
 CheckOptions check_options(const ChainOptions& options) {

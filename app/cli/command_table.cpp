@@ -165,7 +165,7 @@ std::vector<Command> commands_to_use() {
        "prediction "
        "for the next sample, an alarm.",
        "modebank track robot.h5 < log.csv",
-       {"data", "filter.variant", "filter.noise", "filter.parameter_noise", "filter.time_steps", "track"},
+       {"data", "filter.variant", "filter.noise", "track"},
        {},
        run_track,
        {"data.truth", "data.weight", "data.label"}},

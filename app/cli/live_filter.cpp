@@ -79,7 +79,7 @@ namespace {
 
 OpenedFilter open_drifting(const OpenArchive& archive, const FilterOptions& options) {
   const DriftingModel model = load_drifting(archive);
-  return {fixed_bank(model), options, any_filter(model, options.time_steps)};
+  return {fixed_bank(model), options, any_filter(model)};
 }
 
 OpenedFilter open_bank(const OpenArchive& archive, const std::string& which, const FilterOptions& options) {

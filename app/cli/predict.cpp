@@ -33,8 +33,7 @@ double period_of(const OpenArchive& archive, const Config& config) {
 std::vector<FreeRun> predict_alone(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const FilterOptions options = tracked_options(config);
   const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
-  if (config.track.filter == TrackedFilter::drifting)
-    return free_runs(load_drifting(archive), recording.runs, options.time_steps, how);
+  if (config.track.filter == TrackedFilter::drifting) return free_runs(load_drifting(archive), recording.runs, how);
   return free_runs(load_bank(archive, tracked_bank(config)), recording.runs, options, how);
 }
 

@@ -20,8 +20,8 @@ double now_s() { return std::chrono::duration<double>(LineStream::Clock::now().t
 
 /// Names the archive and all options of the filter's steps, which a checkpoint must share.
 std::string identity_of(const OpenArchive& archive, const Config& config, const FilterOptions& options) {
-  return fmt::format("{} {} {} {} {} {}", archive.digest(), name_of(config.track.filter), name_of(options.variant),
-                     name_of(options.noise), options.parameter_noise, name_of(options.time_steps));
+  return fmt::format("{} {} {} {}", archive.digest(), name_of(config.track.filter), name_of(options.variant),
+                     name_of(options.noise));
 }
 
 /// Seconds of a sample as its file has them.
@@ -43,7 +43,7 @@ Tracker::Tracker(const OpenArchive& archive, const Config& config, OpenedFilter 
       samples_(alignment),
       alignment_(alignment),
       watchdog_(config.track.watchdog_s, now_s()),
-      thinning_(opened_.options.time_steps == TimeSteps::single || alignment.rate_hz > 0.0 ? 0.0 : bank_.dt_s) {
+      thinning_(alignment.rate_hz > 0.0 ? 0.0 : bank_.dt_s) {
   check_columns(config, bank_, archive);
   if (!config.track.resume.empty()) go_on();
 }
@@ -257,7 +257,7 @@ void Tracker::correct_first(double time_s) {
 }
 
 bool Tracker::is_gap(double from_s, double to_s) const {
-  return SampleFeed::steps_between(from_s, to_s, bank_.dt_s, opened_.options.time_steps) > longest_gap_steps;
+  return SampleFeed::steps_between(from_s, to_s, bank_.dt_s) > longest_gap_steps;
 }
 
 /// A sample far ahead whose successor follows the one before it had a wrong time: what was known before it is taken

@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "app/config/option_table.hpp"
+#include "app/config/options/gone_keys.hpp"
 #include "app/config/path_text.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "ident/base/printable.hpp"
@@ -134,8 +135,8 @@ void apply(Config& config, const std::string& where, const std::string& key, con
   } catch (const std::invalid_argument& error) {
     const std::string unit = option.unit.empty() ? "" : " [" + option.unit + "]";
     const std::string hint = has_comment ? "; # starts a comment, so no value can hold one" : "";
-    throw ConfigurationError(
-        fmt::format("{}: {} = '{}' {}; allowed: {}{}{}", where, key, value, error.what(), option.range, unit, hint));
+    throw ConfigurationError(fmt::format("{}: {} = '{}' {}{}; allowed: {}{}{}", where, key, value, error.what(),
+                                         instead_of_gone(key, value), option.range, unit, hint));
   }
 }
 
@@ -195,9 +196,11 @@ bool takes_quotes(const std::string& key) {
 }
 
 std::string nearest_key_hint(const std::string& key) {
+  const std::string name = boost::trim_left_copy_if(key, boost::is_any_of("-"));
+  if (std::string instead = instead_of_gone(name); !instead.empty()) return instead;
   std::vector<std::string> keys;
   for (const Option& option : option_table()) keys.push_back(option.key);
-  return did_you_mean(boost::trim_left_copy_if(key, boost::is_any_of("-")), keys);
+  return did_you_mean(name, keys);
 }
 
 namespace {

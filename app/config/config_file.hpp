@@ -43,7 +43,7 @@ bool decides_numbers(const std::string& key);
 /// SHA-256 over the resolved keys that decide numbers, in name order.
 std::string config_hash(const Config& config);
 
-/// ", did you mean window.length?", or nothing when no known key is close.
+/// ", did you mean window.length?", or of a key that went what takes its place; nothing when no known key is close.
 std::string nearest_key_hint(const std::string& key);
 
 }  // namespace modebank::app

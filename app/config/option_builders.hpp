@@ -37,6 +37,9 @@ inline Range above(double low) {
 inline Range between(double low, double high) {
   return {fmt::format("{} to {}", low, high), [low, high](double v) { return v >= low && v <= high; }};
 }
+inline Range above_to(double low, double high) {
+  return {fmt::format("above {} and at most {}", low, high), [low, high](double v) { return v > low && v <= high; }};
+}
 inline Range inside(double low, double high) {
   return {fmt::format("above {} and below {}", low, high), [low, high](double v) { return v > low && v < high; }};
 }

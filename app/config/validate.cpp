@@ -26,10 +26,6 @@ void check_logit(const Config& config) {
   require(config.bank.refine != Refine::none && is_linear(config.window),
           "bank.transition = logit is learned by refinement: it needs bank.refine = auto or em, and window.model = "
           "linear or varx");
-  require(config.bank.em.members == 1,
-          fmt::format("bank.transition = logit needs bank.members = 1, not {}: fits that switch by state and input are "
-                      "not averaged",
-                      config.bank.em.members));
   require(config.filter.variant != FilterVariant::salvi2025,
           "bank.transition = logit needs another filter.variant than salvi2025, whose equations know a constant "
           "transition matrix alone");
@@ -54,8 +50,8 @@ void check_searched(const Config& config) {
 
 /// Modes that drift are learned by refinement, for states measured exactly and the one filter that knows them.
 void check_drift(const Config& config) {
-  if (config.bank.em.drift.how == Drift::none) return;
-  const std::string drift = fmt::format("bank.drift = {}", name_of(config.bank.em.drift.how));
+  if (config.bank.em.drift == Drift::none) return;
+  const std::string drift = fmt::format("bank.drift = {}", name_of(config.bank.em.drift));
   require(is_linear(config.window),
           fmt::format("{} needs window.model = linear, varx or auto, not {}", drift, config.window.model));
   require(refinement_asked(config.bank, true) == Refine::em,
@@ -64,7 +60,6 @@ void check_drift(const Config& config) {
           drift + " needs states measured exactly: leave bank.measurement_variance empty");
   require(config.data.quantum.empty() && !config.data.quantum_auto,
           drift + " needs states measured exactly: data.quantum = none");
-  require(config.bank.em.members == 1, fmt::format("{} needs bank.members = 1, not {}", drift, config.bank.em.members));
   require(config.filter.variant == FilterVariant::imm,
           fmt::format("{} needs filter.variant = imm, not {}", drift, name_of(config.filter.variant)));
   const bool paths =

@@ -12,7 +12,7 @@
 namespace modebank::app {
 
 /// Of the JSON page; its minor part grows with members, its major part with changes of what there is.
-inline constexpr const char* export_schema_version = "1.1";
+inline constexpr const char* export_schema_version = "2.0";
 
 std::string to_json(const ExportedBank& bank);
 

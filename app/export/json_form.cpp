@@ -149,9 +149,7 @@ ordered filter_json(const ExportedBank& exported) {
   ordered result = {{"variant", name_of(exported.options.variant)},
                     {"noise", name_of(exported.options.noise)},
                     {"noise_forgetting", bank.noise_adaptation.forgetting},
-                    {"noise_prior_samples", bank.noise_adaptation.prior_samples},
-                    {"parameter_noise", exported.options.parameter_noise},
-                    {"time_steps", name_of(exported.options.time_steps)}};
+                    {"noise_prior_samples", bank.noise_adaptation.prior_samples}};
   result["quantum"] = bank.quantum.size() > 0 ? vector_json(bank.quantum) : ordered(nullptr);
   result["noise_factor"] = nullptr;
   if (!bank.noise_factor.empty())

@@ -168,7 +168,7 @@ class BackwardPass {
   template <class U>
   void weigh_pairs(Eigen::Index t, const U& input) {
     const auto mu = history_.probability(t);
-    if (model_.variant == FilterVariant::mmae || model_.mode_count() == 1) {
+    if (model_.mode_count() == 1) {
       weights_ = probability.asDiagonal();
     } else {
       weights_ = mu.asDiagonal() * transition_from(t, input);

@@ -96,15 +96,14 @@ void follow(const DriftingModel& model, const RunInstants& instants, Index t, co
   adapt_variance(model, recursion, v);
 }
 
-DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps,
-                           std::vector<Index> horizons) {
+DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, std::vector<Index> horizons) {
   validate(model);
   const Bank bank = fixed_bank(model);
   check_run(bank, run);
   const Index n = model.structure.states;
   DriftingForecasts out{empty_horizons(std::move(horizons), n, run.samples()), {}};
   out.whitened = out.predictions.error;
-  const RunInstants instants(bank, run, time_steps);
+  const RunInstants instants(bank, run);
   DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates, model.direction());
   Eigen::VectorXd v = model.v0;
   DriftingLookAhead look(model, instants, run, out);
@@ -122,9 +121,8 @@ double widening_gain(const StudentNoise& noise, const Eigen::Ref<const Eigen::Ve
   return gain;
 }
 
-HorizonEvaluation evaluate_horizons(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps,
-                                    std::vector<Index> horizons) {
-  DriftingForecasts forecasts = forecast(model, run, time_steps, std::move(horizons));
+HorizonEvaluation evaluate_horizons(const DriftingModel& model, const Trajectory& run, std::vector<Index> horizons) {
+  DriftingForecasts forecasts = forecast(model, run, std::move(horizons));
   HorizonEvaluation& out = forecasts.predictions;
   const StudentNoise noise(model.nu);
   for (std::size_t h = 0; h < out.horizons.size(); ++h) {

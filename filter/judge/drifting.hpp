@@ -13,7 +13,7 @@
 namespace modebank {
 
 /// What DriftingFilter says of every sample of a run, under the conventions and conditions of evaluate_run of a bank.
-RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps);
+RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run);
 
 /// Predictions some samples ahead (DriftingForecast), before the factor of their horizon has widened them.
 struct DriftingForecasts {
@@ -21,8 +21,7 @@ struct DriftingForecasts {
   /// Per horizon n x N: errors of variance one and uncorrelated, L^-1 error with L L' = cov(error).
   std::vector<Eigen::MatrixXd> whitened;
 };
-DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps,
-                           std::vector<Eigen::Index> horizons);
+DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, std::vector<Eigen::Index> horizons);
 
 /// Takes the recursion from the moment before to moment t of a run; v follows where something was measured.
 void follow(const DriftingModel& model, const RunInstants& instants, Eigen::Index t, const Trajectory& run,
@@ -36,7 +35,7 @@ double widening_gain(const StudentNoise& noise, const Eigen::Ref<const Eigen::Ve
 
 /// The same conventions as those of banks. Log densities: Student's, times the model's factor of the horizon; outputs
 /// whose errors are correlated are decorrelated in their order first.
-HorizonEvaluation evaluate_horizons(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps,
+HorizonEvaluation evaluate_horizons(const DriftingModel& model, const Trajectory& run,
                                     std::vector<Eigen::Index> horizons);
 
 }  // namespace modebank

@@ -42,7 +42,7 @@ Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const Run
 }  // namespace
 
 Eigen::VectorXi drifting_mode_sequence(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
-  const RunInstants instants(bank, run, options.time_steps);
+  const RunInstants instants(bank, run);
   const Eigen::VectorXi modes = with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() {
     return best_sequence<N, NY>(bank, run, instants, options);
   });

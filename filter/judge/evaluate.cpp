@@ -55,14 +55,14 @@ template <class Take>
 void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions& options, Take take) {
   const std::unique_ptr<Stepper> stepper = make_stepper(bank, options);
   Eigen::VectorXd log_density;
-  RunSamples(bank, run, options.time_steps)
-      .for_each_stretch([&](const SampleFeed& feed) { stepper->start(feed.start()); },
-                        [&](const SampleStretch& stretch) {
-                          for (Index i = 1; i < stretch.steps; ++i) stepper->skip(stretch.inputs.col(0));
-                          log_density.resize(stretch.measured.cols());
-                          stepper->follow(stretch.inputs, stretch.measured, log_density);
-                          take(stretch.first, log_density);
-                        });
+  RunSamples(bank, run).for_each_stretch([&](const SampleFeed& feed) { stepper->start(feed.start()); },
+                                         [&](const SampleStretch& stretch) {
+                                           for (Index i = 1; i < stretch.steps; ++i)
+                                             stepper->skip(stretch.inputs.col(0));
+                                           log_density.resize(stretch.measured.cols());
+                                           stepper->follow(stretch.inputs, stretch.measured, log_density);
+                                           take(stretch.first, log_density);
+                                         });
 }
 
 /// `bank`: one of the sizes of what the filter says.
@@ -81,11 +81,11 @@ RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const Filter
   return evaluate_samples(bank, BankFilter(bank, options), run);
 }
 
-RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps) {
+RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run) {
   validate(model);
   const Bank bank = fixed_bank(model);
   check_run(bank, run);
-  return evaluate_samples(bank, DriftingFilter(model, time_steps), run);
+  return evaluate_samples(bank, DriftingFilter(model), run);
 }
 
 RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& filter) {

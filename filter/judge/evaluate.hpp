@@ -34,7 +34,7 @@ struct RunEvaluation {
 /// signal whose measurement is NaN is predicted only: the others are taken in, and the sample is scored by them;
 /// without any its innovation and scores are NaN. When the first measurements are NaN the first whole one is the start,
 /// and everything before it is NaN but the mode probabilities; a bank with lags starts at the first sample whose lagged
-/// samples are all measured. Longer times between samples: see TimeSteps. Throws std::invalid_argument when sizes
+/// samples are all measured. Longer times between samples: see FilterOptions. Throws std::invalid_argument when sizes
 /// disagree and DataError for an input that is not finite.
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 

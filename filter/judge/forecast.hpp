@@ -47,7 +47,7 @@ class BankForecast {
       : model_(model),
         step_(model),
         state_(initial_state(model)),
-        posterior_(step_.hypothesis_probability().size()),
+        posterior_(step_.predicted_probability.size()),
         unused_(model.structure.dimension()) {}
 
   void start(const FilterState<N>& origin) {
@@ -76,9 +76,9 @@ class BankForecast {
       else
         step_.kalman[h].observe(model_, y);
       step_.log_likelihood(i) = step_.kalman[h].log_density;
-      error -= step_.hypothesis_probability()(i) * (y - step_.kalman[h].innovation);
+      error -= step_.predicted_probability(i) * (y - step_.kalman[h].innovation);
     }
-    return bayes(step_.hypothesis_probability(), step_.log_likelihood, posterior_);
+    return bayes(step_.predicted_probability, step_.log_likelihood, posterior_);
   }
 
  private:

@@ -34,11 +34,11 @@ struct Stretch {
   Index first = 0, end = 0;
 };
 
-std::vector<Stretch> stretches_of(const Trajectory& run, double dt_s, TimeSteps time_steps) {
+std::vector<Stretch> stretches_of(const Trajectory& run, double dt_s) {
   std::vector<Stretch> stretches;
   for (Index k = 0; k < run.samples(); ++k) {
-    const bool gap = k > 0 && SampleFeed::steps_between(sample_time_s(run, k - 1), sample_time_s(run, k), dt_s,
-                                                        time_steps) > longest_gap_steps;
+    const bool gap =
+        k > 0 && SampleFeed::steps_between(sample_time_s(run, k - 1), sample_time_s(run, k), dt_s) > longest_gap_steps;
     if (k == 0 || gap) stretches.push_back({k, k});
     stretches.back().end = k + 1;
   }
@@ -48,14 +48,14 @@ std::vector<Stretch> stretches_of(const Trajectory& run, double dt_s, TimeSteps 
 /// A run, its samples as a free run is given them, and where it begins.
 class Given {
  public:
-  Given(const Bank& bank, const Trajectory& run, TimeSteps time_steps, const FreeRunOptions& options)
-      : options_(options), run_(run), stretches_(stretches_of(run, bank.dt_s, time_steps)) {
+  Given(const Bank& bank, const Trajectory& run, const FreeRunOptions& options)
+      : options_(options), run_(run), stretches_(stretches_of(run, bank.dt_s)) {
     const Index fewest = fewest_start_samples(bank.structure);
     if (options.samples < fewest)
       throw std::invalid_argument("a free run of this model starts from at least " + std::to_string(fewest) +
                                   " measured samples, not " + std::to_string(options.samples));
     if (options.start == FreeRunStart::fixed) see_only_the_last(bank.structure.state_lags);
-    instants_.emplace(bank, run_, time_steps);
+    instants_.emplace(bank, run_);
   }
 
   const Trajectory& run() const { return run_; }
@@ -157,7 +157,7 @@ void from_each_start(const FilterModel<N, NY>& model, const Given& given, FreeRu
 
 FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& filter, const FreeRunOptions& options) {
   check_run(bank, run);
-  const Given given(bank, run, filter.time_steps, options);
+  const Given given(bank, run, options);
   FreeRun out = sized_free_run(bank.C.rows(), run.samples());
   if (options.method == FreeRunMethod::paths) {
     const FilterModel<Eigen::Dynamic, Eigen::Dynamic> model(bank, filter);
@@ -182,12 +182,11 @@ FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& f
   return out;
 }
 
-FreeRun free_run(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps,
-                 const FreeRunOptions& options) {
+FreeRun free_run(const DriftingModel& model, const Trajectory& run, const FreeRunOptions& options) {
   validate(model);
   const Bank bank = fixed_bank(model);
   check_run(bank, run);
-  const Given given(bank, run, time_steps, options);
+  const Given given(bank, run, options);
   FreeRun out = sized_free_run(bank.C.rows(), run.samples());
   DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates, model.direction());
   DriftingFreeForecast forecast(model);

@@ -62,8 +62,7 @@ struct FreeRun {
 /// Conditions as those of evaluate_run; throws std::invalid_argument for fewer samples than the model needs.
 FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& filter, const FreeRunOptions& options);
 /// The coefficients of the origin decay as where horizons are predicted (DriftingForecast); always by moments.
-FreeRun free_run(const DriftingModel& model, const Trajectory& run, TimeSteps time_steps,
-                 const FreeRunOptions& options);
+FreeRun free_run(const DriftingModel& model, const Trajectory& run, const FreeRunOptions& options);
 
 /// One row of /evaluation/free_run. Over the samples that are predicted and measured; each signal by itself, but for
 /// the log score.

@@ -28,7 +28,7 @@ class MomentForecast final : public Forecast {
   void arrive(Eigen::Index) override {
     const FilterStep<N, NY>& step = bank_.predicted();
     for (NormalMixture& signal : signals_) {
-      signal.weight = step.hypothesis_probability();
+      signal.weight = step.predicted_probability;
       signal.mean.resize(signal.weight.size());
       signal.deviation.resize(signal.weight.size());
     }

@@ -51,7 +51,7 @@ class HorizonScores {
 template <int N, int NY>
 void look_ahead(const Bank& bank, const Trajectory& run, const FilterOptions& options, HorizonEvaluation& out) {
   const FilterModel<N, NY> model(bank, options);
-  const RunInstants instants(bank, run, options.time_steps);
+  const RunInstants instants(bank, run);
   FilterStep<N, NY> step(model);
   FilterState<N> state = initial_state(model);
   HorizonScores<N, NY> look(model, instants, run, out);

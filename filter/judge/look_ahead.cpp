@@ -56,7 +56,7 @@ template <int N, int NY>
 Eigen::VectorXd sums_over_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,
                                    const LookAhead& look) {
   const FilterModel<N, NY> model(bank, options);
-  const RunInstants instants(bank, run, options.time_steps);
+  const RunInstants instants(bank, run);
   FilterStep<N, NY> step(model);
   FilterState<N> state = initial_state(model);
   Eigen::VectorXd sums =

@@ -14,7 +14,7 @@ PathForecast::PathForecast(const Bank& bank, const FilterOptions& options, Index
     : C_(bank.C),
       R_(bank.recording_noise()),
       R_root_(covariance_root(R_)),
-      paths_(bank, options, paths, seed, std::move(row)),
+      paths_(bank, paths, seed, std::move(row)),
       share_(bank.mode_count()) {}
 
 void PathForecast::arrive(Index) {

@@ -22,8 +22,8 @@ Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
 namespace {
 
 /// Every mode's next one by the bank's matrix, at the path's own state where that matters.
-TransitionRow bank_row(const Bank& bank, FilterVariant variant) {
-  if (variant == FilterVariant::mmae || bank.mode_count() == 1)
+TransitionRow bank_row(const Bank& bank) {
+  if (bank.mode_count() == 1)
     return [](Index mode, const auto&, const auto&, Eigen::VectorXd& row) { row.setZero()(mode) = 1.0; };
   return [T = bank.transition.matrix(), logit = bank.transition_logit,
           at = TransitionWorkspace(bank.mode_count(), bank.transition_logit)](
@@ -34,20 +34,16 @@ TransitionRow bank_row(const Bank& bank, FilterVariant variant) {
 
 }  // namespace
 
-SamplePaths::SamplePaths(const Bank& bank, const FilterOptions& options, Index paths, std::uint64_t seed,
-                         TransitionRow row)
+SamplePaths::SamplePaths(const Bank& bank, Index paths, std::uint64_t seed, TransitionRow row)
     : bank_(bank),
       paths_(paths),
-      row_(row ? std::move(row) : bank_row(bank_, options.variant)),
+      row_(row ? std::move(row) : bank_row(bank_)),
       generator_(seed),
       probability_(bank.mode_count()),
       regressor_(bank.structure.regressors()),
       next_(bank.structure.dimension()) {
   if (!bank.drift.empty()) throw std::invalid_argument("sample paths know no modes that drift");
   if (paths < 2) throw std::invalid_argument("at least two sample paths, not " + std::to_string(paths));
-  for (const Mode& mode : bank_.modes)
-    spread_root_.push_back(options.parameter_noise && mode.spread.size() > 0 ? covariance_root(mode.spread)
-                                                                             : Eigen::MatrixXd());
 }
 
 void SamplePaths::add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to, double scale) {
@@ -88,17 +84,6 @@ void SamplePaths::start(const FilterMemory& origin) {
   predicted_ = states_;
 }
 
-/// What theta's spread adds to a step is (I (x) phi') d, d ~ N(0, spread).
-void SamplePaths::add_parameter_noise(Index mode, const Vector& state, const Vector& inputs) {
-  const Eigen::MatrixXd& root = spread_root_[static_cast<std::size_t>(mode)];
-  if (root.size() == 0) return;
-  fill_regressor(bank_.structure, state, inputs, regressor_);
-  deviation_.setZero(root.rows());
-  add_draw(root, deviation_);
-  const Index q = regressor_.size();
-  for (Index i = 0; i < bank_.structure.states; ++i) next_(i) += regressor_.dot(deviation_.segment(i * q, q));
-}
-
 void SamplePaths::add_terms(Index mode, const Vector& state, const Vector& inputs) {
   fill_regressor(bank_.structure, state, inputs, regressor_);
   terms_.evaluate(bank_.terms, regressor_);
@@ -120,7 +105,6 @@ void SamplePaths::step(const Vector& inputs) {
     propagate(model.A, model.B, model.c, states_.col(i), inputs, next_);
     if (!bank_.terms.empty()) add_terms(mode, states_.col(i), inputs);
     predicted_.col(i) = next_;
-    add_parameter_noise(mode, states_.col(i), inputs);
     noise_factor_(i) = bank_.noise_factor.empty() ? 1.0 : bank_.noise_factor.at(states_.col(i), inputs);
     add_draw(noise_root_[static_cast<std::size_t>(mode)], next_, std::sqrt(noise_factor_(i)));
     states_.col(i) = next_;

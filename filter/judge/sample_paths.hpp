@@ -23,9 +23,8 @@ class SamplePaths {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
-  /// `row`: what the transition matrix is where it is not constant; empty: the bank's, or none (FilterVariant::mmae).
-  SamplePaths(const Bank& bank, const FilterOptions& options, Eigen::Index paths, std::uint64_t seed,
-              TransitionRow row = {});
+  /// `row`: what the transition matrix is where it is not constant; empty: the bank's.
+  SamplePaths(const Bank& bank, Eigen::Index paths, std::uint64_t seed, TransitionRow row = {});
 
   void start(const FilterMemory& origin);
   /// One model step of every path. One that leaves the finite range (beyond largest_mean) is lost from then on.
@@ -47,16 +46,14 @@ class SamplePaths {
   TransitionRow row_;
   std::mt19937_64 generator_;
   std::vector<Eigen::MatrixXd> noise_, noise_root_;  ///< K, scaled as at the origin
-  std::vector<Eigen::MatrixXd> spread_root_;         ///< K; empty: parameters are taken as known
   Eigen::MatrixXd states_, predicted_;
   Eigen::VectorXd noise_factor_;  ///< of every path in the last step
   std::vector<Eigen::Index> modes_;
-  Eigen::VectorXd probability_, regressor_, next_, normal_, deviation_;
+  Eigen::VectorXd probability_, regressor_, next_, normal_;
   TermValues terms_;
 
   Eigen::Index draw_mode(const Eigen::VectorXd& probability);
   void add_terms(Eigen::Index mode, const Vector& state, const Vector& inputs);
-  void add_parameter_noise(Eigen::Index mode, const Vector& state, const Vector& inputs);
   void keep(const std::vector<Eigen::Index>& which);
 };
 

@@ -20,7 +20,7 @@ constexpr double rounding = 1e-6;  // nats, far above that of a log density
 template <int N, int NY>
 void smooth(const Bank& bank, const Trajectory& run, const FilterOptions& options, RunEvaluation& evaluation) {
   const FilterModel<N, NY> model(bank, options);
-  const RunInstants instants(bank, run, options.time_steps);
+  const RunInstants instants(bank, run);
   const FilteredHistory<N, NY> history(model, instants, run);
   const Index n = model.structure.dimension();
   evaluation.smoothed_state.setConstant(n, run.samples(), not_a_number);
@@ -196,24 +196,19 @@ class BestHistories {
 };
 
 template <int N, int NY>
-Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const RunInstants& instants,
-                              const FilterOptions& options, const FilterOptions& pairs) {
-  const FilterModel<N, NY> model(bank, pairs);
+Eigen::VectorXi best_histories_sequence(const Bank& bank, const Trajectory& run, const RunInstants& instants,
+                              const FilterOptions& options) {
+  const FilterModel<N, NY> model(bank, options);
   if (model.mode_count() == 1) return Eigen::VectorXi::Zero(instants.count());
-  const Eigen::VectorXd scales = noise_scales(FilterModel<N, NY>(bank, options), instants, run);
+  const Eigen::VectorXd scales = noise_scales(model, instants, run);
   return BestHistories<N, NY>(model, scales, instants, run).trace(instants);
 }
 
 /// Every mode from every mode, whatever the variant.
 Eigen::VectorXi viterbi(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
-  const RunInstants instants(bank, run, options.time_steps);
-  FilterOptions pairs = options;
-  if (options.variant != FilterVariant::kf) pairs.variant = FilterVariant::gpb2;
-  Bank steady = bank;
-  if (options.variant == FilterVariant::mmae)
-    steady.transition = TransitionMatrix(Eigen::MatrixXd::Identity(bank.mode_count(), bank.mode_count()));
+  const RunInstants instants(bank, run);
   const Eigen::VectorXi modes = with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() {
-    return best_sequence<N, NY>(steady, run, instants, options, pairs);
+    return best_histories_sequence<N, NY>(bank, run, instants, options);
   });
   Eigen::VectorXi sequence = Eigen::VectorXi::Constant(run.samples(), -1);
   for (Index t = 0; t < instants.count(); ++t)
@@ -232,10 +227,8 @@ void smooth_run(const Bank& bank, const Trajectory& run, const FilterOptions& op
   }
   evaluation.viterbi_mode = viterbi(bank, run, options);
   if (options.variant == FilterVariant::salvi2025) return;
-  FilterOptions forward = options;
-  if (options.variant == FilterVariant::gpb1) forward.variant = FilterVariant::gpb2;
   with_sizes(bank.structure.dimension(), bank.C.rows(),
-             [&]<int N, int NY>() { smooth<N, NY>(bank, run, forward, evaluation); });
+             [&]<int N, int NY>() { smooth<N, NY>(bank, run, options, evaluation); });
 }
 
 }  // namespace modebank

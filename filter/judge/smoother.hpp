@@ -12,9 +12,8 @@ namespace modebank {
 /// the variant's filtered estimates of each mode: for every pair (mode j now, mode k next) a step of Rauch, Tung &
 /// Striebel's smoother, then one estimate per mode by moments; for one mode that smoother itself. The mode sequence is
 /// the most probable one where the state is measured exactly; otherwise each mode keeps the Kalman filter of its best
-/// history alone (Pavlovic, Rehg & MacCormick 2000, NIPS 13). Neither crosses a new start of the filter. mmae: modes
-/// never change. With adaptive noise both take the filter's own scale at every moment for known. gpb1: GPB2's estimates
-/// are smoothed, because its own of a mode have not come from one mode. salvi2025 has no smoother: its smoothed arrays
+/// history alone (Pavlovic, Rehg & MacCormick 2000, NIPS 13). Neither crosses a new start of the filter. With adaptive
+/// noise both take the filter's own scale at every moment for known. salvi2025 has no smoother: its smoothed arrays
 /// stay empty. Cost: at most K^2 Kalman steps per sample, and K of them where histories and pairs differ by much.
 void smooth_run(const Bank& bank, const Trajectory& run, const FilterOptions& options, RunEvaluation& evaluation);
 

@@ -76,8 +76,7 @@ Learned learn_from(const Recording& recording, const LearnOptions& options, cons
                 refined.bank.screened,
                 std::move(refined.candidates),
                 std::move(refined.objective),
-                refined.measurement,
-                refined.averaging};
+                refined.measurement};
   Uncertainty uncertainty = uncertainty_of(refined.bank);
   return {opaque(std::move(refined.bank)), opaque(std::move(baseline.bank)), log_likelihood,
           baseline.log_likelihood,         std::move(uncertainty),           std::move(origin)};

@@ -6,6 +6,7 @@
 
 #include "filter/judge/evaluate.hpp"
 #include "filter/learn/refine/refine.hpp"
+#include "filter/learn/tuning.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/model/local_model.hpp"
@@ -45,7 +46,7 @@ NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& record
 
 /// The competitor that knows one motion and is learned as the bank is: expectation-maximisation with one theta that all
 /// modes share, from `most_levels` noise scales and fewer down to one, chosen by its own cross-validation
-/// (refine_bank), averaged and with measurement noise as `options` say; one more start has the noises and the chain of
+/// (refine_bank), and with measurement noise as `options` say; one more start has the noises and the chain of
 /// `rival`, the bank that it is asked to describe as well. `global`: of linear terms. `filter`: that will run it.
 Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
                             const Bank& rival, const Eigen::MatrixXd& R, Eigen::Index most_levels,

@@ -68,8 +68,8 @@ class OneFilter final : public AnyFilter {
 inline std::unique_ptr<AnyFilter> any_filter(const Bank& bank, const FilterOptions& options) {
   return std::make_unique<OneFilter<BankFilter, FilterSnapshot>>(BankFilter(bank, options));
 }
-inline std::unique_ptr<AnyFilter> any_filter(const DriftingModel& model, TimeSteps time_steps) {
-  return std::make_unique<OneFilter<DriftingFilter, DriftingSnapshot>>(DriftingFilter(model, time_steps));
+inline std::unique_ptr<AnyFilter> any_filter(const DriftingModel& model) {
+  return std::make_unique<OneFilter<DriftingFilter, DriftingSnapshot>>(DriftingFilter(model));
 }
 
 }  // namespace modebank

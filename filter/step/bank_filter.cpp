@@ -63,7 +63,7 @@ struct BankFilter::Parts : FilterShell {
   CombinedInnovation combined;
 
   Parts(const Bank& bank, const FilterOptions& options)
-      : FilterShell(bank, options.time_steps), stepper(make_stepper(bank, options)), C(bank.C), combined(C.rows()) {}
+      : FilterShell(bank), stepper(make_stepper(bank, options)), C(bank.C), combined(C.rows()) {}
 
   void start() {
     stepper->start(feed.start());

@@ -35,7 +35,7 @@ class DenseGradient {
       : run_(run),
         weight_(weight),
         model_(bank, options),
-        instants_(bank, run, options.time_steps),
+        instants_(bank, run),
         step_(model_),
         by_(bank.structure.dimension(), bank.mode_count()) {
     const Index n = bank.structure.dimension(), K = bank.mode_count();
@@ -186,11 +186,9 @@ class DenseGradient {
 }  // namespace
 
 bool has_dense_gradient(const Bank& bank, const FilterOptions& options) {
-  const auto has_spread = [](const Mode& mode) { return mode.spread.size() > 0; };
   return (options.variant == FilterVariant::imm || (options.variant == FilterVariant::kf && bank.mode_count() == 1)) &&
          options.noise == FilterNoise::gaussian && !bank.is_quantised() && bank.transition_logit.empty() &&
-         bank.drift.empty() && bank.terms.empty() && bank.noise_factor.empty() &&
-         !(options.parameter_noise && std::any_of(bank.modes.begin(), bank.modes.end(), has_spread));
+         bank.drift.empty() && bank.terms.empty() && bank.noise_factor.empty();
 }
 
 BankGradient dense_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,

@@ -117,8 +117,8 @@ struct DriftingFilter::Parts : FilterShell {
   DriftingRecursion recursion;
   Eigen::VectorXd v;
 
-  Parts(const DriftingModel& m, TimeSteps time_steps)
-      : FilterShell(fixed_bank(m), time_steps),
+  Parts(const DriftingModel& m)
+      : FilterShell(fixed_bank(m)),
         model(m),
         noise(m.nu),
         recursion(m.structure, m.theta0, m.scale, m.rates, m.direction()),
@@ -187,8 +187,8 @@ struct DriftingFilter::Parts : FilterShell {
   }
 };
 
-DriftingFilter::DriftingFilter(const DriftingModel& model, TimeSteps time_steps)
-    : parts_(std::make_unique<Parts>(validated_drifting(model), time_steps)) {}
+DriftingFilter::DriftingFilter(const DriftingModel& model)
+    : parts_(std::make_unique<Parts>(validated_drifting(model))) {}
 
 DriftingFilter::~DriftingFilter() = default;
 DriftingFilter::DriftingFilter(DriftingFilter&&) noexcept = default;

@@ -90,7 +90,7 @@ struct DriftingSnapshot {
 class DriftingFilter {
  public:
   /// Throws std::invalid_argument for a model that validate refuses.
-  DriftingFilter(const DriftingModel& model, TimeSteps time_steps);
+  DriftingFilter(const DriftingModel& model);
   ~DriftingFilter();
   DriftingFilter(DriftingFilter&&) noexcept;
   DriftingFilter& operator=(DriftingFilter&&) noexcept;

@@ -4,8 +4,7 @@
 
 namespace modebank {
 
-FilterShell::FilterShell(const Bank& bank, TimeSteps time_steps)
-    : feed(bank, time_steps), initial_probability(bank.initial_probability) {
+FilterShell::FilterShell(const Bank& bank) : feed(bank), initial_probability(bank.initial_probability) {
   const Eigen::Index n = bank.structure.dimension(), n_y = bank.C.rows();
   estimate.prediction.resize(n);
   estimate.innovation.resize(n_y);

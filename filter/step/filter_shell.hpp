@@ -16,7 +16,7 @@ struct FilterShell {
   SampleFeed feed;
   Eigen::VectorXd initial_probability;
 
-  FilterShell(const Bank& bank, TimeSteps time_steps);
+  FilterShell(const Bank& bank);
 
   void restart();
   /// Nothing was said of this sample before it came.

@@ -45,7 +45,7 @@ BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, co
   if (!VectorGradient::can_step(bank, options)) return dense_gradient(bank, run, weight, options);
   VectorGradient gradient(bank, options);
   gradient.reserve(run.samples());
-  RunSamples(bank, run, options.time_steps).for_each([&](const SampleFeed& feed, Index k, bool starts) {
+  RunSamples(bank, run).for_each([&](const SampleFeed& feed, Index k, bool starts) {
     if (starts) return gradient.start(feed.start());
     for (Index i = 1; i < feed.steps(); ++i) gradient.skip(feed.inputs());
     gradient.step(feed.inputs(), run.state.col(k), weight.size() > 0 ? weight(k) : 1.0);

@@ -18,7 +18,7 @@ class EquationStepper final : public Stepper {
         step_(model_),
         state_(initial_state(model_)),
         moments_(model_.structure.dimension()),
-        weights_(step_.hypothesis_probability().size()) {}
+        weights_(step_.predicted_probability.size()) {}
 
   void start(const Vector& y) override { modebank::start(model_, y, state_); }
   void predict(const Vector& v) override { modebank::predict(model_, state_, v, step_); }

@@ -16,10 +16,7 @@
 int main(int argc, char** argv) try {
   if (argc < 2) return std::fprintf(stderr, "usage: robot_loop ARCHIVE [SECONDS]\n"), 2;
   const modebank::filter::Bank bank = modebank::archive::load_bank(argv[1]);
-  modebank::FilterOptions options;
-  options.time_steps =
-      modebank::TimeSteps::single;  // this loop is faster than the bank: one step each, whatever the clock
-  modebank::filter::BankFilter filter(bank, options);
+  modebank::filter::BankFilter filter(bank);  // this loop is faster than the bank: one step each
 
   const int ticks = 1000 * (argc > 2 ? std::atoi(argv[2]) : 1);
   Eigen::VectorXd input(bank.inputs()), measurement(bank.measurements());

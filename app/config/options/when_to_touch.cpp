@@ -111,7 +111,6 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
       {"bank.modes", "when the filter must be small, on a microcontroller: then the least that your score allows"},
       {"bank.refine", "none, for a look at the data in seconds, or to keep the mixture's own modes"},
       {"bank.restarts", "more, when repeated runs with other seeds differ by more than the gain's standard error"},
-      {"bank.members", "more, when only prediction matters and modes need no meaning"},
       {"bank.look_ahead", "when predictions several samples ahead matter (control): the number of samples"},
       {"bank.look_ahead_score", "error, when the mean of long predictions matters (free run), not their spread"},
       {"bank.folds", "1, to save time when you choose the number of modes yourself"},
@@ -119,9 +118,6 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
        "less, when learning from a long recording takes too long; 0, when time is no matter"},
       {"bank.drift",
        "auto, when conditions change within a run (wear, load, temperature) and a competitor that drifts wins"},
-      {"bank.drift_rate", "never by hand: drift = auto finds it"},
-      {"bank.drift_start", "never by hand: drift = auto finds it"},
-      {"bank.drift_leak", "never by hand: drift = auto finds it"},
       {"bank.max_iterations", "when the screen says that the fit was stopped by it"},
       {"bank.tolerance", "never, unless a fit must be repeated to more digits"},
   };
@@ -132,8 +128,6 @@ const std::unordered_map<std::string_view, std::string_view>& using_keys() {
   static const std::unordered_map<std::string_view, std::string_view> sentences{
       {"filter.variant", "never, unless you compare filters: imm serves; kf is the one model alone"},
       {"filter.noise", "adaptive, when the band is found false: the noise's scale then follows the run"},
-      {"filter.parameter_noise", "for an unrefined bank whose band is too narrow; a refined one has it in Q"},
-      {"filter.time_steps", "single, when times in the log are wrong but rows are evenly spaced"},
       {"filter.horizon", "when you predict for control: the number of samples that the controller looks ahead"},
       {"filter.simulate", "when the model shall simulate: so many measured samples at the start, then inputs alone"},
       {"filter.simulate_horizon", "when runs are so long that a free run to their end means nothing"},

@@ -94,7 +94,7 @@ std::string data(const ExportedBank& exported) {
       [](const Mode& mode) { return mode.Q; }, [&](std::size_t k) { return bank.modes[k].Q_standard_error; });
   text += matrix_text("bank_C[$P_MEASUREMENTS][$P_STATES]", "C", bank.C);
   text += matrix_text("bank_R[$P_MEASUREMENTS][$P_MEASUREMENTS]", "R", bank.R);
-  if (bank.mode_count() > 1 && exported.options.variant != FilterVariant::mmae)
+  if (bank.mode_count() > 1)
     text += matrix_text("bank_T[$P_MODES][$P_MODES]", transition_meaning, bank.transition.matrix());
   text += vector_text("bank_initial_probability[$P_MODES]", "of the modes at a start", bank.initial_probability);
   if (!bank.transition_logit.empty()) {

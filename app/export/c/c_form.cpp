@@ -15,13 +15,7 @@ void refuse_what_c_lacks(const ExportedBank& exported) {
   const auto refuse = [&](const std::string& what) {
     throw DataError(fmt::format("{}: cannot be exported to C: {}", exported.archive, what));
   };
-  const FilterVariant variant = exported.options.variant;
-  if (variant == FilterVariant::gpb2 || variant == FilterVariant::salvi2025)
-    refuse(fmt::format("filter.variant = {}", name_of(variant)));
-  const auto has_spread = [](const Mode& mode) { return mode.spread.size() > 0; };
-  if (exported.options.parameter_noise &&
-      std::any_of(exported.bank.modes.begin(), exported.bank.modes.end(), has_spread))
-    refuse("filter.parameter_noise = true");
+  if (exported.options.variant == FilterVariant::salvi2025) refuse("filter.variant = salvi2025");
   if (!exported.bank.drift.empty()) refuse("modes that drift (bank.drift)");
   if (!exported.bank.terms.empty()) refuse("a motion that bends (window.terms)");
   if (!exported.bank.noise_factor.empty())

@@ -23,11 +23,9 @@ constexpr Bounds of_float{1e18, 1e9, 1e-30, 1e-30, -1e30, 1e15, 1e-7, 1e30};
 
 /// Means and probabilities before mixing: of the modes themselves, or what the transition matrix makes of them.
 std::string mixing(const ExportedBank& exported) {
-  const FilterVariant variant = exported.options.variant;
-  if (exported.bank.mode_count() == 1 || variant == FilterVariant::mmae) return no_mixing;
+  if (exported.bank.mode_count() == 1) return no_mixing;
   const bool logit = !exported.bank.transition_logit.empty();
-  std::string text = (logit ? std::string(transition_at) : "") + mixing_weights +
-                     (variant == FilterVariant::gpb1 ? mix_gpb1 : mix_imm);
+  std::string text = (logit ? std::string(transition_at) : "") + mixing_weights + mix_imm;
   boost::algorithm::replace_all(text, "@TRANSITION@", logit ? with_logit : "");
   boost::algorithm::replace_all(text, "@T@", logit ? "T" : "bank_T");
   return text;
@@ -74,7 +72,7 @@ std::string constants(const ExportedBank& exported, bool single_precision) {
 
 std::string program(const ExportedBank& exported) {
   const bool adaptive = exported.options.noise == FilterNoise::adaptive;
-  const bool repeat = exported.options.time_steps == TimeSteps::repeat && exported.bank.dt_s > 0.0;
+  const bool repeat = exported.bank.dt_s > 0.0;
   const bool driven = exported.structure().acting_inputs() > 0;
   std::string text = std::string(repeat ? steps_repeat : steps_single) + samples_text + algebra_text + kalman_text +
                      mixing(exported) + probabilities_text + (adaptive ? noise_text : "") + step_text;

@@ -4,10 +4,10 @@
 /// tests/app/export/c_filter_test.cpp holds the two together.
 namespace modebank::app::c_form {
 
-extern const char *const steps_repeat, *const steps_single, *const samples_text;  // sample_feed.hpp
-extern const char *const algebra_text, *const kalman_text, *const input_term;     // arithmetic.hpp, kalman.hpp
-extern const char *const transition_at, *const with_logit;                        // transition_logit.hpp
-extern const char *const no_mixing, *const mixing_weights, *const mix_imm, *const mix_gpb1;  // imm.hpp, gpb.hpp
-extern const char *const probabilities_text, *const noise_text, *const step_text;            // imm.hpp, noise_scale.hpp
+extern const char *const steps_repeat, *const steps_single, *const samples_text;   // sample_feed.hpp
+extern const char *const algebra_text, *const kalman_text, *const input_term;      // arithmetic.hpp, kalman.hpp
+extern const char *const transition_at, *const with_logit;                         // transition_logit.hpp
+extern const char *const no_mixing, *const mixing_weights, *const mix_imm;         // imm.hpp
+extern const char *const probabilities_text, *const noise_text, *const step_text;  // imm.hpp, noise_scale.hpp
 
 }  // namespace modebank::app::c_form

@@ -76,18 +76,6 @@ static const $p_gaussian *mix($p_filter *filter, const $p_real *v) {
 
 )c";
 
-const char* const mix_gpb1 =
-    R"c(/* Generalised pseudo-Bayes of first order: all modes start from the common estimate. */
-static const $p_gaussian *mix($p_filter *filter, const $p_real *v) {
-  $p_real weight[$P_MODES][$P_MODES];
-  mixing_weights(filter, v, weight);
-  merge(filter->mode, filter->mode_probability, &filter->mixed[0]);
-  for (int j = 1; j < $P_MODES; ++j) filter->mixed[j] = filter->mixed[0];
-  return filter->mixed;
-}
-
-)c";
-
 const char* const probabilities_text = R"c(/* Modes' probabilities are kept above a floor, then normalised. */
 static void floor_probabilities($p_real *mu) {
   $p_real sum = 0;

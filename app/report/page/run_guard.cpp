@@ -34,7 +34,7 @@ using Visit = std::function<void(const Eigen::VectorXd& z, Index mode)>;
 
 void visit_run(const Bank& bank, const Trajectory& run, const RunEvaluation& said, const Visit& visit) {
   Eigen::VectorXd z(bank.transition_logit.weights.cols());
-  RunSamples(bank, run, TimeSteps::repeat).for_each([&](const SampleFeed& feed, Index k, bool starts) {
+  RunSamples(bank, run).for_each([&](const SampleFeed& feed, Index k, bool starts) {
     if (starts || feed.steps() != 1) return;
     z << said.state.col(k - 1), feed.inputs();
     if (!z.allFinite() || !said.mode_probability.col(k).allFinite()) return;

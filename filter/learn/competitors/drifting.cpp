@@ -45,9 +45,9 @@ DriftingModel undecided_model(const Recording& recording, const GlobalModel& glo
   return model;
 }
 
-void take_own_variance(DriftingModel& model, const Recording& recording, TimeSteps time_steps) {
+void take_own_variance(DriftingModel& model, const Recording& recording) {
   const DriftingGrid grid = coarse_drifting_grid();
-  const DriftingScores scores = score_drifting_grid(model, recording, time_steps, grid);
+  const DriftingScores scores = score_drifting_grid(model, recording, grid);
   const Index drift = scores.best() / (std::ssize(grid.lam) * std::ssize(grid.nu) * std::ssize(grid.floor));
   model.v0.array() *= scores.error_ratio.col(drift).array();
   model.v0 = model.v0.unaryExpr(&positive_variance);
@@ -85,13 +85,13 @@ void settle(DriftingModel& model, const DriftingGrid& grid, const DriftingScores
 }
 
 std::vector<DriftingForecasts> training_forecasts(const DriftingModel& model, const Recording& recording,
-                                                  TimeSteps time_steps, const std::vector<Index>& horizons) {
+                                                  const std::vector<Index>& horizons) {
   std::vector<const Trajectory*> runs;
   for (const Trajectory& run : recording.runs)
     if (run.role == Role::train) runs.push_back(&run);
   std::vector<DriftingForecasts> forecasts(runs.size());
   tbb::parallel_for(std::size_t{0}, runs.size(),
-                    [&](std::size_t i) { forecasts[i] = forecast(model, *runs[i], time_steps, horizons); });
+                    [&](std::size_t i) { forecasts[i] = forecast(model, *runs[i], horizons); });
   return forecasts;
 }
 
@@ -118,9 +118,8 @@ Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts
   return best;
 }
 
-void choose_horizon_factors(DriftingModel& model, const Recording& recording, TimeSteps time_steps,
-                            const std::vector<Index>& horizons) {
-  const std::vector<DriftingForecasts> runs = training_forecasts(model, recording, time_steps, horizons);
+void choose_horizon_factors(DriftingModel& model, const Recording& recording, const std::vector<Index>& horizons) {
+  const std::vector<DriftingForecasts> runs = training_forecasts(model, recording, horizons);
   if (runs.empty()) return;
   const std::vector<Index>& ascending = runs.front().predictions.horizons;
   const StudentNoise noise(model.nu);
@@ -137,13 +136,12 @@ void choose_horizon_factors(DriftingModel& model, const Recording& recording, Ti
 }  // namespace
 
 DriftingModel learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
-                             TimeSteps time_steps, const std::vector<Index>& horizons, const DriftingGrid& grid,
-                             Wandering wandering) {
+                             const std::vector<Index>& horizons, const DriftingGrid& grid, Wandering wandering) {
   DriftingModel model = undecided_model(recording, global, structure);
   model.wandering = wandering;
-  if (wandering == Wandering::gain) take_own_variance(model, recording, time_steps);
-  settle(model, grid, score_drifting_grid(model, recording, time_steps, grid));
-  choose_horizon_factors(model, recording, time_steps, horizons);
+  if (wandering == Wandering::gain) take_own_variance(model, recording);
+  settle(model, grid, score_drifting_grid(model, recording, grid));
+  choose_horizon_factors(model, recording, horizons);
   return model;
 }
 

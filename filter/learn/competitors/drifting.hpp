@@ -41,8 +41,7 @@ struct DriftingScores {
 /// `start`: a model whose theta0, scale, v0 and what wanders are those of the training runs; its other settings do not
 /// matter. One recursion of the coefficients per (q, p0, leak), from which all running variances follow, from which all
 /// densities follow. Throws std::invalid_argument for an empty grid, and DataError when nothing can be scored.
-DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& recording, TimeSteps time_steps,
-                                   const DriftingGrid& grid);
+DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& recording, const DriftingGrid& grid);
 
 /// Root mean square of every regressor over the training transitions, each counting the same; 1 for what is always
 /// zero. Throws DataError where there is none.
@@ -54,8 +53,8 @@ Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructur
 /// count the same whatever their weights. Where one factor wanders v0 is the variance of the model's own errors: those
 /// of constant coefficients hold what wanders.
 DriftingModel learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
-                             TimeSteps time_steps, const std::vector<Eigen::Index>& horizons,
-                             const DriftingGrid& grid = {}, Wandering wandering = Wandering::all);
+                             const std::vector<Eigen::Index>& horizons, const DriftingGrid& grid = {},
+                             Wandering wandering = Wandering::all);
 
 /// A model with the settings of `like`, its theta0 and variances of these training runs.
 DriftingModel relearn_drifting(const DriftingModel& like, const Recording& recording, const GlobalModel& global);
@@ -65,14 +64,13 @@ DriftingGrid coarse_drifting_grid();
 /// Causal log score of the training runs' transitions from `latest` on, the first that the model with the longest
 /// memory predicts, by the model of this structure that they teach; minus infinity where it cannot be learned.
 double drifting_training_score(const Recording& recording, Eigen::Index latest, const LinearStructure& structure,
-                               TimeSteps time_steps, const DriftingGrid& grid, Wandering wandering = Wandering::all);
+                               const DriftingGrid& grid, Wandering wandering = Wandering::all);
 
 /// learn_drifting of whatever wanders most likely in the training runs: all coefficients of `structure`, its constant
 /// (which it has then), one factor on the coefficients of its inputs, or the same with one lag. The causal score of at
 /// most 20,000 transitions and settings of the coarse grid choose; all coefficients of `structure` stay where nothing
 /// gains 0.02 nats per sample.
 DriftingModel learn_likeliest_drifting(const Recording& recording, const GlobalModel& global,
-                                       const LinearStructure& structure, TimeSteps time_steps,
-                                       const std::vector<Eigen::Index>& horizons);
+                                       const LinearStructure& structure, const std::vector<Eigen::Index>& horizons);
 
 }  // namespace modebank

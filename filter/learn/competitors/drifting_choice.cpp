@@ -42,19 +42,17 @@ DriftingGrid coarse_drifting_grid() {
 }
 
 double drifting_training_score(const Recording& recording, Index latest, const LinearStructure& structure,
-                               TimeSteps time_steps, const DriftingGrid& grid, Wandering wandering) {
+                               const DriftingGrid& grid, Wandering wandering) {
   const Recording part = from_common_start(recording, latest - structure.first_transition());
   try {
-    return learn_drifting(part, fit_global(part, structure), structure, time_steps, {1}, grid, wandering)
-        .tuning.log_score;
+    return learn_drifting(part, fit_global(part, structure), structure, {1}, grid, wandering).tuning.log_score;
   } catch (const DataError&) {
     return -std::numeric_limits<double>::infinity();
   }
 }
 
 DriftingModel learn_likeliest_drifting(const Recording& recording, const GlobalModel& global,
-                                       const LinearStructure& structure, TimeSteps time_steps,
-                                       const std::vector<Index>& horizons) {
+                                       const LinearStructure& structure, const std::vector<Index>& horizons) {
   const std::optional<Recording> fewer = learning_part(recording, most_asked_transitions, 1);
   const std::vector<Wanderer> candidates = candidates_of(structure);
   const Wanderer* chosen = &candidates.front();
@@ -63,14 +61,14 @@ DriftingModel learn_likeliest_drifting(const Recording& recording, const GlobalM
   double best = -std::numeric_limits<double>::infinity();
   for (const Wanderer& candidate : candidates) {
     const double score = drifting_training_score(fewer ? *fewer : recording, structure.first_transition(),
-                                                 candidate.structure, time_steps, grid, candidate.wandering);
+                                                 candidate.structure, grid, candidate.wandering);
     if (!(score > best)) continue;
     best = &candidate == &candidates.front() ? score + least_wandering_gain : score;
     chosen = &candidate;
   }
-  if (chosen == &candidates.front()) return learn_drifting(recording, global, structure, time_steps, horizons);
-  return learn_drifting(recording, fit_global(recording, chosen->structure), chosen->structure, time_steps, horizons,
-                        {}, chosen->wandering);
+  if (chosen == &candidates.front()) return learn_drifting(recording, global, structure, horizons);
+  return learn_drifting(recording, fit_global(recording, chosen->structure), chosen->structure, horizons, {},
+                        chosen->wandering);
 }
 
 }  // namespace modebank

@@ -22,13 +22,13 @@ struct GridRun {
   RunInstants instants;
 };
 
-std::vector<GridRun> training_instants(const DriftingModel& model, const Recording& recording, TimeSteps time_steps) {
+std::vector<GridRun> training_instants(const DriftingModel& model, const Recording& recording) {
   const Bank bank = fixed_bank(model);
   std::vector<GridRun> runs;
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train) continue;
     check_run(bank, run);
-    runs.push_back({run, RunInstants(bank, run, time_steps)});
+    runs.push_back({run, RunInstants(bank, run)});
   }
   return runs;
 }
@@ -111,12 +111,11 @@ Index DriftingScores::best() const {
   return best;
 }
 
-DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& recording, TimeSteps time_steps,
-                                   const DriftingGrid& grid) {
+DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& recording, const DriftingGrid& grid) {
   const std::array<Index, 6> size = grid.sizes();
   for (const Index values : size)
     if (values == 0) throw std::invalid_argument("a setting of the drifting model has no value to choose from");
-  const std::vector<GridRun> runs = training_instants(start, recording, time_steps);
+  const std::vector<GridRun> runs = training_instants(start, recording);
   const Index drifts = size[0] * size[1] * size[2], rest = size[3] * size[4] * size[5];
   DriftingScores scores{Eigen::VectorXd(drifts * rest), 0, Eigen::MatrixXd(start.v0.size(), drifts)};
   std::vector<Index> samples(static_cast<std::size_t>(drifts), 0);

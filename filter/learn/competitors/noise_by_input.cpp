@@ -15,6 +15,7 @@
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/base/clustered_error.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/fit/constants.hpp"
@@ -144,8 +145,7 @@ NoiseFactor fit(const TrainingTransitions& transitions, const MotionTerms& terms
 /// for a factor.
 SwitchingRegression switching_noise(const Recording& recording, const TrainingTransitions& transitions) {
   const GlobalModel global = fit_global(recording, transitions.structure);
-  const RefineTuning tuning;
-  const SwitchingPrior prior = switching_prior(transitions, global, {}, tuning.Q_transitions, tuning);
+  const SwitchingPrior prior = switching_prior(transitions, global, {}, refine_tuning.Q_transitions, refine_tuning);
   SwitchingRegression model;
   model.theta = global.theta.replicate(1, std::ssize(noise_levels));
   for (const double level : noise_levels) model.Q.emplace_back(level * prior.noise);

@@ -7,6 +7,7 @@
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/training_fit.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/stretch.hpp"
 #include "ident/fit/global_model.hpp"
@@ -163,18 +164,17 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   em.one_theta = true;
   em.guards = false;
   em.drift = {};
-  em.members = 1;
   em.restarts = 0;
   em.look_ahead = 1;
   em.measurement_noise = false;
   em.max_iterations = std::min(em.max_iterations, most_em_iterations);
   const MatrixXd R = MatrixXd::Zero(structure.states, structure.states);
   const NoiseFactor factor = options.noise_by_input ? fit_noise_factor(recording, structure, terms) : NoiseFactor();
-  Bank bank =
-      refine_bank(known, frame,
-                  level_starts(known, frame.structure, R, most_levels, em.tuning.modes_kept, of_known(factor, terms)),
-                  em, filter)
-          .bank;
+  Bank bank = refine_bank(known, frame,
+                          level_starts(known, frame.structure, R, most_levels, refine_tuning.modes_kept,
+                                       of_known(factor, terms)),
+                          em, filter)
+                  .bank;
   add_wide_level(bank);
   return with_terms(std::move(bank), recording, structure, terms, factor);
 }

@@ -6,6 +6,7 @@
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -58,7 +59,7 @@ Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, 
                    options.measurement_variance
                        ? Eigen::MatrixXd(*options.measurement_variance * Eigen::MatrixXd::Identity(R.rows(), R.cols()))
                        : R,
-                   most_levels, em.tuning.modes_kept,
+                   most_levels, refine_tuning.modes_kept,
                    em.noise_by_input ? fit_noise_factor(recording, fits.structure) : NoiseFactor());
   if (rival.mode_count() > 1) starts.push_back(with_noises_of(rival, starts.front(), global));
   Refinement learned = refine_bank(recording, linear_frame(fits, global), starts, em, filter);

@@ -15,6 +15,7 @@
 #include "filter/learn/from_mixture/transition_learning.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/learning_part.hpp"
+#include "filter/learn/tuning.hpp"
 #include "mixture/select.hpp"
 #include "modebank/base/error.hpp"
 
@@ -232,7 +233,7 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   BankOptions of_start = options;
   std::vector<Bank> starts{learn_bank(recording, fits, mixture, options, R)};
   const auto fewer = [&](Index modes) {
-    return static_cast<Index>(options.em.tuning.modes_kept * static_cast<double>(modes));
+    return static_cast<Index>(refine_tuning.modes_kept * static_cast<double>(modes));
   };
   for (Index modes = fewer(starts.front().mode_count()); modes >= 1; modes = fewer(modes)) {
     of_start.modes = modes;
@@ -242,10 +243,7 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   RefineOptions em = options.em;
   em.screen = options.screen;
   em.guards = options.transition == TransitionSource::logit;
-  if (options.modes > 0) {
-    em.members = 1;  // several fits would have more modes than that
-    em.most_modes = std::min(em.most_modes, options.modes);
-  }
+  if (options.modes > 0) em.most_modes = std::min(em.most_modes, options.modes);
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   const std::optional<Recording> part = learning_part(recording, em.transitions, em.seed);
   const Recording& learned = part ? *part : recording;

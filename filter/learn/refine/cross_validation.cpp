@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/work_counter.hpp"
 
@@ -62,7 +63,7 @@ void CrossValidation::consider(const std::vector<RefineStart>& candidates) {
     fits_.back().row = fits_.size() - 1;
     counter.add();
   }
-  if (possible()) chosen_ = fewest_modes_as_good(scores_of(fits_), samples_, in_.options.tuning);
+  if (possible()) chosen_ = fewest_modes_as_good(scores_of(fits_), samples_, refine_tuning);
 }
 
 ScoredFit CrossValidation::best_iterations(const RefineStart& start) const {
@@ -70,14 +71,14 @@ ScoredFit CrossValidation::best_iterations(const RefineStart& start) const {
   SplitFits fits(in_, splits_, start);
   ScoredFit best{start, 0, 0, {modes, {}}, {}};
   int falls = 0;
-  for (const Index checkpoint : checkpoints_up_to(in_.options.max_iterations, in_.options.tuning)) {
+  for (const Index checkpoint : checkpoints_up_to(in_.options.max_iterations, refine_tuning)) {
     fits.advance_to(checkpoint);
     std::vector<Bank> banks = fits.banks();
     const LeftOutScores scores{modes, run_scores(banks, look_)};
     const double gain = mean_score(scores) - mean_score(best.scores);
-    falls = gain < -in_.options.tuning.least_gain ? falls + 1 : 0;
+    falls = gain < -refine_tuning.least_gain ? falls + 1 : 0;
     if (best.iterations == 0 || gain > 0.0) best = {start, 0, checkpoint, scores, std::move(banks)};
-    if (falls == in_.options.tuning.falls) break;
+    if (falls == refine_tuning.falls) break;
     if (fits.converged()) break;
   }
   return best;
@@ -133,8 +134,8 @@ std::vector<ScoredFit> CrossValidation::best_of_each_size() const {
 NoiseAdaptation CrossValidation::adaptation(const std::vector<Bank>& of_splits) const {
   if (splits_.empty() || in_.filter.noise != FilterNoise::adaptive) return {};
   std::vector<NoiseAdaptation> ways;
-  for (const double forgetting : in_.options.tuning.forgettings)
-    for (const double prior : in_.options.tuning.noise_prior_samples) ways.push_back({forgetting, prior});
+  for (const double forgetting : refine_tuning.forgettings)
+    for (const double prior : refine_tuning.noise_prior_samples) ways.push_back({forgetting, prior});
   std::vector<Eigen::VectorXd> scores(ways.size());
   tbb::parallel_for(std::size_t{0}, ways.size(), [&](std::size_t w) {
     std::vector<Bank> banks = of_splits;

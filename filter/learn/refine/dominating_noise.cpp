@@ -9,6 +9,7 @@
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
+#include "filter/learn/tuning.hpp"
 
 namespace modebank {
 namespace {
@@ -42,7 +43,7 @@ LikelihoodMaximum climb(const RefineInput& in, const Recording& recording, const
   free.theta_unit = global.covariance.diagonal().cwiseSqrt().unaryExpr(&positive_variance);
   free.R.resize(static_cast<std::size_t>(start.R.rows()));
   std::iota(free.R.begin(), free.R.end(), Index{0});
-  free.least_R = least_measurement_noise(in.fits, in.options.tuning);
+  free.least_R = least_measurement_noise(in.fits, refine_tuning);
   free.transition = false;
   return maximise_likelihood({recording, exact_filter(in.filter), std::nullopt}, free, start, climb_limits);
 }
@@ -61,9 +62,9 @@ std::optional<Bank> start_of_dominating_noise(const RefineInput& in, const Recor
   }
   const Index n = bank.structure.states;
   Bank exact = one_model(bank, global, 0.0);
-  exact.R = least_measurement_noise(in.fits, in.options.tuning).asDiagonal();
+  exact.R = least_measurement_noise(in.fits, refine_tuning).asDiagonal();
   exact.modes.front().Q.topLeftCorner(n, n) = global.residual_covariance;
-  const double least = in.options.tuning.least_gain * static_cast<double>(recording.transitions(Role::train));
+  const double least = refine_tuning.least_gain * static_cast<double>(recording.transitions(Role::train));
   const LikelihoodTarget likelihood{recording, exact_filter(in.filter), std::nullopt};
   if (!best || !(best->value > likelihood.value(exact) + least)) return std::nullopt;
   const Eigen::MatrixXd Q = best->bank.modes.front().Q.topLeftCorner(n, n);

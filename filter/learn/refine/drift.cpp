@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/tuning.hpp"
 
 namespace modebank {
 namespace {
@@ -33,15 +34,12 @@ struct Coordinate {
 
 /// Goes to better neighbours on every grid in turn until there are none. A score that is no number is never better.
 DriftTrial climbed(const RefineInput& in, const CrossValidation& validation, const DriftChoice& start) {
-  const RefineTuning& tuning = in.options.tuning;
+  const RefineTuning& tuning = refine_tuning;
   DriftTrial best = tried(validation, start);
   DriftChoice at = start;
-  std::vector<Coordinate> coordinates;
-  if (in.options.drift.how == Drift::automatic) {
-    coordinates.push_back({tuning.drift_rates, at.drift.rates.q});
-    coordinates.push_back({tuning.drift_starts, at.drift.rates.p0});
-    coordinates.push_back({tuning.drift_leaks, at.drift.rates.leak});
-  }
+  std::vector<Coordinate> coordinates{{tuning.drift_rates, at.drift.rates.q},
+                                      {tuning.drift_starts, at.drift.rates.p0},
+                                      {tuning.drift_leaks, at.drift.rates.leak}};
   if (in.filter.noise == FilterNoise::adaptive) {
     coordinates.push_back({tuning.drift_forgettings, at.adaptation.forgetting});
     coordinates.push_back({tuning.drift_noise_prior_samples, at.adaptation.prior_samples});
@@ -73,15 +71,12 @@ std::vector<ScoredFit> fits_to_try(const CrossValidation& validation, const Scor
   return fits;
 }
 
-/// From the middle of the grids, or the given rates.
+/// From the middle of the grids.
 DriftChoice start_of(const RefineInput& in, const ScoredFit& fit, const Eigen::VectorXd& scale) {
-  const RefineTuning& tuning = in.options.tuning;
-  const DriftOptions& given = in.options.drift;
-  DriftChoice choice{fit, {{given.rate, given.start, given.leak}, scale}, {}};
-  if (given.how == Drift::automatic)
-    choice.drift.rates = {tuning.drift_rates[2], tuning.drift_starts[3], tuning.drift_leaks[0]};
-  choice.adaptation = {tuning.drift_forgettings[4], tuning.drift_noise_prior_samples[3]};
-  return choice;
+  const RefineTuning& tuning = refine_tuning;
+  return {fit,
+          {{tuning.drift_rates[2], tuning.drift_starts[3], tuning.drift_leaks[0]}, scale},
+          {tuning.drift_forgettings[4], tuning.drift_noise_prior_samples[3]}};
 }
 
 /// The runs' scores without drift, the noise scale moving as is best for that.
@@ -96,23 +91,19 @@ Eigen::VectorXd scores_without(const CrossValidation& validation, const ScoredFi
 
 std::optional<DriftChoice> choose_drift(const RefineInput& in, const CrossValidation& validation,
                                         const ScoredFit& steady, bool other_sizes, DriftStage& stage) {
-  const bool fixed = in.options.drift.how == Drift::fixed;
+  if (!validation.possible()) return std::nullopt;
   const Eigen::VectorXd scale = regressor_scale(in.recording, in.frame.structure);
-  if (!validation.possible()) {
-    stage.taken = fixed;
-    return fixed ? std::optional(start_of(in, steady, scale)) : std::nullopt;
-  }
   std::vector<DriftTrial> sizes;
   std::vector<LeftOutScores> scores;
   for (const ScoredFit& fit : fits_to_try(validation, steady, other_sizes)) {
     sizes.push_back(climbed(in, validation, start_of(in, fit, scale)));
     scores.push_back(sizes.back().scores);
   }
-  const DriftTrial& best = sizes[fewest_modes_as_good(scores, validation.samples(), in.options.tuning)];
+  const DriftTrial& best = sizes[fewest_modes_as_good(scores, validation.samples(), refine_tuning)];
   const Eigen::VectorXd without = scores_without(validation, steady);
   const PairedLoss gain = paired_loss(best.scores.log_likelihood, without, validation.samples());
   const DriftRates& rates = best.choice.drift.rates;
-  stage.taken = fixed || gain.mean > std::max(gain.standard_error, in.options.tuning.least_gain);
+  stage.taken = gain.mean > std::max(gain.standard_error, refine_tuning.least_gain);
   stage.modes = best.scores.modes;
   stage.rate = rates.q;
   stage.start = rates.p0;

@@ -8,7 +8,7 @@
 
 namespace modebank {
 
-/// Modes that drift, as the options or the cross-validation say.
+/// Modes that drift, as the cross-validation has it.
 struct DriftChoice {
   ScoredFit fit;  ///< of modes that do not; only its start and iterations count
   BankDrift drift;
@@ -19,8 +19,8 @@ struct DriftChoice {
 /// the best fit of each number of modes (`other_sizes`; else for `steady` alone) the settings of the highest score of
 /// the runs left out are searched on the grids of RefineTuning, one after the other until none gains; of the numbers of
 /// modes the fewest that are as good are chosen (fewest_modes_as_good). Empty where the runs left out do not gain more
-/// than one standard error and least_gain over the chosen fit without drift (Drift::automatic), or where nothing can be
-/// left out. Drift::fixed takes its rates as given, and is never empty. `stage` says what was found.
+/// than one standard error and least_gain over the chosen fit without drift, or where nothing can be left out. `stage`
+/// says what was found.
 std::optional<DriftChoice> choose_drift(const RefineInput& in, const CrossValidation& validation,
                                         const ScoredFit& steady, bool other_sizes, DriftStage& stage);
 

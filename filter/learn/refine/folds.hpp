@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "filter/learn/tuning.hpp"
 #include "ident/data/trajectory.hpp"
-#include "modebank/learn/tuning.hpp"
 
 namespace modebank {
 

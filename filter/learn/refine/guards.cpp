@@ -9,6 +9,7 @@
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/mode_screening.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
+#include "filter/learn/tuning.hpp"
 
 namespace modebank {
 namespace {
@@ -21,7 +22,7 @@ struct GuardStart {
 };
 
 GuardStart gone_on(const RefineInput& in, const ScoredFit& constant, SwitchingRegression model) {
-  const SwitchingPrior prior = with_guard(in.prior(constant.start), in.transitions, {in.options.tuning.weight_width});
+  const SwitchingPrior prior = with_guard(in.prior(constant.start), in.transitions, {refine_tuning.weight_width});
   ExpectationMaximisation em(in.transitions, prior, em_options(in.options), std::move(model));
   for (Index i = 0; i < in.options.max_iterations && !em.converged(); ++i) em.step();
   return {&constant, em.model(), em.posterior().log_likelihood};
@@ -74,7 +75,7 @@ Guards scored(const RefineInput& in, const CrossValidation& validation, const Gu
   SplitFits fits(in, splits, std::move(priors), std::vector<SwitchingRegression>(splits.size(), start.model));
   Guards best{*start.constant, prior, 0};
   best.fit.start.model = start.model;
-  for (const Index checkpoint : in.options.tuning.checkpoints) {
+  for (const Index checkpoint : refine_tuning.checkpoints) {
     if (checkpoint > in.options.max_iterations) break;
     fits.advance_to(checkpoint);
     std::vector<Bank> banks = fits.banks();
@@ -97,7 +98,7 @@ bool higher(const Guards& a, const Guards& b) {
 
 std::optional<Guards> choose_guards(const RefineInput& in, const CrossValidation& validation, SwitchingStage& stage) {
   if (!validation.possible()) return std::nullopt;
-  const RefineTuning& tuning = in.options.tuning;
+  const RefineTuning& tuning = refine_tuning;
   std::vector<Guards> sizes;
   std::vector<LeftOutScores> scores;
   const std::vector<ScoredFit> constant = validation.best_of_starts();

@@ -12,6 +12,7 @@
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/refine/split_fits.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -29,7 +30,7 @@ FreeParameters free_parameters(const RefineInput& in, const Recording& recording
   const TrainingTransitions transitions = gather_training_transitions(recording, bank.structure, bank.noise_factor);
   const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), prior);
   return all_parameters(bank, sums, prior, in.options.one_theta, R_estimated,
-                        least_measurement_noise(in.fits, in.options.tuning));
+                        least_measurement_noise(in.fits, refine_tuning));
 }
 
 /// What is to be fitted, and how.
@@ -106,7 +107,7 @@ bool gains(const LookAheadFit& fit, const CrossValidation& validation, const Cho
     banks[s] = fit.taken_on(split.runs.training, of_split, banks[s]);
   });
   stage.score = validation.score(banks, fit.look);
-  if (!(stage.score > stage.score_before + fit.in.options.tuning.least_gain)) return false;
+  if (!(stage.score > stage.score_before + refine_tuning.least_gain)) return false;
   of_splits = std::move(banks);
   return true;
 }

@@ -13,6 +13,7 @@
 #include "filter/learn/refine/dominating_noise.hpp"
 #include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/work_counter.hpp"
@@ -82,7 +83,7 @@ std::vector<Bank> starts_of_R(const LikelihoodTarget& target, const FreeParamete
 std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const RefineInput& in,
                                         const TrainingTransitions& transitions, const SwitchingPrior& prior,
                                         const Bank& bank) {
-  const RefineTuning& tuning = in.options.tuning;
+  const RefineTuning& tuning = refine_tuning;
   const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), prior);
   FreeParameters free = free_noise(bank.R.rows());
   free.theta_unit =
@@ -104,7 +105,7 @@ LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const Refi
   const SwitchingSums sums =
       sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), *target.prior);
   const FreeParameters free = all_parameters(bank, sums, *target.prior, in.options.one_theta, with_R,
-                                             least_measurement_noise(in.fits, in.options.tuning));
+                                             least_measurement_noise(in.fits, refine_tuning));
   return maximise_likelihood(target, free, bank, {in.options.max_iterations, in.options.tolerance});
 }
 
@@ -113,18 +114,18 @@ LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const Refi
 /// starts from one model with a large R competes with theirs, all of theta, Q and R at their maximum.
 MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, const TrainingTransitions& transitions,
                         const GlobalModel& global, const SwitchingPrior& prior, const Bank& bank) {
-  MeasurementNoise noise = estimate_measurement_noise(target, bank, in.options.tuning);
+  MeasurementNoise noise = estimate_measurement_noise(target, bank, refine_tuning);
   if (!noise.bank) noise.bank = estimate_with_theta(target, in, transitions, prior, bank);
   const std::optional<Bank> start = start_of_dominating_noise(in, target.recording, global, bank);
   if (!start) return noise;
   const auto at_maximum = [&](const Bank& from) {
     const LikelihoodTarget with_prior{target.recording, learning_filter(target.filter),
-                                      prior_with_states_unknown(prior, from, in.options.tuning), in.options.one_theta};
+                                      prior_with_states_unknown(prior, from, refine_tuning), in.options.one_theta};
     return maximise_everything(with_prior, in, transitions, from, true).bank;
   };
   Bank dominated = at_maximum(*start);
   const double rival = target.value(noise.bank ? at_maximum(*noise.bank) : bank);
-  const double least = in.options.tuning.least_gain * static_cast<double>(target.recording.transitions(Role::train));
+  const double least = refine_tuning.least_gain * static_cast<double>(target.recording.transitions(Role::train));
   if (target.value(dominated) > rival + least) noise.bank = std::move(dominated);
   return noise;
 }
@@ -157,10 +158,10 @@ class MeasuredSplits {
     for_each([&](const SplitData& split, Bank& bank) {
       SwitchingPrior exact = prior_of_split(in_, split, chosen_.noise_transitions);
       exact = towards_one_motion(std::move(exact), split.transitions, switching_model(bank), chosen_.theta_transitions,
-                                 in_.options.tuning);
+                                 refine_tuning);
       exact = with_guard(std::move(exact), split.transitions, chosen_.guard);
       const LikelihoodTarget target{split.runs.training, learning_filter(in_.filter),
-                                    prior_with_states_unknown(exact, bank, in_.options.tuning), in_.options.one_theta};
+                                    prior_with_states_unknown(exact, bank, refine_tuning), in_.options.one_theta};
       bank = maximise_everything(target, in_, split.transitions, bank, with_R).bank;
     });
   }
@@ -227,7 +228,7 @@ namespace {
 /// R where the data ask for some and the runs left out do not lose by it: of the bank and of the splits.
 bool take_R(const RefineInput& in, const SwitchingPrior& prior, std::optional<MeasuredSplits>& splits,
             MeasuredBank& fit) {
-  const RefineTuning& tuning = in.options.tuning;
+  const RefineTuning& tuning = refine_tuning;
   const LikelihoodTarget target{in.recording, in.filter, std::nullopt};
   MeasurementNoise noise = find_R(target, in, in.transitions, in.fits.global, prior, fit.bank);
   fit.stage.starts = noise.starts;
@@ -248,13 +249,13 @@ bool take_R(const RefineInput& in, const SwitchingPrior& prior, std::optional<Me
 void go_on(const RefineInput& in, const SwitchingPrior& prior, std::optional<MeasuredSplits>& splits,
            MeasuredBank& fit) {
   MeasurementStage& stage = fit.stage;
-  fit.prior = prior_with_states_unknown(prior, fit.bank, in.options.tuning);
+  fit.prior = prior_with_states_unknown(prior, fit.bank, refine_tuning);
   if (splits) {
     MeasuredSplits further(*splits);
     further.maximise(fit.R_estimated);
     const double before = splits->score(), after = further.score();
     if (std::isnan(stage.score)) stage.score_before = stage.score = before;
-    if (after < before - in.options.tuning.least_gain) return;
+    if (after < before - refine_tuning.least_gain) return;
     stage.score = after;
     splits.emplace(std::move(further));
   }
@@ -276,7 +277,7 @@ MeasuredBank fit_untimed(const RefineInput& in, const CrossValidation& validatio
   const bool quantised = bank.is_quantised();
   const bool asks_for_R = !with_R || quantised || take_R(in, prior, splits, fit);
   if (asks_for_R && (with_R || quantised ||
-                     (bank.R.diagonal().array() > least_measurement_noise(in.fits, in.options.tuning).array()).any()))
+                     (bank.R.diagonal().array() > least_measurement_noise(in.fits, refine_tuning).array()).any()))
     go_on(in, prior, splits, fit);
   // Rounding stands in the Q of states taken as exact: only beside a fit by intervals is R told from it.
   if (with_R && quantised && take_R(in, prior, splits, fit)) go_on(in, prior, splits, fit);

@@ -7,6 +7,7 @@
 #include "filter/learn/refine/cross_validation.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
+#include "filter/learn/tuning.hpp"
 
 namespace modebank {
 

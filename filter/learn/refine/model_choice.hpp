@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "modebank/learn/tuning.hpp"
+#include "filter/learn/tuning.hpp"
 
 namespace modebank {
 

@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "filter/learn/refine/averaging.hpp"
 #include "filter/learn/refine/cross_validation.hpp"
 #include "filter/learn/refine/drift.hpp"
 #include "filter/learn/refine/guards.hpp"
@@ -13,6 +12,7 @@
 #include "filter/learn/refine/measurement_noise.hpp"
 #include "filter/learn/refine/training_fit.hpp"
 #include "filter/learn/switching/starts.hpp"
+#include "filter/learn/tuning.hpp"
 
 namespace modebank {
 namespace {
@@ -27,7 +27,7 @@ Bank frame_of(const Bank& start, const RefineOptions& options) {
 /// How many modes the stretches start with: more than the mixture's bank has, if so many are to be tried, and as many.
 std::vector<Index> stretch_modes(const RefineOptions& options, Index of_mixture) {
   std::vector<Index> counts;
-  const double kept = options.tuning.modes_kept;
+  const double kept = refine_tuning.modes_kept;
   for (Index modes = options.most_modes; modes > of_mixture;
        modes = static_cast<Index>(kept * static_cast<double>(modes)))
     counts.push_back(modes);
@@ -44,7 +44,7 @@ std::vector<RefineStart> all_starts(const RefineInput& in, const std::vector<Ban
     for (Index i = 0; i < in.options.restarts; ++i)
       starts.push_back(
           {fmt::format("stretches {}", i + 1),
-           start_from_stretches(in.transitions, prior, modes, in.fits.length, in.options.seed, i, in.options.tuning),
+           start_from_stretches(in.transitions, prior, modes, in.fits.length, in.options.seed, i, refine_tuning),
            Q_transitions});
   return starts;
 }
@@ -72,7 +72,7 @@ std::vector<RefineStart> towards_one_motion(const RefineStart& best, const Refin
 /// Which start and how many iterations first; then how strong the prior on Q is.
 CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& banks) {
   CrossValidation validation(in);
-  const RefineTuning& tuning = in.options.tuning;
+  const RefineTuning& tuning = refine_tuning;
   validation.consider(
       all_starts(in, banks, validation.possible() ? tuning.Q_transitions : tuning.Q_transitions_unvalidated));
   if (validation.possible()) validation.consider(other_priors(validation.chosen().start, tuning));
@@ -116,7 +116,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   const ScoredFit& steady = guards ? guards->fit : validation.chosen();
   DriftStage drift_stage;
   std::optional<DriftChoice> drift;
-  if (options.drift.how != Drift::none) drift = choose_drift(in, validation, steady, !guards, drift_stage);
+  if (options.drift != Drift::none) drift = choose_drift(in, validation, steady, !guards, drift_stage);
   const ScoredFit& chosen = validation.of_start(drift ? drift->fit.row : steady.row);
   SwitchingPrior prior = in.prior(chosen.start);
   if (guards) prior = with_guard(std::move(prior), transitions, guards->prior);
@@ -137,16 +137,6 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   if (std::optional<Bank> ahead = fit_looking_ahead(in, validation, on_splits, measured.prior, measured.R_estimated,
                                                     result.bank, result.look_ahead, result.of_splits))
     result.bank = std::move(*ahead);
-  if (options.members == 1 || result.look_ahead.taken || guards || measured.R_estimated ||
-      measured.stage.iterations > 0)
-    return result;
-  AveragedBank averaged = average_fits(in, validation, result.bank);
-  result.averaging = averaged.averaging;
-  if (!averaged.bank) return result;
-  result.bank = std::move(*averaged.bank);
-  result.of_splits = std::move(averaged.of_splits);
-  for (RefineCandidate& row : result.candidates) row.selected = false;
-  for (const std::size_t row : averaged.rows) result.candidates[row].selected = true;
   return result;
 }
 

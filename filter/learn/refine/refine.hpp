@@ -27,7 +27,6 @@ struct Refinement {
   std::vector<RefineCandidate> candidates;  ///< the best number of iterations of each start
   std::vector<double> objective;  ///< penalised log-likelihood of the training transitions before each iteration
   MeasurementStage measurement;
-  Averaging averaging = {};
   SwitchingStage switching = {};
   DriftStage drift = {};
   LookAheadStage look_ahead = {};

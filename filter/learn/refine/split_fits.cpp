@@ -8,13 +8,14 @@
 
 #include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/starts.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/fit/global_model.hpp"
 
 namespace modebank {
 
 std::vector<SplitData> split_data(const RefineInput& in) {
   std::vector<SplitData> splits;
-  for (ValidationSplit& split : validation_splits(in.recording, in.options.folds, in.options.tuning)) {
+  for (ValidationSplit& split : validation_splits(in.recording, in.options.folds, refine_tuning)) {
     TrainingTransitions transitions =
         gather_training_transitions(split.training, in.frame.structure, in.frame.noise_factor);
     GlobalModel global = fit_global(split.training, in.frame.structure);
@@ -24,12 +25,12 @@ std::vector<SplitData> split_data(const RefineInput& in) {
 }
 
 SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, double noise_transitions) {
-  return switching_prior(split.transitions, split.global, in.fits.prior_sd, noise_transitions, in.options.tuning);
+  return switching_prior(split.transitions, split.global, in.fits.prior_sd, noise_transitions, refine_tuning);
 }
 
 SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, const RefineStart& start) {
   return towards_one_motion(prior_of_split(in, split, start.noise_transitions), split.transitions, start.model,
-                            start.theta_transitions, in.options.tuning);
+                            start.theta_transitions, refine_tuning);
 }
 
 namespace {
@@ -72,7 +73,7 @@ std::vector<Bank> SplitFits::banks() const {
   for (std::size_t s = 0; s < fits_.size(); ++s) {
     const SwitchingRegression& model = fits_[s]->model();
     const auto stable = in_.options.screen && in_.options.look_ahead > 1
-                            ? shrunk_to_stability(in_.frame.structure, model, priors_[s].mean, in_.options.tuning)
+                            ? shrunk_to_stability(in_.frame.structure, model, priors_[s].mean, refine_tuning)
                             : std::nullopt;
     banks.push_back(with_modes(in_.frame, stable ? stable->model : model));
   }

@@ -12,6 +12,7 @@
 #include "filter/learn/refine/model_choice.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/starts.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/stretch.hpp"
 #include "ident/fit/global_model.hpp"
@@ -56,9 +57,8 @@ std::vector<LeftOutRuns> ask(const ValidationSplit& split, const LinearStructure
   try {
     const TrainingTransitions learned = gather_training_transitions(training, structure),
                               asked = gather_training_transitions(left_out, structure);
-    const RefineTuning tuning;
     const SwitchingPrior prior =
-        switching_prior(learned, fit_global(training, structure), {}, tuning.Q_transitions, tuning);
+        switching_prior(learned, fit_global(training, structure), {}, refine_tuning.Q_transitions, refine_tuning);
     std::vector<LeftOutRuns> said(asked_fits.size());
     tbb::parallel_for(std::size_t{0}, said.size(),
                       [&](std::size_t f) { said[f] = predict(learned, asked, prior, asked_fits[f], one_theta, seed); });

@@ -8,20 +8,21 @@
 #include "filter/learn/switching/mode_screening.hpp"
 #include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/starts.hpp"
+#include "filter/learn/tuning.hpp"
 
 namespace modebank {
 
 SwitchingEmOptions em_options(const RefineOptions& options) {
-  return {options.one_theta, options.tolerance, options.tuning.alternations};
+  return {options.one_theta, options.tolerance, refine_tuning.alternations};
 }
 
 SwitchingPrior RefineInput::prior(double noise_transitions) const {
-  return switching_prior(transitions, fits.global, fits.prior_sd, noise_transitions, options.tuning);
+  return switching_prior(transitions, fits.global, fits.prior_sd, noise_transitions, refine_tuning);
 }
 
 SwitchingPrior RefineInput::prior(const RefineStart& start) const {
   return towards_one_motion(prior(start.noise_transitions), transitions, start.model, start.theta_transitions,
-                            options.tuning);
+                            refine_tuning);
 }
 
 TrainingFit fit_training_runs(const RefineInput& in, const RefineStart& start, const SwitchingPrior& prior,
@@ -30,17 +31,17 @@ TrainingFit fit_training_runs(const RefineInput& in, const RefineStart& start, c
   for (Index i = 0; i < iterations && !em.converged(); ++i) em.step();
   TrainingFit fit{em.model(), em.posterior(), in.frame.screened, em.objective()};
   while (in.options.screen) {
-    if (auto stable = shrunk_to_stability(in.transitions.structure, fit.model, prior.mean, in.options.tuning)) {
+    if (auto stable = shrunk_to_stability(in.transitions.structure, fit.model, prior.mean, refine_tuning)) {
       fit.model = std::move(stable->model);
       fit.shrinking = stable->shrinking;
       fit.posterior = smooth_modes(in.transitions, fit.model);
     }
     std::optional<ScreenedModel> rest =
-        without_worst_mode(in.transitions, fit.posterior, fit.model, in.options.one_theta, in.options.tuning);
+        without_worst_mode(in.transitions, fit.posterior, fit.model, in.options.one_theta, refine_tuning);
     if (!rest) break;
     fit.screened.push_back(std::move(rest->mode));
     ExpectationMaximisation others(in.transitions, prior, em_options(in.options), std::move(rest->model));
-    for (Index i = 0; i < in.options.tuning.iterations_after_screening; ++i) others.step();
+    for (Index i = 0; i < refine_tuning.iterations_after_screening; ++i) others.step();
     fit.model = others.model();
     fit.posterior = others.posterior();
     fit.shrinking = {};
@@ -64,7 +65,7 @@ Bank with_errors(const RefineInput& in, const TrainingFit& fit, const SwitchingP
                  const FilterOptions& filter, const Bank& bank) {
   const SwitchingSums complete = sum_transitions(in.transitions, fit.posterior, prior);
   const FreeParameters free = all_parameters(bank, complete, prior, in.options.one_theta, estimated_R,
-                                             least_measurement_noise(in.fits, in.options.tuning));
+                                             least_measurement_noise(in.fits, refine_tuning));
   return with_standard_errors({in.recording, filter, prior, in.options.one_theta}, free, complete, bank);
 }
 
@@ -75,7 +76,6 @@ Eigen::VectorXd least_measurement_noise(const WindowFits& fits, const RefineTuni
 FilterOptions learning_filter(const FilterOptions& filter) {
   FilterOptions learning = filter;
   learning.variant = FilterVariant::imm;
-  learning.parameter_noise = false;
   return learning;
 }
 

@@ -7,6 +7,7 @@
 #include "filter/learn/refine/refine.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
+#include "filter/learn/tuning.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/model/local_model.hpp"
 #include "modebank/filter/options.hpp"

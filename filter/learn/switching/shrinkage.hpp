@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "filter/learn/switching/switching_regression.hpp"
+#include "filter/learn/tuning.hpp"
 #include "modebank/filter/screened_mode.hpp"
-#include "modebank/learn/tuning.hpp"
 
 namespace modebank {
 

@@ -4,8 +4,8 @@
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/model/local_model.hpp"
-#include "modebank/learn/tuning.hpp"
 
 namespace modebank {
 

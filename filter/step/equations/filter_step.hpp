@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "filter/step/equations/drift.hpp"
-#include "filter/step/equations/gpb.hpp"
 #include "filter/step/equations/imm.hpp"
 #include "filter/step/equations/noise_scale.hpp"
 #include "filter/step/equations/salvi2025.hpp"
@@ -48,7 +47,7 @@ FilterState<N> start(const FilterModel<N, NY>& model, const Y& y) {
 template <int N, int NY, class U>
 const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
                                     FilterStep<N, NY>& step) {
-  if (model.variant == FilterVariant::mmae || model.mode_count() == 1) {
+  if (model.mode_count() == 1) {
     step.predicted_probability = state.mode_probability;
     return state.modes;
   }
@@ -59,17 +58,13 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
     mixing_weights(transition_of_step(model, state, u, step), state.mode_probability, step.predicted_probability,
                    step.mixing);
   }
-  if (model.variant == FilterVariant::gpb1)
-    gpb::start_from_one(state, model.exact, step.mixed);
-  else
-    mix(state, step.mixing, model.exact, step.mixed);
+  mix(state, step.mixing, model.exact, step.mixed);
   return step.mixed;
 }
 
-/// Fills what is known before the measurement: each hypothesis' prediction and S, and the predicted probabilities.
+/// Fills what is known before the measurement: each mode's prediction and S, and the predicted probabilities.
 template <int N, int NY, class U>
 void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
-  if (step.pairs()) return gpb::predict_pairs(model, state, u, step);
   if (model.drift.on()) return drift::predict_modes(model, state, mix(model, state, u, step), u, step);
   predict_modes(model, mix(model, state, u, step), noise_of_step(model, state, u, step), u, step);
 }
@@ -77,10 +72,7 @@ void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const
 /// A missing measurement: the prediction is all there is.
 template <int N, int NY>
 void skip_measurement(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, FilterState<N>& state) {
-  if (step.pairs())
-    gpb::keep_prediction(model, step, state);
-  else
-    keep_prediction(step, state);
+  keep_prediction(step, state);
   state.mode_probability = step.predicted_probability;
   floor_probabilities(state.mode_probability);
   if (model.drift.on()) drift::keep_prediction(model, step, state);
@@ -91,15 +83,13 @@ template <int N, int NY, class Sensor, class Y>
 double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y, FilterStep<N, NY>& step,
                FilterState<N>& state) {
   const double noise_scale = state.noise_scale;  // that the prediction was made with
-  correct(sensor, y, step, step.pairs() ? step.corrected : state.modes);
-  if (model.adaptive) adapt_noise_scale(model, sensor, step.hypothesis_probability(), step, state);
+  correct(sensor, y, step, state.modes);
+  if (model.adaptive) adapt_noise_scale(model, sensor, step.predicted_probability, step, state);
   if (model.mode_count() == 1) {
     if (model.drift.on()) drift::learn(model, sensor, noise_scale, step, state);
     return step.log_likelihood(0);
   }
-  const double log_density = step.pairs()
-                                 ? gpb::merge_pairs(model, step, state)
-                                 : bayes(step.predicted_probability, step.log_likelihood, state.mode_probability);
+  const double log_density = bayes(step.predicted_probability, step.log_likelihood, state.mode_probability);
   if (model.variant == FilterVariant::salvi2025) salvi2025::weigh_by_posterior(sensor, y, step, state);
   floor_probabilities(state.mode_probability);
   if (model.drift.on()) drift::learn(model, sensor, noise_scale, step, state);
@@ -117,7 +107,7 @@ double update(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& st
     return std::numeric_limits<double>::quiet_NaN();
   }
   step.partial.assign(model, y);
-  for (KalmanStep<N, NY>& hypothesis : step.kalman) hypothesis.expect(step.partial);
+  for (KalmanStep<N, NY>& mode : step.kalman) mode.expect(step.partial);
   return take_in(model, step.partial, step.partial.y, step, state);
 }
 

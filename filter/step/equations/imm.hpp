@@ -43,28 +43,21 @@ struct MixingWeights {
   Eigen::MatrixXd matrix;  ///< K x K
 };
 
-/// What one step computes on the way, sized once. A hypothesis is what a mode predicts from: one per mode, and with
-/// GPB2 one per pair of modes, hypothesis j K + i being mode j from mode i.
+/// What one step computes on the way, sized once.
 template <int N, int NY>
 struct FilterStep {
   Eigen::VectorXd predicted_probability;  ///< K, c: before the measurement
-  std::vector<KalmanStep<N, NY>> kalman;  ///< one per hypothesis
+  std::vector<KalmanStep<N, NY>> kalman;  ///< K
   std::vector<Gaussian<N>> mixed;         ///< K, where each mode's prediction starts
   MixingWeights mixing;
   TransitionWorkspace transition;
-  Eigen::VectorXd log_likelihood;          ///< of each hypothesis
+  Eigen::VectorXd log_likelihood;          ///< K
   PartialSensor<N, NY> partial;            ///< of the last measurement; `missing` is 0 when that was whole
   Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
   double noise_factor = 1.0;               ///< NoiseFactor of the last prediction
   Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
 
   DriftWorkspace<N, NY> drift;  ///< of modes that drift; empty otherwise
-
-  // GPB2 alone; empty otherwise.
-  Eigen::VectorXd pair_probability;    ///< K^2, before the measurement
-  std::vector<Gaussian<N>> corrected;  ///< K^2
-  Eigen::VectorXd merging;             ///< K, workspace
-  Eigen::VectorXd mode_likelihood;     ///< K, workspace: log p(y | mode)
 
   explicit FilterStep(const FilterModel<N, NY>& model)
       : predicted_probability(model.mode_count()),
@@ -74,23 +67,11 @@ struct FilterStep {
         residual(model.C.rows()),
         drift(model) {
     const Eigen::Index K = model.mode_count(), n = model.structure.dimension();
-    const bool pairs = model.variant == FilterVariant::gpb2 && K > 1;
-    const Eigen::Index hypotheses = pairs ? K * K : K;
-    kalman.assign(static_cast<std::size_t>(hypotheses),
-                  KalmanStep<N, NY>(n, model.C.rows(), model.structure.regressors()));
-    log_likelihood.resize(hypotheses);
+    kalman.assign(model.modes.size(), KalmanStep<N, NY>(n, model.C.rows(), model.structure.regressors()));
+    log_likelihood.resize(K);
     mixed.assign(model.modes.size(), Gaussian<N>(n));
     mixing.matrix.setZero(K, K);
-    if (!pairs) return;
-    pair_probability.resize(hypotheses);
-    corrected.assign(kalman.size(), Gaussian<N>(n));
-    merging.resize(K);
-    mode_likelihood.resize(K);
   }
-
-  bool pairs() const { return pair_probability.size() > 0; }
-  /// How probable each hypothesis is before the measurement; sums to one.
-  const Eigen::VectorXd& hypothesis_probability() const { return pairs() ? pair_probability : predicted_probability; }
 };
 
 /// The mean of the combined estimate.
@@ -199,7 +180,7 @@ void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N
   }
 }
 
-/// Step 3, after it: every hypothesis takes the measurement `y` of `sensor` in: its estimate, and its log likelihood
+/// Step 3, after it: every mode takes the measurement `y` of `sensor` in: its estimate, and its log likelihood
 /// log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) of the signals that are there; of quantised ones interval.hpp.
 template <int N, int NY, class Sensor, class Y>
 void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vector<Gaussian<N>>& estimates) {

@@ -60,7 +60,7 @@ struct KalmanStep {
         NY_(n, n_y),
         phi_(regressors) {}
 
-  /// x = x + A x + B u + c, P = F P F' + noise_scale Q (+ the covariance of the parameters). With terms g these are
+  /// x = x + A x + B u + c, P = F P F' + noise_scale Q. With terms g these are
   /// added to x, and F has their derivative at the mean: the extended Kalman filter, exact where P is zero.
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
@@ -96,9 +96,6 @@ struct KalmanStep {
   const Eigen::Matrix<double, N, N>& bend(const FilterModel<N, NY>& model,
                                           const typename FilterModel<N, NY>::Mode& mode,
                                           const Eigen::Matrix<double, N, 1>& x, const U& u);
-  template <class U>
-  void add_parameter_noise(const LinearStructure& s, const Eigen::MatrixXd& spread,
-                           const Eigen::Matrix<double, N, 1>& x, const U& u);
 };
 
 /// Keeps a prediction usable: what diverges is scaled down, and a covariance that rounding made indefinite (possible
@@ -150,7 +147,6 @@ void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY
   for (Eigen::Index i = model.full_rows; i < predicted.mean.size(); ++i)
     predicted.mean(i) = from.mean(i - model.full_rows);
   process_noise = noise_scale * mode.Q;
-  if (mode.spread.size() > 0) add_parameter_noise(model.structure, mode.spread, from.mean, u);
   const auto& F = model.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
   predicted.covariance = process_noise;
   predicted.uncertain = std::min(from.mean.size(), from.uncertain + model.full_rows);
@@ -175,23 +171,6 @@ const Eigen::Matrix<double, N, N>& KalmanStep<N, NY>::bend(const FilterModel<N, 
     for (Eigen::Index i = 0; i < bent_F_.cols(); ++i) bent_F_(a, i) += mode.bend.row(a).dot(slope.col(i));
   }
   return bent_F_;
-}
-
-/// (I (x) phi') Sigma_theta (I (x) phi')' with theta the row-major vec of [A B (c)].
-template <int N, int NY>
-template <class U>
-void KalmanStep<N, NY>::add_parameter_noise(const LinearStructure& s, const Eigen::MatrixXd& spread,
-                                            const Eigen::Matrix<double, N, 1>& x, const U& u) {
-  fill_regressor(s, x, u, phi_);
-  const Eigen::Index q = s.regressors();
-  for (Eigen::Index b = 0; b < s.states; ++b)
-    for (Eigen::Index a = b; a < s.states; ++a) {
-      double sum = 0.0;
-      for (Eigen::Index j = 0; j < q; ++j)
-        for (Eigen::Index i = 0; i < q; ++i) sum += phi_(i) * spread(a * q + i, b * q + j) * phi_(j);
-      process_noise(a, b) += sum;
-      if (a != b) process_noise(b, a) = process_noise(a, b);
-    }
 }
 
 template <int N, int NY>

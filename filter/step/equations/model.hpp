@@ -20,8 +20,7 @@ struct FilterModel {
     Eigen::Matrix<double, N, Eigen::Dynamic> B;
     Eigen::Matrix<double, N, 1> c;
     Eigen::Matrix<double, N, N> Q;
-    Eigen::MatrixXd spread;  ///< p x p; empty: the parameters are taken as known
-    Eigen::MatrixXd bend;    ///< measured states x T; empty without terms
+    Eigen::MatrixXd bend;  ///< measured states x T; empty without terms
   };
 
   LinearStructure structure;
@@ -94,9 +93,7 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
   if (drift.on() && variant != FilterVariant::imm && variant != FilterVariant::kf)
     throw std::invalid_argument("modes that drift are filtered by imm or kf, not by " + std::string(name_of(variant)));
   for (const modebank::Mode& mode : bank.modes) {
-    const bool noisy = options.parameter_noise && mode.spread.size() > 0;
-    modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q,
-                     noisy ? mode.spread : Eigen::MatrixXd(), mode.bend});
+    modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q, mode.bend});
   }
   full_rows = full_rows_of(*this);
   seen_columns = C.cols();

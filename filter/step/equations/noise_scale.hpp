@@ -70,15 +70,13 @@ inline void move_noise_scale(const NoiseAdaptation& adaptation, double share, do
   scale = std::clamp(squares / samples, 1.0 / largest_noise_scale, largest_noise_scale);
 }
 
-/// Moves state.noise_scale after the measurement has been taken in. `prior`: the probability of every Kalman step's
-/// hypothesis before it (step.log_likelihood holds what the measurement says); the hypotheses of mode j follow each
-/// other. `sensor` has the C that was measured with.
+/// Moves state.noise_scale after the measurement has been taken in. `prior`: the probability of every mode
+/// before it (step.log_likelihood holds what the measurement says). `sensor` has the C that was measured with.
 template <class Model, class Sensor, class Step, class State>
 void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::VectorXd& prior, Step& step,
                        State& state) {
   const double s = state.noise_scale, n_y = static_cast<double>(step.residual.size() - step.partial.missing);
-  const std::size_t per_mode = step.kalman.size() / model.modes.size();
-  // As Bayes' rule has it (imm.hpp): an impossible hypothesis takes no part, however well it fits.
+  // As Bayes' rule has it (imm.hpp): an impossible mode takes no part, however well it fits.
   double largest = -std::numeric_limits<double>::infinity();
   for (Eigen::Index h = 0; h < prior.size(); ++h)
     if (prior(h) >= impossible_probability) largest = std::max(largest, step.log_likelihood(h));
@@ -89,7 +87,7 @@ void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::Ve
         prior(i) >= impossible_probability ? prior(i) * std::exp(step.log_likelihood(i) - largest) : 0.0;
     if (!(weight > 0.0)) continue;
     // The errors of coefficients that drift are known in units of the noise: the scale is theirs, too.
-    const auto& Q = model.drift.on() ? step.kalman[h].process_noise : model.modes[h / per_mode].Q;
+    const auto& Q = model.drift.on() ? step.kalman[h].process_noise : model.modes[h].Q;
     const double scaled = model.drift.on() ? weight : weight * s * step.noise_factor;
     total += weight;
     if (sensor.quantised) {

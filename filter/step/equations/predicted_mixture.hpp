@@ -19,7 +19,7 @@ inline constexpr double largest_nis = 1e300;
 /// in the trace of S.
 template <int N, int NY, class State, class Covariance>
 double combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x, Covariance&& S) {
-  const Eigen::VectorXd& c = step.hypothesis_probability();
+  const Eigen::VectorXd& c = step.predicted_probability;
   x.setZero();
   for (std::size_t j = 0; j < step.kalman.size(); ++j)
     x += c(static_cast<Eigen::Index>(j)) * step.kalman[j].predicted.mean;
@@ -77,10 +77,10 @@ inline double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::s
 
 /// Probability integral transform of the measurement taken in last (Rosenblatt 1952): component i is the predictive
 /// distribution function of y_i given y_1 .. y_(i-1), whose mixture weights those components have updated; NaN where
-/// y_i is missing. `weights`: workspace, one per hypothesis. Overwrites step.log_likelihood.
+/// y_i is missing. `weights`: workspace, K. Overwrites step.log_likelihood.
 template <int N, int NY, class Y, class Pit>
 void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
-  weights = step.hypothesis_probability();
+  weights = step.predicted_probability;
   for (Eigen::Index i = 0; i < pit.size(); ++i) {
     if (is_missing(y(i))) {
       pit(i) = std::numeric_limits<double>::quiet_NaN();
@@ -107,7 +107,7 @@ struct ModeSignal {
 /// Of quantised measurements: component i of the transform lies between the predictive distribution function at the
 /// lower end of the interval of y_i and that at its upper end, given the intervals of y_1 .. y_(i-1). `pit`: the middle
 /// of the two, `width`: their difference, 0 for a continuous signal or a missing one. `signal`(i, j): ModeSignal of
-/// hypothesis j. `weights`: the hypotheses' probabilities before the measurement, overwritten, as is `log_likelihood`.
+/// mode j. `weights`: the modes' probabilities before the measurement, overwritten, as is `log_likelihood`.
 template <class Quantum, class Y, class Signal, class Pit, class Width>
 void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen::VectorXd& weights,
                         Eigen::VectorXd& log_likelihood, Pit&& pit, Width&& width) {
@@ -138,7 +138,7 @@ void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen
 template <int N, int NY, class Y, class Pit, class Width>
 void interval_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights,
                         Pit&& pit, Width&& width) {
-  weights = step.hypothesis_probability();
+  weights = step.predicted_probability;
   interval_transform(
       model.quantum, y,
       [&](Eigen::Index i, Eigen::Index j) {

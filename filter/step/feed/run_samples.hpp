@@ -31,8 +31,8 @@ struct SampleStretch {
 /// The samples of a run as filters step on them.
 class RunSamples {
  public:
-  RunSamples(const Bank& bank, const Trajectory& run, TimeSteps time_steps)
-      : run_(run), feed_(bank, time_steps), acting_(bank.structure.acting_inputs(), most_at_once) {}
+  RunSamples(const Bank& bank, const Trajectory& run)
+      : run_(run), feed_(bank), acting_(bank.structure.acting_inputs(), most_at_once) {}
 
   /// Calls visit(feed, k, starts) for every sample k from the first start on; `starts`: the filter begins (anew) here.
   template <class Visit>
@@ -88,9 +88,9 @@ struct RunInstants {
   std::vector<Instant> instants;
   Eigen::MatrixXd inputs;  ///< m x instants: acting on the step into each
 
-  RunInstants(const Bank& bank, const Trajectory& run, TimeSteps time_steps) {
+  RunInstants(const Bank& bank, const Trajectory& run) {
     std::vector<Eigen::VectorXd> acting;
-    RunSamples(bank, run, time_steps).for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
+    RunSamples(bank, run).for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
       for (Eigen::Index i = 1; !starts && i < feed.steps(); ++i) add({}, feed.inputs(), acting);
       add({k, starts, starts ? Eigen::VectorXd(feed.start()) : Eigen::VectorXd()}, feed.inputs(), acting);
     });

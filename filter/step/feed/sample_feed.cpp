@@ -9,19 +9,18 @@ namespace modebank {
 
 using Eigen::Index;
 
-SampleFeed::SampleFeed(const Bank& bank, TimeSteps time_steps)
+SampleFeed::SampleFeed(const Bank& bank)
     : inputs_(bank.structure.inputs),
       input_delay_(bank.structure.input_delay),
       acting_inputs_(bank.structure.acting_inputs()),
       first_transition_(bank.structure.first_transition()),
-      time_steps_(time_steps),
       dt_s_(bank.dt_s),
       // v holds u[k-d], u[k-d-1], ... of sample k: input_lags of them from d back.
       recent_(Eigen::MatrixXd::Zero(inputs_, input_delay_ + bank.structure.input_lags)),
       measurements_(Eigen::MatrixXd::Zero(bank.C.rows(), bank.structure.state_lags)) {}
 
-Index SampleFeed::whole_steps(double periods, TimeSteps time_steps) {
-  if (time_steps == TimeSteps::single || std::isnan(periods)) return 1;
+Index SampleFeed::whole_steps(double periods) {
+  if (std::isnan(periods)) return 1;
   return std::lround(std::clamp(periods, 1.0, static_cast<double>(longest_gap_steps + 1)));
 }
 

@@ -18,7 +18,7 @@ inline constexpr Eigen::Index longest_gap_steps = 50;
 /// construction.
 class SampleFeed {
  public:
-  SampleFeed(const Bank& bank, TimeSteps time_steps);
+  explicit SampleFeed(const Bank& bank);
 
   /// The next sample: its time (NaN: one step after the last), the input recorded at it (m) and the measurement (n_y).
   void push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
@@ -26,9 +26,9 @@ class SampleFeed {
   /// The same of m inputs and n_y measurements that nobody counts again.
   void push(double time_s, const double* input, const double* measurement);
   /// Model steps from one time to the next, at most longest_gap_steps + 1; 1 when there is no clock.
-  static Eigen::Index steps_between(double from_s, double to_s, double dt_s, TimeSteps time_steps) {
+  static Eigen::Index steps_between(double from_s, double to_s, double dt_s) {
     const bool near = !(dt_s > 0.0 && to_s - from_s >= 1.25 * dt_s);  // nearly always, and it takes no division
-    return near ? 1 : whole_steps((to_s - from_s) / dt_s, time_steps);
+    return near ? 1 : whole_steps((to_s - from_s) / dt_s);
   }
   /// Forgets all samples.
   void clear() { samples_ = whole_ = 0; }
@@ -56,14 +56,13 @@ class SampleFeed {
 
  private:
   Eigen::Index inputs_, input_delay_, acting_inputs_, first_transition_;
-  TimeSteps time_steps_;
   double dt_s_;
   Eigen::MatrixXd recent_;        ///< inputs u[k], u[k-1], ...; those that act end it
   Eigen::MatrixXd measurements_;  ///< newest first
   Eigen::Index samples_ = 0, whole_ = 0, steps_ = 1;
   double time_s_ = 0.0;
 
-  static Eigen::Index whole_steps(double periods, TimeSteps time_steps);
+  static Eigen::Index whole_steps(double periods);
   /// Every column takes the place of the one after it; the newest stays in the first.
   static void shift(Eigen::MatrixXd& newest_first) {
     double* column = newest_first.data();
@@ -75,7 +74,7 @@ class SampleFeed {
 // Inline and in plain loops: a filter's step takes less time than calls, and Eigen's expressions of sizes that it does
 // not know.
 [[gnu::always_inline]] inline void SampleFeed::push(double time_s, const double* input, const double* measurement) {
-  steps_ = samples_ == 0 ? 1 : steps_between(time_s_, time_s, dt_s_, time_steps_);
+  steps_ = samples_ == 0 ? 1 : steps_between(time_s_, time_s, dt_s_);
   if (steps_ > longest_gap_steps) clear();
   shift(recent_);
   double* newest = recent_.data();

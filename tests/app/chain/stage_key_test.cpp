@@ -99,8 +99,8 @@ const std::vector<KeyValues> bases{
      {"filter.simulate_method", "paths"},
      {"filter.paths", "10"}},
     {{"bank.modes", "2"}, {"bank.refine", "em"}},
-    {{"bank.refine", "em"}, {"bank.members", "2"}, {"filter.noise", "adaptive"}},
-    {{"bank.refine", "em"}, {"bank.drift", "fixed"}},
+    {{"bank.refine", "em"}, {"filter.noise", "adaptive"}},
+    {{"bank.refine", "em"}, {"bank.drift", "auto"}},
     {{"window.model", "varx"}, {"bank.modes", "2"}},
     {{"window.scale", "fixed"}, {"window.sigma", "0.1"}, {"bank.noise", "fixed"}, {"bank.transition", "stay"}},
 };
@@ -192,12 +192,11 @@ const std::vector<RuledOut> ruled_out{
     {"window.sigma", "window.scale = fixed needs window.sigma"},
     {"bank.transition", "bank.transition = logit"},
     {"bank.drift", "bank.drift = "},
-    {"window.model", "bank.drift = fixed needs"},
-    {"bank.refine", "bank.drift = fixed is learned by refinement"},
-    {"bank.measurement_variance", "bank.drift = fixed needs"},
-    {"bank.members", "bank.drift = fixed needs"},
-    {"data.quantum", "bank.drift = fixed needs"},
-    {"filter.variant", "bank.drift = fixed needs"},
+    {"window.model", "bank.drift = auto needs"},
+    {"bank.refine", "bank.drift = auto is learned by refinement"},
+    {"bank.measurement_variance", "bank.drift = auto needs"},
+    {"data.quantum", "bank.drift = auto needs"},
+    {"filter.variant", "bank.drift = auto needs"},
     {"mixture.bootstrap", "needs 2 resamples or more"},
     {"mixture.covariance_floor", "needs a finite covariance_floor"},
 };
@@ -225,8 +224,6 @@ const std::map<std::string, std::string> without_effect{
     {"mixture.straddling", "every choice treats all windows alike (cause not looked into)"},
     {"bank.mode_names", "people's names of what was learned are no stage's"},
     {"bank.screen", "no mode is left out"},
-    {"bank.members", "the number of members changed no bank (cause not looked into)"},
-    {"filter.time_steps", "samples are equally far apart"},
 };
 
 bool may_be_refused(const Case& c) {
@@ -317,8 +314,9 @@ TEST_F(StageKey, OfABankWhoseModesAreMergedHoldsTheFilter) {
     return stage_keys(chain_inputs(chain_options(configured(keys))), "data")[index_of(Stage::bank)];
   };
   EXPECT_NE(key({{"bank.modes", "2"}, {"filter.variant", "imm"}}),
-            key({{"bank.modes", "2"}, {"filter.variant", "mmae"}}));
-  EXPECT_EQ(key({{"filter.variant", "imm"}}), key({{"filter.variant", "mmae"}})) << "is shared where no filter is run";
+            key({{"bank.modes", "2"}, {"filter.variant", "salvi2025"}}));
+  EXPECT_EQ(key({{"filter.variant", "imm"}}), key({{"filter.variant", "salvi2025"}}))
+      << "is shared where no filter is run";
   const auto automatic = [&](const char* model) {
     return chain_inputs(chain_options(configured({{"window.model", model}}))).bank.bank.refine;
   };

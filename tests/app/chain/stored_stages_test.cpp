@@ -82,18 +82,6 @@ TEST_F(StoredStages, StoredConfigurationReproducesTheArchive) {
   EXPECT_EQ(read_archive(archive()).provenance.config_hash, first.provenance.config_hash);
 }
 
-/// Otherwise what drift is worth would be counted for the modes.
-TEST_F(StoredStages, WhereModesDriftTheCompetitorOfOneMotionDriftsToo) {
-  for (const std::string rate : {"0", "0.001"}) {
-    const ProgramResult result = run({"--bank.drift", "fixed", "--bank.drift_rate", rate});
-    ASSERT_EQ(result.status, 0) << result.err;
-    const Archive read = read_archive(archive());
-    EXPECT_TRUE(has_one_theta(*read.one_motion) || read.one_motion->mode_count() == 1);
-    EXPECT_EQ(read.one_motion->drift.rates, read.bank->drift.rates);
-    EXPECT_EQ(read.one_motion_drifts(), !read.bank->drift.empty());
-  }
-}
-
 TEST_F(StoredStages, StoredBankGivesBitIdenticalScores) {
   ASSERT_EQ(run().status, 0);
   const std::string again = file("again.h5").string();

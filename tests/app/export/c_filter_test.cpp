@@ -93,12 +93,13 @@ TEST(ExportedC, SwitchesByStateAndInput) {
   expect_same(with_clock(bank), adaptive());
 }
 
-TEST(ExportedC, HasOneModeOrUnmixedOrCommonOnes) {
+TEST(ExportedC, HasOneModeOrOnesThatNeverChange) {
   FilterOptions kf;
   kf.variant = FilterVariant::kf;
   expect_same(with_clock(example_bank(2, 2, 1)), kf);
-  expect_same(with_clock(example_bank(2, 2, 3)), adaptive(FilterVariant::mmae));
-  expect_same(with_clock(example_bank(2, 2, 3)), adaptive(FilterVariant::gpb1));
+  Bank steady = example_bank(2, 2, 3);
+  steady.transition = TransitionMatrix::sticky(3, 1.0);
+  expect_same(with_clock(steady), adaptive());
 }
 
 TEST(ExportedC, NeedsNeitherInputsNorAllStatesNorAClock) {
@@ -108,9 +109,7 @@ TEST(ExportedC, NeedsNeitherInputsNorAllStatesNorAClock) {
   partly.C << 1.0, 0.0, 0.5, 0.0, 1.0, -0.3;
   partly.R = Eigen::Matrix2d{{2e-4, 5e-5}, {5e-5, 1e-4}};
   expect_same(with_clock(partly), adaptive(), 0.1);
-  FilterOptions single = adaptive();
-  single.time_steps = TimeSteps::single;
-  expect_same(with_clock(example_bank(1, 1, 2)), single);
+  expect_same(example_bank(1, 1, 2), adaptive());
 }
 
 TEST(ExportedC, KeepsModesThatTheMatrixForbids) {
@@ -129,11 +128,8 @@ TEST(ExportedC, RefusesByNameWhatItDoesNotHave) {
     return "";
   };
   FilterOptions options;
-  options.variant = FilterVariant::gpb2;
-  EXPECT_THAT(refusal(example_bank(1, 1, 2), options), HasSubstr("filter.variant = gpb2"));
-  options = {};
-  options.parameter_noise = true;
-  EXPECT_THAT(refusal(example_bank(1, 1, 2), options), HasSubstr("filter.parameter_noise"));
+  options.variant = FilterVariant::salvi2025;
+  EXPECT_THAT(refusal(example_bank(1, 1, 2), options), HasSubstr("filter.variant = salvi2025"));
   Bank coarse = example_bank(1, 1, 2);
   coarse.quantum = Eigen::VectorXd::Constant(1, 0.01);
   EXPECT_THAT(refusal(coarse, {}), HasSubstr("data.quantum"));

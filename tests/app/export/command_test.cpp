@@ -44,7 +44,7 @@ TEST_F(Export, JsonIsTheArchivesBank) {
   const json page = json::parse(result.out);
   const Archive stored = read_archive(archive());
   EXPECT_EQ(page.at("format"), "modebank export");
-  EXPECT_EQ(page.at("schema_version"), "1.1");
+  EXPECT_EQ(page.at("schema_version"), "2.0");
   EXPECT_EQ(page.at("verdict").at("answer"), "calibrated");
   EXPECT_LT(result.out.find("\"verdict\""), result.out.find("\"modes\""));
   EXPECT_EQ(page.at("dt_s"), stored.bank->dt_s);

@@ -28,7 +28,7 @@ class StudyCommands : public CliTest {
  protected:
   static const std::vector<std::string>& six() {
     static const std::vector<std::string> keys{"--study.vary", "mixture.components = 1 | 2 | 3", "--study.vary",
-                                               "filter.variant = imm | gpb1"};
+                                               "filter.variant = imm | salvi2025"};
     return keys;
   }
   ProgramResult study(std::vector<std::string> options, const std::string& folder = "s") const {
@@ -71,7 +71,7 @@ TEST_F(StudyCommands, LeavesATableOfWhatEachRunWouldSay) {
     throw std::runtime_error("no column " + name);
   };
   const ProgramResult alone =
-      run({"--mixture.components", "2", "--filter.variant", "gpb1", "--filter.smooth", "false"});
+      run({"--mixture.components", "2", "--filter.variant", "salvi2025", "--filter.smooth", "false"});
   ASSERT_EQ(alone.status, 0) << alone.err;
   const Archive archive_alone = read_archive(archive());
   EXPECT_EQ(numbers("mixture.components"), (std::vector<double>{1, 1, 2, 2, 3, 3}));

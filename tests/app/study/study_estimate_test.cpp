@@ -20,7 +20,7 @@ class StudyEstimates : public CliTest {
     config = load_config(CliTest::config(), {{"study.output", file("s").string()},
                                              {"study.jobs", "2"},
                                              {"study.vary", "mixture.components = 1 | 2 | 3"},
-                                             {"study.vary", "filter.variant = imm | gpb1"}});
+                                             {"study.vary", "filter.variant = imm | salvi2025"}});
     Provenance provenance;
     provenance.modebank_version = "1";
     plan = make_plan(config, provenance);

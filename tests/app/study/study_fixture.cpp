@@ -21,7 +21,7 @@ StudyTest::StudyTest() {
                          "vary = window.length = 10 | 20\n"
                          "vary = mixture.components = {1..3}\n"
                          "vary = bank.stay = 0.9 | 0.95\n"
-                         "vary = filter.variant = imm | mmae\n");
+                         "vary = filter.variant = imm | salvi2025\n");
 }
 
 std::vector<std::string> StudyTest::study_line(const std::string& folder,

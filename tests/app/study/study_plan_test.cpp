@@ -151,7 +151,7 @@ TEST_F(StudyPlans, ChangedDataAreRefusedWithTheFile) {
 
 TEST_F(StudyPlans, TrialsAreGroupedByWhatTheyShareAndShardsPartThem) {
   const KeyValues keys{{"bank.refine", "none"},  // which would learn a bank for every filter
-                       {"study.vary", "filter.variant = imm | gpb1"},
+                       {"study.vary", "filter.variant = imm | salvi2025"},
                        {"study.vary", "bank.stay = 0.9 | 0.95"},
                        {"study.vary", "mixture.components = 1 | 2 | 3"}};
   const StudyPlan made = plan(keys);

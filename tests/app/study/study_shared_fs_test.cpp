@@ -59,7 +59,7 @@ class SharedFileSystem : public StudyTest {
   /// Six runs of three mixtures.
   static std::vector<std::string> six(const std::vector<std::string>& options = {}) {
     std::vector<std::string> all{"--study.vary", "mixture.components = {1..3}",
-                                 "--study.vary", "filter.variant = imm | mmae",
+                                 "--study.vary", "filter.variant = imm | salvi2025",
                                  "--study.jobs", "2"};
     all.insert(all.end(), options.begin(), options.end());
     return all;

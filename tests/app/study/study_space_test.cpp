@@ -41,7 +41,7 @@ TEST(VaryText, ExpandsValuesAndBraces) {
   EXPECT_EQ(parse_vary("bank.stay = {0.1..0.9 lin 5}").values, (Texts{"0.1", "0.3", "0.5", "0.7", "0.9"}));
   EXPECT_EQ(parse_vary("window.prior_sd = {0.001..1 log 4}").values, (Texts{"0.001", "0.01", "0.1", "1"}));
   EXPECT_EQ(parse_vary("data.lag_s = {0..1 step 0.1}").values.size(), 11u);
-  EXPECT_EQ(parse_vary("filter.variant = imm|gpb1").values, (Texts{"imm", "gpb1"}));
+  EXPECT_EQ(parse_vary("filter.variant = imm|kf").values, (Texts{"imm", "kf"}));
   EXPECT_EQ(parse_vary("mixture.components = 1..{5..7}").values, (Texts{"1..5", "1..6", "1..7"}));
   EXPECT_EQ(parse_vary("bank.measurement_variance =  | 0.010").values, (Texts{"", "0.01"}));  // as resolved
 }
@@ -89,7 +89,7 @@ TEST(VaryText, FileErrorsNameTheLine) {
 }
 
 TEST(StudySpace, GridVariesTheLastKeyFastest) {
-  const StudySpace space = lay_out(with({"mixture.components = 2 | 3", "filter.variant = imm | kf | gpb1"}));
+  const StudySpace space = lay_out(with({"mixture.components = 2 | 3", "filter.variant = imm | kf | salvi2025"}));
   EXPECT_EQ(space.keys, (Texts{"mixture.components", "filter.variant"}));
   ASSERT_EQ(space.points.size(), 6u);
   EXPECT_EQ(space.points[1], (StudyPoint{"2", "kf"}));
@@ -102,7 +102,7 @@ TEST(StudySpace, KeysTogetherGoInStep) {
   const StudySpace space = lay_out(config);
   ASSERT_EQ(space.points.size(), 4u);
   for (const StudyPoint& point : space.points) EXPECT_EQ(point[0] == "2", point[2] == "imm");
-  config.study.vary[2] = "filter.variant = imm | kf | gpb1";
+  config.study.vary[2] = "filter.variant = imm | kf | salvi2025";
   EXPECT_THROW(lay_out(config), ConfigurationError);
   config.study.together = {"mixture.components, window.length"};
   EXPECT_THROW(lay_out(config), ConfigurationError);
@@ -128,7 +128,7 @@ TEST(StudySpace, ConditionsOnKeysThatAreNotVariedLookAtTheConfiguration) {
 }
 
 TEST(StudySpace, LatinHypercubeFillsEveryStratumOfEveryAxisOnce) {
-  Config config = with({"data.lag_s = {0..1 lin}", "filter.variant = imm | gpb1", "window.prior_sd = {0.001..1 log}"});
+  Config config = with({"data.lag_s = {0..1 lin}", "filter.variant = imm | kf", "window.prior_sd = {0.001..1 log}"});
   config.study.sample = 20;
   const StudySpace space = lay_out(config);
   ASSERT_EQ(space.points.size(), 20u);
@@ -142,7 +142,7 @@ TEST(StudySpace, LatinHypercubeFillsEveryStratumOfEveryAxisOnce) {
 }
 
 TEST(StudySpace, SobolPointsFillDyadicStrataAlsoInPairs) {
-  Config config = with({"data.lag_s = {0..1 lin}", "filter.variant = imm | gpb1 | mmae | kf"});
+  Config config = with({"data.lag_s = {0..1 lin}", "window.loss = trivial | huber | cauchy | tukey"});
   config.study.sampling = SampleMethod::sobol;
   config.study.sample = 64;
   const StudySpace space = lay_out(config);

@@ -28,8 +28,8 @@ TEST(DriftingHorizon, OneSampleAheadIsTheFilter) {
     model.theta0(0) = 0.4;  // unstable
     model.horizon_factor = {{2, 3.0}};
     const Trajectory run = simulate_drifting(example_drifting(n, 1, 2), 150, 2);
-    const RunEvaluation one = evaluate_run(model, run, TimeSteps::repeat);
-    const HorizonEvaluation ahead = evaluate_horizons(model, run, TimeSteps::repeat, {1});
+    const RunEvaluation one = evaluate_run(model, run);
+    const HorizonEvaluation ahead = evaluate_horizons(model, run, {1});
     EXPECT_TRUE(near(ahead.log_density.row(0).transpose(), one.log_density, ahead_digits));
     EXPECT_TRUE(near(ahead.error[0], one.innovation, ahead_digits));
   }
@@ -43,7 +43,7 @@ TEST(DriftingHorizon, FixedCoefficientsHaveTheImpulseResponsesVariance) {
   const Trajectory run = simulate_drifting(model, 60, 9);
   const double a1 = 1.0 + model.theta0(0), a2 = model.theta0(1);
   const std::vector<Index> horizons{1, 2, 3, 7, 20};
-  const DriftingForecasts forecasts = forecast(model, run, TimeSteps::repeat, horizons);
+  const DriftingForecasts forecasts = forecast(model, run, horizons);
   for (std::size_t h = 0; h < horizons.size(); ++h) {
     double sum = 0.0, now = 1.0, before = 0.0;
     for (Index j = 0; j < horizons[h]; ++j) {
@@ -66,7 +66,7 @@ TEST(DriftingHorizon, FixedCoefficientsOfSeveralOutputsAreOneKalmanFilter) {
   model.lam = 1.0;
   model.nu = 0.0;
   const Trajectory run = simulate_drifting(model, 60, 9);
-  const HorizonEvaluation drifting = evaluate_horizons(model, run, TimeSteps::repeat, {1, 2, 6});
+  const HorizonEvaluation drifting = evaluate_horizons(model, run, {1, 2, 6});
   const HorizonEvaluation bank = evaluate_horizons(fixed_bank(model), run, {FilterVariant::kf}, {1, 2, 6});
   EXPECT_TRUE(near(drifting.log_density, bank.log_density, 1e3 * ahead_digits));
   for (std::size_t h = 0; h < 3; ++h) EXPECT_TRUE(near(drifting.error[h], bank.error[h], ahead_digits));
@@ -82,7 +82,7 @@ TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
   Eigen::Vector2d squares = Eigen::Vector2d::Zero();
   Eigen::Vector2d count = Eigen::Vector2d::Zero();
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const DriftingForecasts f = forecast(model, simulate_drifting(model, 2000, seed), TimeSteps::repeat, horizons);
+    const DriftingForecasts f = forecast(model, simulate_drifting(model, 2000, seed), horizons);
     for (Index h = 0; h < 2; ++h)
       for (const double u : f.whitened[static_cast<std::size_t>(h)].reshaped())
         if (!std::isnan(u)) {
@@ -99,10 +99,10 @@ TEST(DriftingHorizon, FactorWidensEveryVariance) {
   DriftingModel model = example_drifting(2, 1, 1);
   model.nu = 0.0;
   const Trajectory run = simulate_drifting(model, 50, 5);
-  const HorizonEvaluation plain = evaluate_horizons(model, run, TimeSteps::repeat, {1, 3, 5, 8});
-  const DriftingForecasts f = forecast(model, run, TimeSteps::repeat, {1, 3, 5, 8});
+  const HorizonEvaluation plain = evaluate_horizons(model, run, {1, 3, 5, 8});
+  const DriftingForecasts f = forecast(model, run, {1, 3, 5, 8});
   model.horizon_factor = {{3, 4.0}, {8, 0.5}};
-  const HorizonEvaluation wide = evaluate_horizons(model, run, TimeSteps::repeat, {1, 3, 5, 8});
+  const HorizonEvaluation wide = evaluate_horizons(model, run, {1, 3, 5, 8});
   const std::vector<double> factors{1.0, 4.0, 4.0, 0.5};  // 5 has that of 3
   for (Index h = 0; h < 4; ++h)
     for (Index k = 10; k < run.samples(); ++k) {

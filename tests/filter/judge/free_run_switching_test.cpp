@@ -169,7 +169,7 @@ TEST(SamplePaths, ModesMayFollowStateAndInput) {
   bank.modes[0].model.c(0) = 0.1;
   const Trajectory run = simulate_bank(two_modes(), 40, 9);
   const auto guard = [](double x, double u) { return x + u > 0.5 ? 1 : 0; };
-  SamplePaths paths(bank, {}, 5, 1, [&](Index, const auto& x, const auto& u, Eigen::VectorXd& row) {
+  SamplePaths paths(bank, 5, 1, [&](Index, const auto& x, const auto& u, Eigen::VectorXd& row) {
     row.setZero()(guard(x(0), u(0))) = 1.0;
   });
   FilterMemory origin{Eigen::MatrixXd::Constant(1, 2, 0.4), Eigen::MatrixXd::Zero(1, 2), bank.initial_probability, 1.0,

@@ -52,7 +52,7 @@ double likelihood_at(Bank bank, const Recording& recording, const Eigen::MatrixX
   bank.modes[0].Q = Q;
   bank.R = R;
   double sum = 0.0;
-  for (const Trajectory& run : recording.runs) sum += log_likelihood(bank, run, {FilterVariant::kf, false});
+  for (const Trajectory& run : recording.runs) sum += log_likelihood(bank, run, {FilterVariant::kf});
   return sum;
 }
 
@@ -184,7 +184,7 @@ TEST(Baseline, TheBoundOfRCostsNothingInDataOfManyLags) {
   without.R *= 1e-3;
   without.modes[0].Q(0, 0) = global.residual_covariance(0, 0);
   double expected = 0.0;
-  for (const Trajectory& run : recording.runs) expected += log_likelihood(without, run, {FilterVariant::kf, false});
+  for (const Trajectory& run : recording.runs) expected += log_likelihood(without, run, {FilterVariant::kf});
   EXPECT_GT(fit.log_likelihood, expected - 1e-4 * static_cast<double>(recording.transitions(Role::train)));
 }
 

@@ -52,7 +52,7 @@ TEST_P(DriftingIce, GridScoresAndHorizonsAreNumpys) {
   const nlohmann::json golden = test::read_golden("drifting").at(name);
   const Recording recording = ice();
   const GlobalModel global = fit_global(recording, structure);
-  const DriftingModel model = learn_drifting(recording, global, structure, TimeSteps::repeat, {1, 2, 10});
+  const DriftingModel model = learn_drifting(recording, global, structure, {1, 2, 10});
   Eigen::VectorXd full = model.theta0;
   full(0) += 1.0;
   EXPECT_TRUE(test::near(full, test::golden_rows(golden.at("theta0")), exact));
@@ -60,7 +60,7 @@ TEST_P(DriftingIce, GridScoresAndHorizonsAreNumpys) {
   EXPECT_NEAR(model.v0(0), golden.at("v0").get<double>(), exact * model.v0(0));
   EXPECT_EQ(model.tuning.samples, golden.at("samples").get<Index>());
 
-  const DriftingScores scores = score_drifting_grid(model, recording, TimeSteps::repeat, {});
+  const DriftingScores scores = score_drifting_grid(model, recording, {});
   EXPECT_EQ(scores.best(), golden.at("best").get<Index>());
   EXPECT_NEAR(model.tuning.log_score, golden.at("log_score").get<double>(), exact);
   for (const nlohmann::json& other : golden.at("others"))
@@ -73,8 +73,8 @@ TEST_P(DriftingIce, GridScoresAndHorizonsAreNumpys) {
   std::vector<Sums> ahead(3);
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::test) continue;
-    const RunEvaluation one = evaluate_run(model, run, TimeSteps::repeat);
-    const HorizonEvaluation many = evaluate_horizons(model, run, TimeSteps::repeat, {1, 2, 10});
+    const RunEvaluation one = evaluate_run(model, run);
+    const HorizonEvaluation many = evaluate_horizons(model, run, {1, 2, 10});
     for (Index k = 0; k < run.samples(); ++k) {
       one_step.add(one.log_density(k), one.innovation(0, k));
       for (Index h = 0; h < 3; ++h)

@@ -32,7 +32,7 @@ Recording drifting_recording(const DriftingModel& model, Index runs, Index sampl
 }
 
 DriftingModel learn_all(const Recording& recording, const LinearStructure& structure, const DriftingGrid& grid = {}) {
-  return learn_drifting(recording, fit_global(recording, structure), structure, TimeSteps::repeat, {1, 2, 5}, grid);
+  return learn_drifting(recording, fit_global(recording, structure), structure, {1, 2, 5}, grid);
 }
 
 /// The mean log density of the training runs' scored samples.
@@ -40,7 +40,7 @@ double mean_training_score(const DriftingModel& model, const Recording& recordin
   double sum = 0.0, samples = 0.0;
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train) continue;
-    const RunEvaluation e = evaluate_run(model, run, TimeSteps::repeat);
+    const RunEvaluation e = evaluate_run(model, run);
     for (const double value : e.log_density) {
       if (std::isnan(value)) continue;
       sum += value;
@@ -63,9 +63,9 @@ TEST(DriftingLearning, TheGridScoresWhatTheFilterScores) {
   recording.runs[1].time_s.tail(10).array() += 100.0;
   recording.runs[1].state.col(50) *= 1e6;  // far from what products of eight can hold
   const GlobalModel global = fit_global(recording, model.structure);
-  model = learn_drifting(recording, global, model.structure, TimeSteps::repeat, {});
+  model = learn_drifting(recording, global, model.structure, {});
   const DriftingGrid grid;
-  const DriftingScores scores = score_drifting_grid(model, recording, TimeSteps::repeat, grid);
+  const DriftingScores scores = score_drifting_grid(model, recording, grid);
   EXPECT_TRUE(scores.log_score.allFinite());
   EXPECT_EQ(scores.log_score.size(), 6 * 5 * 3 * 8 * 5 * 4);
   EXPECT_EQ(scores.log_score(scores.best()), model.tuning.log_score);
@@ -153,7 +153,7 @@ TEST(DriftingLearning, NoOtherFactorMakesAHorizonMoreLikely) {
   const auto score = [&](const DriftingModel& candidate, Index horizon) {
     double sum = 0.0;
     for (const Trajectory& run : recording.runs) {
-      const HorizonEvaluation ahead = evaluate_horizons(candidate, run, TimeSteps::repeat, {horizon});
+      const HorizonEvaluation ahead = evaluate_horizons(candidate, run, {horizon});
       for (const double value : ahead.log_density.row(0)) sum += std::isnan(value) ? 0.0 : value;
     }
     return sum;
@@ -171,7 +171,7 @@ TEST(DriftingLearning, HeldOutRunsAndWeightsDoNotMatter) {
   Recording recording = drifting_recording(truth, 2, 200);
   const GlobalModel global = fit_global(recording, truth.structure);
   const auto settings = [&] {
-    const DriftingModel m = learn_drifting(recording, global, truth.structure, TimeSteps::repeat, {3});
+    const DriftingModel m = learn_drifting(recording, global, truth.structure, {3});
     return std::make_tuple(m.rates.q, m.rates.p0, m.lam, m.nu, m.scale, m.horizon_factor, m.tuning.log_score);
   };
   const auto before = settings();
@@ -199,9 +199,9 @@ TEST(DriftingLearning, RefusesWhatCannotBeScored) {
   const GlobalModel global = fit_global(recording, truth.structure);
   DriftingGrid empty;
   empty.nu.clear();
-  EXPECT_THROW(learn_drifting(recording, global, truth.structure, TimeSteps::repeat, {}, empty), std::invalid_argument);
+  EXPECT_THROW(learn_drifting(recording, global, truth.structure, {}, empty), std::invalid_argument);
   recording.runs[0].role = Role::test;
-  EXPECT_THROW(learn_drifting(recording, global, truth.structure, TimeSteps::repeat, {}), DataError);
+  EXPECT_THROW(learn_drifting(recording, global, truth.structure, {}), DataError);
 }
 
 }  // namespace

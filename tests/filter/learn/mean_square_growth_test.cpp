@@ -11,6 +11,7 @@
 #include <unsupported/Eigen/KroneckerProduct>
 
 #include "filter/learn/switching/shrinkage.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -117,7 +118,7 @@ TEST(MeanSquareGrowth, OfDefectiveSystemsIsTheSquaredRadius) {
     for (const auto& [F, radius] : {std::pair{twice, 1.0}, {thrice, 1.0}, {critical, 0.9}, {growing, 1.002}}) {
       const double growth = growth_of(std::vector<MatrixXd>(static_cast<std::size_t>(K), F), sticky(K, 0.95));
       EXPECT_NEAR(growth, radius * radius, 1e-3) << K << '\n' << F;
-      EXPECT_EQ(growth > 1.0 + RefineTuning().growth_slack, radius > 1.0) << "on the safe side of the threshold";
+      EXPECT_EQ(growth > 1.0 + refine_tuning.growth_slack, radius > 1.0) << "on the safe side of the threshold";
     }
   // Integrators of different steps share their eigenvector: triangular modes grow as their diagonals do.
   const double several =

@@ -88,10 +88,8 @@ TEST(NoiseFactor, MultipliesTheCovarianceOfEveryStep) {
   }
 }
 
-class NoiseFactorOfVariant : public testing::TestWithParam<FilterVariant> {};
-
 /// States measured exactly: the filter's likelihood is that of rows over the root of their factor, less its logarithm.
-TEST_P(NoiseFactorOfVariant, LikelihoodIsThatOfRowsOverTheirFactor) {
+TEST(NoiseFactor, LikelihoodIsThatOfRowsOverTheirFactor) {
   const Recording recording = runs_of(follows_input, 4, 3, 200);
   for (const Index lags : {Index{1}, Index{2}}) {
     const LinearStructure s{1, 1, true, lags, lags};
@@ -100,16 +98,11 @@ TEST_P(NoiseFactorOfVariant, LikelihoodIsThatOfRowsOverTheirFactor) {
     ASSERT_FALSE(bank.noise_factor.empty());
     const VectorXd rows =
         predictive_log_densities(gather_training_transitions(recording, s, bank.noise_factor), switching_model(bank));
-    FilterOptions options;
-    options.variant = GetParam();
     double filtered = 0.0;
-    for (const Trajectory& run : recording.runs) filtered += log_likelihood(bank, run, options);
+    for (const Trajectory& run : recording.runs) filtered += log_likelihood(bank, run, {});
     EXPECT_NEAR(filtered, rows.sum(), 1e-5 * std::abs(rows.sum())) << lags << " lags";
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Variants, NoiseFactorOfVariant, testing::Values(FilterVariant::imm, FilterVariant::gpb2),
-                         [](const auto& test) { return std::string(name_of(test.param)); });
 
 class ConstantNoiseFactor : public testing::TestWithParam<FilterNoise> {};
 
@@ -120,27 +113,26 @@ TEST_P(ConstantNoiseFactor, IsAsAnotherQ) {
   const Trajectory& run = recording.runs.front();
   const double c = 2.5;
   for (const double R : {0.0, 1e-3})
-    for (const Index lags : {Index{1}, Index{2}})
-      for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::gpb2}) {
-        const LinearStructure s{1, 1, true, lags, 1};
-        Bank plain = bank_of(recording, s, R, 2), with_factor = plain;
-        for (Mode& mode : plain.modes) mode.Q *= c;
-        MatrixXd direction = MatrixXd::Zero(1, s.dimension() + 1);
-        direction(0, s.dimension()) = 1.0;
-        with_factor.noise_factor = {direction, VectorXd::Ones(1), std::log(1.1) - std::log(c)};
-        const FilterOptions options{.variant = variant, .noise = GetParam()};
-        RunEvaluation expected = evaluate_run(plain, run, options), is = evaluate_run(with_factor, run, options);
-        const std::string what = std::string(name_of(variant)) + ", R " + std::to_string(R);
-        EXPECT_TRUE(near(is.log_density.tail(140), expected.log_density.tail(140), 1e-8)) << what;
-        EXPECT_TRUE(near(is.mode_probability, expected.mode_probability, 1e-8)) << what;
-        EXPECT_TRUE(near(is.innovation_covariance.rightCols(140), expected.innovation_covariance.rightCols(140), 1e-10))
-            << what;
-        smooth_run(plain, run, options, expected);
-        smooth_run(with_factor, run, options, is);
-        EXPECT_EQ(is.viterbi_mode, expected.viterbi_mode) << what;
-        EXPECT_TRUE(near(is.smoothed_state, expected.smoothed_state, 1e-8)) << what;
-        EXPECT_TRUE(near(is.smoothed_covariance, expected.smoothed_covariance, 1e-10)) << what;
-      }
+    for (const Index lags : {Index{1}, Index{2}}) {
+      const LinearStructure s{1, 1, true, lags, 1};
+      Bank plain = bank_of(recording, s, R, 2), with_factor = plain;
+      for (Mode& mode : plain.modes) mode.Q *= c;
+      MatrixXd direction = MatrixXd::Zero(1, s.dimension() + 1);
+      direction(0, s.dimension()) = 1.0;
+      with_factor.noise_factor = {direction, VectorXd::Ones(1), std::log(1.1) - std::log(c)};
+      const FilterOptions options{.noise = GetParam()};
+      RunEvaluation expected = evaluate_run(plain, run, options), is = evaluate_run(with_factor, run, options);
+      const std::string what = "R " + std::to_string(R);
+      EXPECT_TRUE(near(is.log_density.tail(140), expected.log_density.tail(140), 1e-8)) << what;
+      EXPECT_TRUE(near(is.mode_probability, expected.mode_probability, 1e-8)) << what;
+      EXPECT_TRUE(near(is.innovation_covariance.rightCols(140), expected.innovation_covariance.rightCols(140), 1e-10))
+          << what;
+      smooth_run(plain, run, options, expected);
+      smooth_run(with_factor, run, options, is);
+      EXPECT_EQ(is.viterbi_mode, expected.viterbi_mode) << what;
+      EXPECT_TRUE(near(is.smoothed_state, expected.smoothed_state, 1e-8)) << what;
+      EXPECT_TRUE(near(is.smoothed_covariance, expected.smoothed_covariance, 1e-10)) << what;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Noise, ConstantNoiseFactor, testing::Values(FilterNoise::gaussian, FilterNoise::adaptive),
@@ -154,7 +146,7 @@ TEST(NoiseFactor, OfSamplePathsIsThatOfEachPathsOwnState) {
   origin.means = MatrixXd::Constant(1, 1, 0.2);
   origin.covariances = MatrixXd::Zero(1, 1);
   origin.mode_probability = VectorXd::Ones(1);
-  SamplePaths paths(bank, {}, 40'000, 1);
+  SamplePaths paths(bank, 40'000, 1);
   paths.start(origin);
   paths.step(VectorXd::Constant(1, 1.4));
   const Eigen::ArrayXd x = paths.states().row(0).transpose().array();

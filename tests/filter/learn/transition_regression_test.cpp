@@ -51,12 +51,9 @@ TEST(TransitionRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
   const Recording recording = guarded_runs(soft, 2, 150, 1);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   const SwitchingRegression model = true_model(soft);
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::gpb2}) {
-    double expected = 0.0;
-    for (const Trajectory& run : recording.runs)
-      expected += log_likelihood(bank_of(recording, t, model), run, {.variant = variant});
-    EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter floors probabilities
-  }
+  double expected = 0.0;
+  for (const Trajectory& run : recording.runs) expected += log_likelihood(bank_of(recording, t, model), run, {});
+  EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter floors probabilities
 }
 
 TEST(TransitionRegression, NoEffectIsTheConstantTransitionMatrix) {

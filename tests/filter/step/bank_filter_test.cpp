@@ -62,22 +62,20 @@ TEST(BankFilter, AnInputThatIsNoNumberIsTheLastKnownOne) {
 /// No measurement noise and process noise of rank one or none: S becomes singular.
 TEST(BankFilter, VariancesAreNeverNegative) {
   for (const Index n : {2, 3})
-    for (const double q : {0.0, 1e-4})
-      for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::gpb2}) {
-        Bank bank = test::example_bank(n, 1, 3);
-        bank.R.setZero();
-        for (Mode& mode : bank.modes) mode.Q.setConstant(q);
-        BankFilter filter(bank, {variant});
-        for (int k = 0; k < 500; ++k) {
-          VectorXd y(n);
-          for (Index i = 0; i < n; ++i) y(i) = 0.1 * std::sin(0.1 * k + static_cast<double>(i));
-          if (k == 200) y.setConstant(1e6);
-          const FilterEstimate& e = filter.step(k, VectorXd::Constant(1, std::cos(0.05 * k)), y);
-          ASSERT_TRUE(e.state.allFinite() && e.covariance.allFinite());
-          ASSERT_GE(e.covariance.diagonal().minCoeff(), 0.0)
-              << name_of(variant) << ", n = " << n << ", q = " << q << ", sample " << k;
-        }
+    for (const double q : {0.0, 1e-4}) {
+      Bank bank = test::example_bank(n, 1, 3);
+      bank.R.setZero();
+      for (Mode& mode : bank.modes) mode.Q.setConstant(q);
+      BankFilter filter(bank, {});
+      for (int k = 0; k < 500; ++k) {
+        VectorXd y(n);
+        for (Index i = 0; i < n; ++i) y(i) = 0.1 * std::sin(0.1 * k + static_cast<double>(i));
+        if (k == 200) y.setConstant(1e6);
+        const FilterEstimate& e = filter.step(k, VectorXd::Constant(1, std::cos(0.05 * k)), y);
+        ASSERT_TRUE(e.state.allFinite() && e.covariance.allFinite());
+        ASSERT_GE(e.covariance.diagonal().minCoeff(), 0.0) << "n = " << n << ", q = " << q << ", sample " << k;
       }
+    }
 }
 
 }  // namespace

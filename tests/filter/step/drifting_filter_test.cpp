@@ -22,8 +22,8 @@ TEST(DriftingFilter, GoesOnFromASnapshotAndStartsAnew) {
   DriftingModel model = example_drifting(2, 1, 2);
   model.dt_s = 1.0;
   const Trajectory run = holed(simulate_drifting(model, 140, 8));
-  const RunEvaluation whole = evaluate_run(model, run, TimeSteps::repeat);
-  DriftingFilter first(model, TimeSteps::repeat), second(model, TimeSteps::repeat);
+  const RunEvaluation whole = evaluate_run(model, run);
+  DriftingFilter first(model), second(model);
   const auto step = [&](DriftingFilter& filter, Index k) {
     return filter.step(run.time_s(k), run.input.col(k), run.state.col(k)).log_density;
   };
@@ -44,7 +44,7 @@ TEST(DriftingFilter, GoesOnFromASnapshotAndStartsAnew) {
 
 TEST(DriftingFilter, RefusesWhatIsNone) {
   const DriftingModel good = example_drifting(2, 1, 2);
-  EXPECT_NO_THROW(DriftingFilter(good, TimeSteps::repeat));
+  EXPECT_NO_THROW(DriftingFilter(good));
   const std::vector<std::function<void(DriftingModel&)>> spoil = {
       [](DriftingModel& m) { m.theta0(0) = std::nan(""); },
       [](DriftingModel& m) { m.theta0.conservativeResize(3); },
@@ -66,11 +66,10 @@ TEST(DriftingFilter, RefusesWhatIsNone) {
   for (std::size_t i = 0; i < spoil.size(); ++i) {
     DriftingModel bad = good;
     spoil[i](bad);
-    EXPECT_THROW(DriftingFilter(bad, TimeSteps::repeat), std::invalid_argument) << i;
+    EXPECT_THROW(DriftingFilter(bad), std::invalid_argument) << i;
   }
-  DriftingFilter filter(good, TimeSteps::repeat);
-  EXPECT_THROW(filter.restore(DriftingFilter(example_drifting(2, 1, 1), TimeSteps::repeat).snapshot()),
-               std::invalid_argument);
+  DriftingFilter filter(good);
+  EXPECT_THROW(filter.restore(DriftingFilter(example_drifting(2, 1, 1)).snapshot()), std::invalid_argument);
   DriftingSnapshot odd = filter.snapshot();
   odd.coefficients.theta(0, 0) = std::nan("");
   EXPECT_THROW(filter.restore(odd), std::invalid_argument);
@@ -84,10 +83,10 @@ TEST(DriftingFilter, StaysFiniteOnWildSamples) {
     Trajectory run = simulate_drifting(example_drifting(1, 1, 2), 300, 4);
     run.state.col(50).setConstant(huge);
     run.state.middleCols(100, 120).setConstant(std::nan(""));
-    const RunEvaluation e = evaluate_run(model, run, TimeSteps::repeat);
+    const RunEvaluation e = evaluate_run(model, run);
     EXPECT_TRUE(e.state.rightCols(298).allFinite());
     for (Index k = 2; k < 300; ++k) ASSERT_TRUE(std::isfinite(e.log_density(k)) || (k >= 100 && k < 220)) << k;
-    const HorizonEvaluation ahead = evaluate_horizons(model, run, TimeSteps::repeat, {40});
+    const HorizonEvaluation ahead = evaluate_horizons(model, run, {40});
     for (Index k = 41; k < 300; ++k) ASSERT_TRUE(std::isfinite(ahead.log_density(0, k)) || (k >= 100 && k < 220)) << k;
   }
 }
@@ -100,7 +99,7 @@ TEST(DriftingFilter, StaysFiniteWhereSamplesAreOfEverySize) {
     std::mt19937_64 generator(seed);
     for (double& value : run.state.reshaped())
       value *= std::pow(10.0, 29.0 * boost::random::uniform_01<double>()(generator));
-    const RunEvaluation e = evaluate_run(model, run, TimeSteps::repeat);
+    const RunEvaluation e = evaluate_run(model, run);
     EXPECT_TRUE(e.state.rightCols(198).allFinite());
     EXPECT_TRUE(e.log_density.tail(198).allFinite());
     EXPECT_TRUE(e.innovation_covariance.rightCols(198).allFinite());

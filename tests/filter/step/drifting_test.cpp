@@ -85,7 +85,7 @@ TEST(Drifting, FixedCoefficientsAndVarianceAreOneKalmanFilter) {
       model.lam = 1.0;
       model.nu = 0.0;
       const Trajectory run = simulate_drifting(model, 200, 3);
-      const RunEvaluation drifting = evaluate_run(model, run, TimeSteps::repeat);
+      const RunEvaluation drifting = evaluate_run(model, run);
       const RunEvaluation bank = evaluate_run(fixed_bank(model), run, {FilterVariant::kf});
       EXPECT_TRUE(near(drifting.prediction, bank.prediction, drift_digits));
       EXPECT_TRUE(near(drifting.innovation, bank.innovation, drift_digits));
@@ -105,7 +105,7 @@ TEST(Drifting, ConstantCoefficientsAreBatchLeastSquares) {
     DriftingModel model = example_drifting(2, 1, 2);
     const Trajectory run = simulate_drifting(model, 40 + static_cast<Index>(seed), seed);
     model.rates = {0.0, seed % 2 == 0 ? 0.5 : 1e4, 1.0};
-    DriftingFilter filter(model, TimeSteps::repeat);
+    DriftingFilter filter(model);
     for (Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
     const Index r = model.structure.regressors(), first = model.structure.first_transition();
     Eigen::MatrixXd G = Eigen::MatrixXd::Identity(r, r) / model.rates.p0;
@@ -126,27 +126,25 @@ TEST(Drifting, ConstantCoefficientsAreBatchLeastSquares) {
 
 TEST(Drifting, ScoresTheSamplesThatABankScores) {
   for (const Index n : {1, 2})
-    for (const Index lags : {1, 3})
-      for (const TimeSteps time_steps : {TimeSteps::repeat, TimeSteps::single}) {
-        DriftingModel model = example_drifting(n, 1, lags);
-        model.dt_s = 1.0;
-        const Trajectory run = holed(simulate_drifting(model, 140, 5));
-        const RunEvaluation drifting = evaluate_run(model, run, time_steps);
-        const RunEvaluation bank = evaluate_run(fixed_bank(model), run, {FilterVariant::kf, false, time_steps});
-        const auto nan = [](const Eigen::MatrixXd& x) { return Eigen::MatrixXd(x.array().isNaN().cast<double>()); };
-        EXPECT_EQ(nan(drifting.log_density), nan(bank.log_density));
-        EXPECT_EQ(nan(drifting.innovation), nan(bank.innovation));
-        EXPECT_EQ(nan(drifting.pit), nan(bank.pit));
-        EXPECT_EQ(nan(drifting.prediction), nan(bank.prediction));
-        EXPECT_EQ(nan(drifting.state), nan(bank.state));
-        EXPECT_EQ(nan(drifting.nis), nan(bank.nis));
-        const HorizonEvaluation ahead = evaluate_horizons(model, run, time_steps, {5, 1, 2}),
-                                of_bank = evaluate_horizons(fixed_bank(model), run,
-                                                            {FilterVariant::kf, false, time_steps}, {5, 1, 2});
-        EXPECT_EQ(ahead.horizons, of_bank.horizons);
-        EXPECT_EQ(nan(ahead.log_density), nan(of_bank.log_density));
-        for (std::size_t h = 0; h < 3; ++h) EXPECT_EQ(nan(ahead.error[h]), nan(of_bank.error[h]));
-      }
+    for (const Index lags : {1, 3}) {
+      DriftingModel model = example_drifting(n, 1, lags);
+      model.dt_s = 1.0;
+      const Trajectory run = holed(simulate_drifting(model, 140, 5));
+      const RunEvaluation drifting = evaluate_run(model, run);
+      const RunEvaluation bank = evaluate_run(fixed_bank(model), run, {FilterVariant::kf});
+      const auto nan = [](const Eigen::MatrixXd& x) { return Eigen::MatrixXd(x.array().isNaN().cast<double>()); };
+      EXPECT_EQ(nan(drifting.log_density), nan(bank.log_density));
+      EXPECT_EQ(nan(drifting.innovation), nan(bank.innovation));
+      EXPECT_EQ(nan(drifting.pit), nan(bank.pit));
+      EXPECT_EQ(nan(drifting.prediction), nan(bank.prediction));
+      EXPECT_EQ(nan(drifting.state), nan(bank.state));
+      EXPECT_EQ(nan(drifting.nis), nan(bank.nis));
+      const HorizonEvaluation ahead = evaluate_horizons(model, run, {5, 1, 2}),
+                              of_bank = evaluate_horizons(fixed_bank(model), run, {FilterVariant::kf}, {5, 1, 2});
+      EXPECT_EQ(ahead.horizons, of_bank.horizons);
+      EXPECT_EQ(nan(ahead.log_density), nan(of_bank.log_density));
+      for (std::size_t h = 0; h < 3; ++h) EXPECT_EQ(nan(ahead.error[h]), nan(of_bank.error[h]));
+    }
 }
 
 /// One output's recursion as it is printed, on regressors that are given; NaN: missing.
@@ -184,7 +182,7 @@ TEST(Drifting, EveryOutputLearnsFromItsOwnSamples) {
     Trajectory run = simulate_drifting(model, 80, 11);
     run.state(1, 20) = run.state(1, 21) = run.state(2, 21) = run.state(0, 50) = std::nan("");
     run.state.col(60).setConstant(std::nan(""));
-    const RunEvaluation result = evaluate_run(model, run, TimeSteps::repeat);
+    const RunEvaluation result = evaluate_run(model, run);
     Eigen::MatrixXd h(model.structure.regressors(), run.transitions());
     for (Index k = 0; k < run.transitions(); ++k) {
       h.col(k) << result.state.col(k), run.input.col(k), 1.0;
@@ -207,7 +205,7 @@ TEST(Drifting, WhereNothingIsMeasuredThePredictionStandsIn) {
   const DriftingModel model = example_drifting(2, 1, 2);
   Trajectory run = simulate_drifting(model, 30, 6);
   run.state.middleCols(10, 2).setConstant(std::nan(""));
-  const RunEvaluation e = evaluate_run(model, run, TimeSteps::repeat);
+  const RunEvaluation e = evaluate_run(model, run);
   EXPECT_TRUE(near(e.state.middleCols(10, 2), e.prediction.middleCols(10, 2), 0.0));
   EXPECT_TRUE(near(e.state.col(12).head(2), run.state.col(12), 0.0));
   EXPECT_TRUE(near(e.state.col(12).tail(2), e.prediction.col(11).head(2), 0.0));
@@ -218,7 +216,7 @@ TEST(Drifting, WhereNothingIsMeasuredThePredictionStandsIn) {
 /// Kolmogorov's distance of N pit values from uniform, times the root of N: of a true filter above 1.95 once in a
 /// thousand times.
 double scaled_distance(const DriftingModel& filter, const DriftingModel& truth, std::uint64_t seed) {
-  const RunEvaluation e = evaluate_run(filter, simulate_drifting(truth, 3000, seed), TimeSteps::repeat);
+  const RunEvaluation e = evaluate_run(filter, simulate_drifting(truth, 3000, seed));
   std::vector<double> pit;
   for (const double value : e.pit.reshaped())
     if (!std::isnan(value)) pit.push_back(value);

@@ -21,7 +21,7 @@ using test::single_mode;
 
 /// Two double-precision routes to one number of order one.
 constexpr double law_rounding = 1e-12;
-constexpr FilterOptions imm{}, mmae{FilterVariant::mmae}, kf{FilterVariant::kf};
+constexpr FilterOptions imm{}, kf{FilterVariant::kf};
 
 void expect_same_estimates(const RunEvaluation& a, const RunEvaluation& b) {
   EXPECT_TRUE(near(a.prediction, b.prediction, law_rounding));
@@ -120,7 +120,7 @@ TEST(Kf, RefusesSeveralModes) {
 TEST(Imm, ProbabilitiesSumToOne) {
   const Bank bank = example_bank(2, 1, 4);
   const Trajectory run = simulate_bank(bank, 200, 4);
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae, FilterVariant::salvi2025}) {
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::salvi2025}) {
     const RunEvaluation result = evaluate_run(bank, run, {variant});
     EXPECT_TRUE(near(result.mode_probability.colwise().sum(), Eigen::RowVectorXd::Ones(200), law_rounding));
     EXPECT_TRUE(near(result.mode_probability_predicted.colwise().sum(), Eigen::RowVectorXd::Ones(200), law_rounding));
@@ -128,7 +128,8 @@ TEST(Imm, ProbabilitiesSumToOne) {
   }
 }
 
-TEST(Mmae, IsBayesRuleOverSeparateFilters) {
+/// Multiple model adaptive estimation (Magill 1965): modes that never change (bank.stay = 1).
+TEST(Imm, ThatNeverSwitchesIsBayesRuleOverSeparateFilters) {
   Bank bank = example_bank(2, 1, 3);
   for (std::size_t j = 0; j < 3; ++j) bank.modes[j] = bank.modes[0];
   for (std::size_t j = 1; j < 3; ++j) bank.modes[j].Q *= 1.0 + 0.3 * static_cast<double>(j);
@@ -150,12 +151,10 @@ TEST(Mmae, IsBayesRuleOverSeparateFilters) {
   }
   ASSERT_GT(expected.minCoeff(), 1e-9) << "the floor of probabilities would interfere";
 
-  const RunEvaluation result = evaluate_run(bank, run, mmae);
+  bank.transition = TransitionMatrix::sticky(3, 1.0);
+  const RunEvaluation result = evaluate_run(bank, run, imm);
   EXPECT_TRUE(near(result.mode_probability, expected, law_rounding * 100));  // sums of 40 log densities of order ten
   EXPECT_NEAR(result.log_density.tail(39).sum(), evidence(39), law_rounding * 1000);
-
-  bank.transition = TransitionMatrix(Eigen::MatrixXd::Identity(3, 3));
-  expect_same_estimates(evaluate_run(bank, run, imm), result);
 }
 
 TEST(Kf, WithoutProcessNoiseIsBatchLeastSquares) {
@@ -183,55 +182,16 @@ TEST(Kf, WithoutProcessNoiseIsBatchLeastSquares) {
   EXPECT_TRUE(near(result.covariance.col(29), P.reshaped(), law_rounding));
 }
 
-TEST(Gpb, OneModeIsTheKalmanFilterAndIdenticalModesAreOneFilter) {
-  for (const FilterVariant variant : {FilterVariant::gpb1, FilterVariant::gpb2}) {
-    const Bank one = single_mode(example_bank(2, 1, 2), 1);
-    const Trajectory run = simulate_bank(one, 60, 3);
-    expect_same_estimates(evaluate_run(one, run, {variant}), evaluate_run(one, run, imm));
-    Bank same = example_bank(3, 2, 3);
-    same.modes[1] = same.modes[2] = same.modes[0];
-    const Trajectory other = simulate_bank(same, 60, 4);
-    expect_same_estimates(evaluate_run(same, other, {variant}), evaluate_run(single_mode(same, 0), other, kf));
-  }
-}
-
-TEST(Gpb2, IsExactForTwoSteps) {
-  // All histories of two steps, each a Kalman filter of its own: GPB2 merges only after the second.
-  const Bank bank = example_bank(2, 1, 3);
-  const Trajectory run = simulate_bank(bank, 3, 15);
-  double evidence = 0.0, first = 0.0;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) {
-      Bank path = single_mode(bank, i);
-      BankFilter filter(path, kf);
-      filter.step(0.0, run.input.col(0), run.state.col(0));
-      const double l1 = filter.step(1.0, run.input.col(1), run.state.col(1)).log_density;
-      BankFilter second(single_mode(bank, j), kf);
-      second.restore(filter.snapshot());
-      const double l2 = second.step(2.0, run.input.col(2), run.state.col(2)).log_density;
-      double c = 0.0;
-      for (Eigen::Index h = 0; h < 3; ++h)
-        c += bank.initial_probability(h) * bank.transition.matrix()(h, static_cast<Eigen::Index>(i));
-      evidence +=
-          c * bank.transition.matrix()(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) * std::exp(l1 + l2);
-      if (j == 0) first += c * std::exp(l1);
-    }
-  const RunEvaluation gpb2 = evaluate_run(bank, run, {FilterVariant::gpb2});
-  EXPECT_NEAR(gpb2.log_density(1), std::log(first), law_rounding * 10);
-  EXPECT_NEAR(gpb2.log_density(2), std::log(evidence) - std::log(first), law_rounding * 10);
-}
-
 TEST(LogLikelihood, IsTheSumOfLogDensities) {
   for (const Eigen::Index n : {1, 2, 3, 4})
-    for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae, FilterVariant::gpb1,
-                                        FilterVariant::gpb2, FilterVariant::salvi2025}) {
+    for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::salvi2025}) {
       const Bank bank = example_bank(n, 1, 3);
       Trajectory run = simulate_bank(bank, 50, 10);
       run.state(0, 20) = std::nan("");
-      const RunEvaluation result = evaluate_run(bank, run, {variant, true});
+      const RunEvaluation result = evaluate_run(bank, run, {variant});
       double sum = 0.0;
       for (const double value : result.log_density) sum += std::isnan(value) ? 0.0 : value;
-      EXPECT_EQ(log_likelihood(bank, run, {variant, true}), sum);
+      EXPECT_EQ(log_likelihood(bank, run, {variant}), sum);
     }
 }
 

@@ -15,16 +15,13 @@ namespace {
 using test::example_bank;
 using test::simulate_bank;
 
-constexpr FilterVariant all_variants[] = {FilterVariant::imm,  FilterVariant::mmae,      FilterVariant::gpb1,
-                                          FilterVariant::gpb2, FilterVariant::salvi2025, FilterVariant::kf};
+constexpr FilterVariant all_variants[] = {FilterVariant::imm, FilterVariant::salvi2025, FilterVariant::kf};
 
-/// Every variant, with and without parameter noise and adaptive noise.
+/// Every variant, with and without adaptive noise.
 std::vector<FilterOptions> all_options() {
   std::vector<FilterOptions> all;
   for (const FilterVariant variant : all_variants)
-    for (const bool parameter_noise : {false, true})
-      for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive})
-        all.push_back({variant, parameter_noise, TimeSteps::repeat, noise});
+    for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive}) all.push_back({variant, noise});
   return all;
 }
 
@@ -134,8 +131,7 @@ TEST(NeverNaN, AMillionStepsAtConstantInputInEveryVariant) {
   const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, 0.5), y = Eigen::VectorXd::Constant(1, 0.3);
   for (const FilterVariant variant : all_variants) {
     const bool first = variant == FilterVariant::imm;
-    BankFilter filter(test::steppable(bank, variant),
-                      {variant, false, TimeSteps::repeat, first ? FilterNoise::adaptive : FilterNoise::gaussian});
+    BankFilter filter(test::steppable(bank, variant), {variant, first ? FilterNoise::adaptive : FilterNoise::gaussian});
     for (Eigen::Index k = 0; k < steps; ++k) filter.step(std::nan(""), u, y);
     const FilterEstimate& e = filter.estimate();
     EXPECT_TRUE(e.state.allFinite() && e.covariance.allFinite() && e.mode_probability.allFinite()) << name_of(variant);
@@ -146,16 +142,13 @@ TEST(NeverNaN, AMillionStepsAtConstantInputInEveryVariant) {
 
 /// Weights that every archive may hold: finite ones, whose log odds overflow.
 TEST(NeverNaN, LogOddsOfAnySize) {
-  for (const double weight : {1e3, 1e150, 1e308})
-    for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2}) {
-      Bank bank = example_bank(2, 2, 3);
-      bank.transition_logit = {Eigen::MatrixXd::Constant(3, 4, weight), Eigen::VectorXd::Constant(4, 1.0)};
-      bank.transition_logit.weights.row(1) *= -1.0;
-      const Trajectory run = simulate_bank(bank, 100, 31);
-      const RunEvaluation r = evaluate_run(bank, run, {variant});
-      EXPECT_TRUE(r.log_density.tail(99).allFinite()) << weight;
-      EXPECT_TRUE(r.mode_probability.allFinite() && r.mode_probability.minCoeff() >= 0.0) << weight;
-    }
+  for (const double weight : {1e3, 1e150, 1e308}) Bank bank = example_bank(2, 2, 3);
+  bank.transition_logit = {Eigen::MatrixXd::Constant(3, 4, weight), Eigen::VectorXd::Constant(4, 1.0)};
+  bank.transition_logit.weights.row(1) *= -1.0;
+  const Trajectory run = simulate_bank(bank, 100, 31);
+  const RunEvaluation r = evaluate_run(bank, run, {});
+  EXPECT_TRUE(r.log_density.tail(99).allFinite()) << weight;
+  EXPECT_TRUE(r.mode_probability.allFinite() && r.mode_probability.minCoeff() >= 0.0) << weight;
 }
 
 TEST(NeverNaN, InfinityCountsAsMissing) {
@@ -173,11 +166,9 @@ TEST(DeadMode, ComesBackWhenTheMotionChanges) {
   Trajectory run = simulate_bank(test::single_mode(bank, 1), 420, 9);
   run.state.leftCols(400) = calm.state;
   run.input.leftCols(400) = calm.input;
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::mmae}) {
-    const RunEvaluation result = evaluate_run(bank, run, {variant});
-    EXPECT_GT(result.mode_probability(0, 399), 0.99) << name_of(variant);
-    EXPECT_GT(result.mode_probability(1, 419), 0.99) << name_of(variant);
-  }
+  const RunEvaluation result = evaluate_run(bank, run, {});
+  EXPECT_GT(result.mode_probability(0, 399), 0.99);
+  EXPECT_GT(result.mode_probability(1, 419), 0.99);
 }
 
 /// Steps through `run` with the given sizes; the last state and the log densities, bit for bit.
@@ -239,7 +230,7 @@ TEST(Sizes, LaggedBanksToo) {
       FilterStep<N, 1> step(model);
       FilterState<N> state = initial_state(model);
       double total = 0.0;
-      RunSamples(bank, run, TimeSteps::repeat).for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
+      RunSamples(bank, run).for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
         if (starts) return start(model, feed.start(), state);
         ASSERT_EQ(feed.steps(), 1);
         predict(model, state, feed.inputs(), step);

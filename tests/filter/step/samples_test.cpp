@@ -68,7 +68,7 @@ Bank measuring(Bank bank, const std::vector<Eigen::Index>& rows) {
 TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
   Bank bank = example_bank(3, 1, 2);
   bank.R(0, 1) = bank.R(1, 0) = 0.4 * bank.R(0, 0);
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2, FilterVariant::salvi2025}) {
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::salvi2025}) {
     Trajectory run = simulate_bank(bank, 3, 9);
     run.state(1, 2) = std::nan("");
     const RunEvaluation partial = evaluate_run(bank, run, {variant});
@@ -100,32 +100,30 @@ TEST(MissingMeasurement, OfSomeSignalsMovesTheNoiseScaleByTheOthers) {
   Bank bank = example_bank(3, 1, 2);
   bank.R(0, 1) = bank.R(1, 0) = 0.4 * bank.R(0, 0);
   const Trajectory run = simulate_bank(bank, 3, 9);
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2}) {
-    const FilterOptions adaptive{variant, false, TimeSteps::repeat, FilterNoise::adaptive};
-    BankFilter filter(bank, adaptive), reduced(measuring(bank, {0, 2}), adaptive);
-    const std::vector<int> there{0, 2};
-    for (Eigen::Index k = 0; k < 2; ++k) {
-      filter.step(static_cast<double>(k), run.input.col(k), run.state.col(k));
-      reduced.step(static_cast<double>(k), run.input.col(k), run.state.col(k)(there));
-    }
-    FilterSnapshot snapshot = reduced.snapshot();
-    static_cast<FilterMemory&>(snapshot) = filter.snapshot();
-    reduced.restore(snapshot);
-    Eigen::Vector3d y = run.state.col(2);
-    y(0) += 10.0;
-    y(1) = std::nan("");
-    filter.step(2.0, run.input.col(2), y);
-    reduced.step(2.0, run.input.col(2), y(there));
-    const double scale = reduced.snapshot().noise_scale;
-    EXPECT_GT(scale, 1.0);
-    EXPECT_NEAR(filter.snapshot().noise_scale, scale, digits * 10 * scale) << name_of(variant);
+  const FilterOptions adaptive{FilterVariant::imm, FilterNoise::adaptive};
+  BankFilter filter(bank, adaptive), reduced(measuring(bank, {0, 2}), adaptive);
+  const std::vector<int> there{0, 2};
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    filter.step(static_cast<double>(k), run.input.col(k), run.state.col(k));
+    reduced.step(static_cast<double>(k), run.input.col(k), run.state.col(k)(there));
   }
+  FilterSnapshot snapshot = reduced.snapshot();
+  static_cast<FilterMemory&>(snapshot) = filter.snapshot();
+  reduced.restore(snapshot);
+  Eigen::Vector3d y = run.state.col(2);
+  y(0) += 10.0;
+  y(1) = std::nan("");
+  filter.step(2.0, run.input.col(2), y);
+  reduced.step(2.0, run.input.col(2), y(there));
+  const double scale = reduced.snapshot().noise_scale;
+  EXPECT_GT(scale, 1.0);
+  EXPECT_NEAR(filter.snapshot().noise_scale, scale, digits * 10 * scale);
 }
 
 TEST(MissingMeasurement, HasNoScoreInAnyForm) {
   Bank bank = example_bank(2, 1, 3);
   Trajectory run = simulate_bank(bank, 8, 21);
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::kf}) {
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::kf}) {
     BankFilter filter(test::steppable(bank, variant), {variant});
     filter.step(0.0, run.input.col(0), run.state.col(0));
     EXPECT_FALSE(std::isnan(filter.step(1.0, run.input.col(1), run.state.col(1)).log_density));
@@ -152,18 +150,10 @@ TEST(TimeSteps, ALongerTimeIsSeveralPredictionsWithTheInputHeld) {
   gap.time_s = run.time_s(kept).eval();
   gap.state = run.state(Eigen::all, kept).eval();
   gap.input = run.input(Eigen::all, kept).eval();
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb1, FilterVariant::gpb2}) {
-    const RunEvaluation filled = evaluate_run(bank, every, {variant}), short_run = evaluate_run(bank, gap, {variant});
-    EXPECT_TRUE(near(short_run.state.rightCols(5), filled.state.rightCols(5), digits)) << name_of(variant);
-    EXPECT_TRUE(near(short_run.log_density.tail(5), filled.log_density.tail(5), digits * 10));
-    EXPECT_NEAR(log_likelihood(bank, gap, {variant}), log_likelihood(bank, every, {variant}), 1e-10);
-  }
-  // Who does not look at the clock takes one step.
-  Trajectory steady = gap;
-  steady.time_s = run.time_s.head(10);
-  const FilterOptions single{FilterVariant::imm, false, TimeSteps::single};
-  EXPECT_TRUE(near(evaluate_run(bank, gap, single).state, evaluate_run(bank, steady, {}).state, 0.0));
-  EXPECT_FALSE(near(evaluate_run(bank, gap, {}).state, evaluate_run(bank, steady, {}).state, 1e-6));
+  const RunEvaluation filled = evaluate_run(bank, every, {}), short_run = evaluate_run(bank, gap, {});
+  EXPECT_TRUE(near(short_run.state.rightCols(5), filled.state.rightCols(5), digits));
+  EXPECT_TRUE(near(short_run.log_density.tail(5), filled.log_density.tail(5), digits * 10));
+  EXPECT_NEAR(log_likelihood(bank, gap, {}), log_likelihood(bank, every, {}), 1e-10);
 }
 
 TEST(TimeSteps, AVeryLongTimeIsANewStart) {
@@ -183,7 +173,7 @@ TEST(TimeSteps, AVeryLongTimeIsANewStart) {
 TEST(BankFilter, GoesOnFromASnapshotAsIfNothingHadHappened) {
   Bank bank = example_bank(2, 1, 3);
   const Trajectory run = simulate_bank(bank, 20, 14);
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2, FilterVariant::kf}) {
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::kf}) {
     const Bank stepped = test::steppable(bank, variant);
     BankFilter first(stepped, {variant}), second(stepped, {variant});
     for (Eigen::Index k = 0; k < 10; ++k) first.step(run.time_s(k), run.input.col(k), run.state.col(k));
@@ -195,11 +185,11 @@ TEST(BankFilter, GoesOnFromASnapshotAsIfNothingHadHappened) {
       EXPECT_TRUE(near(a.state, b.state, 0.0));
     }
   }
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::gpb2}) {  // before there was anything to know
-    BankFilter fresh(bank, {variant}), restored(bank, {variant});
-    EXPECT_NO_THROW(restored.restore(fresh.snapshot())) << name_of(variant);
-    EXPECT_FALSE(restored.started());
-  }
+  // before there was anything to know
+  BankFilter fresh(bank, {}), restored(bank, {});
+  EXPECT_NO_THROW(restored.restore(fresh.snapshot()));
+  EXPECT_FALSE(restored.started());
+
   BankFilter other(example_bank(2, 1, 2), {});
   EXPECT_THROW(other.restore(BankFilter(bank, {}).snapshot()), std::invalid_argument);
 }

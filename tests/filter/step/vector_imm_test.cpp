@@ -309,8 +309,7 @@ TEST(VectorImm, SnapshotsGoBackAndForth) {
 
 TEST(VectorImm, LeavesToTheGeneralStepsWhatItCannot) {
   EXPECT_FALSE(VectorImm::can_step(test::example_bank(4, 1, 3), {}));
-  EXPECT_FALSE(VectorImm::can_step(test::example_bank(2, 1, 3), {FilterVariant::gpb1}));
-  EXPECT_FALSE(VectorImm::can_step(test::example_bank(2, 1, 3), {FilterVariant::imm, true}));
+  EXPECT_FALSE(VectorImm::can_step(test::example_bank(2, 1, 3), {FilterVariant::salvi2025}));
   EXPECT_FALSE(VectorImm::can_step(test::single_mode(test::example_bank(2, 1, 3), 0), {}));
 }
 

@@ -40,7 +40,6 @@ struct Origin {
   std::vector<RefineCandidate> refinements;  ///< of refinement: starts and how they scored; empty without
   std::vector<double> objective;             ///< of refinement: penalised log-likelihood before each iteration
   MeasurementStage measurement;              ///< of refinement: how it went on with measurement noise
-  Averaging averaging;                       ///< of refinement: what several fits were worth
 };
 
 /// A bank, ready for BankFilter, and what is known of it.

@@ -7,7 +7,6 @@
 #include "modebank/base/names.hpp"
 #include "modebank/filter/options.hpp"
 #include "modebank/ident/options.hpp"
-#include "modebank/learn/tuning.hpp"
 #include "modebank/mixture/options.hpp"
 
 namespace modebank {
@@ -48,21 +47,13 @@ struct EnumNames<Refine> {
   static constexpr Names<3> values{"auto", "none", "em"};
 };
 
-/// Whether modes keep learning within a run, each its own theta: not at all; as fast as training runs left out like it,
-/// and not where they gain nothing; or as given.
-enum class Drift { none, automatic, fixed };
+/// Whether modes keep learning within a run, each its own theta: not at all; or as fast as training runs left out gain
+/// most by, and not where they gain nothing. Only in a refined bank whose states are measured exactly.
+enum class Drift { none, automatic };
 
 template <>
 struct EnumNames<Drift> {
-  static constexpr Names<3> values{"none", "auto", "fixed"};
-};
-
-/// How theta of each mode wanders, in units of the mode's noise and of regressors divided by their root mean square.
-struct DriftOptions {
-  Drift how = Drift::none;  ///< whether it does, in a refined bank whose states are measured exactly
-  double rate = 0.01;       ///< for Drift::fixed: variance that a step adds to every coefficient, >= 0
-  double start = 1.0;       ///< for Drift::fixed: variance of every coefficient at a run's start, >= 0
-  double leak = 1.0;        ///< for Drift::fixed: what a step leaves of the difference from the mode's, in (0, 1]
+  static constexpr Names<2> values{"none", "auto"};
 };
 
 /// What learning that looks ahead counts of a prediction: its log density, or its squared error.
@@ -81,8 +72,6 @@ struct RefineOptions {
                                         ///< number of modes tried
   std::ptrdiff_t most_modes = 0;        ///< stretches start with so many modes, three quarters, ... down to the
                                         ///< mixture's number, which is a start and no finding; 0: with that one alone
-  std::ptrdiff_t members = 1;           ///< fits from different starts that become one bank at most, if the runs left
-                                        ///< out like it
   std::ptrdiff_t look_ahead = 1;        ///< samples: fits are judged by predictions 1 to so many samples ahead
   LookAheadScore look_ahead_score = LookAheadScore::density;  ///< density: of starts, modes and iterations, too
   std::ptrdiff_t folds = 6;       ///< parts of the cross-validation; 1: none, every start runs to convergence
@@ -92,8 +81,7 @@ struct RefineOptions {
   bool one_theta = false;         ///< all modes have the same theta and differ in Q: the rival that knows one motion
   bool noise_by_input = false;  ///< every Q times one factor that follows state and input; R then stays as good as none
   std::uint64_t seed = 1;       ///< of the random starts
-  DriftOptions drift;           ///< whether theta of each mode follows a run
-  RefineTuning tuning;          ///< what has no key in configurations
+  Drift drift = Drift::none;    ///< whether theta of each mode follows a run
   std::ptrdiff_t transitions = 20000;  ///< learn from so many at most, stretches of the runs drawn with the seed; 0:
                                        ///< from all
 

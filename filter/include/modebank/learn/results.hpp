@@ -29,7 +29,7 @@ struct RefineCandidate {
   double loss = std::numeric_limits<double>::quiet_NaN();  ///< against the best row on the same runs, nats per sample
   double loss_standard_error =
       std::numeric_limits<double>::quiet_NaN();  ///< of it, clustered by run (by stretch where fewer than three)
-  bool selected = false;                         ///< several where fits are averaged
+  bool selected = false;                         ///< the bank is of it
   double theta_transitions = 0.0;                ///< at one motion, that its theta is drawn by
 };
 
@@ -55,21 +55,15 @@ struct SwitchingStage {
 
 /// Whether modes drift, by cross-validation inside the training runs.
 struct DriftStage {
-  bool taken = false;                                              ///< whether the bank's modes drift
-  std::ptrdiff_t modes = 0;                                        ///< of the bank that drifts best
-  double rate = 0.0;                                               ///< DriftOptions::rate of that bank
-  double start = 0.0;                                              ///< DriftOptions::start of it
-  double leak = 1.0;                                               ///< DriftOptions::leak of it
+  bool taken = false;        ///< whether the bank's modes drift
+  std::ptrdiff_t modes = 0;  ///< of the bank that drifts best
+  double rate = 0.0;   ///< of that bank: variance that a step adds to every coefficient, in units of the mode's noise
+                       ///< and of regressors divided by their root mean square
+  double start = 0.0;  ///< of it: variance of every coefficient at a run's start
+  double leak = 1.0;   ///< of it: what a step leaves of the difference from the mode's
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out, no drift
   double gain = std::numeric_limits<double>::quiet_NaN();          ///< of the drift, nats per sample; NaN: not asked
   double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< clustered by run
-};
-
-/// What averaging several fits was worth.
-struct Averaging {
-  std::ptrdiff_t members = 1;  ///< fits in the bank; those of the candidates that are marked as selected
-  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs left out: one fit
-  double score = std::numeric_limits<double>::quiet_NaN();         ///< the same of `members` fits
 };
 
 }  // namespace modebank

@@ -39,10 +39,8 @@ void unpack_symmetric(const Eigen::VectorXd& packed, Eigen::Ref<Eigen::MatrixXd>
 void VectorImm::Free::operator()(double* memory) const { std::free(memory); }
 
 bool VectorImm::can_step(const Bank& bank, const FilterOptions& options) {
-  const auto has_spread = [](const Mode& mode) { return mode.spread.size() > 0; };
   return options.variant == FilterVariant::imm && bank.mode_count() > 1 && bank.transition_logit.empty() &&
          bank.drift.empty() && bank.terms.empty() &&
-         !(options.parameter_noise && std::any_of(bank.modes.begin(), bank.modes.end(), has_spread)) &&
          vector_imm::kernels(count_of(bank.structure.dimension()), count_of(bank.C.rows())).predict != nullptr;
 }
 

@@ -60,9 +60,9 @@ struct RefineTuning {
   double little_memory_sd = 0.1;  ///< of log odds, tried with the chosen width: the mode before hardly matters
 
   // Modes that drift: values tried, the middle ones first.
-  std::array<double, 5> drift_rates{1e-5, 1e-4, 1e-3, 1e-2, 1e-1};       ///< of DriftOptions::rate
-  std::array<double, 6> drift_starts{0.0, 0.01, 0.1, 1.0, 10.0, 100.0};  ///< of DriftOptions::start
-  std::array<double, 3> drift_leaks{1.0, 0.97, 0.9};                     ///< of DriftOptions::leak
+  std::array<double, 5> drift_rates{1e-5, 1e-4, 1e-3, 1e-2, 1e-1};       ///< variance that a step adds
+  std::array<double, 6> drift_starts{0.0, 0.01, 0.1, 1.0, 10.0, 100.0};  ///< variance at a start
+  std::array<double, 3> drift_leaks{1.0, 0.97, 0.9};                     ///< what a step leaves
   /// Coefficients that follow a run let the noise scale be of few samples (DART: 0.9; banks that do not drift 0.98).
   std::array<double, 8> drift_forgettings{0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0};
   std::array<double, 5> drift_noise_prior_samples{1e-3, 1e-2, 0.1, 1.0, 5.0};  ///< that a run's start is worth
@@ -78,5 +78,7 @@ struct RefineTuning {
   /// (seeds move held-out scores by 0.03 to 0.07).
   double least_gain = 1e-3;
 };
+
+inline constexpr RefineTuning refine_tuning{};  ///< what refinement goes by
 
 }  // namespace modebank
