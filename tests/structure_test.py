@@ -11,7 +11,7 @@ import sys
 IDENT = ["ident/base", "ident/data", "ident/model"]
 FIT = IDENT + ["ident/model/models", "ident/fit"]
 STEP = IDENT + ["filter/step"]
-LIBRARIES = FIT + ["ident/lag", "ident/terms", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/judge", "filter/learn"]
+LIBRARIES = FIT + ["ident/lag", "ident/terms", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/judge", "filter/learn", "filter/learn/chain"]
 IO = ["io/files", "io/hdf5", "io/table", "io/csv", "io/arrays", "io/archive/groups", "io/archive/bank", "io/archive", "io/recording", "io/import", "io/simulation"]
 BELOW_APP = LIBRARIES + IO
 MAY_INCLUDE = {
@@ -28,6 +28,7 @@ MAY_INCLUDE = {
     "filter/step": IDENT,
     "filter/judge": STEP,
     "filter/learn": FIT + ["mixture", "filter/step", "filter/judge"],
+    "filter/learn/chain": FIT + ["ident/lag", "ident/terms", "mixture", "filter/step", "filter/judge", "filter/learn"],
     "io/files": IDENT[:1],
     "io/hdf5": IDENT[:1],
     "io/table": IDENT[:1] + ["io/files"],

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "app/chain/forecasters.hpp"
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
 #include "filter/judge/combination.hpp"
+#include "filter/learn/chain/forecasters.hpp"
 #include "ident/base/work_counter.hpp"
 #include "modebank/base/error.hpp"
 

@@ -2,13 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "app/chain/expected_time.hpp"
 #include "app/chain/mode_names.hpp"
-#include "app/chain/training_check.hpp"
-#include "ident/fit/window_length.hpp"
+#include "app/chain/section.hpp"
+#include "filter/learn/chain/chain.hpp"
+#include "filter/learn/chain/training_check.hpp"
 #include "io/import/import.hpp"
 
 namespace modebank {
+
+namespace {
+
+/// The part of an archive that is of type P, alone.
+template <class P>
+Archive part_of(const Archive& archive) {
+  Archive part;
+  static_cast<P&>(part) = archive;
+  return part;
+}
+
+template <class P>
+void take_part(Archive&& part, Archive& archive) {
+  static_cast<P&>(archive) = std::move(static_cast<P&>(part));
+}
+
+}  // namespace
 
 void Chain::provide(Stage stage, const StagePart& part) {
   std::string& held = held_[index_of(stage)];
@@ -27,6 +48,12 @@ void Chain::provide(Stage stage, const StagePart& part) {
   listener_.done(stage, archive_);
 }
 
+template <class P>
+void Chain::provide(Stage stage, const std::function<void()>& compute) {
+  provide(stage, {compute, [this] { return part_of<P>(archive_); },
+                  [this](Archive&& part) { take_part<P>(std::move(part), archive_); }});
+}
+
 const Archive& Chain::run(const ChainOptions& options, Stage last, const Execution& execution,
                           const EvaluationSink* sink) {
   sink_ = sink;
@@ -34,32 +61,13 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
   inputs_ = chain_inputs(options);
   wanted_ = stage_keys(inputs_, "");  // what the data hold is known when they are read
   import(inputs_.data);
-  const auto want = [this, data_key = wanted_[index_of(Stage::data)]] {
-    wanted_ = stage_keys(inputs_, data_.data_hash);
-    wanted_[index_of(Stage::data)] = data_key;
-  };
-  want();
-  if (last >= Stage::structure) {
-    refuse_constant_states(*archive_.recording);
-    if (last >= Stage::bank_scores && options.scoring.horizon != ScoringOptions::default_horizon)
-      refuse_unreached_horizons(*archive_.recording, options.scoring.horizon);
-    find_lags(inputs_.structure);
-  }
-  if (last >= Stage::windows && (archive_.structure || options.automatic_windows.any())) {
-    ChainOptions found = archive_.structure ? with_structure(options, *archive_.structure) : options;
-    if (options.automatic_windows.length) found.window.length = automatic_length(*archive_.recording, found.window);
-    if (options.automatic_windows.step) found.window.step = automatic_step(*archive_.recording);
-    inputs_ = chain_inputs(found);
-    want();
-  }
-  const ChainInputs& inputs = inputs_;
-  if (last >= Stage::windows) identify_windows(inputs.windows);
-  if (last >= Stage::mixture) cluster_windows(inputs.mixture);
-  if (last >= Stage::bank) learn_bank(inputs);
+  if (last >= Stage::bank_scores && options.scoring.horizon != ScoringOptions::default_horizon)
+    refuse_unreached_horizons(*archive_.recording, options.scoring.horizon);
+  learn(options, std::min(last, Stage::bank));
   if (last >= Stage::bank_scores)
-    judge(inputs);
+    judge(inputs_);
   else if (archive_.windows)
-    put(test_global(*archive_.recording, *archive_.windows, inputs.windows.window));
+    put(test_global(*archive_.recording, *archive_.windows, inputs_.windows.window));
   archive_.mode_names = mode_names_of(archive_, options.mode_names, listener_);
   describe(execution, mixture_files_);
   return archive_;
@@ -71,153 +79,104 @@ void Chain::import(const DataInputs& inputs) {
     data_ = import_data(inputs.data, memory_);
     archive_.provenance.data_hash = data_.data_hash;  // listeners may want to know which data they are
     for (const std::string& note : data_.notes) listener_.warning(note);
-    archive_.recording = std::move(data_.recording);
-    archive_.lag = std::move(data_.lag);
-    archive_.labels = std::move(data_.labels);
-    archive_.step_scatter = data_.step_scatter;
+    static_cast<DataPart&>(archive_) = {std::move(data_.recording), std::move(data_.labels), data_.step_scatter,
+                                        std::move(data_.lag)};
     listener_.progress(fmt::format("import: {} runs, {} training and {} test transitions in {:.2f} s",
                                    archive_.recording->runs.size(), archive_.recording->transitions(Role::train),
                                    archive_.recording->transitions(Role::test), watch.seconds()));
   };
   const auto copy = [&] {
-    Archive part;
-    part.recording = archive_.recording;
-    part.lag = archive_.lag;
-    part.labels = archive_.labels;
-    part.step_scatter = archive_.step_scatter;
+    Archive part = part_of<DataPart>(archive_);
     part.provenance.inputs = data_.files;
     part.provenance.data_hash = data_.data_hash;
     return part;
   };
   const auto take = [&](Archive&& part) {
-    archive_.recording = std::move(part.recording);
-    archive_.lag = std::move(part.lag);
-    archive_.labels = std::move(part.labels);
-    archive_.step_scatter = part.step_scatter;
     data_.files = std::move(part.provenance.inputs);
     archive_.provenance.data_hash = data_.data_hash = std::move(part.provenance.data_hash);
+    take_part<DataPart>(std::move(part), archive_);
   };
   provide(Stage::data, {compute, copy, take});
 }
 
-void Chain::find_lags(std::optional<StructureInputs> inputs) {
-  if (inputs && one_model_alone()) inputs->with_modes = false;
-  if (!inputs) {
-    archive_.structure.reset();
-    held_[index_of(Stage::structure)].clear();
-    return;
-  }
-  const auto compute = [&] { archive_.structure = search_structure(*archive_.recording, *inputs, listener_); };
-  const auto copy = [&] {
-    Archive part;
-    part.structure = archive_.structure;
-    return part;
+void Chain::learn(const ChainOptions& options, Stage last) {
+  if (!inputs_.structure) held_[index_of(Stage::structure)].clear();
+  LearningHooks hooks;
+  hooks.provide = [&](Stage stage, const LearningInputs& inputs, const std::function<void()>& compute) {
+    inputs_ = chain_inputs(options, inputs);
+    const std::string data_key = wanted_[index_of(Stage::data)];
+    wanted_ = stage_keys(inputs_, data_.data_hash);
+    wanted_[index_of(Stage::data)] = data_key;
+    provide_learned(stage, compute);
   };
-  const auto take = [&](Archive&& part) { archive_.structure = std::move(part.structure); };
-  provide(Stage::structure, {compute, copy, take});
+  hooks.start = [&](const FeatureCloud& cloud) {
+    return stored_start(inputs_.start.file, cloud, inputs_.mixture.mixture.selection.components, listener_);
+  };
+  // Steps of many lengths make modes of one motion, and least squares alone keeps its time constant.
+  const bool one_model = archive_.step_scatter > most_step_scatter;
+  learn_all(*archive_.recording, options, last, one_model, hooks, listener_, archive_);
 }
 
-void Chain::identify_windows(const WindowInputs& inputs) {
+void Chain::provide_learned(Stage stage, const std::function<void()>& compute) {
+  switch (stage) {
+    case Stage::structure:
+      return provide<StructurePart>(stage, compute);
+    case Stage::windows:
+      return provide_windows(compute);
+    case Stage::mixture:
+      return provide_mixture(compute);
+    case Stage::competitors:
+      return provide<CompetitorsPart>(stage, compute);
+    default:
+      return provide<BankPart>(Stage::bank, [&] {
+        const BankInputs& inputs = inputs_.bank;
+        if (inputs.bank.refine == Refine::em && !inputs.one_model)
+          tell_if_long(listener_, inputs.one_motion ? "bank and one_motion" : "bank",
+                       (inputs.one_motion ? 2.0 : 1.0) *
+                           expected_learning_s(*archive_.recording, archive_.windows->structure, inputs.bank.em),
+                       "--bank.refine none, or --bank.refine_transitions 10000, shortens this");
+        compute();
+      });
+  }
+}
+
+void Chain::provide_windows(const std::function<void()>& compute) {
   constexpr double written_per_s = 1e5;  // with their samples and a copy of both, on a slow disk
-  const auto compute = [&] {
-    if (const std::string open = open_effects(*archive_.recording, inputs.window); !open.empty())
-      listener_.warning(open);
+  const WindowInputs& inputs = inputs_.windows;
+  const auto in_time = [&] {
     tell_if_long(listener_, "windows", expected_windows_s(*archive_.recording, inputs.window),
                  "--window.step 10 fits every tenth window");
-    const Stopwatch watch;
-    archive_.windows = identify(*archive_.recording, inputs);
-    listener_.progress(fmt::format("windows: {} fitted in {:.2f} s", archive_.windows->count(), watch.seconds()));
+    in_section("window", compute);
   };
   const auto copy = [&] {
-    Archive part;
+    Archive part = part_of<WindowsPart>(archive_);
     part.recording = archive_.recording;
-    part.windows = archive_.windows;
     return part;
   };
-  const auto take = [&](Archive&& part) { archive_.windows = std::move(part.windows); };
   const double windows =
       static_cast<double>(archive_.recording->transitions(Role::train)) / static_cast<double>(inputs.window.step);
-  provide(Stage::windows, {compute, copy, take, windows / written_per_s});
+  provide(Stage::windows, {in_time, copy, [&](Archive&& part) { take_part<WindowsPart>(std::move(part), archive_); },
+                           windows / written_per_s});
 }
 
-void Chain::cluster_windows(const MixtureInputs& inputs) {
-  const std::string& start = inputs.start_file;
-  const auto compute = [&] {
-    tell_if_long(listener_, "mixture", expected_mixture_s(*archive_.windows, inputs.mixture),
+void Chain::provide_mixture(const std::function<void()>& compute) {
+  const auto from_start = [&] {
+    tell_if_long(listener_, "mixture", expected_mixture_s(*archive_.windows, inputs_.mixture.mixture),
                  "--mixture.components 4 tries one number of components");
-    archive_.mixture = cluster(*archive_.recording, *archive_.windows, inputs, listener_);
+    compute();
     mixture_files_.clear();
-    if (!start.empty()) mixture_files_.push_back(describe_file(start));
+    if (!inputs_.start.file.empty()) mixture_files_.push_back(describe_file(inputs_.start.file));
   };
   const auto copy = [&] {
-    Archive part;
-    part.mixture = archive_.mixture;
+    Archive part = part_of<MixturePart>(archive_);
     part.provenance.inputs = mixture_files_;
     return part;
   };
   const auto take = [&](Archive&& part) {
-    archive_.mixture = std::move(part.mixture);
     mixture_files_ = std::move(part.provenance.inputs);
+    take_part<MixturePart>(std::move(part), archive_);
   };
-  provide(Stage::mixture, {compute, copy, take});
-}
-
-void Chain::learn_bank(const ChainInputs& inputs) {
-  const Stopwatch watch;
-  learn_competitor_banks(inputs.competitors);
-  const auto learn = [&] {
-    BankInputs asked = inputs.bank;
-    if (one_model_alone()) {
-      asked.one_model = true;
-      listener_.progress("bank: that of baseline, as steps scatter");
-    }
-    if (!archive_.noise_only->noise_factor.empty()) {
-      asked.bank.em.noise_by_input = true;
-      if (asked.one_motion) asked.one_motion->bank.em.noise_by_input = true;
-    }
-    const LearnedFrom from{*archive_.recording, *archive_.windows, *archive_.mixture, *archive_.baseline};
-    const double expected_s = expected_learning_s(*archive_.recording, archive_.windows->structure, asked.bank.em);
-    if (asked.bank.refine == Refine::em && !asked.one_model)
-      tell_if_long(listener_, "bank", expected_s, "--bank.refine none leaves this out");
-    LearnedBank learned = learn_modes(from, asked, listener_);
-    archive_.bank = std::move(learned.bank);
-    archive_.unrefined = std::move(learned.unrefined);
-    archive_.measured_fit = learned.measured_fit;
-    archive_.merging = std::move(learned.merging);
-    archive_.learned_transitions = learned.learned_transitions;
-    listener_.progress(fmt::format("bank: {} modes, {} screened, in {:.2f} s", archive_.bank->mode_count(),
-                                   archive_.bank->screened.size(), watch.seconds()));
-    archive_.one_motion.reset();
-    std::vector<std::pair<std::string, std::vector<Bank>>> of_splits{{"bank", std::move(learned.of_splits)}};
-    if (asked.one_motion) {
-      tell_if_long(listener_, "one_motion", expected_s, "--bank.refine_transitions 10000 learns from fewer");
-      Refinement one_motion = learn_one_motion(from, *archive_.bank, asked, listener_);
-      archive_.one_motion = std::move(one_motion.bank);
-      of_splits.emplace_back("one_motion", std::move(one_motion.of_splits));
-    }
-    archive_.left_out = score_left_out(archive_, asked, of_splits, listener_);
-  };
-  const auto copy = [&] {
-    Archive part;
-    part.bank = archive_.bank;
-    part.one_motion = archive_.one_motion;
-    part.unrefined = archive_.unrefined;
-    part.measured_fit = archive_.measured_fit;
-    part.merging = archive_.merging;
-    part.left_out = archive_.left_out;
-    part.learned_transitions = archive_.learned_transitions;
-    return part;
-  };
-  const auto take = [&](Archive&& part) {
-    archive_.bank = std::move(part.bank);
-    archive_.one_motion = std::move(part.one_motion);
-    archive_.unrefined = std::move(part.unrefined);
-    archive_.measured_fit = part.measured_fit;
-    archive_.merging = std::move(part.merging);
-    archive_.left_out = std::move(part.left_out);
-    archive_.learned_transitions = part.learned_transitions;
-  };
-  provide(Stage::bank, {learn, copy, take});
+  provide(Stage::mixture, {from_start, copy, take});
 }
 
 void Chain::describe(const Execution& execution, const std::vector<InputFile>& more_files) {

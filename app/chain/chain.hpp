@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/chain/listener.hpp"
+#include "app/chain/stage_key.hpp"
 #include "app/chain/stages.hpp"
 #include "io/import/import.hpp"
 
@@ -74,14 +75,14 @@ class Chain {
 
  private:
   void provide(Stage stage, const StagePart& part);
+  /// A stage whose result is the part of the archive that is of type P.
+  template <class P>
+  void provide(Stage stage, const std::function<void()>& compute);
   void import(const DataInputs& inputs);
-  /// Steps of many lengths make modes of one motion, and least squares alone keeps its time constant.
-  bool one_model_alone() const { return archive_.step_scatter > most_step_scatter; }
-  void find_lags(std::optional<StructureInputs> inputs);
-  void identify_windows(const WindowInputs& inputs);
-  void cluster_windows(const MixtureInputs& inputs);
-  void learn_competitor_banks(const CompetitorInputs& inputs);
-  void learn_bank(const ChainInputs& inputs);
+  void learn(const ChainOptions& options, Stage last);
+  void provide_learned(Stage stage, const std::function<void()>& compute);
+  void provide_windows(const std::function<void()>& compute);
+  void provide_mixture(const std::function<void()>& compute);
   void judge(const ChainInputs& inputs);
   void score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring);
   void conclude(const FilterOptions& filter, const ScoringOptions& scoring);

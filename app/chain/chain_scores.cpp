@@ -60,6 +60,37 @@ void Chain::put_scores(Archive&& part) {
   for (ResidualTestSet& tests : part.residual_tests) put(std::move(tests));
 }
 
+void Chain::forget(const std::string& filter) {
+  put_rows<FilterEvaluation>(filter, {}, archive_.evaluations);
+  put_rows<SummaryRow>(filter, {}, archive_.summary);
+  put_rows<FreeRunRow>(filter, {}, archive_.free_runs);
+  put_rows<DiagnosticsRow>(filter, {}, archive_.diagnostics);
+  put_rows<ResidualTestSet>(filter, {}, archive_.residual_tests);
+}
+
+/// A run may have fewer than the one before.
+void Chain::forget_competitors() {
+  for (const char* filter : competitor_names) forget(filter);
+}
+
+void Chain::score_competitors(const CompetitorScoreInputs& inputs) {
+  const auto score_all = [&] {
+    forget_competitors();
+    put(test_global(*archive_.recording, *archive_.windows, inputs.window));
+    for (const char* filter : competitor_names) score(filter, competitor_filter(filter, inputs.filter), inputs.scoring);
+  };
+  const auto copy = [&] {
+    std::vector<std::string> models(competitor_names.begin(), competitor_names.end());
+    models.emplace_back("global");
+    return scores_of(models, archive_);
+  };
+  const auto take = [&](Archive&& part) {
+    forget_competitors();
+    put_scores(std::move(part));
+  };
+  provide(Stage::competitor_scores, {score_all, copy, take});
+}
+
 void Chain::judge(const ChainInputs& inputs) {
   const Stopwatch watch;
   score_competitors(inputs.competitor_scores);

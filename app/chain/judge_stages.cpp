@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <iterator>
 
-#include "app/chain/forecasters.hpp"
 #include "app/chain/stages.hpp"
 #include "filter/judge/combination.hpp"
 #include "filter/judge/diagnostics.hpp"
 #include "filter/judge/drifting.hpp"
 #include "filter/judge/evaluate.hpp"
+#include "filter/judge/free_runs.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/judge/smoother.hpp"
 #include "filter/judge/statistics.hpp"
+#include "filter/learn/chain/forecasters.hpp"
 #include "ident/base/work_counter.hpp"
 #include "ident/model/residual_tests.hpp"
 
@@ -134,6 +135,7 @@ bool streams_evaluations(const Recording& recording) {
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring, const EvaluationStream* stream) {
   const std::vector<Trajectory>& runs = recording.runs;
+  check_free_run(bank.structure, scoring.free_run);
   return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(bank, runs, filter, scoring.free_run),
                     [&](std::size_t i) {
                       RunEvaluation said = evaluate_run(bank, runs[i], filter);
@@ -150,6 +152,7 @@ FilterScores score_drifting(const DriftingModel& model, const Recording& recordi
   filter.noise = FilterNoise::adaptive;  // its variance is learned on the way, so its NIS is not chi-square
   const std::string name = "drifting";
   const Bank bank = fixed_bank(model);
+  check_free_run(bank.structure, scoring.free_run);
   return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(model, runs, scoring.free_run),
                     [&](std::size_t i) {
                       RunEvaluation said = evaluate_run(model, runs[i]);

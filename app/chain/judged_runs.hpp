@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "filter/learn/chain/progress.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank {
@@ -20,14 +21,5 @@ std::vector<std::size_t> positions_of(const Recording& recording, Role role);
 
 /// "held-out" or "training".
 const char* words_for(Role role);
-
-/// "200,000 of 2,500,000".
-std::string of_all(Eigen::Index part, Eigen::Index all);
-
-/// "from 200,000 of 2,500,000 training transitions".
-std::string learned_words(Eigen::Index learned, Eigen::Index all);
-
-/// "3 modes drawn 32 % of the way to the model of all runs: ...".
-std::string shrinking_words(const Shrinking& shrinking);
 
 }  // namespace modebank

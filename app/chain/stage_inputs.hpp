@@ -1,62 +1,21 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "app/chain/options.hpp"
+#include "filter/learn/chain/inputs.hpp"
 
-/// What each stage of the chain is given of the options, and all that it is given: a stage's key (stage_key.hpp) is
-/// made of its struct, field by field, so that no stage can depend on what its key does not hold.
+/// What the stages around learning are given of the options (filter/learn/chain/inputs.hpp has those of learning).
 namespace modebank {
 
 struct DataInputs {
   DataOptions data;
 };
 
-struct WindowInputs {
-  FitOptions window;  ///< with the chain's seed
-};
-
-struct MixtureInputs {
-  FitOptions window;  ///< for fits of the same windows with one lag
-  ClusterOptions mixture;
-  std::string start_file;    ///< archive whose mixture is a start; empty without one
-  std::string start_sha256;  ///< of its content; empty without one
-  std::uint64_t seed = 1;
-};
-
-/// The bank's competitors: all but one_motion depend on the windows alone, which has as many noise levels at most as
-/// the mixture has components.
-struct CompetitorInputs {
-  FitOptions window;
-  FilterOptions filter;                              ///< that runs competitors, for the noise scale's memory
-  std::vector<Index> horizon;                        ///< that drifting is to widen its predictions for
-  Index transitions = 0;                             ///< that they learn from at most, as the bank does; 0: from all
-  std::uint64_t seed = 1;                            ///< which these are
-  std::string terms = "auto";                        ///< of nonlinear
-  RefineOptions em = {};                             ///< how that is learned
-  std::optional<Lags> linear = {};                   ///< of baseline, noise_only and nonlinear; empty: the windows'
-  std::optional<Lags> drifting = {};                 ///< of drifting; empty: the windows'
-  NoiseByInput noise_by_input = NoiseByInput::none;  ///< of all but baseline and drifting, and of the bank
-};
-
-/// How the competitor one_motion is learned: as the bank.
-struct OneMotionInputs {
-  BankOptions bank;
-  FilterOptions filter;             ///< that runs it
-  std::vector<Index> horizon = {};  ///< that left-out training runs are predicted for, beside one sample ahead
-  std::optional<Lags> lags = {};    ///< empty: the windows'
-};
-
-struct BankInputs {
-  FitOptions window;
-  BankOptions bank;                     ///< with the chain's seed
-  bool one_model = false;               ///< the bank is the baseline: a single Kalman filter was asked for
-  std::optional<FilterOptions> filter;  ///< where learning runs the filter: refinement, and what merging modes costs
-  std::optional<OneMotionInputs> one_motion = {};  ///< empty: a single Kalman filter has no use for it
-  bool terms_stated = false;                       ///< runs left out choose no terms of nonlinear
+/// The archive whose mixture is a start; empty without one.
+struct MixtureStartInputs {
+  std::string file;
+  std::string sha256;  ///< of its content
 };
 
 struct CompetitorScoreInputs {
@@ -70,35 +29,13 @@ struct BankScoreInputs {
   ScoringOptions scoring;
 };
 
-/// What learning a bank takes beside data.
-struct LearningInputs {
-  MixtureInputs mixture;
-  FilterOptions baseline_filter;
-  BankInputs bank;
-  FilterOptions filter;  ///< that predicts
-};
-
-/// The inputs of the search for a structure.
-struct StructureInputs {
-  SearchedLags searched;
-  FitOptions window;       ///< the lags that are not searched for, and how a model is fitted; the rest as by default
-  bool with_modes = true;  ///< whether modes, and one motion whose noise switches, choose for themselves
-};
-
 /// Of a whole chain.
-struct ChainInputs {
+struct ChainInputs : LearningInputs {
   DataInputs data;
-  std::optional<StructureInputs> structure;  ///< empty where nothing is searched for
-  WindowInputs windows;
-  MixtureInputs mixture;
-  CompetitorInputs competitors;
-  BankInputs bank;
+  MixtureStartInputs start;
   CompetitorScoreInputs competitor_scores;
   BankScoreInputs bank_scores;
 };
-
-/// How a competitor steps: by its own kind of filter, with the bank's noise and time steps.
-FilterOptions competitor_filter(const std::string& name, const FilterOptions& of_bank);
 
 /// What is found out about filters, with the chain's seed where something is drawn.
 ScoringOptions scoring_inputs(const ChainOptions& options);
@@ -106,7 +43,7 @@ ScoringOptions scoring_inputs(const ChainOptions& options);
 /// Parts the options into what each stage needs. Reads mixture_start, if there is one, for its hash: throws
 /// ConfigurationError when it cannot be read.
 ChainInputs chain_inputs(const ChainOptions& options);
-/// The part of them that cross-validation learns banks by.
-LearningInputs learning_inputs(const ChainOptions& options);
+/// With the inputs of learning that are given.
+ChainInputs chain_inputs(const ChainOptions& options, LearningInputs learning);
 
 }  // namespace modebank

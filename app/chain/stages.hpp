@@ -7,16 +7,13 @@
 
 #include "app/chain/listener.hpp"
 #include "app/chain/stage_inputs.hpp"
+#include "filter/learn/chain/stages.hpp"
 #include "io/archive/archive.hpp"
 
-/// The stages of the chain: functions of the data, of earlier stages' results and of their inputs struct. They throw
+/// The stages around learning (filter/learn/chain/stages.hpp): functions of the data, of earlier stages' results and of
+/// their inputs struct. They throw
 /// ConfigurationError for inputs that do not fit the data, DataError for data that cannot be used.
 namespace modebank {
-
-/// The lags and the delay of one linear model of the training runs (ident/lag/structure_search.hpp).
-FoundStructure search_structure(const Recording& recording, const StructureInputs& inputs, const Listener& listener);
-/// The options with that structure, which stays one that is searched for.
-ChainOptions with_structure(ChainOptions options, const FoundStructure& found);
 
 /// Whether there are too many windows to hold in memory, so that they are best written as they are fitted.
 bool streams_windows(const Recording& recording, const WindowInputs& inputs);
@@ -26,63 +23,10 @@ bool streams_windows(const Recording& recording, const WindowInputs& inputs);
 WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const WindowInputs& inputs,
                               const std::function<void(const WindowFits&)>& hears);
 
-WindowFits identify(const Recording& recording, const WindowInputs& inputs);
-
-MixtureResult cluster(const Recording& recording, const WindowFits& windows, const MixtureInputs& inputs,
-                      const Listener& listener);
-
-/// The global model of the windows in linear terms, whatever they were fitted with.
-GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);
-
-/// One linear model of the training runs.
-struct OneModel {
-  std::string model;  ///< the windows', if it has their lags
-  LinearStructure structure;
-  GlobalModel global;
-};
-/// With these lags; empty: the windows'.
-OneModel one_model(const Recording& recording, const WindowFits& windows, const FitOptions& window,
-                   const std::optional<Lags>& lags);
-
-/// The baseline: one Kalman filter on the global model. `filter`: that runs competitors.
-Bank learn_single_filter(const Recording& recording, const OneModel& of, const FilterOptions& filter,
-                         const Listener& listener);
-
-struct Competitors {
-  Bank baseline;                       ///< one Kalman filter
-  Bank noise_only;                     ///< switches noise alone
-  DriftingModel drifting;              ///< one linear model whose coefficients wander
-  std::optional<Bank> nonlinear = {};  ///< one motion that bends; empty where no term gains on the training runs
-};
-Competitors learn_competitors(const Recording& recording, const WindowFits& windows, const CompetitorInputs& inputs,
-                              const Listener& listener);
-
-/// What a bank is learned from.
-struct LearnedFrom {
-  const Recording& recording;
-  const WindowFits& windows;
-  const MixtureResult& mixture;
-  const Bank& baseline;
-};
-struct LearnedBank {
-  Bank bank;
-  std::optional<Bank> unrefined;  ///< that refinement started from
-  MeasuredFit measured_fit = MeasuredFit::none;
-  std::vector<MergingCost> merging;  ///< where a limit on the number of modes merged some
-  Index learned_transitions = 0;     ///< that refinement learned from; 0: all of the training runs'
-  std::vector<Bank> of_splits = {};  ///< as Refinement has them
-};
-LearnedBank learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Listener& listener);
-
-/// The competitor that is learned as the bank, with one theta, and from the bank's noises, too.
-Refinement learn_one_motion(const LearnedFrom& from, const Bank& bank, const BankInputs& inputs,
-                            const Listener& listener);
-
-/// Scores of bank, competitors and all combined on the training runs, each run by filters that were learned without
-/// it; empty where nothing was left out. `of_splits`: of bank and one_motion, the others are learned anew.
-std::vector<LeftOutRow> score_left_out(const Archive& learned, const BankInputs& inputs,
-                                       const std::vector<std::pair<std::string, std::vector<Bank>>>& of_splits,
-                                       const Listener& listener);
+/// The mixture of another archive, which must be over the features of the cloud; none where no file is given.
+/// `components`: numbers that are tried.
+std::optional<GaussianMixture> stored_start(const std::string& file, const FeatureCloud& cloud,
+                                            const std::vector<Index>& components, const Listener& listener);
 
 /// What a filter said about every run, and how good that was.
 struct FilterScores {
@@ -118,13 +62,8 @@ std::optional<FilterScores> score_combined(const FilterOptions& filter, const Sc
 /// Adds what all filters of the archive, and their combination, predict as far ahead as is asked for.
 void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive);
 
-/// Free runs of every run, none where none is asked for. Throws ConfigurationError, naming the key, when the model
-/// needs more measured samples than the options have.
-std::vector<FreeRun> free_runs(const Bank& bank, const std::vector<Trajectory>& runs, const FilterOptions& filter,
-                               const FreeRunOptions& options);
-std::vector<FreeRun> free_runs(const DriftingModel& model, const std::vector<Trajectory>& runs,
-                               const FreeRunOptions& options);
-/// What is to be said of them, one line each: of the bank's, runs of which nothing was predicted; of all, paths lost.
+/// What is to be said of free runs, one line each: of the bank's, runs of which nothing was predicted; of all, paths
+/// lost.
 std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,
                                  const std::vector<FreeRun>& free_runs);
 /// Throws ConfigurationError, naming the key, unless a free run of this model can start from so many samples.

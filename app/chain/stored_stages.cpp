@@ -14,10 +14,7 @@ StoredStages::StoredStages(const std::filesystem::path& file, Stage until)
 void StoredStages::provide(Stage stage, const std::string& /*key*/, const StagePart& part) {
   Archive result;
   if (stage == Stage::data) {
-    result.recording = std::move(stored_.recording);
-    result.lag = std::move(stored_.lag);
-    result.labels = std::move(stored_.labels);
-    result.step_scatter = stored_.step_scatter;
+    static_cast<DataPart&>(result) = std::move(static_cast<DataPart&>(stored_));
     result.provenance = stored_.provenance;
   } else if (stage == Stage::structure && stage <= until_) {
     result.structure = std::move(stored_.structure);

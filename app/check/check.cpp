@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "app/chain/training_check.hpp"
+#include "filter/learn/chain/training_check.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/scale.hpp"
 #include "ident/lag/choice.hpp"

@@ -93,7 +93,7 @@ LeftOut predict_all(const ChainOptions& options, const LeftOutPlan& plan, double
   left_out.period_s = splits.front().training.median_period_s();
   const Index ahead = samples_ahead(common_s, left_out.period_s);
   std::vector<std::vector<LeftOutRun>> of_runs(plan.runs.size());
-  for (std::vector<LeftOutRun>& part : predict_left_out(splits, learning_inputs(options), ahead))
+  for (std::vector<LeftOutRun>& part : predict_left_out(splits, learning_inputs(options), options.filter, ahead))
     for (LeftOutRun& run : part) of_runs.at(owner_of(run.run, plan.runs)).push_back(std::move(run));
   for (std::vector<LeftOutRun>& parts : of_runs) left_out.runs.push_back(in_one(std::move(parts)));
   return left_out;

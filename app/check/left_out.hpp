@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "app/chain/learn_left_out.hpp"
 #include "app/chain/options.hpp"
 #include "app/check/check.hpp"
 #include "filter/judge/paired_gain.hpp"
+#include "filter/learn/chain/learn_left_out.hpp"
 
 /// What configurations predict of training runs that were left out, so that two of them can be compared on the same
 /// samples. Runs that are held out take no part.

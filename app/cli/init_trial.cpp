@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "app/chain/training_check.hpp"
 #include "app/config/config.hpp"
 #include "app/config/config_file.hpp"
+#include "filter/learn/chain/training_check.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/files/temporary_file.hpp"

@@ -12,6 +12,7 @@
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "filter/judge/combination.hpp"
+#include "filter/judge/free_runs.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/load_averaged.hpp"
@@ -33,8 +34,14 @@ double period_of(const OpenArchive& archive, const Config& config) {
 std::vector<FreeRun> predict_alone(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const FilterOptions options = tracked_options(config);
   const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
-  if (config.track.filter == TrackedFilter::drifting) return free_runs(load_drifting(archive), recording.runs, how);
-  return free_runs(load_bank(archive, tracked_bank(config)), recording.runs, options, how);
+  if (config.track.filter == TrackedFilter::drifting) {
+    const DriftingModel model = load_drifting(archive);
+    check_free_run(model.structure, how);
+    return free_runs(model, recording.runs, how);
+  }
+  const Bank bank = load_bank(archive, tracked_bank(config));
+  check_free_run(bank.structure, how);
+  return free_runs(bank, recording.runs, options, how);
 }
 
 /// By all of them, with the weights that made the training runs' free runs most likely: nothing is measured on the way

@@ -89,7 +89,7 @@ Suggestions tell(const CommandLine& line, const Config& config, const DataCheck&
   ChainOptions options = chain_options(config);
   const std::optional<FoundStructure> found = scored ? structure_of(options) : std::nullopt;
   if (found) {
-    options = with_structure(options, *found);
+    static_cast<LearningOptions&>(options) = with_structure(options, *found);
     const int width = standard_output().width;
     print_text(line, "\n" + wrapped(structure_text(*found, !config.data.input.empty(), width), width));
   }

@@ -38,10 +38,10 @@ AutomaticWindows automatic_windows_of(const Config& c) {
 }
 
 ChainOptions chain_options(const Config& c) {
-  return {
-      data_options_of(c), window_options_of(c), c.mixture,           c.mixture_start,         c.bank,       c.filter,
-      c.scoring,          c.job.seed,           searched_lags_of(c), automatic_windows_of(c), c.mode_names, c.terms,
-      c.noise_by_input};
+  const LearningOptions learning{
+      window_options_of(c),    c.mixture, c.bank,          c.filter, c.scoring, c.job.seed, searched_lags_of(c),
+      automatic_windows_of(c), c.terms,   c.noise_by_input};
+  return {learning, data_options_of(c), c.mixture_start, c.mode_names};
 }
 
 namespace {

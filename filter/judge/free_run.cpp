@@ -162,7 +162,7 @@ FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& f
   if (options.method == FreeRunMethod::paths) {
     const FilterModel<Eigen::Dynamic, Eigen::Dynamic> model(bank, filter);
     FilterMemory memory;
-    PathForecast forecast(bank, filter, options.paths, derive_seed(options.seed, "free run " + run.run));
+    PathForecast forecast(bank, options.paths, derive_seed(options.seed, "free run " + run.run));
     from_each_start(model, given, out, [&](const FilterState<Eigen::Dynamic>& state, Index t, Index end) {
       save(state, memory);
       forecast.start(memory);

@@ -81,8 +81,7 @@ class PathForecast final : public Forecast {
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
   /// `row`: as SamplePaths takes it.
-  PathForecast(const Bank& bank, const FilterOptions& options, Eigen::Index paths, std::uint64_t seed,
-               TransitionRow row = {});
+  PathForecast(const Bank& bank, Eigen::Index paths, std::uint64_t seed, TransitionRow row = {});
   void start(const FilterMemory& origin) { paths_.start(origin); }
   void step(const Vector& inputs) override { paths_.step(inputs); }
   void arrive(Eigen::Index) override;

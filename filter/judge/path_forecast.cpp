@@ -9,8 +9,7 @@ namespace modebank {
 
 using Eigen::Index;
 
-PathForecast::PathForecast(const Bank& bank, const FilterOptions& options, Index paths, std::uint64_t seed,
-                           TransitionRow row)
+PathForecast::PathForecast(const Bank& bank, Index paths, std::uint64_t seed, TransitionRow row)
     : C_(bank.C),
       R_(bank.recording_noise()),
       R_root_(covariance_root(R_)),

@@ -15,7 +15,7 @@
 #include "filter/judge/free_run.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/scores.hpp"
-#include "filter/learn/likelihood/maximum_likelihood.hpp"
+#include "filter/learn/chain/parts.hpp"
 #include "filter/step/bank.hpp"
 #include "filter/step/drifting.hpp"
 #include "ident/data/run_labels.hpp"
@@ -79,43 +79,30 @@ struct ConfusionRow {
   double share = 0.0;  ///< of the label's samples
 };
 
-/// What one execution produced, stage by stage; absent stages did not run.
-struct Archive {
-  Provenance provenance;
-  std::string config;  ///< fully resolved, itself a valid configuration file
+/// The data that an execution read.
+struct DataPart {
   std::optional<Recording> recording;
-  std::optional<RunLabels> labels;          ///< with data.label
-  double step_scatter = 0.0;                ///< of the recording's steps, in their median (io/import/sampling.hpp)
-  std::optional<LagReport> lag;             ///< with data.lag_s = auto
-  std::optional<FoundStructure> structure;  ///< with window.model = auto, or lags = auto
-  std::optional<WindowFits> windows;
-  std::optional<MixtureResult> mixture;
-  std::optional<Bank> bank;
+  std::optional<RunLabels> labels;  ///< with data.label
+  double step_scatter = 0.0;        ///< of the recording's steps, in their median (io/import/sampling.hpp)
+  std::optional<LagReport> lag;     ///< with data.lag_s = auto
+};
+
+/// What one execution produced, stage by stage; absent stages did not run. (Of Learning archives keep terms_asked as
+/// Finding's.)
+struct Archive : DataPart, Learning {
+  Provenance provenance;
+  std::string config;                        ///< fully resolved, itself a valid configuration file
   std::vector<std::string> mode_names = {};  ///< of the bank, where modes have names; empty where one has none
-  std::optional<Bank> unrefined;             ///< the bank that expectation-maximisation started from
-  MeasuredFit measured_fit = MeasuredFit::none;
-  Index learned_transitions = 0;  ///< that the bank was refined on; 0: all of the training runs'
-  std::optional<Bank> baseline;
-  std::optional<Bank> noise_only;
-  std::optional<Bank> one_motion;
-  std::optional<DriftingModel> drifting;
-  std::optional<Bank> nonlinear = {};
-  bool terms_asked = false;  ///< for nonlinear, whether or not any gained; archives keep Finding::terms_asked
   std::vector<FilterEvaluation> evaluations;
   std::vector<SummaryRow> summary;
   std::vector<HorizonRow> horizons;              ///< with filter.horizon
   std::vector<CombinationRow> combination = {};  ///< how much each filter counted in combined_name's forecasts
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<ResidualTestSet> residual_tests;
-  std::vector<LeftOutRow> left_out = {};     ///< where filters were learned without some training runs
-  std::vector<MergingCost> merging = {};     ///< with bank.modes, where components were merged
   std::vector<FreeRunRow> free_runs = {};    ///< with filter.simulate
   std::vector<ConfusionRow> confusion = {};  ///< with data.label, where a bank was scored
   std::optional<Finding> finding = {};       ///< where a bank was scored
 
-  /// By the name of its filter, where there is one; of drifting its fixed_bank, whose states and measurements are its;
-  /// of all combined their combined_frame.
-  std::optional<Bank> bank_of(const std::string& filter) const;
   /// Whether modes of the bank are components of the mixture: neither refined nor left out because steps scatter.
   bool mixture_makes_bank() const { return mixture && !unrefined && step_scatter == 0.0; }
   bool one_motion_drifts() const { return one_motion && !one_motion->drift.empty(); }

@@ -2,6 +2,7 @@
 
 #include "app/chain/stages.hpp"
 #include "app/config/config_file.hpp"
+#include "filter/judge/free_runs.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "modebank/filter/bank.hpp"
 #include "python/bindings/arrays.hpp"
@@ -31,6 +32,7 @@ FreeRun predict(const Bank& bank, const app::Config& config, const Samples& time
                 const Samples& inputs) {
   const Trajectory run = run_of(time_s, states, inputs);
   const FreeRunOptions how = scoring_inputs(app::chain_options(config)).free_run;
+  check_free_run(bank.structure, how);
   const Unlocked unlocked;
   return std::move(free_runs(bank, {run}, config.filter, how).front());
 }

@@ -72,7 +72,7 @@ std::vector<ScoredFit> fits_to_try(const CrossValidation& validation, const Scor
 }
 
 /// From the middle of the grids.
-DriftChoice start_of(const RefineInput& in, const ScoredFit& fit, const Eigen::VectorXd& scale) {
+DriftChoice start_of(const ScoredFit& fit, const Eigen::VectorXd& scale) {
   const RefineTuning& tuning = refine_tuning;
   return {fit,
           {{tuning.drift_rates[2], tuning.drift_starts[3], tuning.drift_leaks[0]}, scale},
@@ -96,7 +96,7 @@ std::optional<DriftChoice> choose_drift(const RefineInput& in, const CrossValida
   std::vector<DriftTrial> sizes;
   std::vector<LeftOutScores> scores;
   for (const ScoredFit& fit : fits_to_try(validation, steady, other_sizes)) {
-    sizes.push_back(climbed(in, validation, start_of(in, fit, scale)));
+    sizes.push_back(climbed(in, validation, start_of(fit, scale)));
     scores.push_back(sizes.back().scores);
   }
   const DriftTrial& best = sizes[fewest_modes_as_good(scores, validation.samples(), refine_tuning)];

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "app/chain/stage_structures.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
+#include "filter/learn/chain/stage_structures.hpp"
 #include "io/archive/archive.hpp"
 #include "tests/app/cli_fixture.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"

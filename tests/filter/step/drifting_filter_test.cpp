@@ -44,7 +44,7 @@ TEST(DriftingFilter, GoesOnFromASnapshotAndStartsAnew) {
 
 TEST(DriftingFilter, RefusesWhatIsNone) {
   const DriftingModel good = example_drifting(2, 1, 2);
-  EXPECT_NO_THROW(DriftingFilter(good));
+  EXPECT_NO_THROW(DriftingFilter{good});
   const std::vector<std::function<void(DriftingModel&)>> spoil = {
       [](DriftingModel& m) { m.theta0(0) = std::nan(""); },
       [](DriftingModel& m) { m.theta0.conservativeResize(3); },
@@ -66,7 +66,7 @@ TEST(DriftingFilter, RefusesWhatIsNone) {
   for (std::size_t i = 0; i < spoil.size(); ++i) {
     DriftingModel bad = good;
     spoil[i](bad);
-    EXPECT_THROW(DriftingFilter(bad), std::invalid_argument) << i;
+    EXPECT_THROW(DriftingFilter{bad}, std::invalid_argument) << i;
   }
   DriftingFilter filter(good);
   EXPECT_THROW(filter.restore(DriftingFilter(example_drifting(2, 1, 1)).snapshot()), std::invalid_argument);

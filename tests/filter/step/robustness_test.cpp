@@ -142,13 +142,15 @@ TEST(NeverNaN, AMillionStepsAtConstantInputInEveryVariant) {
 
 /// Weights that every archive may hold: finite ones, whose log odds overflow.
 TEST(NeverNaN, LogOddsOfAnySize) {
-  for (const double weight : {1e3, 1e150, 1e308}) Bank bank = example_bank(2, 2, 3);
-  bank.transition_logit = {Eigen::MatrixXd::Constant(3, 4, weight), Eigen::VectorXd::Constant(4, 1.0)};
-  bank.transition_logit.weights.row(1) *= -1.0;
-  const Trajectory run = simulate_bank(bank, 100, 31);
-  const RunEvaluation r = evaluate_run(bank, run, {});
-  EXPECT_TRUE(r.log_density.tail(99).allFinite()) << weight;
-  EXPECT_TRUE(r.mode_probability.allFinite() && r.mode_probability.minCoeff() >= 0.0) << weight;
+  for (const double weight : {1e3, 1e150, 1e308}) {
+    Bank bank = example_bank(2, 2, 3);
+    bank.transition_logit = {Eigen::MatrixXd::Constant(3, 4, weight), Eigen::VectorXd::Constant(4, 1.0)};
+    bank.transition_logit.weights.row(1) *= -1.0;
+    const Trajectory run = simulate_bank(bank, 100, 31);
+    const RunEvaluation r = evaluate_run(bank, run, {});
+    EXPECT_TRUE(r.log_density.tail(99).allFinite()) << weight;
+    EXPECT_TRUE(r.mode_probability.allFinite() && r.mode_probability.minCoeff() >= 0.0) << weight;
+  }
 }
 
 TEST(NeverNaN, InfinityCountsAsMissing) {

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "app/chain/stages.hpp"
 #include "filter/judge/free_run.hpp"
 #include "filter/judge/horizon.hpp"
+#include "filter/learn/chain/parts.hpp"
 #include "filter/step/any_filter.hpp"
 
 namespace modebank {
 
-/// A filter of an archive as the chain runs it.
+/// A filter that was learned, as it is run.
 struct Forecaster {
   std::string name;
   Bank bank;                                ///< of drifting: its sizes
@@ -23,7 +23,7 @@ struct Forecaster {
   std::vector<FreeRun> free(const std::vector<Trajectory>& runs, const FreeRunOptions& options) const;
 };
 
-/// The bank and its competitors, as far as the archive has them. `filter`: that runs the bank.
-std::vector<Forecaster> forecasters_of(const Archive& archive, const FilterOptions& filter);
+/// The bank and its competitors, as far as there are any. `filter`: that runs the bank.
+std::vector<Forecaster> forecasters_of(const Learning& learned, const FilterOptions& filter);
 
 }  // namespace modebank

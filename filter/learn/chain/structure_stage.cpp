@@ -1,21 +1,21 @@
 #include <fmt/format.h>
 
-#include "app/chain/stage_structures.hpp"
-#include "app/chain/stages.hpp"
+#include "filter/learn/chain/stage_structures.hpp"
+#include "filter/learn/chain/stages.hpp"
 #include "ident/lag/structure_search.hpp"
 
 namespace modebank {
 
-FoundStructure search_structure(const Recording& recording, const StructureInputs& inputs, const Listener& listener) {
+FoundStructure search_structure(const Recording& recording, const StructureInputs& inputs, const Progress& progress) {
   const Stopwatch watch;
   FoundStructure found = find_structure(recording, inputs.window, inputs.searched);
   choose_for_stages(recording, inputs, found);
-  listener.progress(fmt::format("structure: {} structures compared in {:.2f} s", found.structures, watch.seconds()));
-  if (!found.remark.empty()) listener.warning("structure: " + found.remark);
+  progress.progress(fmt::format("structure: {} structures compared in {:.2f} s", found.structures, watch.seconds()));
+  if (!found.remark.empty()) progress.warning("structure: " + found.remark);
   return found;
 }
 
-ChainOptions with_structure(ChainOptions options, const FoundStructure& found) {
+LearningOptions with_structure(LearningOptions options, const FoundStructure& found) {
   FitOptions& window = options.window;
   window.state_lags = found.state_lags;
   window.input_lags = found.input_lags;

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "app/chain/forecasters.hpp"
-#include "app/chain/stages.hpp"
 #include "filter/judge/combination.hpp"
+#include "filter/learn/chain/forecasters.hpp"
+#include "filter/learn/chain/stages.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/folds.hpp"
@@ -23,7 +23,7 @@ using OfSplits = std::vector<std::pair<std::string, std::vector<Bank>>>;
 
 /// Terms are chosen anew, too: terms judged by the runs that chose them look better than they are. Where the split's
 /// runs take none, those of all training runs are fitted to them.
-Bank relearn_nonlinear(const Archive& learned, const Recording& training, const BankInputs& inputs) {
+Bank relearn_nonlinear(const CompetitorsPart& learned, const Recording& training, const BankInputs& inputs) {
   FoundTerms found;
   if (!inputs.terms_stated) found = find_terms(training, learned.baseline->structure, inputs.window);
   if (found.terms.empty()) {
@@ -33,39 +33,38 @@ Bank relearn_nonlinear(const Archive& learned, const Recording& training, const 
   return learn_nonlinear(training, found.structure, found.terms, inputs.bank.em, *inputs.filter);
 }
 
-/// The archive's filters as they were learned without the split's runs: what refinement has left, and the others with
+/// The filters as they were learned without the split's runs: what refinement has left, and the others with
 /// coefficients learned anew. Their few other numbers stay as they are: Q and R of baseline, rates of drifting.
-Archive learned_on(const Archive& learned, const Recording& training, const BankInputs& inputs,
-                   const OfSplits& of_splits, std::size_t split) {
-  Archive archive;
-  for (const auto& [name, banks] : of_splits) (name == "bank" ? archive.bank : archive.one_motion) = banks.at(split);
+Learning learned_on(const CompetitorsPart& learned, const Recording& training, const BankInputs& inputs,
+                    const OfSplits& of_splits, std::size_t split) {
+  Learning anew;
+  for (const auto& [name, banks] : of_splits) (name == "bank" ? anew.bank : anew.one_motion) = banks.at(split);
   const auto global_of = [&](const LinearStructure& structure) { return fit_global(training, structure); };
   if (learned.baseline) {
-    archive.baseline = learned.baseline;
-    const LinearStructure& structure = archive.baseline->structure;
-    archive.baseline->modes.front().model = unpack(structure, global_of(structure).theta);
+    anew.baseline = learned.baseline;
+    const LinearStructure& structure = anew.baseline->structure;
+    anew.baseline->modes.front().model = unpack(structure, global_of(structure).theta);
   }
   if (learned.noise_only) {
-    archive.noise_only = learn_noise_only(training, learned.noise_only->structure, archive.baseline->R,
-                                          learned.noise_only->noise_factor);
-    archive.noise_only->noise_adaptation = learned.noise_only->noise_adaptation;
+    anew.noise_only =
+        learn_noise_only(training, learned.noise_only->structure, anew.baseline->R, learned.noise_only->noise_factor);
+    anew.noise_only->noise_adaptation = learned.noise_only->noise_adaptation;
   }
   if (learned.drifting)
-    archive.drifting = relearn_drifting(*learned.drifting, training, global_of(learned.drifting->structure));
-  if (learned.nonlinear) archive.nonlinear = relearn_nonlinear(learned, training, inputs);
-  return archive;
+    anew.drifting = relearn_drifting(*learned.drifting, training, global_of(learned.drifting->structure));
+  if (learned.nonlinear) anew.nonlinear = relearn_nonlinear(learned, training, inputs);
+  return anew;
 }
 
 }  // namespace
 
-std::vector<LeftOutRow> score_left_out(const Archive& learned, const BankInputs& inputs, const OfSplits& of_splits,
-                                       const Listener& listener) {
+std::vector<LeftOutRow> score_left_out(const Recording& recording, const CompetitorsPart& learned,
+                                       const BankInputs& inputs, const OfSplits& of_splits, const Progress& progress) {
   if (!inputs.one_motion || !inputs.filter) return {};
   const Stopwatch watch;
   const RefineOptions& em = inputs.bank.em;
-  const std::optional<Recording> part = learning_part(*learned.recording, em.transitions, em.seed);
-  const std::vector<ValidationSplit> splits =
-      validation_splits(part ? *part : *learned.recording, em.folds, refine_tuning);
+  const std::optional<Recording> part = learning_part(recording, em.transitions, em.seed);
+  const std::vector<ValidationSplit> splits = validation_splits(part ? *part : recording, em.folds, refine_tuning);
   if (splits.empty() || std::any_of(of_splits.begin(), of_splits.end(),
                                     [&](const auto& one) { return one.second.size() != splits.size(); }))
     return {};
@@ -87,7 +86,7 @@ std::vector<LeftOutRow> score_left_out(const Archive& learned, const BankInputs&
       tbb::parallel_for(std::size_t{0}, runs.size(),
                         [&](std::size_t r) { forecasts[f][first + r] = filters[s][f].ahead(runs[r], horizons); });
     }
-  listener.progress(fmt::format("left out: {} filters on training runs that they were learned without in {:.2f} s",
+  progress.progress(fmt::format("left out: {} filters on training runs that they were learned without in {:.2f} s",
                                 names.size(), watch.seconds()));
   return left_out_rows(names, forecasts);
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/chain/stage_inputs.hpp"
+#include "filter/learn/chain/inputs.hpp"
 #include "filter/learn/refine/folds.hpp"
 
 /// Cross-validation of the chain: banks learned as `run` learns them without some training runs, and what they predict
@@ -20,9 +20,10 @@ struct LeftOutRun {
 };
 
 /// Learns a bank from the training part of each split and predicts the runs left out with it; of each split its runs,
-/// in their order. `ahead`: samples of common_step, 0: none. The same for any number of threads; throws what the stages
-/// throw.
+/// in their order. `filter`: that predicts. `ahead`: samples of common_step, 0: none. The same for any number of
+/// threads; throws what the stages throw.
 std::vector<std::vector<LeftOutRun>> predict_left_out(const std::vector<ValidationSplit>& splits,
-                                                      const LearningInputs& inputs, Index ahead);
+                                                      const LearningInputs& inputs, const FilterOptions& filter,
+                                                      Index ahead);
 
 }  // namespace modebank

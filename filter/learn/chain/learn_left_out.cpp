@@ -1,23 +1,24 @@
-#include "app/chain/learn_left_out.hpp"
+#include "filter/learn/chain/learn_left_out.hpp"
 
 #include <tbb/parallel_for.h>
 
 #include <exception>
 
-#include "app/chain/stages.hpp"
 #include "filter/judge/horizon.hpp"
+#include "filter/learn/chain/stages.hpp"
 
 namespace modebank {
 namespace {
 
 Bank learn_on(const Recording& training, const LearningInputs& inputs) {
-  const Listener silent;
+  const Progress silent;
   const FitOptions& window = inputs.bank.window;
-  const WindowFits windows = identify(training, {window});
+  const WindowFits windows = fit_windows(training, window);
   const MixtureResult mixture = cluster(training, windows, inputs.mixture, silent);
+  const auto motion = motion_model(window, training.state_count(), training.input_count());
   const Bank baseline =
-      learn_single_filter(training, one_model(training, windows, window, {}), inputs.baseline_filter, silent);
-  return learn_modes({training, windows, mixture, baseline}, inputs.bank, silent).bank;
+      learn_single_filter(training, one_model(training, windows, motion.get(), {}), inputs.competitors.filter, silent);
+  return learn_modes({training, windows, mixture, baseline, motion.get()}, inputs.bank, silent).bank;
 }
 
 LeftOutRun predict(const Bank& bank, const Trajectory& run, const FilterOptions& filter, Index ahead) {
@@ -32,14 +33,14 @@ LeftOutRun predict(const Bank& bank, const Trajectory& run, const FilterOptions&
 }  // namespace
 
 std::vector<std::vector<LeftOutRun>> predict_left_out(const std::vector<ValidationSplit>& splits,
-                                                      const LearningInputs& inputs, Index ahead) {
+                                                      const LearningInputs& inputs, const FilterOptions& filter,
+                                                      Index ahead) {
   std::vector<std::vector<LeftOutRun>> said(splits.size());
   std::vector<std::exception_ptr> errors(splits.size());
   tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t part) {
     try {
       const Bank bank = learn_on(splits[part].training, inputs);
-      for (const Trajectory& run : splits[part].left_out.runs)
-        said[part].push_back(predict(bank, run, inputs.filter, ahead));
+      for (const Trajectory& run : splits[part].left_out.runs) said[part].push_back(predict(bank, run, filter, ahead));
     } catch (const std::exception&) {
       errors[part] = std::current_exception();
     }

@@ -1,4 +1,4 @@
-#include "app/chain/stage_structures.hpp"
+#include "filter/learn/chain/stage_structures.hpp"
 
 #include <algorithm>
 #include <cstddef>

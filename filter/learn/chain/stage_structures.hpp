@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/chain/stage_inputs.hpp"
+#include "filter/learn/chain/inputs.hpp"
 #include "ident/lag/structure.hpp"
 
 namespace modebank {

@@ -1,6 +1,9 @@
-#include "app/chain/forecasters.hpp"
+#include "filter/learn/chain/forecasters.hpp"
 
 #include "filter/judge/drifting.hpp"
+#include "filter/judge/finding.hpp"
+#include "filter/judge/free_runs.hpp"
+#include "filter/learn/chain/inputs.hpp"
 
 namespace modebank {
 
@@ -16,13 +19,13 @@ std::vector<FreeRun> Forecaster::free(const std::vector<Trajectory>& runs, const
   return drifting ? free_runs(*drifting, runs, options) : free_runs(bank, runs, filter, options);
 }
 
-std::vector<Forecaster> forecasters_of(const Archive& archive, const FilterOptions& filter) {
+std::vector<Forecaster> forecasters_of(const Learning& learned, const FilterOptions& filter) {
   std::vector<Forecaster> all;
-  if (archive.bank) all.push_back({"bank", *archive.bank, {}, filter});
+  if (learned.bank) all.push_back({"bank", *learned.bank, {}, filter});
   for (const char* name : competitor_names)
-    if (const std::optional<Bank> bank = archive.bank_of(name)) {
+    if (const std::optional<Bank> bank = learned.bank_of(name)) {
       all.push_back({name, *bank, {}, competitor_filter(name, filter)});
-      if (all.back().name == "drifting") all.back().drifting = archive.drifting;
+      if (all.back().name == "drifting") all.back().drifting = learned.drifting;
     }
   return all;
 }

@@ -1,4 +1,4 @@
-#include "app/chain/training_check.hpp"
+#include "filter/learn/chain/training_check.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "filter/judge/scores.hpp"
+#include "filter/learn/chain/stages.hpp"
+#include "filter/learn/from_mixture/passing_windows.hpp"
+#include "filter/learn/learn.hpp"
+#include "filter/learn/refine/learning_part.hpp"
+#include "ident/fit/fit_windows.hpp"
+
+namespace modebank {
+namespace {
+
+/// The bank, refined if the options say so.
+Refinement learn_wanted(const LearnedFrom& from, const BankInputs& inputs, const BankOptions& options) {
+  return learn_as_asked(from.recording, from.windows, from.mixture, options, from.baseline.R, inputs.filter,
+                        from.motion);
+}
+
+void tell_of_shrinking(const std::string& whose, const Bank& bank, const Progress& progress) {
+  if (bank.shrinking.modes > 0) progress.warning(fmt::format("{}: {}", whose, shrinking_words(bank.shrinking)));
+}
+
+std::string worth_of(const LookAheadStage& stage) {
+  if (stage.score == stage.score_before) return "taken, no runs are left out to ask";
+  const std::string gain = stage.of_errors
+                               ? fmt::format("errors of the runs left out {:+.1f} %",
+                                             100.0 * (std::sqrt(stage.score / stage.score_before) - 1.0))
+                               : fmt::format("{:.4f} -> {:.4f} nats/sample left out", stage.score_before, stage.score);
+  return gain + (stage.taken ? "" : ": not taken");
+}
+
+void tell_of(const Refinement& refined, const Progress& progress) {
+  tell_of_shrinking("refine", refined.bank, progress);
+  for (const RefineCandidate& c : refined.candidates)
+    progress.detail(fmt::format(
+        "refine: {:<12} {:>3} modes, Q prior {}{}: {:.4f} nats/sample left out, {:.4f} +- {:.4f} below the best, after "
+        "{} iterations{}",
+        c.start, c.modes, c.noise_transitions,
+        c.theta_transitions > 0.0 ? fmt::format(", to one motion {:g}", c.theta_transitions) : "", c.score, c.loss,
+        c.loss_standard_error, c.iterations, c.selected ? " (chosen)" : ""));
+  const MeasurementStage& measured = refined.measurement;
+  if (measured.failed_starts > 0)
+    progress.warning(fmt::format("refine: {} of {} searches for R failed{}", measured.failed_starts, measured.starts,
+                                 measured.failed_starts < measured.starts ? "; the best of the others counts"
+                                                                          : ", so R is not known to be none"));
+  if (measured.starts > 0)
+    progress.progress(fmt::format("refine: measurement noise looked for from {} starts, in {:.2f} s{}", measured.starts,
+                                  measured.seconds,
+                                  refined.bank.R_standard_error.size() == 0 ? ": none that pays" : ""));
+  if (!std::isnan(measured.score))
+    progress.progress(fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
+                                  measured.iterations, measured.score_before, measured.score));
+  if (const SwitchingStage& s = refined.switching; !std::isnan(s.gain))
+    progress.progress(
+        fmt::format("refine: switches that see state and input gain {:.4f} +- {:.4f} nats/sample left out{}", s.gain,
+                    s.gain_standard_error,
+                    s.width > 0.0 ? fmt::format(" (taken, width {}{})", s.width,
+                                                std::isinf(s.memory_sd) ? "" : ", the mode before hardly matters")
+                                  : ": not taken"));
+  if (const DriftStage& s = refined.drift; !std::isnan(s.gain))
+    progress.progress(fmt::format(
+        "refine: {} modes that drift (rate {:g}, start {:g}, leak {:g}) gain {:.4f} +- {:.4f} nats/sample left out: {}",
+        s.modes, s.rate, s.start, s.leak, s.gain, s.gain_standard_error, s.taken ? "taken" : "not taken"));
+  if (const LookAheadStage& ahead = refined.look_ahead; ahead.taken || ahead.score != ahead.score_before)
+    progress.progress("refine: fit to predictions up to the look-ahead: " + worth_of(ahead));
+}
+
+/// Modes that a mixture makes of windows between two others. Refinement takes them apart.
+void warn_of_passing_modes(const LearnedFrom& from, const Bank& bank, const Progress& progress) {
+  constexpr double most = 0.75;  // of a true mode's windows about half seem to pass where labels flicker
+  const Eigen::VectorXd shares = passing_shares(from.windows, from.mixture);
+  for (Index k = 0; k < shares.size(); ++k) {
+    const bool screened = std::any_of(bank.screened.begin(), bank.screened.end(),
+                                      [&](const ScreenedMode& mode) { return mode.component == k; });
+    if (shares(k) > most && !screened)
+      progress.warning(
+          fmt::format("bank: component {} is no mode of motion of its own: {:.0f} % of its windows seem to "
+                      "straddle a switch between others (bank.refine = em takes such modes apart)",
+                      k, 100.0 * shares(k)));
+  }
+}
+
+}  // namespace
+
+Refinement learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Progress& progress) {
+  if (inputs.one_model) return {from.baseline, {}, {}, {}, {}};
+  Refinement refined = learn_wanted(from, inputs, inputs.bank);
+  if (inputs.bank.refine == Refine::none)
+    progress.progress(fmt::format("bank: the mixture's own modes of model {}, not refined", from.windows.model));
+  if (inputs.bank.refine == Refine::none) warn_of_passing_modes(from, refined.bank, progress);
+  tell_of(refined, progress);
+  if (const Index learned_from = refined.learned_transitions; learned_from > 0)
+    progress.progress(
+        fmt::format("refine: learned {}", learned_words(learned_from, from.recording.transitions(Role::train))));
+  return refined;
+}
+
+/// What a limit on the number of modes cost: the same bank is learned without it.
+std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& inputs, const Bank& limited) {
+  const Index components = from.mixture.mixture.components();
+  if (inputs.bank.modes == 0 || components <= inputs.bank.modes) return {};
+  BankOptions unlimited = inputs.bank;
+  unlimited.modes = 0;
+  const Bank whole = learn_wanted(from, inputs, unlimited).bank;
+  return merging_costs(whole, limited, components, from.recording, inputs.filter.value());
+}
+
+Refinement learn_one_motion(const LearnedFrom& from, const Bank& rival, const BankInputs& inputs,
+                            const Progress& progress) {
+  constexpr Index fewest_levels = 8;  // noise levels that it may have at least (method: section 6)
+  const Stopwatch watch;
+  const OneMotionInputs& learned = *inputs.one_motion;
+  const std::optional<Recording> part =
+      learning_part(from.recording, learned.bank.em.transitions, learned.bank.em.seed);
+  const Recording& recording = part ? *part : from.recording;
+  const OneModel one = one_model(recording, from.windows, from.motion, learned.lags);
+  const bool of_windows = one.structure == from.windows.structure;
+  WindowFits own;
+  own.structure = one.structure;
+  Refinement refined =
+      learn_one_motion(recording, of_windows ? from.windows : own, one.global, rival, from.baseline.R,
+                       std::max(fewest_levels, from.mixture.mixture.components()), learned.bank, learned.filter);
+  const Bank& bank = refined.bank;
+  tell_of_shrinking("one_motion", bank, progress);
+  const DriftRates& rates = bank.drift.rates;
+  progress.progress(fmt::format("one_motion: {} noise levels{} in {:.2f} s", bank.mode_count(),
+                                bank.drift.empty() ? ""
+                                                   : fmt::format(", theta drifts (rate {:g}, start {:g}, leak {:g})",
+                                                                 rates.q, rates.p0, rates.leak),
+                                watch.seconds()));
+  return refined;
+}
+
+}  // namespace modebank

@@ -1,0 +1,135 @@
+#include "filter/learn/chain/chain.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "filter/learn/chain/training_check.hpp"
+#include "filter/learn/refine/learning_part.hpp"
+#include "ident/fit/window_length.hpp"
+
+namespace modebank {
+namespace {
+
+/// One run through the stages.
+class Run {
+ public:
+  Run(const Recording& recording, const LearningHooks& hooks, const Progress& progress, Learning& learned)
+      : recording_(recording), hooks_(hooks), progress_(progress), learned_(learned) {}
+
+  void find_lags(const LearningInputs& inputs) {
+    learned_.structure = inputs.structure ? std::move(learned_.structure) : std::nullopt;
+    if (!inputs.structure) return;
+    provide(Stage::structure, inputs,
+            [&] { learned_.structure = search_structure(recording_, *inputs.structure, progress_); });
+  }
+
+  void identify(const LearningInputs& inputs) {
+    provide(Stage::windows, inputs, [&] {
+      const FitOptions& window = inputs.windows.window;
+      if (const std::string open = open_effects(recording_, window); !open.empty()) progress_.warning(open);
+      const Stopwatch watch;
+      learned_.windows =
+          hooks_.motion ? fit_windows(recording_, window, *hooks_.motion) : fit_windows(recording_, window);
+      progress_.progress(fmt::format("windows: {} fitted in {:.2f} s", learned_.windows->count(), watch.seconds()));
+    });
+  }
+
+  void cluster(const LearningInputs& inputs) {
+    provide(Stage::mixture, inputs, [&] {
+      learned_.mixture = modebank::cluster(recording_, *learned_.windows, inputs.mixture, progress_, hooks_.start);
+    });
+  }
+
+  void learn_competitors(const LearningInputs& inputs) {
+    learned_.terms_asked = inputs.competitors.terms != "none";
+    provide(Stage::competitors, inputs, [&] {
+      static_cast<CompetitorsPart&>(learned_) = modebank::learn_competitors(
+          recording_, *learned_.windows, motion_of(inputs.windows.window), inputs.competitors, progress_);
+    });
+  }
+
+  void learn_bank(const LearningInputs& inputs, bool one_model) {
+    provide(Stage::bank, inputs, [&] { static_cast<BankPart&>(learned_) = bank_of(inputs.bank, one_model); });
+  }
+
+ private:
+  const Recording& recording_;
+  const LearningHooks& hooks_;
+  const Progress& progress_;
+  Learning& learned_;
+  std::shared_ptr<const MotionModel> named_ = {};  ///< of window.model
+
+  const MotionModel* motion_of(const FitOptions& window) {
+    if (!hooks_.motion && !named_) named_ = motion_model(window, recording_.state_count(), recording_.input_count());
+    return hooks_.motion ? hooks_.motion : named_.get();
+  }
+
+  void provide(Stage stage, const LearningInputs& inputs, const std::function<void()>& compute) {
+    if (hooks_.provide)
+      hooks_.provide(stage, inputs, compute);
+    else
+      compute();
+  }
+
+  BankPart bank_of(BankInputs asked, bool one_model) {
+    const Stopwatch watch;
+    if (one_model) {
+      asked.one_model = true;
+      progress_.progress("bank: that of baseline, as steps scatter");
+    }
+    if (learned_.noise_only && !learned_.noise_only->noise_factor.empty()) {
+      asked.bank.em.noise_by_input = true;
+      if (asked.one_motion) asked.one_motion->bank.em.noise_by_input = true;
+    }
+    const LearnedFrom from{recording_, *learned_.windows, *learned_.mixture, *learned_.baseline,
+                           motion_of(asked.window)};
+    Refinement refined = learn_modes(from, asked, progress_);
+    if (hooks_.refined) hooks_.refined(refined);
+    BankPart part;
+    part.merging = asked.one_model ? std::vector<MergingCost>() : merging_of(from, asked, refined.bank);
+    if (asked.bank.refine == Refine::em && !asked.one_model) part.unrefined = std::move(refined.start);
+    part.measured_fit = refined.measurement.end;
+    part.learned_transitions = refined.learned_transitions;
+    part.bank = std::move(refined.bank);
+    progress_.progress(fmt::format("bank: {} modes, {} screened, in {:.2f} s", part.bank->mode_count(),
+                                   part.bank->screened.size(), watch.seconds()));
+    if (!asked.one_motion) return part;
+    Refinement one_motion = learn_one_motion(from, *part.bank, asked, progress_);
+    part.one_motion = std::move(one_motion.bank);
+    part.left_out = score_left_out(
+        recording_, learned_, asked,
+        {{"bank", std::move(refined.of_splits)}, {"one_motion", std::move(one_motion.of_splits)}}, progress_);
+    return part;
+  }
+};
+
+/// As far as the data have to say something of the options.
+LearningOptions found_in(const Recording& recording, LearningOptions options,
+                         const std::optional<FoundStructure>& structure) {
+  if (structure) options = with_structure(std::move(options), *structure);
+  if (options.automatic_windows.length) options.window.length = automatic_length(recording, options.window);
+  if (options.automatic_windows.step) options.window.step = automatic_step(recording);
+  return options;
+}
+
+}  // namespace
+
+void learn_all(const Recording& recording, const LearningOptions& options, Stage last, bool one_model,
+               const LearningHooks& hooks, const Progress& progress, Learning& learned) {
+  if (last < Stage::structure) return;
+  refuse_constant_states(recording);
+  Run run(recording, hooks, progress, learned);
+  LearningInputs inputs = learning_inputs(options);
+  if (inputs.structure && one_model) inputs.structure->with_modes = false;
+  run.find_lags(inputs);
+  if (last < Stage::windows) return;
+  inputs = learning_inputs(found_in(recording, options, learned.structure));
+  run.identify(inputs);
+  if (last >= Stage::mixture) run.cluster(inputs);
+  if (last < Stage::bank) return;
+  run.learn_competitors(inputs);
+  run.learn_bank(inputs, one_model);
+}
+
+}  // namespace modebank

@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "filter/learn/chain/stages.hpp"
+#include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/competitors/noise_by_input.hpp"
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/learn.hpp"
+#include "filter/learn/refine/learning_part.hpp"
+#include "filter/learn/tuning.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/fit/global_model.hpp"
+#include "ident/fit/linearise.hpp"
+#include "ident/terms/find_terms.hpp"
+#include "ident/terms/stated_terms.hpp"
+#include "ident/terms/term_rows.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const FitOptions& window) {
+  const auto motion = motion_model(window, recording.state_count(), recording.input_count());
+  return modebank::linear_global(recording, windows, motion.get());
+}
+
+OneModel one_model(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
+                   const std::optional<Lags>& lags) {
+  OneModel one{windows.model, windows.structure, {}};
+  if (lags)
+    one.structure = {one.structure.states, one.structure.inputs, one.structure.intercept,
+                     (*lags)[0],           (*lags)[1],           (*lags)[2]};
+  const bool of_windows = one.structure == windows.structure;
+  one.global = of_windows ? linear_global(recording, windows, motion) : fit_global(recording, one.structure);
+  if (!of_windows) one.model = one.structure.lagged() ? "varx" : "linear";
+  return one;
+}
+
+namespace {
+
+DriftingModel drifting(const Recording& recording, const OneModel& of, const CompetitorInputs& inputs,
+                       const Progress& progress) {
+  const Stopwatch watch;
+  DriftingModel model = learn_likeliest_drifting(recording, of.global, of.structure, inputs.horizon);
+  progress.progress(fmt::format("drifting: {} with {} lags, q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s",
+                                name_of(model.wandering), model.structure.state_lags, model.rates.q, model.rates.p0,
+                                model.rates.leak, model.lam, model.nu, watch.seconds()));
+  return model;
+}
+
+/// The factor on the competitors' noise; empty: none.
+NoiseFactor noise_factor(const Recording& recording, const LinearStructure& structure, const CompetitorInputs& inputs,
+                         const Progress& progress) {
+  if (inputs.noise_by_input == NoiseByInput::none) return {};
+  const Stopwatch watch;
+  FoundNoiseFactor found = find_noise_factor(recording, structure, inputs.em.folds, inputs.seed);
+  if (std::isnan(found.gain)) return {};
+  const std::string gain =
+      std::isnan(found.standard_error)
+          ? fmt::format("gains {:.4f} nats/sample on the runs that chose it", found.gain)
+          : fmt::format("gains {:.4f} +- {:.4f} nats/sample left out", found.gain, found.standard_error);
+  progress.progress(fmt::format("noise by input: a factor on all process noise {}: {}, in {:.2f} s", gain,
+                                found.factor.empty() ? "not taken" : "taken", watch.seconds()));
+  return std::move(found.factor);
+}
+
+std::string lags_of(const LinearStructure& s) {
+  return fmt::format("({}, {}, {})", s.state_lags, s.input_lags, s.input_delay);
+}
+
+/// Terms that the configuration states are taken, whatever they gain.
+FoundTerms take_stated(const Recording& recording, const LinearStructure& structure, const std::string& terms) {
+  constexpr Index enough_rows = 200000;
+  std::vector<std::string> names = state_names(recording, structure);
+  for (const std::string& input : input_names(recording, structure)) names.push_back(input);
+  const TermRows rows = gather_term_rows(recording, structure, enough_rows);
+  if (rows.count() == 0) throw DataError("no training run has a transition to learn window.terms from");
+  FoundTerms found;
+  found.structure = structure;
+  found.terms = stated_terms(read_terms(terms), names, rows.X);
+  return found;
+}
+
+std::string gain_words(const FoundTerms& found) {
+  if (found.terms_asked > 0)
+    return fmt::format("{} terms gain {:.4f} +- {:.4f} nats/sample on halves that did not choose them",
+                       found.terms_asked, found.gain, found.gain_standard_error);
+  return found.terms.empty() ? "no terms that gain" : fmt::format("{} terms as stated", found.terms.count());
+}
+
+std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure& structure,
+                              const CompetitorInputs& inputs, bool noise_by_input, const Progress& progress) {
+  if (inputs.terms == "none") return {};
+  const Stopwatch watch;
+  const FoundTerms found = lists_terms(inputs.terms) ? take_stated(recording, structure, inputs.terms)
+                                                     : find_terms(recording, structure, inputs.window);
+  for (const TriedTerms& tried : found.tried)
+    progress.detail(fmt::format("nonlinear: {} terms with lags {}: {:.4f} nats/sample left out", tried.terms,
+                                lags_of(tried.structure), tried.log_score));
+  const std::string gain = gain_words(found);
+  if (found.terms.empty()) {
+    progress.progress(fmt::format("nonlinear: {}: not taken, in {:.2f} s", gain, watch.seconds()));
+    return {};
+  }
+  RefineOptions em = inputs.em;
+  em.noise_by_input = noise_by_input;
+  Bank bank = learn_nonlinear(recording, found.structure, found.terms, em, inputs.filter);
+  if (bank.shrinking.modes > 0) progress.warning("nonlinear: " + shrinking_words(bank.shrinking));
+  progress.progress(fmt::format("nonlinear: {}: taken with lags {}, {} noise levels, in {:.2f} s", gain,
+                                lags_of(found.structure), bank.mode_count(), watch.seconds()));
+  return bank;
+}
+
+}  // namespace
+
+Bank learn_single_filter(const Recording& recording, const OneModel& of, const FilterOptions& filter,
+                         const Progress& progress) {
+  Baseline baseline = learn_baseline(recording, of.global, of.structure);
+  baseline.bank.model = of.model;
+  if (baseline.at_bound) progress.progress("baseline: R is at its lower bound: the data show no measurement noise");
+  if (!baseline.converged) progress.warning("baseline: its noise did not reach a maximum of the likelihood");
+  if (filter.noise == FilterNoise::adaptive)
+    baseline.bank.noise_adaptation = most_likely_adaptation(baseline.bank, recording, filter, refine_tuning);
+  return std::move(baseline.bank);
+}
+
+CompetitorsPart learn_competitors(const Recording& all, const WindowFits& windows, const MotionModel* motion,
+                                  const CompetitorInputs& inputs, const Progress& progress) {
+  const std::optional<Recording> part = learning_part(all, inputs.transitions, inputs.seed);
+  const Recording& recording = part ? *part : all;
+  if (part)
+    progress.progress(fmt::format("competitors: learned {}",
+                                  learned_words(part->transitions(Role::train), all.transitions(Role::train))));
+  const OneModel linear = one_model(recording, windows, motion, inputs.linear);
+  CompetitorsPart learned;
+  learned.baseline = learn_single_filter(recording, linear, inputs.filter, progress);
+  if (inputs.all)
+    learned.drifting = drifting(recording, one_model(recording, windows, motion, inputs.drifting), inputs, progress);
+  const NoiseFactor factor = noise_factor(recording, linear.structure, inputs, progress);
+  learned.noise_only = learn_noise_only(recording, linear.structure, learned.baseline->R, factor);
+  if (inputs.filter.noise == FilterNoise::adaptive)
+    learned.noise_only->noise_adaptation =
+        most_likely_adaptation(*learned.noise_only, recording, inputs.filter, refine_tuning);
+  if (inputs.all) learned.nonlinear = nonlinear(recording, linear.structure, inputs, !factor.empty(), progress);
+  return learned;
+}
+
+}  // namespace modebank

@@ -1,0 +1,117 @@
+// The installed face of learning: from runs to a bank, plain vectors outside, Eigen inside.
+#include "ident/base/door.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "filter/learn/chain/chain.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
+#include "ident/data/public_recording.hpp"
+#include "ident/data/streams.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "mixture/outside.hpp"
+#include "modebank/base/eigen.hpp"
+#include "modebank/learn/learn.hpp"
+
+namespace modebank::learn {
+
+namespace {
+
+filter::Bank opaque(modebank::Bank bank) {
+  return filter::Bank(std::make_shared<const modebank::Bank>(std::move(bank)));
+}
+
+/// One column per mode.
+template <class Column>
+Matrix columns(const modebank::Bank& bank, Column column) {
+  Matrix result;
+  for (const modebank::Mode& mode : bank.modes) {
+    const Eigen::VectorXd values = column(mode);
+    result.rows = values.size();
+    ++result.cols;
+    result.values.insert(result.values.end(), values.begin(), values.end());
+  }
+  return result;
+}
+
+Uncertainty uncertainty_of(const modebank::Bank& bank) {
+  Uncertainty result;
+  result.parameter_names = bank.structure.parameter_names();
+  result.theta = columns(bank, [&](const modebank::Mode& mode) { return pack(bank.structure, mode.model); });
+  result.theta_standard_error = columns(bank, [](const modebank::Mode& mode) { return mode.standard_error; });
+  for (const modebank::Mode& mode : bank.modes)
+    if (mode.Q_standard_error.size() > 0) result.Q_standard_error.push_back(to_matrix(mode.Q_standard_error));
+  result.R_standard_error = to_matrix(bank.R_standard_error);
+  result.transition_standard_error = to_matrix(bank.transition_standard_error);
+  for (const ModelParameter& parameter : bank.motion_parameters)
+    result.motion_parameter_names.push_back(parameter.name);
+  if (bank.motion_parameters.empty()) return result;
+  result.motion_theta = columns(bank, [](const modebank::Mode& mode) { return mode.motion_theta; });
+  result.motion_theta_standard_error =
+      columns(bank, [](const modebank::Mode& mode) { return mode.motion_standard_error; });
+  return result;
+}
+
+LearningOptions learning_of(const LearnOptions& options, bool linear) {
+  LearningOptions learning;
+  learning.window = options.window;
+  learning.mixture = options.mixture;
+  learning.bank = options.bank;
+  learning.filter = options.filter;
+  learning.seed = options.seed;
+  const bool searched = options.search_lags && linear;
+  learning.searched_lags = {searched, searched, searched};
+  learning.automatic_windows = {options.automatic_length, options.automatic_step};
+  learning.noise_by_input = options.noise_by_input ? NoiseByInput::automatic : NoiseByInput::none;
+  learning.competitors = false;  // nobody asks for them here
+  return learning;
+}
+
+/// The chain that `modebank run` runs. `own`: a motion model of the caller's, or null.
+Learned learn_from(const Recording& recording, const LearnOptions& options, const MotionModel* own) {
+  Learning learned;
+  Origin origin;
+  LearningHooks hooks;
+  hooks.motion = own;
+  hooks.refined = [&](const Refinement& refined) {
+    origin.refinements = refined.candidates;
+    origin.objective = refined.objective;
+    origin.measurement = refined.measurement;
+  };
+  std::vector<const Eigen::VectorXd*> times;
+  for (const Trajectory& run : recording.runs) times.push_back(&run.time_s);
+  const LearningOptions learning = learning_of(options, !own && is_linear(options.window));
+  learn_all(recording, learning, Stage::bank, step_scatter(times) > most_step_scatter, hooks, Progress(), learned);
+  origin.windows = learned.windows->audit;
+  origin.features = learned.mixture->feature_names;
+  origin.mixture = outside(learned.mixture->mixture);
+  origin.candidates = learned.mixture->candidates;
+  origin.labels.assign(learned.mixture->labels.begin(), learned.mixture->labels.end());
+  origin.screened = learned.bank->screened;
+  const double log_likelihood = training_log_likelihood(*learned.bank, recording, options.filter),
+               of_baseline = training_log_likelihood(*learned.baseline, recording, {FilterVariant::kf});
+  Uncertainty uncertainty = uncertainty_of(*learned.bank);
+  return {opaque(std::move(*learned.bank)),
+          opaque(std::move(*learned.baseline)),
+          log_likelihood,
+          of_baseline,
+          std::move(uncertainty),
+          std::move(origin)};
+}
+
+}  // namespace
+
+Learned learn_bank(const RecordedRuns& runs, const LearnOptions& options) {
+  return at_the_door([&] { return learn_from(to_recording(runs), options, nullptr); });
+}
+
+Learned learn_bank(const RecordedRuns& runs, const LearnOptions& options, const MotionModel& model) {
+  return at_the_door([&] {
+    const Recording recording = to_recording(runs);
+    LearnOptions fitting = options;
+    fitting.window = options_for(model, recording, std::move(fitting.window));
+    return learn_from(recording, fitting, &model);
+  });
+}
+
+}  // namespace modebank::learn

@@ -1,0 +1,112 @@
+#include "filter/learn/chain/inputs.hpp"
+
+#include <utility>
+
+#include "filter/learn/learn.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/terms/stated_terms.hpp"
+#include "mixture/select.hpp"
+
+namespace modebank {
+namespace {
+
+BankInputs bank_inputs(const LearningOptions& options, const FitOptions& window) {
+  BankInputs inputs{window, options.bank, options.filter.variant == FilterVariant::kf, {}};
+  inputs.terms_stated = lists_terms(options.terms);
+  inputs.bank.em.seed = options.seed;
+  inputs.bank.em.most_modes = most_components(options.mixture.selection);
+  inputs.bank.refine = refinement_asked(options.bank, is_linear(window));  // one key for what is the same
+  const bool runs_the_filter = inputs.bank.refine == Refine::em || options.bank.modes > 0;
+  if (runs_the_filter && !inputs.one_model) inputs.filter = options.filter;
+  return inputs;
+}
+
+/// Asked where all that is learned by it can have it: no logit, no drift, no look ahead, no R that is given or told
+/// from rounding, and an IMM whose noise follows nothing else.
+NoiseByInput noise_by_input(const LearningOptions& options, const FitOptions& window) {
+  const BankOptions& bank = options.bank;
+  const bool can = refinement_asked(bank, is_linear(window)) == Refine::em &&
+                   bank.transition != TransitionSource::logit && !bank.measurement_variance &&
+                   bank.em.drift == Drift::none && bank.em.look_ahead == 1 &&
+                   options.filter.variant == FilterVariant::imm && options.filter.noise == FilterNoise::gaussian;
+  return can ? options.noise_by_input : NoiseByInput::none;
+}
+
+CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOptions& window) {
+  // A single Kalman filter has no use for rivals that are learned as a bank is.
+  const bool rivals = options.filter.variant != FilterVariant::kf;
+  RefineOptions em = options.bank.em;
+  em.seed = options.seed;
+  return {window,
+          competitor_filter("one_motion", options.filter),
+          options.scoring.horizon,
+          options.bank.em.transitions,
+          options.seed,
+          rivals ? options.terms : "none",
+          em,
+          options.other_lags.linear,
+          options.other_lags.drifting,
+          noise_by_input(options, window),
+          options.competitors};
+}
+
+/// Learned by refinement, whatever makes the bank.
+std::optional<OneMotionInputs> one_motion_inputs(const LearningOptions& options) {
+  if (options.filter.variant == FilterVariant::kf) return std::nullopt;
+  BankOptions learned;
+  learned.measurement_variance = options.bank.measurement_variance;
+  learned.em = options.bank.em;
+  learned.em.seed = options.seed;
+  return OneMotionInputs{learned, competitor_filter("one_motion", options.filter), options.scoring.horizon,
+                         options.other_lags.one_motion};
+}
+
+}  // namespace
+
+FilterOptions competitor_filter(const std::string& name, const FilterOptions& of_bank) {
+  FilterOptions filter;
+  filter.variant = name == "baseline" ? FilterVariant::kf : FilterVariant::imm;
+  filter.noise = of_bank.noise;
+  return filter;
+}
+
+namespace {
+
+/// With the chain's seed.
+FitOptions window_inputs(const LearningOptions& options) {
+  FitOptions window = options.window;
+  window.seed = options.seed;
+  return window;
+}
+
+/// Free runs may not need more measured samples than they start from.
+std::optional<StructureInputs> structure_inputs(const LearningOptions& options) {
+  if (!options.searched_lags.any()) return std::nullopt;
+  StructureInputs inputs{options.searched_lags, {}, options.filter.variant != FilterVariant::kf};
+  inputs.window.seed = options.seed;
+  inputs.searched.most_samples = options.scoring.free_run.samples;
+  const FitOptions& window = options.window;
+  if (!options.searched_lags.state) inputs.window.state_lags = window.state_lags;
+  if (!options.searched_lags.input) inputs.window.input_lags = window.input_lags;
+  if (!options.searched_lags.delay) inputs.window.input_delay = window.input_delay;
+  inputs.window.loss = window.loss;
+  inputs.window.loss_scale = window.loss_scale;
+  inputs.window.intercept = window.intercept;
+  inputs.window.max_iterations = window.max_iterations;
+  return inputs;
+}
+
+}  // namespace
+
+LearningInputs learning_inputs(const LearningOptions& options) {
+  const FitOptions window = window_inputs(options);
+  BankInputs bank = bank_inputs(options, window);
+  if (options.competitors) bank.one_motion = one_motion_inputs(options);
+  return {structure_inputs(options),
+          {window},
+          {window, options.mixture, options.seed},
+          competitor_inputs(options, window),
+          std::move(bank)};
+}
+
+}  // namespace modebank

@@ -1,0 +1,31 @@
+#include "filter/learn/chain/progress.hpp"
+
+#include <fmt/format.h>
+
+namespace modebank {
+namespace {
+
+/// In groups of three digits.
+std::string grouped(Eigen::Index count) {
+  std::string digits = std::to_string(count);
+  for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)
+    digits.insert(static_cast<std::size_t>(at), ",");
+  return digits;
+}
+
+}  // namespace
+
+std::string of_all(Eigen::Index part, Eigen::Index all) { return grouped(part) + " of " + grouped(all); }
+
+std::string learned_words(Eigen::Index learned, Eigen::Index all) {
+  return "from " + of_all(learned, all) + " training transitions";
+}
+
+std::string shrinking_words(const Shrinking& shrinking) {
+  return fmt::format(
+      "{} mode{} drawn {:.1f} % of the way to the model of all runs: predictions many samples ahead would have grown "
+      "without limit (their mean square {:.4g} times a sample)",
+      shrinking.modes, shrinking.modes == 1 ? "" : "s", 100.0 * shrinking.share, shrinking.growth);
+}
+
+}  // namespace modebank

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <chrono>
+#include <string>
+
+#include "filter/step/bank.hpp"
+
+namespace modebank {
+
+/// Hears what learning does while it does it.
+class Progress {
+ public:
+  virtual ~Progress() = default;
+  /// One line on how it goes on.
+  virtual void progress(const std::string&) const {}
+  /// One line on something that was tried on the way.
+  virtual void detail(const std::string&) const {}
+  /// One line on what may need a look.
+  virtual void warning(const std::string&) const {}
+};
+
+/// Wall time since it was made, for lines of progress.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// "200,000 of 2,500,000".
+std::string of_all(Eigen::Index part, Eigen::Index all);
+
+/// "from 200,000 of 2,500,000 training transitions".
+std::string learned_words(Eigen::Index learned, Eigen::Index all);
+
+/// "3 modes drawn 32 % of the way to the model of all runs: ...".
+std::string shrinking_words(const Shrinking& shrinking);
+
+}  // namespace modebank
