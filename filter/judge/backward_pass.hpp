@@ -10,14 +10,16 @@
 /// expectation-maximisation with measurement noise takes its expectations from.
 namespace modebank {
 
-/// The filter's estimates at every moment of a run, one moment per column.
+/// The filter's estimates at every moment of a run. Rows that are known (Gaussian::uncertain) are stored once for all
+/// modes and without covariances: lags of an exact sensor take n numbers a moment, not K (n + n^2).
 template <int N, int NY>
 class FilteredHistory {
  public:
   FilteredHistory(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory)
       : n_(model.structure.dimension()), K_(model.mode_count()) {
-    means_.resize(n_ * K_, run.count());
-    covariances_.resize(n_ * n_ * K_, run.count());
+    const Eigen::Index uncertain = model.exact ? 0 : n_;  // at most moments
+    values_.reserve(static_cast<std::size_t>(run.count() * numbers_of(uncertain)));
+    first_.resize(run.count());
     probability_.resize(K_, run.count());
     noise_scale_.resize(run.count());
     uncertain_.resize(run.count());
@@ -25,33 +27,48 @@ class FilteredHistory {
   }
 
   void get(Eigen::Index t, std::size_t mode, Gaussian<N>& estimate) const {
-    const auto j = static_cast<Eigen::Index>(mode);
-    estimate.mean = means_.col(t).segment(j * n_, n_);
-    estimate.covariance = covariances_.col(t).segment(j * n_ * n_, n_ * n_).reshaped(n_, n_);
-    estimate.uncertain = uncertain_(t);
+    const Eigen::Index u = uncertain_(t), known = n_ - u;
+    const double* const values = values_.data() + first_(t);
+    const double* const own = values + known + static_cast<Eigen::Index>(mode) * (u + u * u);
+    estimate.mean.head(u) = Eigen::Map<const Eigen::VectorXd>(own, u);
+    estimate.mean.tail(known) = Eigen::Map<const Eigen::VectorXd>(values, known);
+    if (known > 0) estimate.covariance.setZero();
+    estimate.covariance.topLeftCorner(u, u) = Eigen::Map<const Eigen::MatrixXd>(own + u, u, u);
+    estimate.uncertain = u;
   }
   auto probability(Eigen::Index t) const { return probability_.col(t); }
   double noise_scale(Eigen::Index t) const { return noise_scale_(t); }
 
  private:
   Eigen::Index n_, K_;
-  Eigen::MatrixXd means_, covariances_, probability_;
+  std::vector<double> values_;  ///< by moment: means of the known rows; by mode mean and covariance of the others
+  Eigen::VectorX<Eigen::Index> first_;  ///< where the values of each moment begin
+  Eigen::MatrixXd probability_;
   Eigen::VectorXd noise_scale_;
   Eigen::VectorX<Eigen::Index> uncertain_;
+
+  /// Values of a moment.
+  Eigen::Index numbers_of(Eigen::Index uncertain) const { return n_ - uncertain + K_ * uncertain * (1 + uncertain); }
+
+  template <class Values>
+  void append(const Values& values) {
+    for (const double value : values.reshaped()) values_.push_back(value);
+  }
 
   void fill(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory) {
     FilterStep<N, NY> step(model);
     FilterState<N> state = initial_state(model);
     for (Eigen::Index t = 0; t < run.count(); ++t) {
       step_to(model, run, t, trajectory, state, step);
-      for (Eigen::Index j = 0; j < K_; ++j) {
-        const Gaussian<N>& mode = state.modes[static_cast<std::size_t>(j)];
-        means_.col(t).segment(j * n_, n_) = mode.mean;
-        covariances_.col(t).segment(j * n_ * n_, n_ * n_) = mode.covariance.reshaped();
+      const Eigen::Index u = uncertain_(t) = uncertain_rows<N>(state.modes);
+      first_(t) = std::ssize(values_);
+      append(state.modes.front().mean.tail(n_ - u));
+      for (const Gaussian<N>& mode : state.modes) {
+        append(mode.mean.head(u));
+        append(mode.covariance.topLeftCorner(u, u));
       }
       probability_.col(t) = state.mode_probability;
       noise_scale_(t) = state.noise_scale;
-      uncertain_(t) = uncertain_rows<N>(state.modes);
     }
   }
 };

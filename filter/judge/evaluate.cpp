@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 
 RunEvaluation sized_evaluation(const Bank& bank, Index samples) {
-  const Index n = bank.structure.dimension(), n_y = bank.C.rows(), K = bank.mode_count();
+  const Index n = bank.structure.states, n_y = bank.C.rows(), K = bank.mode_count();
   RunEvaluation e;
   e.prediction.resize(n, samples);
   e.innovation.resize(n_y, samples);
@@ -35,11 +35,12 @@ RunEvaluation sized_evaluation(const Bank& bank, Index samples) {
 }
 
 void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
-  e.prediction.col(k) = estimate.prediction;
+  const Index n = e.state.rows();
+  e.prediction.col(k) = estimate.prediction.head(n);
   e.innovation.col(k) = estimate.innovation;
   e.innovation_covariance.col(k) = estimate.innovation_covariance.reshaped();
-  e.state.col(k) = estimate.state;
-  e.covariance.col(k) = estimate.covariance.reshaped();
+  e.state.col(k) = estimate.state.head(n);
+  e.covariance.col(k) = estimate.covariance.topLeftCorner(n, n).reshaped();
   e.nis(k) = estimate.nis;
   e.pit.col(k) = estimate.pit;
   if (e.pit_width.size() > 0) e.pit_width.col(k) = estimate.pit_width;

@@ -10,7 +10,9 @@
 
 namespace modebank {
 
-/// What a filter said about every sample of a run, one sample per column. Column 0 is the start: its scores are NaN.
+/// Estimates of a filter at every sample of a run, one sample per column. Column 0 is the start: its scores are NaN.
+/// The n states are those of the sample itself (LinearStructure::states): the state of a bank with lags holds earlier
+/// samples too, which are in earlier columns.
 struct RunEvaluation {
   Eigen::MatrixXd prediction;                  ///< n x N, combined one-step prediction of the state
   Eigen::MatrixXd innovation;                  ///< n_y x N, measurement minus combined prediction

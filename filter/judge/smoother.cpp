@@ -22,9 +22,9 @@ void smooth(const Bank& bank, const Trajectory& run, const FilterOptions& option
   const FilterModel<N, NY> model(bank, options);
   const RunInstants instants(bank, run);
   const FilteredHistory<N, NY> history(model, instants, run);
-  const Index n = model.structure.dimension();
-  evaluation.smoothed_state.setConstant(n, run.samples(), not_a_number);
-  evaluation.smoothed_covariance.setConstant(n * n, run.samples(), not_a_number);
+  const Index n = model.structure.dimension(), states = model.structure.states;
+  evaluation.smoothed_state.setConstant(states, run.samples(), not_a_number);
+  evaluation.smoothed_covariance.setConstant(states * states, run.samples(), not_a_number);
   BackwardPass<N, NY> pass(model, history, negligible_pair);
   Gaussian<N> moments(n);
   for (Index t = instants.count() - 1; t >= 0; --t) {
@@ -35,8 +35,8 @@ void smooth(const Bank& bank, const Trajectory& run, const FilterOptions& option
     const Index sample = instants.instants[static_cast<std::size_t>(t)].sample;
     if (sample < 0) continue;
     merge(pass.modes, pass.probability, moments);
-    evaluation.smoothed_state.col(sample) = moments.mean;
-    evaluation.smoothed_covariance.col(sample) = moments.covariance.reshaped();
+    evaluation.smoothed_state.col(sample) = moments.mean.head(states);
+    evaluation.smoothed_covariance.col(sample) = moments.covariance.topLeftCorner(states, states).reshaped();
   }
 }
 

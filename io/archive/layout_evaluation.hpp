@@ -38,12 +38,12 @@ void exchange_left_out(Io& io, R& rows, const Unit& states) {
 
 template <class Io, class E>
 void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
-  io.field("prediction", evaluation.prediction, {"S", "n"}, states);
+  io.field("prediction", evaluation.prediction, {"S", "n_y"}, states);
   io.field("innovation", evaluation.innovation, {"S", "n_y"}, states);
   io.field("innovation_covariance", evaluation.innovation_covariance, {"S", "n_y", "n_y"}, outer(states),
            rule::spreads);
-  io.field("state", evaluation.state, {"S", "n"}, states);
-  io.field("covariance", evaluation.covariance, {"S", "n", "n"}, outer(states), rule::spreads);
+  io.field("state", evaluation.state, {"S", "n_y"}, states);
+  io.field("covariance", evaluation.covariance, {"S", "n_y", "n_y"}, outer(states), rule::spreads);
   io.field("nis", evaluation.nis, {"S"}, {}, rule::not_negative_or_missing);
   io.field("pit", evaluation.pit, {"S", "n_y"}, {}, rule::share_or_missing);
   io.field("log_density", evaluation.log_density, {"S"}, {"nat"});
@@ -51,8 +51,8 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
            rule::probabilities_or_missing);
   io.field("mode_probability", evaluation.mode_probability, {"S", "K"}, {}, rule::probabilities_or_missing);
   io.optional_field("spread_share", evaluation.spread_share, {"S"}, {}, rule::share_or_missing);
-  io.optional_field("smoothed_state", evaluation.smoothed_state, {"S", "n"}, states);
-  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"S", "n", "n"}, outer(states),
+  io.optional_field("smoothed_state", evaluation.smoothed_state, {"S", "n_y"}, states);
+  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"S", "n_y", "n_y"}, outer(states),
                     rule::spreads);
   io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"S"}, {}, rule::position_or_none("K"));
   if constexpr (Io::reads)

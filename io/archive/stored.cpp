@@ -273,7 +273,6 @@ Sizes sizes_of_filter(const Archive& archive, const std::string& filter) {
   const std::optional<Bank> bank = whole_bank(archive, filter);
   if (!bank || bank->modes.empty()) return sizes;
   sizes.set("K", bank->modes.size());
-  sizes.set("n", static_cast<hsize_t>(bank->structure.dimension()));
   return sizes;
 }
 

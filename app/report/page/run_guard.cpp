@@ -32,11 +32,29 @@ struct SeenSamples {
 
 using Visit = std::function<void(const Eigen::VectorXd& z, Index mode)>;
 
+/// The lagged state at a sample, from the states of the samples; those before the filter's start are the measured ones.
+Eigen::VectorXd lagged_state(const LinearStructure& structure, const Trajectory& run, const RunEvaluation& said,
+                             Index sample) {
+  Eigen::VectorXd state(structure.dimension());
+  for (Index lag = 0; lag < structure.state_lags; ++lag) {
+    const auto filtered = said.state.col(sample - lag);
+    state.segment(lag * structure.states, structure.states) =
+        filtered.allFinite() ? filtered : run.state.col(sample - lag);
+  }
+  return state;
+}
+
 void visit_run(const Bank& bank, const Trajectory& run, const RunEvaluation& said, const Visit& visit) {
   Eigen::VectorXd z(bank.transition_logit.weights.cols());
+  Index known = 0;  // samples before this one that are one step apart
   RunSamples(bank, run).for_each([&](const SampleFeed& feed, Index k, bool starts) {
-    if (starts || feed.steps() != 1) return;
-    z << said.state.col(k - 1), feed.inputs();
+    if (starts) {
+      known = bank.structure.state_lags;
+      return;
+    }
+    if (feed.steps() != 1) known = 1;
+    if (feed.steps() != 1 || known++ < bank.structure.state_lags) return;
+    z << lagged_state(bank.structure, run, said, k - 1), feed.inputs();
     if (!z.allFinite() || !said.mode_probability.col(k).allFinite()) return;
     Index mode = 0;
     said.mode_probability.col(k).maxCoeff(&mode);

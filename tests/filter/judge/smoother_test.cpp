@@ -184,6 +184,23 @@ TEST(LaggedStates, MeasuredExactlyAreTheLimitOfLittleNoise) {
   expect_alike(lagged_bank(0.0), lagged_bank(1e-13), {}, 1e-7);
 }
 
+/// Earlier samples of a lagged state are in earlier columns.
+TEST(LaggedStates, EstimatesHoldTheSampleAlone) {
+  const Trajectory run = run_with_gaps(33);
+  for (const double R : {0.0, 1e-4}) {
+    const RunEvaluation e = smoothed(lagged_bank(R), run);
+    for (const Eigen::MatrixXd* states : {&e.prediction, &e.state, &e.smoothed_state}) EXPECT_EQ(states->rows(), 2);
+    for (const Eigen::MatrixXd* squares : {&e.covariance, &e.smoothed_covariance}) EXPECT_EQ(squares->rows(), 4);
+    for (Index k = 3; k < run.samples(); ++k) {
+      if (!run.state.col(k).allFinite()) continue;
+      EXPECT_TRUE(near(e.prediction.col(k), run.state.col(k) - e.innovation.col(k), 1e-12)) << k;
+      if (R > 0.0) continue;
+      EXPECT_TRUE(near(e.smoothed_state.col(k), run.state.col(k), 1e-12)) << k;
+      EXPECT_TRUE(near(e.smoothed_covariance.col(k), Eigen::VectorXd::Zero(4), 1e-12)) << k;
+    }
+  }
+}
+
 /// The best of all sequences by their joint density, the state being measured exactly. `scale`: of Q, sample by sample.
 Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& scale) {
   const int K = static_cast<int>(bank.mode_count()), samples = static_cast<int>(run.samples());

@@ -9,7 +9,8 @@
 
 namespace modebank::judge {
 
-/// What a filter said about every sample of a run, one per column; what there is none of is NaN, as before the start.
+/// Estimates of a filter at every sample of a run, one sample per column; a value that does not exist is NaN, as before
+/// the start. The n states are those of the sample itself: lagged samples of a bank with lags are in earlier columns.
 struct Evaluation {
   Matrix prediction;                ///< n x N, of the state before the measurement, all modes combined
   Matrix innovation;                ///< n_y x N, measurement minus prediction
@@ -32,7 +33,7 @@ Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const 
 /// Sum of the log predictive densities over the scored samples of a run [nats]. Nothing is stored.
 double log_likelihood(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options = {});
 
-/// Smoothed states of a run, given all of it.
+/// Smoothed states of a run, given all of it; n as in Evaluation.
 struct Smoothed {
   Matrix state;                          ///< n x N
   Matrix covariance;                     ///< n*n x N
