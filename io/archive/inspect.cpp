@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "ident/base/nearest_name.hpp"
@@ -161,16 +164,16 @@ AskedRun asked_run(const hdf5::Handle& root, const std::string& name) {
   if (name.empty()) return {};
   if (!hdf5::has_link(root.id(), "data")) throw ConfigurationError("holds no data, and so no run " + name);
   const hdf5::Handle data = hdf5::open_group(root.id(), "data");
-  AskedRun run{name, {}, {}};
-  std::vector<std::string> names;
-  for (const json& row : hdf5::to_json(hdf5::StoredArray(data.id(), hdf5::Place::dataset, "runs"))) {
-    names.push_back(row.at("name").get<std::string>());
-    if (names.back() == name) run = {name, row, {row.at("first").get<hsize_t>(), row.at("samples").get<hsize_t>()}};
-  }
-  if (run.row.is_null())
+  const hdf5::StoredArray runs(data.id(), hdf5::Place::dataset, "runs");
+  hdf5::TableColumn column{"name", std::vector<std::string>()};
+  hdf5::read_column(hdf5::read_all_rows(runs), column);
+  const auto& names = std::get<std::vector<std::string>>(column.values);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
     throw ConfigurationError(
         fmt::format("holds no run '{}'{}; its runs are {}", name, did_you_mean(name, names), fmt::join(names, ", ")));
-  return run;
+  const json row = hdf5::to_json(runs, {static_cast<hsize_t>(found - names.begin()), 1}).front();
+  return {name, row, {row.at("first").get<hsize_t>(), row.at("samples").get<hsize_t>()}};
 }
 
 /// All that the archive holds of a run.
