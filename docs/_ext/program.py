@@ -1,6 +1,6 @@
 """What the program says of itself, asked of it while the pages are built: keys, commands, terms.
 
-A page holds <!-- modebank: keys -->, commands, terms or headers where they belong; nothing of it is written down twice.
+A page holds <!-- modebank: keys -->, commands, terms, headers or archive where they belong; nothing of it is written down twice.
 Roles: {confval}`window.length` leads to a key, {term}`evidence` to a term, {command}`run` to a command.
 """
 import json
@@ -9,6 +9,8 @@ import pathlib
 import re
 import subprocess
 from xml.etree import ElementTree
+
+import archive_layout
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("MODEBANK_BUILD", ROOT / "build"))
@@ -142,7 +144,7 @@ def headers_page():
     return "\n".join(lines)
 
 
-PAGES = {"headers": headers_page, "keys": keys_page, "commands": commands_page, "terms": terms_page}
+PAGES = {"archive": archive_layout.page, "headers": headers_page, "keys": keys_page, "commands": commands_page, "terms": terms_page}
 
 
 def list_others(app, name, source):

@@ -13,10 +13,13 @@
 /// The one description of the archive's layout; its other parts are layout_data.hpp, layout_evaluation.hpp and, for
 /// programs that load banks alone, bank/layout_bank.hpp. Every function names members once; `Io` is GroupWriter or
 /// GroupReader, or for arrays over samples SampleWriter or SampleReader, so writing, reading and verification cannot
-/// drift apart. Letters: M windows, K modes, n states, m inputs, n_y outputs, p parameters, S samples of all runs, F
-/// features.
+/// drift apart. Above a function, `/// - NAME: text` describes a member or a column and `/// /PATH: text` its group:
+/// the archive's reference page is made of them (docs/_ext/archive_layout.py). Letters: M windows, K modes, n states, m
+/// inputs, n_y outputs, p parameters, S samples of all runs, F features.
 namespace modebank::layout {
 
+/// /windows/global: one model of all training runs.
+/// - residual_covariance: of its residuals
 template <class Io, class G>
 void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& states) {
   io.attribute("transitions", global.transitions, rule::count_of("samples"));
@@ -32,6 +35,8 @@ inline Unit window_units(const WindowFits& fits, const Units& units) {
                                        : unit_of(fits.model_parameters);
 }
 
+/// - audit_checked: windows that Ceres solved again
+/// - audit_cost_difference: largest relative difference of the cost
 template <class Io, class A>
 void exchange_audit(Io& io, A& audit) {
   io.optional_attribute("audit_batch_windows", audit.batch, rule::not_negative);
@@ -47,6 +52,24 @@ void exchange_audit(Io& io, A& audit) {
   io.optional_attribute("audit_lower", audit.lower, rule::not_negative);
 }
 
+/// /windows: one local model for each window.
+/// - length: transitions of a window
+/// - step: transitions from one window to the next
+/// - run: name of the run
+/// - start: row of the window's first sample, within its run
+/// - parameters: theta
+/// - covariance: of theta
+/// - noise_variance: of the residuals
+/// - condition: condition number of the regressors
+/// - information: of each parameter
+/// - inlier_fraction: share of transitions that the loss does not down-weight
+/// - status: 0: converged, 1: iteration limit, 2: rank deficient, 3: failed
+/// - aic: Akaike's criterion
+/// - transitions: those that entered the fit
+/// - weighed_information: information of the data as theta was weighed with it against the prior: takes the prior off
+///   again
+/// - prior_sd: standard deviations of the prior
+/// - parameter_labels: what each parameter weighs on what, `wz <- velL`
 template <class Io, class W>
 void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& units) {
   const std::vector<Trajectory>& runs = recording.runs;
@@ -95,6 +118,15 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
            [&](auto& member) { exchange_global(member, fits.global, parameters, units.states()); });
 }
 
+/// - candidates: one row for each number of components that was compared
+/// - parameters: free parameters
+/// - effective_samples: number of independent samples that the windows are worth
+/// - heldout: log likelihood of windows that were left out
+/// - heldout_error: standard error of its difference from the selected row's
+/// - agreeing_restarts: random starts that reached the best likelihood
+/// - floor_active: 1: the covariance floor holds a component
+/// - failed: reason of a failure
+/// - selected: 1: the mixture has this row's components
 template <class Io, class C>
 void exchange_candidates(Io& io, C& candidates) {
   io.table("candidates", candidates, column("components", &Candidate::components).obeying(rule::at_least_one),
@@ -114,6 +146,14 @@ void exchange_candidates(Io& io, C& candidates) {
 }
 
 /// `features`: units of the features.
+/// - labels: component of each window; -1: not clustered, or noise
+/// - weights: sum to one, or to 1 - `noise_weight`
+/// - features: what was clustered, where it is not `/windows/parameters`; NaN where a window has none
+/// - compared_windows: windows on which candidates were compared, where these are not all
+/// - responsibilities: NaN where not clustered; rows sum to one, or to one minus the probability of noise
+/// - noise_weight: weight of the noise component
+/// - noise_lower: lower corner of its box
+/// - noise_upper: upper corner of its box
 template <class Io, class X>
 void exchange_mixture(Io& io, X& result, const Unit& features) {
   exchange_candidates(io, result.candidates);
@@ -146,6 +186,17 @@ void exchange_mixture(Io& io, X& result, const Unit& features) {
     });
 }
 
+/// /mixture: clusters of window parameters.
+/// /bank: the modes.
+/// /baseline: one Kalman filter.
+/// /noise_only: one model with switching noise.
+/// /one_motion: one motion that is learned as the bank is.
+/// /nonlinear: one motion with terms, where terms gain on training runs.
+/// /bank/unrefined: the bank that refinement started from.
+/// /residual_tests: correlations of the residuals, and of residuals with inputs.
+/// - measured_fit: stage with measurement noise: `none`, `converged`, `iteration_limit` or `stalled`
+/// - learned_transitions: training transitions that the bank was learned from, where these are not all
+/// - mode_names: names of the modes; empty where a mode has none
 template <class Io, class A>
 void exchange_archive(Io& io, A& archive) {
   exchange_origin(io, archive);

@@ -15,6 +15,10 @@
 /// io/archive/layout.hpp.
 namespace modebank::layout {
 
+/// /provenance: versions of libraries and compiler as attributes.
+/// - inputs: files that were read
+/// - path: of the file
+/// - sha256: of its content
 template <class Io, class P>
 void exchange_provenance(Io& io, P& provenance) {
   io.attributes(provenance.versions);
@@ -23,6 +27,11 @@ void exchange_provenance(Io& io, P& provenance) {
 }
 
 /// The root attributes, the configuration and where everything comes from; every archive has them.
+/// - format: `modebank`
+/// - created: UTC, ISO 8601
+/// - config_hash: SHA-256 of the resolved keys that change results
+/// - data_hash: SHA-256 of the data's content
+/// - config: the fully resolved configuration, itself a valid configuration
 template <class Io, class A>
 void exchange_origin(Io& io, A& archive) {
   io.constant_attribute("format", std::string(archive_format));
@@ -37,6 +46,8 @@ void exchange_origin(Io& io, A& archive) {
   io.group("provenance", {}, [&](auto& member) { exchange_provenance(member, archive.provenance); });
 }
 
+/// - state_averaged: names of the states that were averaged at data.rate_hz; all others are picked
+/// - input_averaged: the same for inputs
 template <class Io, class R>
 void exchange_channels(Io& io, R& recording) {
   const auto channels = [&](auto& list, const std::string& kind) {
@@ -51,6 +62,12 @@ void exchange_channels(Io& io, R& recording) {
 }
 
 /// The arrays of one run.
+/// - time: [s], from the run's time origin
+/// - state: measured states; NaN: missing
+/// - input: input that acts from this sample on
+/// - truth: true states, where the data have them
+/// - weight: of the transition that ends in the sample
+/// - label: position in `label_names`; -1: unknown
 template <class Io, class T, class L>
 void exchange_run(Io& samples, T& run, L& label, const Units& units) {
   samples.field("time", run.time_s, {"S"}, {"s"}, rule::increasing);
@@ -62,6 +79,15 @@ void exchange_run(Io& samples, T& run, L& label, const Units& units) {
 }
 
 /// `labels`: with data.label.
+/// /data: all samples of all runs, one run after the other.
+/// - runs: which rows belong to which run
+/// - role: `train` or `test`
+/// - first: row of the run's first sample
+/// - lag_s: that was applied to the run's inputs
+/// - time_origin_ns: time zero, since 1970; 0: no stamps
+/// - step_scatter: scatter of the log's time steps over their median, above 0.1
+/// - label_names: what `label` counts
+/// - quantum: step of the values of each state; 0: continuous
 template <class Io, class R, class L, class S>
 void exchange_recording(Io& io, R& recording, L& labels, S& step_scatter) {
   exchange_channels(io, recording);
@@ -100,6 +126,13 @@ void exchange_pooled(Io& io, const std::string& name, P& pooled) {
   io.attribute(name + "_runs", pooled.count, rule::not_negative);
 }
 
+/// /lag: delays between inputs and states that `data.lag_s = auto` estimated: of all runs, and of each run.
+/// - correction: the correction that was applied
+/// - scores: one row for each correction that was compared
+/// - runs: estimates of each run, and what was applied to it
+/// - gain: log score gained over no correction
+/// - match_s: delay of best match, median over windows
+/// - applied_lag_s: lag that was applied
 template <class Io, class L>
 void exchange_lag(Io& io, L& lag) {
   io.attribute("correction", lag.correction);
@@ -128,7 +161,24 @@ void exchange_lag(Io& io, L& lag) {
            column("applied_reference_s", &RunLag::applied_reference_s, "s"));
 }
 
-/// /structure: the lags and the delay that were found, and the structures that were compared.
+/// /structure: lags and delay that `window.model = auto` or lags of `auto` chose.
+/// - state_lags: of windows and bank
+/// - input_lags: of windows and bank
+/// - input_delay: of windows and bank [samples]
+/// - samples: transitions that the comparison used
+/// - parts: training runs, or stretches of them, that were left out in turn
+/// - by_runs: 1: parts are runs; 0: parts are stretches
+/// - structures: number of structures that were compared
+/// - feedback_t: largest |t| of past innovations in a regression of the inputs on their own lags
+/// - same_sample_t: largest |t| of the innovation of the same sample
+/// - scores: one row for each structure that was compared
+/// - chosen: 1: windows and bank take it
+/// - linear: 1: the one-lag structure
+/// - one_motion: 1: `one_motion` takes it
+/// - drifting: 1: `drifting` takes it
+/// - drifting_score: NaN where it was not computed
+/// - modes_score: NaN where it was not computed
+/// - one_motion_score: NaN where it was not computed
 template <class Io, class F>
 void exchange_structure(Io& io, F& found) {
   io.attribute("state_lags", found.state_lags, rule::lags);

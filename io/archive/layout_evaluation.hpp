@@ -15,6 +15,7 @@
 /// The layout of what filters and models said of the runs; see io/archive/layout.hpp. T lags, from 0 on.
 namespace modebank::layout {
 
+/// - merged: what the limit `bank.modes` cost
 template <class Io, class R>
 void exchange_merging(Io& io, R& rows) {
   io.optional_table("merged", rows, column("role", &MergingCost::role),
@@ -26,6 +27,8 @@ void exchange_merging(Io& io, R& rows) {
                     column("log_score", &MergingCost::log_score, "nat"), column("loss", &MergingCost::loss, "nat"));
 }
 
+/// - left_out: scores on training runs, by filters that were learned without them
+/// - start: weight at the start of a run
 template <class Io, class R>
 void exchange_left_out(Io& io, R& rows, const Unit& states) {
   io.optional_table("left_out", rows, column("filter", &LeftOutRow::filter),
@@ -36,6 +39,20 @@ void exchange_left_out(Io& io, R& rows, const Unit& states) {
                     share_column("start", &LeftOutRow::start));
 }
 
+/// - prediction: one step ahead, all modes combined
+/// - innovation: measurement minus prediction
+/// - innovation_covariance: of the combined prediction
+/// - state: after the measurement
+/// - covariance: after the measurement
+/// - nis: normalised innovation squared
+/// - pit: probability integral transform, uniform where the filter is consistent
+/// - log_density: of the measurement
+/// - mode_probability_predicted: before the measurement
+/// - mode_probability: after the measurement
+/// - spread_share: share of the modes' differences in the trace of `innovation_covariance`
+/// - smoothed_state: given the whole run, with `filter.smooth`
+/// - smoothed_covariance: given the whole run
+/// - viterbi_mode: most probable sequence of modes; -1: not started
 template <class Io, class E>
 void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("prediction", evaluation.prediction, {"S", "n_y"}, states);
@@ -62,6 +79,11 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
     });
 }
 
+/// - free_run_mean: with `filter.simulate`: without measurements after the run's start
+/// - free_run_sd: standard deviation
+/// - free_run_lower: of the 95 % band
+/// - free_run_upper: of the 95 % band
+/// - free_run_mode: most probable mode
 template <class Io, class F>
 void exchange_free_run(Io& io, F& run, const Unit& states) {
   io.optional_field("free_run_mean", run.mean, {"S", "n_y"}, states);
@@ -84,6 +106,9 @@ void exchange_filter_run(Io& samples, E& evaluation, F& free_run, const Unit& st
 }
 
 /// One filter's evaluation of every run of the recording.
+/// /evaluation/FILTER: one group for each filter: `bank`, `baseline`, `noise_only`, `one_motion`, `drifting`,
+///   `nonlinear`, `combined`. Scores of the first sample of a run are NaN. States and covariances are those of the
+///   sample itself: a bank with lags has the earlier samples of its state in earlier rows.
 template <class Io, class F>
 void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Unit& states) {
   const std::vector<hdf5::Rows> rows = rows_of(recording.runs);
@@ -107,6 +132,17 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Un
   });
 }
 
+/// - summary: scores by filter and run
+/// - run: `*`: all runs of the role
+/// - samples: that were scored
+/// - log_score: per sample
+/// - nis_above: share of samples whose NIS is above the 97.5 % quantile of chi-square
+/// - nis_below: share of samples whose NIS is below the 2.5 % quantile
+/// - coverage_95: share of samples inside the 95 % band
+/// - too_far: share of samples whose z^2 is above its 97.5 % quantile
+/// - too_close: share of samples whose z^2 is below its 2.5 % quantile
+/// - pit_distance: Kolmogorov distance of `pit` from uniform
+/// - whiteness_p: Ljung and Box, of the standardised innovations
 template <class Io, class S>
 void exchange_summary(Io& io, S& summary, const Unit& states) {
   io.optional_table(
@@ -121,6 +157,8 @@ void exchange_summary(Io& io, S& summary, const Unit& states) {
       share_column("whiteness_p", &SummaryRow::whiteness_p));
 }
 
+/// - horizon: with `filter.horizon`: scores that many samples ahead
+/// - run: `*`: all runs of the role
 template <class Io, class R>
 void exchange_horizon(Io& io, R& rows, const Unit& states) {
   io.optional_table(
@@ -130,6 +168,10 @@ void exchange_horizon(Io& io, R& rows, const Unit& states) {
       column("log_score", &HorizonRow::log_score, "nat"), amount_column("rmse", &HorizonRow::rmse, joined(states)));
 }
 
+/// - combination: weights of the filters in the combined forecasts
+/// - horizon: 0: free run
+/// - weight: mean over the role's runs
+/// - start: weight at the start of a run
 template <class Io, class R>
 void exchange_combination(Io& io, R& rows) {
   io.optional_table("combination", rows, column("role", &CombinationRow::role),
@@ -138,6 +180,10 @@ void exchange_combination(Io& io, R& rows) {
                     later_column("start", &CombinationRow::start).obeying(rule::share_or_missing));
 }
 
+/// - free_run: scores of free runs, with `filter.simulate`
+/// - method: `moments` or `paths`
+/// - start: measured samples at the start of a run
+/// - run: `*`: all runs of the role
 template <class Io, class R>
 void exchange_free_runs(Io& io, R& rows, const Unit& states) {
   using Row = FreeRunRow;
@@ -152,6 +198,14 @@ void exchange_free_runs(Io& io, R& rows, const Unit& states) {
                     column("lost_paths", &Row::lost_paths).obeying(rule::not_negative));
 }
 
+/// - diagnostics: consistency of each filter and mode, with intervals
+/// - mode: -1: all modes
+/// - dwell: mean length of a visit, by `viterbi_mode` or the most probable mode
+/// - dwell_model: the same by the transition matrix
+/// - nis_lower: interval of the mean of a consistent filter, to `nis_upper`
+/// - nees_lower: interval of the mean of a consistent filter, to `nees_upper`
+/// - autocorrelation: largest autocorrelation of the standardised innovations
+/// - autocorrelation_lag: lag of the largest autocorrelation
 template <class Io, class R>
 void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
   using Row = DiagnosticsRow;
@@ -181,7 +235,20 @@ void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
       later_column("autocorrelation_lag", &Row::autocorrelation_lag));
 }
 
-/// /evaluation/evidence: what was found, in words and in the numbers that decided.
+/// /evaluation/evidence: whether held-out runs show evidence for modes.
+/// - answer: `evidence`, `cannot tell`, `no evidence`, `one mode`, `not yet`, `not comparable`
+/// - without_noise: one linear model leaves rounding
+/// - gain: of the bank over `best_competitor` [nat] per sample
+/// - description: `several modes`, `one linear motion`, `one drifting motion`, `one nonlinear motion`, `none`
+/// - stay: harmonic mean length of a visit to a mode [samples]
+/// - stay_asked: least length that counts as a mode [samples]
+/// - terms_asked: 1: terms of one nonlinear motion were compared
+/// - pattern_gain: what past errors and inputs predict of the bank's errors [nat] per sample on training runs; NaN: not
+///   asked
+/// - text: the finding as a sentence
+/// - equations: lines of one nonlinear motion
+/// - gains: of the bank over each competitor
+/// - better_means: competitors whose mean errors are smaller
 template <class Io, class F>
 void exchange_finding(Io& io, F& finding) {
   io.attribute("answer", finding.answer);
@@ -215,6 +282,9 @@ void exchange_finding(Io& io, F& finding) {
                     amount_column("rmse", &BetterMean::rmse));
 }
 
+/// - confusion: labels against modes, with `data.label`
+/// - samples: whose most probable mode it was
+/// - share: of the label's samples
 template <class Io, class R>
 void exchange_confusion(Io& io, R& rows) {
   using Row = ConfusionRow;
@@ -257,6 +327,12 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
 }
 
 /// /residual_tests: tables of all models and runs. Lags are below T of their run.
+/// - runs: tests of each model's residuals, by run
+/// - model: `global`, `bank` or a competitor
+/// - lags: T, number of lags
+/// - ljung_box_p: one for each state
+/// - cross_correlation_band: one for each state and input
+/// - lag: 0, 1, ... T - 1
 template <class Io, class S>
 void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {
   using Run = ResidualRunRow;

@@ -21,6 +21,13 @@ void exchange_part(Io& io, const std::string& name, T& part, const Sizes& known,
 }
 
 /// What kind of model it is. Reading leaves the number of states to restore_structure, which knows it from the arrays.
+/// - model: `linear`, `varx` or the name of a motion model
+/// - form: A and B predict the increment of the state
+/// - intercept: 1: c is estimated
+/// - inputs: number of input channels
+/// - state_lags: samples of the state that predict the next one
+/// - input_lags: samples of the input that act on one transition
+/// - input_delay: samples from an input to its first effect
 template <class Io, class S, class Name>
 void exchange_structure(Io& io, S& structure, Name& model) {
   io.attribute("model", model);
@@ -42,6 +49,14 @@ void exchange_model_parameters(Io& io, P& parameters, const std::string& kind) {
 }
 
 /// Terms that bend the motion: V variables, T terms.
+/// - term_kinds: T: `product`, `magnitude` or `hinge`
+/// - term_variables: positions of up to three variables; -1: none
+/// - term_knots: in units of the variable
+/// - term_directions: variable = clip(direction' regressors, low, high) / unit
+/// - term_low: lower bound of each variable
+/// - term_high: upper bound of each variable
+/// - term_unit: unit of each variable
+/// - term_coefficients: of each mode
 template <class Io, class S>
 void exchange_terms(Io& io, S& stored) {
   io.optional_attribute_texts("term_kinds", stored.term_kinds);
@@ -57,6 +72,27 @@ void exchange_terms(Io& io, S& stored) {
 }
 
 /// The filter measures the recorded states, so outputs have the states' units where there are as many.
+/// - weight: mixture weight of each mode
+/// - c: constant increment of the state
+/// - A: x[k+1] = x[k] + A x[k] + B u[k] + c; n counts lagged states too
+/// - B: of the inputs; m counts lagged inputs too
+/// - Q: process noise covariance of a step
+/// - parameters: theta of each mode
+/// - parameter_covariance: covariance of theta among the mode's windows
+/// - C: y = C x
+/// - R: measurement noise covariance
+/// - quantum: step of the measured values; 0: continuous
+/// - transition: row = from, column = to
+/// - transition_weights: of the transition logit on features of state and input
+/// - transition_reference: value of the features at which `transition` holds
+/// - initial_probability: of each mode at the start of a run
+/// - drift_scale: root mean square of each regressor, with `bank.drift`
+/// - drift_rates: rate, start and leak
+/// - noise_directions: rows over their root mean square
+/// - noise_weights: every Q is times exp(sum weights log(|directions . (z, v)| + 0.1) - offset), bounded to 0.2 to 5
+/// - noise_offset: of that sum
+/// - motion_parameters: parameters of a motion model
+/// - motion_standard_error: their standard errors
 template <class Io, class S>
 void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, const Unit& motion) {
   const Unit parameters = parameter_units(stored.structure, states, inputs);
@@ -97,6 +133,16 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
 }
 
 /// Names, period and screened modes, then everything that StoredBank holds.
+/// - parameter_labels: what each parameter weighs on what, `wz <- velL`
+/// - equations: lines of text, where there are terms
+/// - dt_s: period of a step [s]
+/// - noise_forgetting: of adaptive noise
+/// - noise_prior_samples: of adaptive noise
+/// - shrunk_modes: modes that were drawn towards one motion for stability
+/// - shrunk_share: how far
+/// - shrunk_growth: growth of their mean square before
+/// - screened: components that became no mode
+/// - spectral_radius: of I + A
 template <class Io, class B>
 void exchange_bank(Io& io, B& bank, const Units& units) {
   io.attribute_texts("state_names", bank.state_names);

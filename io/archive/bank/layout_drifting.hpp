@@ -32,6 +32,23 @@ inline std::vector<std::pair<Eigen::Index, double>> restore_factors(const Stored
   return factors;
 }
 
+/// /drifting: one motion whose coefficients wander.
+/// - states: number of measured states
+/// - q: variance that a step adds to every coefficient
+/// - p0: variance of the coefficients at the start
+/// - leak: share of their difference from `parameters` that a step leaves
+/// - wandering: `constant` or `gain` (one factor on the inputs' coefficients); absent: all coefficients
+/// - lam: forgetting factor of the running variance
+/// - nu: degrees of freedom of the noise; 0: Gaussian
+/// - training_log_score: [nat] per sample
+/// - at_grid_end: names of settings that ended at the end of their grid
+/// - parameters: where the coefficients start
+/// - regressor_scale: root mean square of each regressor
+/// - initial_variance: variance of the training residuals
+/// - variance_floor: least noise variance
+/// - quantum: step of the measured values; 0: continuous
+/// - horizon: samples ahead
+/// - horizon_factor: factor on the variance at each horizon
 template <class Io, class M>
 void exchange_drifting(Io& io, M& model, const Units& units) {
   io.attribute_texts("state_names", model.state_names);
