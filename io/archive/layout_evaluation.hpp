@@ -329,7 +329,7 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
 /// /residual_tests: tables of all models and runs. Lags are below T of their run.
 /// - runs: tests of each model's residuals, by run
 /// - model: `global`, `bank` or a competitor
-/// - lags: T, number of lags
+/// - lags: one row for each lag; in `runs` their number T
 /// - ljung_box_p: one for each state
 /// - cross_correlation_band: one for each state and input
 /// - lag: 0, 1, ... T - 1
@@ -341,13 +341,13 @@ void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {
   RestoredResiduals restored(recording);
   const auto take = [&](const auto& row) { restored.take(row); };
   io.table_rows(
-      "runs", [&] { return store_residual_runs(sets, runs); }, take, column("model", &Run::model),
+      "runs", [&](const auto& append) { store_residual_runs(sets, runs, append); }, take, column("model", &Run::model),
       column("run", &Run::run), column("samples", &Run::samples).obeying(rule::count_of("samples")),
       share_column("level", &Run::level), amount_column("autocorrelation_band", &Run::autocorrelation_band),
       column("lags", &Run::lags).obeying(rule::not_negative), share_column("ljung_box_p", &Run::ljung_box_p),
       amount_column("cross_correlation_band", &Run::cross_correlation_band));
   io.table_rows(
-      "lags", [&] { return store_residual_lags(sets, runs); }, take, column("model", &Lag::model),
+      "lags", [&](const auto& append) { store_residual_lags(sets, runs, append); }, take, column("model", &Lag::model),
       column("run", &Lag::run), column("lag", &Lag::lag, "samples").obeying(rule::not_negative),
       column("autocorrelation", &Lag::autocorrelation).obeying(rule::finite_or_missing),
       column("cross_correlation", &Lag::cross_correlation).obeying(rule::finite_or_missing));

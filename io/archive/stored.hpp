@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <map>
 #include <string>
@@ -93,10 +94,11 @@ struct ResidualLagRow {
   Eigen::VectorXd autocorrelation;    ///< n
   Eigen::VectorXd cross_correlation;  ///< n*m, row by row
 };
-std::vector<ResidualRunRow> store_residual_runs(const std::vector<ResidualTestSet>& sets,
-                                                const std::vector<Trajectory>& runs);
-std::vector<ResidualLagRow> store_residual_lags(const std::vector<ResidualTestSet>& sets,
-                                                const std::vector<Trajectory>& runs);
+/// The rows of both tables, one model after the other.
+void store_residual_runs(const std::vector<ResidualTestSet>& sets, const std::vector<Trajectory>& runs,
+                         const std::function<void(const std::vector<ResidualRunRow>&)>& append);
+void store_residual_lags(const std::vector<ResidualTestSet>& sets, const std::vector<Trajectory>& runs,
+                         const std::function<void(const std::vector<ResidualLagRow>&)>& append);
 /// Takes the rows of both tables one by one, those of runs first.
 class RestoredResiduals {
  public:

@@ -27,34 +27,31 @@ void check_run_count(const ResidualTestSet& set, std::size_t runs) {
 
 }  // namespace
 
-std::vector<ResidualRunRow> store_residual_runs(const std::vector<ResidualTestSet>& sets,
-                                                const std::vector<Trajectory>& runs) {
-  std::vector<ResidualRunRow> rows;
+void store_residual_runs(const std::vector<ResidualTestSet>& sets, const std::vector<Trajectory>& runs,
+                         const std::function<void(const std::vector<ResidualRunRow>&)>& append) {
   for (const ResidualTestSet& set : sets) {
     check_run_count(set, runs.size());
+    std::vector<ResidualRunRow> rows;
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const ResidualTests& tests = set.runs[i];
       rows.push_back({set.model, runs[i].run, tests.samples, tests.level, tests.autocorrelation_band,
                       tests.autocorrelation.cols(), tests.ljung_box_p,
                       at_least_one(entries(tests.cross_correlation_band))});
     }
+    append(rows);
   }
-  return rows;
 }
 
-std::vector<ResidualLagRow> store_residual_lags(const std::vector<ResidualTestSet>& sets,
-                                                const std::vector<Trajectory>& runs) {
-  std::vector<ResidualLagRow> rows;
-  std::size_t count = 0;
-  for (const ResidualTestSet& set : sets)
-    for (const ResidualTests& tests : set.runs) count += static_cast<std::size_t>(tests.autocorrelation.cols());
-  rows.reserve(count);  // two million of many short runs
-  for (const ResidualTestSet& set : sets)
+void store_residual_lags(const std::vector<ResidualTestSet>& sets, const std::vector<Trajectory>& runs,
+                         const std::function<void(const std::vector<ResidualLagRow>&)>& append) {
+  for (const ResidualTestSet& set : sets) {
+    std::vector<ResidualLagRow> rows;
     for (std::size_t i = 0; i < runs.size(); ++i)
       for (Index lag = 0; lag < set.runs[i].autocorrelation.cols(); ++lag)
         rows.push_back({set.model, runs[i].run, lag, set.runs[i].autocorrelation.col(lag),
                         at_least_one(set.runs[i].cross_correlation.col(lag))});
-  return rows;
+    append(rows);
+  }
 }
 
 RestoredResiduals::RestoredResiduals(const Recording& recording)

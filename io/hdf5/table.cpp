@@ -1,6 +1,9 @@
 #include "io/hdf5/table.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <type_traits>
 
 #include "modebank/base/error.hpp"
 
@@ -133,7 +136,26 @@ void read_values(const TableRows& rows, const std::string& name, Eigen::MatrixXd
   std::copy_n(cells.data(), cells.size(), reinterpret_cast<char*>(values.data()));
 }
 
+template <class T>
+void append_values(Vector<T>& more, Vector<T>& values) {
+  values.insert(values.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+void append_values(const Eigen::MatrixXd& more, Eigen::MatrixXd& values) {
+  if (more.cols() == 0) return;
+  if (values.cols() > 0 && values.rows() != more.rows()) throw std::invalid_argument("lengths of a column differ");
+  values.conservativeResize(more.rows(), values.cols() + more.cols());
+  values.rightCols(more.cols()) = more;
+}
+
 }  // namespace
+
+void append(std::vector<TableColumn> more, std::vector<TableColumn>& columns) {
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    std::visit(
+        [&](auto& values) { append_values(std::get<std::decay_t<decltype(values)>>(more.at(i).values), values); },
+        columns[i].values);
+}
 
 Handle write_table(hid_t group, const std::string& name, std::vector<TableColumn> columns, hsize_t rows) {
   std::vector<CellTypes> cells;

@@ -19,6 +19,9 @@ struct TableColumn {
   Values values;
 };
 
+/// Appends the values of columns of the same names and kinds.
+void append(std::vector<TableColumn> more, std::vector<TableColumn>& columns);
+
 /// Writes a 1-D compound dataset of `rows` packed rows and hands it over open. Columns go as they are packed, so that a
 /// long table does not lie in memory twice.
 Handle write_table(hid_t group, const std::string& name, std::vector<TableColumn> columns, hsize_t rows);

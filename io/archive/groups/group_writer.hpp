@@ -159,16 +159,16 @@ class GroupWriter {
     if (!rows.empty()) table(name, rows, columns...);
   }
 
-  /// A long table, whose rows are made when they are written.
+  /// A long table: make(append) calls append(rows) for one part of the rows after the other, since rows take several
+  /// times as much memory as their columns.
   template <class Make, class Take, class Row, class... T>
   void table_rows(const std::string& name, Make make, const Take& /*take*/, const Column<Row, T>&... columns) {
-    std::vector<hdf5::TableColumn> encoded;
+    std::vector<hdf5::TableColumn> encoded{encode(std::vector<Row>(), columns)...};
     hsize_t count = 0;
-    {
-      const auto rows = make();  // gone before they are packed
-      encoded = {encode(rows, columns)...};
-      count = rows.size();
-    }
+    make([&](const std::vector<Row>& rows) {
+      hdf5::append({encode(rows, columns)...}, encoded);
+      count += rows.size();
+    });
     write_column_units(hdf5::write_table(group_.id(), name, std::move(encoded), count), {columns.unit...});
   }
 
