@@ -49,8 +49,8 @@ Clusters select(const Points& points, const SelectionOptions& options, std::uint
     const Eigen::VectorXd weights = view(points.weights), typical_error = view(points.typical_error);
     const PointSet set(values, weights, errors, typical_error);
     const Selection found = modebank::select(set, {points.effective_samples, points.runs}, options, seed);
-    return Clusters{outside(found.mixture), found.candidates, to_matrix(modebank::responsibilities(found.mixture, set)),
-                    to_vector(found.standard_error.weights), to_matrix(found.standard_error.means)};
+    return Clusters{outside(found.mixture), found.candidates,
+                    to_matrix(modebank::responsibilities(found.mixture, set))};
   });
 }
 

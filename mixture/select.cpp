@@ -15,7 +15,6 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
 #include "ident/base/work_counter.hpp"
-#include "mixture/bootstrap.hpp"
 #include "mixture/criteria.hpp"
 #include "mixture/detail/cloud.hpp"
 #include "mixture/detail/whole_loop.hpp"
@@ -223,8 +222,6 @@ MixtureResult with_memberships(const FeatureCloud& cloud, const FeatureCloud& as
   result.feature_names = cloud.names;
   result.candidates = std::move(selection.candidates);
   result.compared = selection.compared;
-  result.weights_standard_error = std::move(selection.standard_error.weights);
-  result.means_standard_error = std::move(selection.standard_error.means);
   result.labels = Eigen::VectorXi::Constant(windows, -1);
   label_windows(result.mixture, cloud, result.labels);
   if (!assigned.windows.empty()) label_windows(result.mixture, assigned, result.labels);
@@ -246,9 +243,6 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
     throw std::invalid_argument(fmt::format(
         "selection is given {} effective samples: a finite number above 0, or 0 where all points are independent",
         design.effective_samples));
-  if (options.bootstrap < 0 || options.bootstrap == 1)
-    throw std::invalid_argument(
-        fmt::format("a bootstrap needs 2 resamples or more (0: none), given {}", options.bootstrap));
   std::vector<Index> positions;
   const std::optional<PointPart> part = part_to_compare(points, seed, positions);
   const PointSet compared = part ? part->set() : points;
@@ -267,9 +261,6 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
         difference_error(fitted[i].heldout, fitted[static_cast<std::size_t>(best)].heldout);
   result.mixture = std::move(fitted[static_cast<std::size_t>(best)].mixture);
   if (part) result.mixture = fitted_to_all(points, result.mixture, options.em);
-  if (options.bootstrap > 0)
-    result.standard_error = bootstrap_runs(points, design.runs, result.mixture, options.em, options.bootstrap,
-                                           derive_seed(seed, "mixture bootstrap"));
   return result;
 }
 

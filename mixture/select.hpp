@@ -19,15 +19,8 @@ inline constexpr Eigen::Index most_compared = 100'000;
 /// What selection must know of the points beside their values.
 struct SampleDesign {
   double effective_samples = 0.0;  ///< independent samples they are worth; 0: all are independent
-  /// N, the run each point is from: what is left out and resampled together. Empty: unknown, so there are no held-out
-  /// scores and no bootstrap.
+  /// N, the run each point is from: runs are left out as a whole. Empty: unknown, so there are no held-out scores.
   std::vector<Eigen::Index> runs;
-};
-
-/// Standard errors of the selected mixture, see bootstrap.hpp; empty when not asked for.
-struct MixtureErrors {
-  Eigen::VectorXd weights;  ///< K
-  Eigen::MatrixXd means;    ///< F x K [feature unit]
 };
 
 /// The chosen mixture and the table it was chosen from.
@@ -35,7 +28,6 @@ struct Selection {
   GaussianMixture mixture;  ///< physical units
   std::vector<Candidate> candidates;
   Eigen::Index compared = 0;  ///< points that candidates were compared on, whose numbers they have; 0: all
-  MixtureErrors standard_error;
 };
 
 /// Of the numbers of components that are tried.
@@ -60,9 +52,7 @@ struct MixtureResult {
   Eigen::Index clustered = 0;  ///< windows that the mixture is fitted to; 0: not known (older archives)
   WindowResponsibilities responsibilities;
   std::vector<Candidate> candidates;
-  Eigen::Index compared = 0;               ///< windows that candidates were compared on; 0: all that are clustered
-  Eigen::VectorXd weights_standard_error;  ///< K; empty without a bootstrap
-  Eigen::MatrixXd means_standard_error;    ///< F x K; empty without a bootstrap
+  Eigen::Index compared = 0;  ///< windows that candidates were compared on; 0: all that are clustered
 };
 
 /// Overlapping windows share samples: N_eff = min(N, sum over runs with a clustered window of max(1, M_run step / L)).

@@ -73,26 +73,6 @@ std::string scores_text(const Archive& archive, int width) {
          "(z^2 beyond the outer quantiles of chi-square); log score in nats per sample, higher is better.\n";
 }
 
-namespace {
-
-/// Weights and means with their standard errors, where a bootstrap made some.
-std::string component_errors_text(const MixtureResult& mixture, int width) {
-  if (mixture.weights_standard_error.size() == 0) return "";
-  std::vector<TextTable::Column> columns{{"K", 4}, {"weight", 16}};
-  for (const std::string& name : mixture.feature_names) columns.push_back({name, 18});
-  TextTable table(std::move(columns));
-  for (Index k = 0; k < mixture.mixture.components(); ++k) {
-    std::vector<std::string> cells{std::to_string(k), fmt::format("{:.3f} +- {:.2g}", mixture.mixture.weights(k),
-                                                                  mixture.weights_standard_error(k))};
-    for (Index f = 0; f < mixture.mixture.features(); ++f)
-      cells.push_back(fmt::format("{:.4g} +- {:.2g}", mixture.mixture.means(f, k), mixture.means_standard_error(f, k)));
-    table.add(std::move(cells));
-  }
-  return "standard errors by bootstrap over runs\n" + table.text(width);
-}
-
-}  // namespace
-
 std::string candidates_text(const MixtureResult& mixture, int width) {
   TextTable table({{"K", 4},
                    {"shape", 8, TextTable::Align::left},
@@ -121,7 +101,7 @@ std::string candidates_text(const MixtureResult& mixture, int width) {
                fmt::format("{}/{}", c.agreeing_restarts, c.restarts)},
               fmt::format("{}{}", c.selected ? "  <- selected" : "", c.floor_active ? "  rests on the floor" : ""));
   }
-  return table.text(width) + component_errors_text(mixture, width);
+  return table.text(width);
 }
 
 std::string window_parameters_text(const Archive& archive, int width) {

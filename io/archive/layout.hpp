@@ -167,9 +167,6 @@ void exchange_mixture(Io& io, X& result, const Unit& features) {
       [&](auto& stored) {
         io.field("covariances", stored, {"K", "F", "F"}, outer(features), rule::covariances);
       });
-  io.optional_field("weights_standard_error", result.weights_standard_error, {"K"}, {}, rule::not_negative_or_missing);
-  io.optional_field("means_standard_error", result.means_standard_error, {"K", "F"}, features,
-                    rule::not_negative_or_missing);
   io.optional_attribute("clustered_windows", result.clustered, rule::count_of("M"));
   io.attribute_unless(Index{0}, "compared_windows", result.compared, rule::count_of("M"));
   io.optional_field("features", result.features, {"M", "F"}, features);
@@ -178,12 +175,7 @@ void exchange_mixture(Io& io, X& result, const Unit& features) {
   io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features, rule::finite);
   io.field("labels", result.labels, {"M"}, {}, rule::position_or_none("K"));
   io.through_rows("responsibilities", result.responsibilities, {"M", "K"}, rule::parts_or_missing);
-  if constexpr (Io::reads)
-    io.finish([&] {
-      check_mixture(result);
-      check_together("weights_standard_error and means_standard_error",
-                     {result.weights_standard_error.size(), result.means_standard_error.size()});
-    });
+  if constexpr (Io::reads) io.finish([&] { check_mixture(result); });
 }
 
 /// /mixture: clusters of window parameters.

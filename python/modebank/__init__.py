@@ -197,8 +197,8 @@ def fit_mixture(points: np.ndarray, components: int | str | Sequence[int] = "1..
                 effective_samples: float = 0.0, seed: int = 1, **options: Any) -> Mixture:
     """Fits Gaussian mixtures to points (N, F) and returns the best Mixture by the criterion (BIC unless told).
 
-    components: a number, a list, or a range as "1..12"; runs: (N,) the run each point is from, for held-out scores and
-    the bootstrap; effective_samples: independent samples that the points are worth, 0: all. options: further keys of
+    components: a number, a list, or a range as "1..12"; runs: (N,) the run each point is from, for held-out scores;
+    effective_samples: independent samples that the points are worth, 0: all. options: further keys of
     the configuration's [mixture] section, as criterion="icl". Releases the interpreter lock; Ctrl-C ends it."""
     if isinstance(components, range):
         components = list(components)

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ident/base/distributions.hpp"
-#include "mixture/bootstrap.hpp"
+#include "mixture/assignment.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -197,7 +197,6 @@ const std::vector<RuledOut> ruled_out{
     {"bank.measurement_variance", "bank.drift = auto needs"},
     {"data.quantum", "bank.drift = auto needs"},
     {"filter.variant", "bank.drift = auto needs"},
-    {"mixture.bootstrap", "needs 2 resamples or more"},
     {"mixture.covariance_floor", "needs a finite covariance_floor"},
 };
 

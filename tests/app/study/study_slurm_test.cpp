@@ -150,7 +150,7 @@ TEST_F(StudySlurmPaths, AFolderWithALineBreakIsRefusedBeforeAnythingIsWritten) {
 /// A node dies as by a power cut while it works; its tasks start again on another one.
 TEST_F(StudySlurm, LostNodeChangesNoNumber) {
   MODEBANK_NEEDS_SLURM();
-  const std::vector<std::string> slow{"--mixture.bootstrap", "200"};
+  const std::vector<std::string> slow{"--mixture.restarts", "60"};
   ASSERT_EQ(study(undisturbed, slow).status, 0);
   const SlurmCluster cluster(3, 1);
   std::vector<std::string> options{"--study.stage", "submit", "--study.slurm_tasks", "3"};

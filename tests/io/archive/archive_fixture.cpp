@@ -114,8 +114,6 @@ MixtureResult make_mixture(const WindowFits& fits) {
                                17, false, 1, false, 0.5, 5, true, CandidateStatus::fitted, not_a_number, ""});
   result.candidates.push_back({3, CovarianceType::diagonal, -9.5, 20, 7.5, 0.1, 0.2, 0.3, -1.5, 40, true, 4, true, 0.6,
                                5, false, CandidateStatus::failed, 0.25, "its covariance is singular"});
-  result.weights_standard_error = Eigen::Vector3d(0.05, 0.04, 0.03);
-  result.means_standard_error = pattern(features, modes, 50.0);
   return result;
 }
 

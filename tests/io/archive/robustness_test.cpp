@@ -136,10 +136,9 @@ TEST_F(Robustness, ComputedSpreadsSharesAndAmountsThatCannotBe) {
     finds_number(spread, 0, -1.0, spread + ": holds a matrix at (0");
   finds_number("/windows/covariance", 1, 1e6, "that cannot be a covariance");  // not symmetric
   for (const std::string error :
-       {"/windows/standard_error", "/windows/global/noise_variance", "/mixture/weights_standard_error",
-        "/mixture/means_standard_error", "/bank/parameter_standard_error", "/bank/Q_standard_error",
-        "/bank/R_standard_error", "/bank/transition_standard_error", "/bank/transition_weight_standard_error",
-        "/evaluation/bank/free_run_sd"})
+       {"/windows/standard_error", "/windows/global/noise_variance", "/bank/parameter_standard_error",
+        "/bank/Q_standard_error", "/bank/R_standard_error", "/bank/transition_standard_error",
+        "/bank/transition_weight_standard_error", "/evaluation/bank/free_run_sd"})
     finds_number(error, 0, -0.5, error + ": holds -0.5 at (0");
   finds_number("/evaluation/bank/spread_share", 1, 1.5, "/evaluation/bank/spread_share: holds 1.5 at (1");
   finds([&] { patch_cell(path, "/residual_tests/runs", "level", 2, 1.5); }, "column 'level' holds 1.5 at (2)");

@@ -144,7 +144,6 @@ TEST(Restarts, BadOptionsAreNamed) {
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.tolerance = nan; });
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.covariance_floor = 1e300 * 1e300; });
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.start_runs = 0; });
-  refused([&](SelectionOptions& options, SampleDesign&) { options.bootstrap = 1; });
   // What is wrong with the call is said, not taken for a candidate that failed.
   GaussianMixture other_features = three_clusters(2.0);
   other_features.means.conservativeResize(1, Eigen::NoChange);

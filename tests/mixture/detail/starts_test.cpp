@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "mixture/bootstrap.hpp"
+#include "mixture/assignment.hpp"
 #include "mixture/detail/cloud.hpp"
 #include "mixture/detail/split_merge.hpp"
 #include "tests/mixture/mixture_test_support.hpp"

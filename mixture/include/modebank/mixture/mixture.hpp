@@ -15,7 +15,7 @@ struct Points {
   Matrix values;                     ///< F x N, finite, one point per column, as ident::Windows::theta has them
   std::vector<double> weights;       ///< N, nonnegative; empty: all one
   Matrix errors;                     ///< F*F x N, each column the covariance of that point's error; empty: no errors
-  std::vector<std::ptrdiff_t> runs;  ///< N, the run each is from: what is left out and resampled together; may be empty
+  std::vector<std::ptrdiff_t> runs;  ///< N, the run each is from, which is left out as a whole; may be empty
   double effective_samples = 0.0;    ///< independent samples they are worth; 0: all are independent. Windows that
                                      ///< overlap share samples: N step / length
   std::vector<double> typical_error = {};  ///< F, standard deviation of a typical point's error; empty or 0: unknown
@@ -33,11 +33,9 @@ struct Mixture {
 
 /// The chosen mixture and what it was chosen from.
 struct Clusters {
-  Mixture mixture;                             ///< of the selected candidate
-  std::vector<Candidate> candidates;           ///< by their number of components, each once
-  Matrix responsibilities;                     ///< K x N, posterior probability of each component at each point
-  std::vector<double> weights_standard_error;  ///< K; empty without SelectionOptions::bootstrap
-  Matrix means_standard_error;                 ///< F x K; empty without it
+  Mixture mixture;                    ///< of the selected candidate
+  std::vector<Candidate> candidates;  ///< by their number of components, each once
+  Matrix responsibilities;            ///< K x N, posterior probability of each component at each point
 };
 
 /// Fits every candidate number of components, on all cores, and keeps the best by the criterion: the same numbers for

@@ -69,7 +69,6 @@ struct SelectionOptions {
   Criterion criterion = Criterion::bic;              ///< what chooses
   HeldoutChoice heldout = HeldoutChoice::automatic;  ///< when candidates get a held-out score
   EmOptions em;                                      ///< how each candidate is fitted
-  int bootstrap = 0;                                 ///< resamples of the runs for standard errors, 0: none
 };
 
 /// Numbers of a window that are clustered: its parameters; besides them the logarithms of its noise variances; or both
