@@ -63,9 +63,8 @@ MODEBANK_KEY_FIELDS(SplitOptions, kind, blocks, last_percent, gap_samples)
 MODEBANK_KEY_FIELDS(DataOptions, root, inputs, states, state, input, truth, derive, where, state_unit, input_unit,
                     weight, label, time, time_unit, time_format, join, run, rate_hz, lag_s, lag_auto, lag_range_s,
                     quantum, quantum_auto, format, missing, disorder, split, train, test)
-MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, wheel_radius_m, residual, length, step,
-                    loss, loss_scale, scale, sigma, prior, prior_sd, intercept, covariance, max_iterations, solver,
-                    seed)
+MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, wheel_radius_m, length, step, loss,
+                    loss_scale, scale, sigma, prior, prior_sd, intercept, covariance, max_iterations, solver, seed)
 MODEBANK_KEY_FIELDS(EmOptions, covariance, start, restarts, start_runs, split_merge, tolerance, max_iterations,
                     covariance_floor, noise_component)
 MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, heldout, em)

@@ -26,8 +26,7 @@ FitOptions window_options_of(const Config& c) {
 }
 
 SearchedLags searched_lags_of(const Config& c) {
-  // One whole window is simulated without lags.
-  const bool by_model = c.structure.automatic_model && c.window.residual == ResidualKind::one_step;
+  const bool by_model = c.structure.automatic_model;
   const auto searched = [&](LagChoice choice) { return is_automatic(choice, by_model); };
   return {searched(c.structure.state), searched(c.structure.input), searched(c.structure.delay)};
 }

@@ -20,7 +20,6 @@
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/prior.hpp"
 #include "ident/fit/window_fitter.hpp"
-#include "ident/model/linear_motion.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -83,8 +82,6 @@ ModelChoice choose_model(const Recording& recording, const FitOptions& options) 
   const Index states = recording.state_count(), inputs = recording.input_count();
   check_model(options, states, inputs);
   ModelChoice choice{linear_structure(states, inputs, options), motion_model(options, states, inputs)};
-  if (!choice.motion && options.residual == ResidualKind::simulation)
-    choice.motion = make_linear_motion(choice.structure);
   check_options(options, choice.motion ? choice.motion->parameter_count() : choice.structure.parameters());
   return choice;
 }
@@ -144,7 +141,6 @@ class Fitting {
     common_.model = options.model;
     common_.structure = structure;
     if (motion && !is_linear(options)) common_.model_parameters = motion->parameters();
-    common_.residual = options.residual;
     common_.length = options.length;
     common_.step = options.step;
     common_.loss = options.loss;
@@ -245,8 +241,6 @@ void check_model(const FitOptions& options, Index states, Index inputs) {
   if (has_lags(options) && options.model != "varx")
     throw ConfigurationError("state_lags, input_lags and input_delay are those of model = varx, not of " +
                              options.model);
-  if (options.model == "varx" && options.residual == ResidualKind::simulation)
-    throw ConfigurationError("residual = simulation does not simulate model = varx");
   motion_model(options, states, inputs);
 }
 

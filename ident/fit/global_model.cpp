@@ -109,7 +109,7 @@ std::vector<Index> open_regressors(const Recording& recording, const LinearStruc
 }
 
 GlobalModel fit_global(const Recording& recording, const MotionModel& model) {
-  const ModelResiduals residuals(model, training_stretches(recording), ResidualKind::one_step);
+  const ModelResiduals residuals(model, training_stretches(recording));
   if (residuals.samples() == 0) throw DataError("the training runs hold no transition between two finite samples");
   const Index n = model.states(), p = model.parameter_count(), N = residuals.samples();
   const RobustLoss least_squares(Loss::trivial, 0.0);
@@ -119,7 +119,7 @@ GlobalModel fit_global(const Recording& recording, const MotionModel& model) {
   residuals.evaluate(global.theta.data(), r, nullptr);
   for (int pass = 0; pass < (n > 1 ? scale_passes : 1); ++pass) {
     const Eigen::VectorXd sigma = positive_or_one(root_mean_square(r, n));
-    global.theta = minimise_model(residuals, sigma, least_squares, nullptr, motion_iterations, global.theta).unknowns;
+    global.theta = minimise_model(residuals, sigma, least_squares, nullptr, motion_iterations, global.theta).theta;
     residuals.evaluate(global.theta.data(), r, nullptr);
   }
   const auto errors = r.reshaped(n, N);

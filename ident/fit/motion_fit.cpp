@@ -7,70 +7,129 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "ident/fit/describe.hpp"
 #include "ident/fit/minimise.hpp"
-#include "ident/fit/newton_search.hpp"
+#include "ident/fit/residuals.hpp"
 #include "ident/model/transitions.hpp"
 
 namespace modebank {
 
 namespace {
 
-/// The whole window as one block for Ceres: a block per sample would cost more than the arithmetic.
-class WindowCost final : public ceres::CostFunction {
+/// Samples first .. first + count - 1 as a Ceres cost function: residuals in units of sigma, times the roots of their
+/// weights. All that it refers to must outlive it.
+class SampleResidual final : public ceres::CostFunction {
  public:
-  WindowCost(const ModelObjective& objective, const RobustLoss& loss) : objective_(objective), loss_(loss) {
-    set_num_residuals(static_cast<int>(objective.rows()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(objective.unknowns()));
+  SampleResidual(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, Index first, Index count)
+      : residuals_(residuals), sigma_(sigma), first_(first), count_(count) {
+    set_num_residuals(static_cast<int>(count * residuals.states()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(residuals.unknowns()));
   }
-  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    objective_.least_squares_rows(parameters[0], loss_, residuals, jacobians ? jacobians[0] : nullptr);
-    return std::isfinite(Eigen::Map<const Eigen::VectorXd>(residuals, num_residuals()).squaredNorm());
+
+  bool Evaluate(const double* const* parameters, double* r, double** jacobians) const override {
+    double* J = jacobians ? jacobians[0] : nullptr;
+    residuals_.evaluate(parameters[0], first_, count_, r, J);
+    double sum = 0.0;
+    for (Index k = first_; k < first_ + count_; ++k) {
+      const double root_weight = std::sqrt(residuals_.weight(k));
+      for (Index i = 0; i < residuals_.states(); ++i) {
+        const double scale = root_weight / sigma_(i);
+        *r *= scale;
+        sum += *r * *r;
+        ++r;
+        for (Index j = 0; J && j < residuals_.unknowns(); ++j) *J++ *= -scale;
+      }
+    }
+    return std::isfinite(sum);
   }
 
  private:
-  const ModelObjective& objective_;
-  const RobustLoss& loss_;
+  const ModelResiduals& residuals_;
+  const Eigen::VectorXd& sigma_;
+  Index first_, count_;
 };
 
-/// How closely Ceres searches: first near enough for Newton's steps to do the rest, and where they do not, as far as
-/// costs can be told apart, by a decomposition that does not square the condition.
-struct SearchEffort {
-  double function_tolerance;
-  ceres::LinearSolverType linear_solver;
-};
-constexpr SearchEffort near_effort{0.1, ceres::DENSE_NORMAL_CHOLESKY}, far_effort{1e-14, ceres::DENSE_QR};
+/// (theta - m) / sd. The prior must outlive it.
+class PriorResidual final : public ceres::CostFunction {
+ public:
+  explicit PriorResidual(const ParameterPrior& prior) : prior_(prior) {
+    set_num_residuals(static_cast<int>(prior.mean.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(prior.mean.size()));
+  }
 
-ceres::Solver::Options model_solver_options(const SearchEffort& effort, int iterations) {
+  bool Evaluate(const double* const* parameters, double* r, double** jacobians) const override {
+    const Index p = prior_.mean.size();
+    const Eigen::Map<const Eigen::VectorXd> theta(parameters[0], p);
+    Eigen::Map<Eigen::VectorXd>(r, p) = (theta - prior_.mean).cwiseQuotient(prior_.sd);
+    if (jacobians && jacobians[0])
+      Eigen::Map<RowMajorJacobian>(jacobians[0], p, p) = prior_.sd.cwiseInverse().asDiagonal();
+    return true;
+  }
+
+ private:
+  const ParameterPrior& prior_;
+};
+
+/// Near the optimum what a step should gain is rounding error, and Ceres calls the step invalid; the trust region
+/// shrinks until the step is small, which is to end the search as convergence.
+constexpr int most_invalid_model_steps = 50;
+
+ceres::Solver::Options model_solver_options(int iterations) {
   ceres::Solver::Options options;
-  options.linear_solver_type = effort.linear_solver;
+  options.linear_solver_type = ceres::DENSE_QR;  // does not square the condition
   options.max_num_iterations = iterations;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
-  options.function_tolerance = effort.function_tolerance;
+  options.function_tolerance = 1e-16;
   options.gradient_tolerance = 1e-14;
   options.parameter_tolerance = 1e-12;
+  options.max_num_consecutive_invalid_steps = most_invalid_model_steps;
   return options;
 }
 
-FitStatus ceres_search(const ModelObjective& objective, const RobustLoss& loss, const SearchEffort& effort,
-                       int iterations, Eigen::VectorXd& at) {
-  ceres::Problem::Options problem_options;
-  problem_options.disable_all_safety_checks = true;
-  ceres::Problem problem(problem_options);
-  problem.AddResidualBlock(new WindowCost(objective, loss), nullptr, at.data());  // Ceres owns it
-  const auto& parameters = objective.model().parameters();
+void set_bounds(const MotionModel& model, ceres::Problem& problem, Eigen::VectorXd& theta) {
+  const auto& parameters = model.parameters();
   for (std::size_t j = 0; j < parameters.size(); ++j) {
-    if (std::isfinite(parameters[j].lower))
-      problem.SetParameterLowerBound(at.data(), static_cast<int>(j), parameters[j].lower);
-    if (std::isfinite(parameters[j].upper))
-      problem.SetParameterUpperBound(at.data(), static_cast<int>(j), parameters[j].upper);
+    const auto& [lower, upper] = std::pair(parameters[j].lower, parameters[j].upper);
+    if (std::isfinite(lower)) problem.SetParameterLowerBound(theta.data(), static_cast<int>(j), lower);
+    if (std::isfinite(upper)) problem.SetParameterUpperBound(theta.data(), static_cast<int>(j), upper);
   }
+}
+
+/// A loss is a sample's, so that each sample is a block; least squares take one block of all.
+FitStatus ceres_search(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, const RobustLoss& loss,
+                       const ParameterPrior* prior, int iterations, Eigen::VectorXd& theta) {
+  ceres::Problem::Options problem_options;
+  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // shared by samples, windows and threads
+  problem_options.disable_all_safety_checks = true;
+  std::vector<WeightedLoss> weighted;
+  for (const double weight : residuals.weights()) weighted.emplace_back(*loss.ceres_function(), weight);
+  ceres::Problem problem(problem_options);
+  const auto add = [&](Index first, Index count, ceres::LossFunction* function) {  // Ceres owns the cost function
+    problem.AddResidualBlock(new SampleResidual(residuals, sigma, first, count), function, theta.data());
+  };
+  if (loss.kind() == Loss::trivial)
+    add(0, residuals.samples(), nullptr);
+  else
+    for (Index k = 0; k < residuals.samples(); ++k)
+      add(k, 1, weighted.empty() ? loss.ceres_function() : &weighted[static_cast<std::size_t>(k)]);
+  if (prior) problem.AddResidualBlock(new PriorResidual(*prior), nullptr, theta.data());
+  set_bounds(residuals.model(), problem, theta);
   ceres::Solver::Summary summary;
-  ceres::Solve(model_solver_options(effort, iterations), &problem, &summary);
+  ceres::Solve(model_solver_options(iterations), &problem, &summary);
   if (summary.termination_type == ceres::CONVERGENCE) return FitStatus::converged;
   return summary.termination_type == ceres::NO_CONVERGENCE ? FitStatus::iteration_limit : FitStatus::failed;
+}
+
+Eigen::VectorXd within_bounds(const MotionModel& model, Eigen::VectorXd theta) {
+  const auto& parameters = model.parameters();
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    double& value = theta(static_cast<Index>(j));
+    value = std::clamp(value, parameters[j].lower, parameters[j].upper);
+  }
+  return theta;
 }
 
 /// Residuals and derivatives of a fit at its solution, in units of sigma, times the roots of the sample weights.
@@ -111,7 +170,7 @@ WhitenedProblem whiten_at(const LinearisedFit& fit, const ModelResiduals& residu
     problem.basis = excitation.basis;
     return problem;
   }
-  problem.b.tail(p) = (prior->mean - at.head(p)).cwiseQuotient(prior->sd);
+  problem.b.tail(p) = (prior->mean - at).cwiseQuotient(prior->sd);
   Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(rows + p, u);
   stacked.topRows(rows) = fit.J;
   stacked.bottomLeftCorner(p, p) = prior->sd.cwiseInverse().asDiagonal();
@@ -132,20 +191,10 @@ ModelEstimator make_model_estimator(const MotionModel& model, const FitOptions& 
 ModelMinimum minimise_model(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, const RobustLoss& loss,
                             const ParameterPrior* prior, int max_iterations, const Eigen::VectorXd& start) {
   ModelMinimum minimum{within_bounds(residuals.model(), start), FitStatus::failed};
-  Eigen::VectorXd& at = minimum.unknowns;
   if (!loss.convex())
-    at = minimise_model(residuals, sigma, RobustLoss(Loss::huber, 0.0), prior, max_iterations, start).unknowns;
-  const ModelObjective objective(residuals, sigma, prior);
-  NewtonSearch newton(objective);
-  if (!std::isfinite(objective.cost(at, loss))) return minimum;
-  bool stationary = false;
-  for (const SearchEffort& effort : {near_effort, far_effort}) {
-    minimum.status = ceres_search(objective, loss, effort, max_iterations, at);
-    stationary = minimum.status != FitStatus::failed && newton(loss, at);
-    if (stationary || minimum.status == FitStatus::failed) break;
-  }
-  if (stationary) minimum.status = FitStatus::converged;
-  if (!at.allFinite()) minimum.status = FitStatus::failed;
+    minimum.theta = minimise_model(residuals, sigma, RobustLoss(Loss::huber, 0.0), prior, max_iterations, start).theta;
+  minimum.status = ceres_search(residuals, sigma, loss, prior, max_iterations, minimum.theta);
+  if (!minimum.theta.allFinite()) minimum.status = FitStatus::failed;
   return minimum;
 }
 
@@ -155,11 +204,11 @@ LocalModel fit_model(const ModelResiduals& residuals, const ModelEstimator& esti
   if (residuals.samples() == 0) return failed_fit(p, n);
   const ModelMinimum minimum = minimise_model(residuals, sigma, estimator.loss, prior, estimator.max_iterations, start);
   if (minimum.status == FitStatus::failed) return failed_fit(p, n);
-  const LinearisedFit at_solution = linearise(residuals, sigma, minimum.unknowns);
+  const LinearisedFit at_solution = linearise(residuals, sigma, minimum.theta);
   if (!at_solution.J.allFinite() || !at_solution.r.allFinite()) return failed_fit(p, n);
 
   const Decomposition excitation = decompose(at_solution.J, excitation_tolerance);
-  const WhitenedProblem problem = whiten_at(at_solution, residuals, minimum.unknowns, excitation, prior);
+  const WhitenedProblem problem = whiten_at(at_solution, residuals, minimum.theta, excitation, prior);
   const RobustTerms terms = evaluate(problem, estimator.loss, Eigen::VectorXd::Zero(problem.unknowns()));
   const Transitions responses{{}, residuals.responses(), residuals.weights()};
   const NoiseScale scale{sigma, floor};
@@ -172,14 +221,14 @@ LocalModel fit_model(const ModelResiduals& residuals, const ModelEstimator& esti
                                  .covariance = estimator.covariance,
                                  .scale = scale,
                                  .prior = prior,
-                                 .unknowns_per_state = static_cast<double>(residuals.unknowns()) / states,
+                                 .unknowns_per_state = static_cast<double>(p) / states,
                                  .rank_per_state = static_cast<double>(excitation.rank()) / states},
-                                minimum.unknowns.head(p));
+                                minimum.theta);
   if (!fit.theta.allFinite()) return fit;
   fit.solved = minimum.status == FitStatus::converged;
   fit.condition = excitation.condition;
-  fit.rank = std::max(Index{0}, excitation.rank() - (residuals.unknowns() - p));
-  fit.status = excitation.rank() < residuals.unknowns() ? FitStatus::rank_deficient : minimum.status;
+  fit.rank = excitation.rank();
+  fit.status = excitation.rank() < p ? FitStatus::rank_deficient : minimum.status;
   return fit;
 }
 

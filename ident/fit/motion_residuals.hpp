@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "ident/data/trajectory.hpp"
-#include "ident/model/local_model.hpp"
 #include "ident/model/motion_model.hpp"
 
 namespace modebank {
@@ -21,46 +20,36 @@ std::vector<Stretch> training_stretches(const Recording& recording);
 
 using RowMajorJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Residuals measured - predicted of a model over stretches of runs, n rows per sample, in the state's unit. Samples
-/// that are not finite have no residual. The unknowns are theta and, for simulations, the first state of each stretch
-/// after it. Refers to model and runs, which must outlive it.
+/// Residuals measured - predicted of a model over stretches of runs, each sample predicted from the measured one
+/// before: n rows per sample, in the state's unit. Samples that are not finite have no residual. Refers to model and
+/// runs, which must outlive it.
 class ModelResiduals {
  public:
-  /// `weights`: what multiplies the loss of each transition of the stretches, in their order (one-step residuals
-  /// only); empty: the runs' sample weights, divided by their mean, or one for all. Samples of weight zero have no
-  /// residual.
-  ModelResiduals(const MotionModel& model, const std::vector<Stretch>& stretches, ResidualKind kind,
-                 const Eigen::VectorXd& weights = {});
+  /// `weights`: what multiplies the loss of each transition of the stretches, in their order; empty: the runs' sample
+  /// weights, divided by their mean, or one for all. Samples of weight zero have no residual.
+  ModelResiduals(const MotionModel& model, const std::vector<Stretch>& stretches, const Eigen::VectorXd& weights = {});
 
   const MotionModel& model() const { return model_; }
   Index states() const { return model_.states(); }
-  Index samples() const { return samples_; }  ///< with a residual
-  Index rows() const { return samples_ * states(); }
-  Index unknowns() const { return model_.parameter_count() + initial_states_.size(); }
+  Index samples() const { return static_cast<Index>(transitions_.size()); }  ///< with a residual
+  Index rows() const { return samples() * states(); }
+  Index unknowns() const { return model_.parameter_count(); }
   double weight(Index sample) const { return weights_.size() > 0 ? weights_(sample) : 1.0; }
   const Eigen::VectorXd& weights() const { return weights_; }  ///< empty: all one
-  /// What the model explains, one row per sample times the root of its weight: increments, or for simulations states.
+  /// Increments, which the model explains, one row per sample times the root of its weight.
   Eigen::MatrixXd responses() const;
-  /// theta followed by the measured first states.
-  Eigen::VectorXd unknowns_at(const Eigen::VectorXd& theta) const;
 
-  /// r (rows) and, if not null, the predictions' derivatives by the unknowns (rows x unknowns): dr = -J d(unknowns).
-  void evaluate(const double* unknowns, Eigen::VectorXd& r, RowMajorJacobian* J) const;
+  /// r (rows) and, if not null, the predictions' derivatives by theta (rows x unknowns): dr = -J d(theta).
+  void evaluate(const double* theta, Eigen::VectorXd& r, RowMajorJacobian* J) const;
+  /// The same for samples first .. first + count - 1, into count n numbers and, if not null, count n rows of J.
+  void evaluate(const double* theta, Index first, Index count, double* r, double* J) const;
 
  private:
-  void take_transitions(const std::vector<Stretch>& stretches, const Eigen::VectorXd& weights);
-  void take_simulations(const std::vector<Stretch>& stretches);
   void take_run_weights(const std::vector<double>& weights);
-  void one_step(const double* theta, Eigen::VectorXd& r, RowMajorJacobian* J) const;
-  void simulate(const double* unknowns, Eigen::VectorXd& r, RowMajorJacobian* J) const;
 
   const MotionModel& model_;
-  ResidualKind kind_;
-  std::vector<Stretch> stretches_;
-  std::vector<MotionModel::Transition> transitions_;  ///< one-step: those that are finite
+  std::vector<MotionModel::Transition> transitions_;  ///< those that are finite
   Eigen::VectorXd weights_;                           ///< of those; empty without
-  Eigen::VectorXd initial_states_;                    ///< simulation: as measured
-  Index samples_ = 0;
 };
 
 }  // namespace modebank

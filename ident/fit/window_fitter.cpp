@@ -17,7 +17,7 @@ WindowFitter::WindowFitter(const Recording& recording, const FitOptions& options
       floor_(std::move(floor)),
       run_scale_(std::make_unique<RunScale[]>(recording.runs.size())) {}
 
-std::string WindowFitter::method() {
+std::string WindowFitter::method() const {
   std::ostringstream words;
   words << "Ceres, then Newton's method to a relative gradient of " << stationary_gradient;
   return words.str();
@@ -84,27 +84,27 @@ MotionWindows::MotionWindows(const Recording& recording, const FitOptions& optio
 Eigen::VectorXd MotionWindows::least_squares_scale(const ModelResiduals& residuals,
                                                    const Eigen::VectorXd& sigma) const {
   const Index n = residuals.states();
-  const ModelMinimum minimum = minimise_model(residuals, sigma, least_squares_, nullptr, estimator_.max_iterations,
-                                              residuals.unknowns_at(global().theta));
+  const ModelMinimum minimum =
+      minimise_model(residuals, sigma, least_squares_, nullptr, estimator_.max_iterations, global().theta);
   if (minimum.status == FitStatus::failed) return Eigen::VectorXd::Constant(n, not_a_number);
   Eigen::VectorXd r;
   RowMajorJacobian J;
-  residuals.evaluate(minimum.unknowns.data(), r, &J);
+  residuals.evaluate(minimum.theta.data(), r, &J);
   const double lost = static_cast<double>(decompose(J, excitation_tolerance).rank()) / static_cast<double>(n);
   return robust_scale(r.reshaped(n, residuals.samples()).transpose(), residuals.weights(), lost);
 }
 
 Eigen::VectorXd MotionWindows::scale_of(const Trajectory& run) const {
-  const ModelResiduals residuals(model_, {{&run, 0, run.transitions()}}, options().residual);
+  const ModelResiduals residuals(model_, {{&run, 0, run.transitions()}});
   if (residuals.samples() == 0) return Eigen::VectorXd::Constant(model_.states(), not_a_number);
   return least_squares_scale(residuals, global().noise_variance().cwiseSqrt().cwiseMax(floor()));
 }
 
 LocalModel MotionWindows::fit(const Window& window, const ParameterPrior* prior) const {
-  const ModelResiduals residuals(model_, {{&run_of(window), window.start, options().length}}, options().residual);
+  const ModelResiduals residuals(model_, {{&run_of(window), window.start, options().length}});
   const Eigen::VectorXd sigma = window_sigma(window, residuals.rows() > residuals.unknowns(),
                                              [&] { return least_squares_scale(residuals, run_scale(window.run)); });
-  return fit_model(residuals, estimator_, sigma, floor(), prior, residuals.unknowns_at(global().theta));
+  return fit_model(residuals, estimator_, sigma, floor(), prior, global().theta);
 }
 
 Eigen::VectorXd MotionWindows::unregularised_theta(const Window& window) const {

@@ -23,7 +23,7 @@ class WindowFitter {
   virtual Eigen::VectorXd unregularised_theta(const Window& window) const = 0;
 
   /// Who solves a window to what tolerance, in words.
-  static std::string method();
+  virtual std::string method() const;
 
   const Recording& recording() const { return recording_; }
   const FitOptions& options() const { return options_; }
@@ -91,6 +91,7 @@ class MotionWindows final : public WindowFitter {
 
   LocalModel fit(const Window& window, const ParameterPrior* prior) const override;
   Eigen::VectorXd unregularised_theta(const Window& window) const override;
+  std::string method() const override { return minimise_model_method; }
 
  private:
   Eigen::VectorXd scale_of(const Trajectory& run) const override;

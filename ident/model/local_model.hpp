@@ -46,9 +46,8 @@ struct WindowFits {
   /// Of linear models. Of a motion model: that of its linearisations x[k+1] = x + A x + B u + c.
   LinearStructure structure;
   std::vector<ModelParameter> model_parameters;  ///< of a motion model; empty for linear ones
-  ResidualKind residual = ResidualKind::one_step;
-  Index length = 0;  ///< transitions per window
-  Index step = 1;    ///< transitions between window starts
+  Index length = 0;                              ///< transitions per window
+  Index step = 1;                                ///< transitions between window starts
   Loss loss = Loss::huber;
   std::vector<Window> windows;          ///< M
   Eigen::MatrixXd parameters;           ///< p x M

@@ -74,7 +74,6 @@ template <class Io, class W>
 void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& units) {
   const std::vector<Trajectory>& runs = recording.runs;
   const Unit parameters = window_units(fits, units);
-  io.attribute("residual", fits.residual);
   exchange_model_parameters(io, fits.model_parameters, "model_parameter");
   exchange_structure(io, fits.structure, fits.model);
   io.attribute("length", fits.length, rule::at_least_one);

@@ -60,7 +60,7 @@ Windows identify(const std::vector<Samples>& states, const std::vector<Samples>&
   if (!keys.contains("model")) config.structure.automatic_model = false;  // windows alone: of the lags that are stated
   if (app::searched_lags_of(config).any())
     throw ConfigurationError("lags and delay = auto, and window.model = auto, are found by run; give numbers here");
-  const bool in_place = is_linear(config.window) && config.window.residual == ResidualKind::one_step;
+  const bool in_place = is_linear(config.window);
   Recording recording;
   for (std::size_t i = 0; i < states.size(); ++i)
     recording.runs.push_back(run_of(i, states[i], inputs[i], dt_s, in_place));

@@ -160,7 +160,7 @@ void run_general(const Trajectory& run, Loss loss, Index windows, Eigen::MatrixX
   const ModelEstimator estimator = make_model_estimator(*model, peer_options(loss));
   const Eigen::VectorXd sigma = Eigen::VectorXd::Constant(1, residual_scale / default_loss_scale(loss));
   for (Index i = 0; i < windows; ++i) {
-    const ModelResiduals residuals(*model, {{&run, i, peer_length}}, ResidualKind::one_step);
+    const ModelResiduals residuals(*model, {{&run, i, peer_length}});
     theta.col(i) =
         fit_model(residuals, estimator, sigma, Eigen::VectorXd::Zero(1), nullptr, Eigen::Vector3d(-0.4, -0.6, 0.6))
             .theta;

@@ -22,6 +22,7 @@ constexpr std::array gone{
     Gone{"bank.drift_leak", "", "bank.drift = auto chooses it"},
     Gone{"bank.drift", "fixed", "auto chooses how fast"},
     Gone{"bank.members", "", "--track.filter combined predicts better than one bank"},
+    Gone{"window.residual", "", "refinement learns the measurement noise, see help bank.measurement_variance"},
     Gone{"mixture.bootstrap", "", "banks state standard errors of their coefficients"},
     Gone{"filter.parameter_noise", "", "refinement learns what it added to Q"},
     Gone{"filter.time_steps", "", "a longer time between samples is as many prediction steps as fit"},

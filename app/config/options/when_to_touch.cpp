@@ -58,7 +58,6 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
        "with varx, or to keep auto from searching: when a dead time of whole samples is known; for lags of clocks "
        "data.lag_s"},
       {"window.wheel_radius_m", "with icr and slip, when inputs are wheel speeds in rad/s"},
-      {"window.residual", "simulation, when noise is in the measurement and not in the motion; it takes much longer"},
       {"window.length",
        "when `modebank check` suggests another: longer where windows are rank deficient, shorter where "
        "modes last less than a window; auto, when the model has many lags"},

@@ -81,9 +81,6 @@ std::vector<Option> window_options() {
       numeric("window.wheel_radius_m", above(0), "m",
               "icr and slip: turns wheel speeds in rad/s into m/s; 1 for inputs that are m/s",
               MODEBANK_FIELD(window.wheel_radius_m)),
-      words("window.residual",
-            "each sample predicted from the one before, or the window simulated from its first sample (estimated)",
-            MODEBANK_FIELD(window.residual)),
       number_or_auto(
           numeric("window.length", between(1, 1e6), "transitions", "length of a window", MODEBANK_FIELD(window.length)),
           "25, or 1.5 to 3 times the model's regressors where that is more, the less the more often motion changes",

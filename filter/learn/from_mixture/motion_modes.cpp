@@ -71,7 +71,7 @@ void estimate_theta(const ModelResiduals& residuals, const GlobalModel& global, 
     const ModelMinimum minimum =
         minimise_model(residuals, variance.cwiseSqrt(), least_squares, prior, {search_iterations}, mode.theta);
     if (minimum.status == FitStatus::failed) return;
-    mode.theta = minimum.unknowns;
+    mode.theta = minimum.theta;
     mode.linear.Q = weighted_scatter(residuals, mode.theta, global);
     mode.linear.converged = (mode.linear.Q.diagonal() - variance).norm() <= pass_tolerance * variance.norm();
   }
@@ -81,7 +81,7 @@ void estimate_theta(const ModelResiduals& residuals, const GlobalModel& global, 
 
 MotionMode fit_motion_mode(const Recording& recording, const MotionModel& model, const Eigen::VectorXd& weights,
                            const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd* given) {
-  const ModelResiduals residuals(model, training_stretches(recording), ResidualKind::one_step, weights);
+  const ModelResiduals residuals(model, training_stretches(recording), weights);
   MotionMode mode;
   mode.theta = given ? *given : global.theta;
   mode.linear.effective_transitions = sum_of_weights(residuals);

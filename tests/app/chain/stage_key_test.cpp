@@ -187,7 +187,6 @@ const std::vector<RuledOut> ruled_out{
     {"window.state_lags", "are those of model = varx"},
     {"window.input_lags", "are those of model = varx"},
     {"window.input_delay", "are those of model = varx"},
-    {"window.residual", "does not simulate model = varx"},
     {"window.scale", "window.scale = fixed needs window.sigma"},
     {"window.sigma", "window.scale = fixed needs window.sigma"},
     {"bank.transition", "bank.transition = logit"},

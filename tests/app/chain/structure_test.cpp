@@ -147,16 +147,6 @@ TEST_F(StructureOfRuns, WindowsOfManyLagsAreLongerAndClusteredByOneLagFits) {
       2);
 }
 
-/// A window that is simulated has no lags to find.
-TEST_F(StructureOfRuns, IsOneLagWhereWindowsAreSimulated) {
-  app::Config config;
-  app::find_option("window.model")->set(config, "auto");
-  app::find_option("window.residual")->set(config, "simulation");
-  const ChainOptions options = app::chain_options(config);
-  EXPECT_FALSE(options.searched_lags.any());
-  EXPECT_EQ(options.window.model, "linear");
-}
-
 /// Two modes whose inputs act with opposite signs: one linear model of both may take a later sample of the input, and
 /// modes that kept that delay would not be found.
 TEST(StageStructures, ModesAreAskedForTheUsualDelayToo) {

@@ -3,9 +3,9 @@
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/linearise.hpp"
 #include "ident/fit/motion_fit.hpp"
-#include "ident/model/linear_motion.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/ident/fit/decay.hpp"
+#include "tests/ident/fit/linear_motion.hpp"
 #include "tests/ident/ident_test_support.hpp"
 
 namespace modebank {
@@ -169,7 +169,7 @@ TEST(MotionModel, EachSlipParameterLiesWithinThreeStandardErrors) {
 TEST(MotionModel, LinearModelThroughEitherDoorIsTheSame) {
   std::mt19937_64 generator(19);
   const Trajectory run = test::gaussian_run(test::skid_structure, test::skid_theta, 0.1, 26, generator);
-  const auto motion = make_linear_motion(test::skid_structure);
+  const auto motion = test::make_linear_motion(test::skid_structure);
   const Eigen::VectorXd sigma = Eigen::VectorXd::Constant(1, 0.1);
   const ParameterPrior prior{Eigen::Vector3d(-0.2, -0.3, 0.3), Eigen::Vector3d(0.2, 0.3, 0.4)};
   for (Index l = 0; l < std::ssize(EnumNames<Loss>::values); ++l)
@@ -178,11 +178,14 @@ TEST(MotionModel, LinearModelThroughEitherDoorIsTheSame) {
         FitOptions options = test::whole_run(run, static_cast<Loss>(l));
         options.covariance = kind;
         const LocalModel linear = fit_window(run, 0, test::skid_structure, options, sigma, p);
-        const ModelResiduals residuals(*motion, {{&run, 0, run.transitions()}}, ResidualKind::one_step);
+        const ModelResiduals residuals(*motion, {{&run, 0, run.transitions()}});
         const LocalModel general = fit_model(residuals, make_model_estimator(*motion, options), sigma,
                                              Eigen::VectorXd::Zero(1), p, Eigen::Vector3d::Zero());
-        EXPECT_LT((general.theta - linear.theta).norm(), 1e-9) << name_of(options.loss);
-        EXPECT_LT((general.covariance - linear.covariance).norm(), 1e-8 * linear.covariance.norm());
+        // Ceres ends where costs can no longer be told apart, at some sqrt(2 epsilon cost) = 5e-8 standard errors.
+        const Eigen::ArrayXd standard_error = linear.covariance.diagonal().array().sqrt();
+        EXPECT_LT(((general.theta - linear.theta).array() / standard_error).abs().maxCoeff(), 5e-7)
+            << name_of(options.loss);
+        EXPECT_LT((general.covariance - linear.covariance).norm(), 5e-8 * linear.covariance.norm());
         EXPECT_NEAR(general.noise_variance(0), linear.noise_variance(0), 1e-9 * linear.noise_variance(0));
         EXPECT_NEAR(general.condition, linear.condition, 1e-8 * linear.condition);
         EXPECT_EQ(general.rank, linear.rank);
@@ -212,7 +215,7 @@ TEST(MotionModel, SampleWeightsEnterTheScaleAsInTheLinearDoor) {
       options.intercept = structure.intercept;
       options.step = 5;
       const WindowFits linear = fit_windows(recording, options),
-                       general = fit_windows(recording, options, *make_linear_motion(structure));
+                       general = fit_windows(recording, options, *test::make_linear_motion(structure));
       for (Index i = 0; i < linear.count(); ++i) {
         EXPECT_LT((general.parameters.col(i) - linear.parameters.col(i)).norm(), 1e-7) << "window " << i;
         EXPECT_LT((general.noise_variance.col(i) - linear.noise_variance.col(i)).norm(),
@@ -220,34 +223,6 @@ TEST(MotionModel, SampleWeightsEnterTheScaleAsInTheLinearDoor) {
       }
     }
   }
-}
-
-// Measurement noise biases one-step fits of x toward faster motion (errors in variables); simulations stay unbiased.
-TEST(MotionModel, SimulationResidualsStandMeasurementNoise) {
-  std::mt19937_64 generator(23);
-  const auto model = make_motion_model("slip", {1, 2, 0.165});
-  const Eigen::Vector3d theta(1.4, 0.05, 0.5);
-  std::vector<Trajectory> runs;
-  for (int i = 0; i < 60; ++i) {
-    runs.push_back(drive(*model, theta, Eigen::VectorXd::Zero(1), 61, generator, 0.15));
-    runs.back().run = std::to_string(i);
-  }
-  FitOptions options;
-  options.model = "slip";
-  options.wheel_radius_m = 0.165;
-  options.prior = Prior::none;
-  options.length = 60;
-  options.loss = Loss::trivial;
-  const Recording recording = test::make_recording(runs);
-  const double one_step = fit_windows(recording, options).parameters.row(2).mean();
-  options.residual = ResidualKind::simulation;
-  const WindowFits fits = fit_windows(recording, options);
-  EXPECT_LT(one_step, 0.4);
-  EXPECT_NEAR(fits.parameters.row(2).mean(), 0.5, 0.03);
-  const Recovery found = recovery(fits, theta);
-  EXPECT_EQ(found.windows, 60);
-  EXPECT_GE(found.inside.sum(), 3 * found.windows - 3);
-  EXPECT_NEAR(fits.noise_variance.mean(), 0.15 * 0.15, 0.15 * 0.15 * 0.1);
 }
 
 TEST(MotionModel, UnexcitedWindowsAreAStatusAndTakeThePrior) {

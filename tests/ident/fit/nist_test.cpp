@@ -139,7 +139,7 @@ void expect_certified(const std::string& name, int start = 0) {
   const NistSet set = read_nist(name);
   ASSERT_EQ(set.certified.size(), P) << name;
   const auto model = make_templated_model(Regression<Function, P>());
-  const ModelResiduals residuals(*model, {{&set.run, 0, set.run.transitions()}}, ResidualKind::one_step);
+  const ModelResiduals residuals(*model, {{&set.run, 0, set.run.transitions()}});
   FitOptions options;
   options.loss = Loss::trivial;
   options.max_iterations = 10'000;

@@ -22,16 +22,6 @@ struct EnumNames<Loss> {
   static constexpr Names<6> values{"trivial", "huber", "cauchy", "softlone", "tukey", "arctan"};
 };
 
-/// What a model is compared with: each sample predicted from the measured one before (equation error), or the whole
-/// window simulated from its first sample, which then is estimated, too (output error: Ljung 1999, section 3.2). The
-/// first assumes process noise, the second measurement noise.
-enum class ResidualKind { one_step, simulation };
-
-template <>
-struct EnumNames<ResidualKind> {
-  static constexpr Names<2> values{"one-step", "simulation"};
-};
-
 /// Which covariance of theta is reported (method: Huber 1981 for `model`, HC3 for `sandwich`).
 enum class CovarianceKind { model, sandwich };
 
@@ -78,14 +68,13 @@ struct FitOptions {
   std::ptrdiff_t input_lags = 1;   ///< varx: input samples that act on one transition
   std::ptrdiff_t input_delay = 1;  ///< varx: samples from an input to its first effect; 0: u[k+1] acts on x[k+1]
   double wheel_radius_m = 1.0;     ///< motion models: turns wheel speeds in rad/s into m/s; 1 for inputs in m/s
-  ResidualKind residual = ResidualKind::one_step;  ///< what the model is compared with
-  std::ptrdiff_t length = 25;                      ///< transitions per window
-  std::ptrdiff_t step = 1;                         ///< transitions between window starts
-  Loss loss = Loss::huber;                         ///< of a sample's residual
-  double loss_scale = 0.0;                         ///< in units of sigma; 0: 95 % efficiency at the normal
-  ScaleSource scale = ScaleSource::window;         ///< where sigma comes from
-  double sigma = 0.0;            ///< residual standard deviation for ScaleSource::fixed [state unit], > 0
-  Prior prior = Prior::global;   ///< on a window's parameters
+  std::ptrdiff_t length = 25;      ///< transitions per window
+  std::ptrdiff_t step = 1;         ///< transitions between window starts
+  Loss loss = Loss::huber;         ///< of a sample's residual
+  double loss_scale = 0.0;         ///< in units of sigma; 0: 95 % efficiency at the normal
+  ScaleSource scale = ScaleSource::window;  ///< where sigma comes from
+  double sigma = 0.0;                       ///< residual standard deviation for ScaleSource::fixed [state unit], > 0
+  Prior prior = Prior::global;              ///< on a window's parameters
   std::vector<double> prior_sd;  ///< p standard deviations; one value: for all; empty: 3 x the spread of full-rank fits
   bool intercept = false;        ///< whether linear models have a constant term c
   CovarianceKind covariance = CovarianceKind::model;  ///< of theta, that is reported
