@@ -11,6 +11,7 @@
 #include "mixture/detail/cloud.hpp"
 #include "mixture/detail/iterate.hpp"
 #include "mixture/detail/restarts.hpp"
+#include "mixture/detail/starts.hpp"
 #include "mixture/detail/step.hpp"
 
 namespace modebank {
@@ -25,10 +26,10 @@ constexpr double largest_coordinate = 1e150;
 constexpr double smallest_floor = 1e-10;
 
 void check(const EmOptions& options) {
-  if (options.restarts < 1 || options.start_runs < 1 || options.split_merge < 0 || options.max_iterations < 0)
-    throw std::invalid_argument(fmt::format(
-        "EM needs restarts and start_runs >= 1, split_merge and max_iterations >= 0; given {}, {}, {} and {}",
-        options.restarts, options.start_runs, options.split_merge, options.max_iterations));
+  if (options.restarts < 1 || options.split_merge < 0 || options.max_iterations < 0)
+    throw std::invalid_argument(
+        fmt::format("EM needs restarts >= 1, split_merge and max_iterations >= 0; given {}, {} and {}",
+                    options.restarts, options.split_merge, options.max_iterations));
   if (!(options.covariance_floor >= smallest_floor && std::isfinite(options.covariance_floor)) ||
       std::isnan(options.tolerance))
     throw std::invalid_argument(fmt::format("EM needs a finite covariance_floor >= {} and a tolerance; given {} and {}",
@@ -120,8 +121,7 @@ EmResult EmSweep::fit(Index components, std::uint64_t seed, const GaussianMixtur
         fmt::format("EM of {} components needs 1 to {} (the number of points)", components, cloud.points.count()));
   if (start) check(*start, cloud.points.features());
   const auto start_of = [&](int i) {
-    return i == 0 && start ? Start{usable_start(*start, cloud, options), 0}
-                           : make_start(cloud, components, i, options, seed);
+    return i == 0 && start ? usable_start(*start, cloud, options) : make_start(cloud, components, i, options, seed);
   };
   EmResult result = best_of_restarts(cloud.points, start_of, options, seed);
   order_by_weight(result.mixture);

@@ -65,8 +65,8 @@ MODEBANK_KEY_FIELDS(DataOptions, root, inputs, states, state, input, truth, deri
                     quantum, quantum_auto, format, missing, disorder, split, train, test)
 MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, wheel_radius_m, length, step, loss,
                     loss_scale, scale, sigma, prior, prior_sd, intercept, covariance, max_iterations, solver, seed)
-MODEBANK_KEY_FIELDS(EmOptions, covariance, start, restarts, start_runs, split_merge, tolerance, max_iterations,
-                    covariance_floor, noise_component)
+MODEBANK_KEY_FIELDS(EmOptions, covariance, restarts, split_merge, tolerance, max_iterations, covariance_floor,
+                    noise_component)
 MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, heldout, em)
 MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, straddling, error_aware)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, look_ahead, look_ahead_score, folds,

@@ -48,12 +48,12 @@ GaussianMixture union_of(const GaussianMixture& a, const GaussianMixture& b) {
   return both;
 }
 
-/// From a start to an optimum that split-and-merge moves do not leave.
-EmResult climb(const PointBlocks& points, Start start, const EmOptions& options, std::uint64_t seed) {
-  const EmOptions rest = with_iterations_left(options, start.iterations);
-  EmResult result =
-      split_and_merge(points, iterate(points, std::move(start.mixture), rest, Steps::extrapolated), rest, seed);
-  result.iterations += start.iterations;
+/// From a start, `spent` iterations after the first, to an optimum that split-and-merge moves do not leave.
+EmResult climb(const PointBlocks& points, GaussianMixture start, int spent, const EmOptions& options,
+               std::uint64_t seed) {
+  const EmOptions rest = with_iterations_left(options, spent);
+  EmResult result = split_and_merge(points, iterate(points, std::move(start), rest, Steps::extrapolated), rest, seed);
+  result.iterations += spent;
   return result;
 }
 
@@ -74,7 +74,7 @@ GaussianMixture cross(const GaussianMixture& a, const GaussianMixture& b) {
   return reduction.mixture();
 }
 
-EmResult best_of_restarts(const PointBlocks& points, const std::function<Start(int)>& start_of,
+EmResult best_of_restarts(const PointBlocks& points, const std::function<GaussianMixture(int)>& start_of,
                           const EmOptions& options, std::uint64_t seed) {
   EmOptions coarse = options;
   if (options.tolerance > 0.0) coarse.tolerance = std::max(options.tolerance, coarse_tolerance);
@@ -84,14 +84,14 @@ EmResult best_of_restarts(const PointBlocks& points, const std::function<Start(i
     tbb::parallel_for(0, options.restarts, [&](int i) { action(static_cast<std::size_t>(i)); });
     require_whole_loop();
   };
-  for_each([&](std::size_t i) { results[i] = climb(points, start_of(static_cast<int>(i)), coarse, seed); });
+  for_each([&](std::size_t i) { results[i] = climb(points, start_of(static_cast<int>(i)), 0, coarse, seed); });
   std::vector<EmResult> alone = results;  // what restarts agree on is what each found for itself
   std::size_t best = best_of(results);
   if (options.split_merge > 0 && results[best].mixture.components() > 1) {
     for_each([&](std::size_t i) {
       if (i == best) return;
       const int spent = results[i].iterations;
-      EmResult crossed = climb(points, {cross(results[best].mixture, results[i].mixture), spent}, coarse, seed);
+      EmResult crossed = climb(points, cross(results[best].mixture, results[i].mixture), spent, coarse, seed);
       if (crossed.log_likelihood > results[i].log_likelihood) crossing[i] = std::move(crossed);
     });
     for (std::size_t i = 0; i < results.size(); ++i)

@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "mixture/detail/cloud.hpp"
-#include "mixture/detail/starts.hpp"
 #include "mixture/em.hpp"
 
 namespace modebank {
@@ -25,7 +24,7 @@ GaussianMixture cross(const GaussianMixture& a, const GaussianMixture& b);
 ///    restart found by itself, because whatever is crossed with the best resembles it.
 /// Restarts run in parallel; what they are compared with is settled between the steps, so that the result does not
 /// depend on threads.
-EmResult best_of_restarts(const PointBlocks& points, const std::function<Start(int)>& start_of,
+EmResult best_of_restarts(const PointBlocks& points, const std::function<GaussianMixture(int)>& start_of,
                           const EmOptions& options, std::uint64_t seed);
 
 }  // namespace modebank

@@ -19,26 +19,8 @@ namespace {
 
 /// Starts are chosen from this many points at most.
 constexpr Index start_points = 50000;
-/// Short runs take this many points: enough to tell a start that misses a cluster.
-constexpr Index short_run_points = 1500;
-constexpr int short_run_iterations = 10;
-/// More of either cost more time than they save EM.
-constexpr int lloyd_iterations = 3, candidates = 3;
 /// Squared distances beyond this (points so far out that squares overflow) count as this.
 constexpr double largest_distance = 1e200;
-
-/// A number for every point, block_size x blocks, and its weighted sum block by block. What filling points have does
-/// not matter: their weight is zero.
-struct WeightedColumn {
-  BlockColumns values;
-  Eigen::VectorXd block_sums;  ///< sum of weight times value
-};
-
-WeightedColumn constant(const PointBlocks& points, double value) {
-  WeightedColumn result{BlockColumns::Constant(block_size, points.blocks(), value), Eigen::VectorXd(points.blocks())};
-  for (Index b = 0; b < points.blocks(); ++b) result.block_sums(b) = value * points.weights(b).sum();
-  return result;
-}
 
 BlockColumn squared_distances(const PointBlocks& points, Index block, const double* center) {
   BlockColumn distances = BlockColumn::Zero();
@@ -46,31 +28,28 @@ BlockColumn squared_distances(const PointBlocks& points, Index block, const doub
   return distances.min(largest_distance);
 }
 
-/// Squared distances to the nearest of some centres, `nearest`, when `center` joins them.
-void closer(const PointBlocks& points, const Eigen::VectorXd& center, const WeightedColumn& nearest,
-            WeightedColumn& out) {
-  for (Index b = 0; b < points.blocks(); ++b) {
-    out.values.col(b) = squared_distances(points, b, center.data()).min(nearest.values.col(b));
-    out.block_sums(b) = (points.weights(b) * out.values.col(b)).sum();
-  }
+/// Sum of the weights of each block.
+Eigen::VectorXd block_weights(const PointBlocks& points) {
+  Eigen::VectorXd sums(points.blocks());
+  for (Index b = 0; b < points.blocks(); ++b) sums(b) = points.weights(b).sum();
+  return sums;
 }
 
-/// Index of a point drawn with probability proportional to its weight times `column`.
-Index draw(const PointBlocks& points, const WeightedColumn& column, std::mt19937_64& generator) {
-  double rest = boost::random::uniform_01<double>()(generator) * column.block_sums.sum();
+/// Index of a point drawn with probability proportional to its weight; `block_sums` as block_weights gives.
+Index draw(const PointBlocks& points, const Eigen::VectorXd& block_sums, std::mt19937_64& generator) {
+  double rest = boost::random::uniform_01<double>()(generator) * block_sums.sum();
   Index last = 0;
   for (Index b = 0; b < points.blocks(); ++b) {
-    if (rest >= column.block_sums(b) && b + 1 < points.blocks()) {
-      rest -= column.block_sums(b);
+    if (rest >= block_sums(b) && b + 1 < points.blocks()) {
+      rest -= block_sums(b);
       continue;
     }
     const auto weights = points.weights(b);
     for (Index i = 0; i < points.points_in(b); ++i) {
-      const double mass = weights(i) * column.values(i, b);
-      if (!(mass > 0.0)) continue;
+      if (!(weights(i) > 0.0)) continue;
       last = b * block_size + i;
-      if (rest < mass) return last;
-      rest -= mass;
+      if (rest < weights(i)) return last;
+      rest -= weights(i);
     }
   }
   return last;
@@ -78,27 +57,6 @@ Index draw(const PointBlocks& points, const WeightedColumn& column, std::mt19937
 
 Eigen::VectorXd point(const PointBlocks& points, Index index) {
   return points.points(index / block_size).row(index % block_size).matrix();
-}
-
-/// k-means++ that draws a few candidates for every centre and keeps the one that leaves the least distances (Arthur &
-/// Vassilvitskii 2007, section 5).
-Eigen::MatrixXd plus_plus_centers(const PointBlocks& points, Index components, std::mt19937_64& generator) {
-  const WeightedColumn equal = constant(points, 1.0);
-  WeightedColumn nearest = constant(points, largest_distance), trial = nearest, best = nearest;
-  Eigen::MatrixXd centers(points.features(), components);
-  for (Index k = 0; k < components; ++k) {
-    // All points coincide with a centre: any of them is as good.
-    const bool any = k == 0 || !(nearest.block_sums.sum() > 0.0);
-    for (int candidate = 0; candidate < (any ? 1 : candidates); ++candidate) {
-      const Eigen::VectorXd center = point(points, draw(points, any ? equal : nearest, generator));
-      closer(points, center, nearest, trial);
-      if (candidate > 0 && !(trial.block_sums.sum() < best.block_sums.sum())) continue;
-      centers.col(k) = center;
-      std::swap(best, trial);
-    }
-    std::swap(nearest, best);
-  }
-  return centers;
 }
 
 /// Cluster of every point, block_size x blocks; what filling points say does not matter.
@@ -183,23 +141,11 @@ GaussianMixture mixture_of_clusters(const PointBlocks& points, const Labels& lab
 
 }  // namespace
 
-GaussianMixture kmeans_start(const PointBlocks& points, Index components, const EmOptions& options,
-                             std::mt19937_64& generator) {
-  Eigen::MatrixXd centers = plus_plus_centers(points, components, generator);
-  Labels labels, previous;
-  for (int iteration = 0; iteration < lloyd_iterations; ++iteration) {
-    previous = std::exchange(labels, assign(points, centers));
-    if (iteration > 0 && (labels == previous).all()) break;
-    recenter(points, labels, centers);
-  }
-  return mixture_of_clusters(points, labels, std::move(centers), options);
-}
-
 GaussianMixture random_start(const PointBlocks& points, Index components, const EmOptions& options,
                              std::mt19937_64& generator) {
-  const WeightedColumn equal = constant(points, 1.0);
+  const Eigen::VectorXd block_sums = block_weights(points);
   Eigen::MatrixXd centers(points.features(), components);
-  for (Index k = 0; k < components; ++k) centers.col(k) = point(points, draw(points, equal, generator));
+  for (Index k = 0; k < components; ++k) centers.col(k) = point(points, draw(points, block_sums, generator));
   const Labels labels = assign(points, centers);
   return mixture_of_clusters(points, labels, std::move(centers), options);
 }
@@ -213,29 +159,13 @@ Eigen::MatrixXd sample_points(const PointBlocks& points, Index most, std::mt1993
   return sample.leftCols(taken);
 }
 
-Start make_start(const ScaledCloud& cloud, Index components, int restart, const EmOptions& options,
-                 std::uint64_t seed) {
+GaussianMixture make_start(const ScaledCloud& cloud, Index components, int restart, const EmOptions& options,
+                           std::uint64_t seed) {
   std::mt19937_64 generator = make_generator(seed, "em restart", static_cast<std::uint64_t>(restart));
-  const auto start = options.start == StartKind::random ? random_start : kmeans_start;
   const PointBlocks chosen = cloud.points.for_starts(start_points, generator);
-  const auto draw_one = [&] {
-    GaussianMixture mixture = start(chosen, components, options, generator);
-    cloud.set_noise(mixture);
-    return mixture;
-  };
-  if (options.start_runs == 1 || components == 1) return {draw_one(), 0};
-  // A subsample does not know the points' errors.
-  const bool few = cloud.points.count() <= short_run_points || cloud.points.has_errors();
-  std::optional<PointBlocks> subsample;
-  if (!few) subsample.emplace(cloud.points.for_starts(short_run_points, generator));
-  EmOptions brief = options;
-  brief.max_iterations = std::min(short_run_iterations, options.max_iterations);
-  EmResult best;
-  for (int run = 0; run < options.start_runs; ++run) {
-    EmResult result = iterate(few ? cloud.points : *subsample, draw_one(), brief);
-    if (run == 0 || result.log_likelihood > best.log_likelihood) best = std::move(result);
-  }
-  return {std::move(best.mixture), best.iterations};
+  GaussianMixture mixture = random_start(chosen, components, options, generator);
+  cloud.set_noise(mixture);
+  return mixture;
 }
 
 }  // namespace modebank

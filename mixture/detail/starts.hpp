@@ -9,24 +9,13 @@
 
 namespace modebank {
 
-/// Where a restart begins, and the EM iterations spent on finding it.
-struct Start {
-  GaussianMixture mixture;
-  int iterations = 0;
-};
+/// Start number `restart` of EM over a cloud, a random_start on 50,000 points at most. Depends on components, restart
+/// and seed alone.
+GaussianMixture make_start(const ScaledCloud& cloud, Eigen::Index components, int restart, const EmOptions& options,
+                           std::uint64_t seed);
 
-/// Start number `restart` of EM over a cloud: the best of options.start_runs short runs (emEM: Biernacki, Celeux &
-/// Govaert 2003, Comput. Stat. Data Anal. 41, section 2.2), on a subsample of many points. Depends on components,
-/// restart and seed alone.
-Start make_start(const ScaledCloud& cloud, Eigen::Index components, int restart, const EmOptions& options,
-                 std::uint64_t seed);
-
-/// Greedy k-means++ seeding (Arthur & Vassilvitskii 2007), a few Lloyd iterations, then the clusters' moments. Points
-/// should be in units of equal importance. Fewer distinct points than components gives coinciding components.
-GaussianMixture kmeans_start(const PointBlocks& points, Eigen::Index components, const EmOptions& options,
-                             std::mt19937_64& generator);
-
-/// Components at points drawn by weight, with the moments of the points nearest to each.
+/// Components at points drawn by weight, with the moments of the points nearest to each. Points should be in units of
+/// equal importance. Fewer distinct points than components gives coinciding components.
 GaussianMixture random_start(const PointBlocks& points, Eigen::Index components, const EmOptions& options,
                              std::mt19937_64& generator);
 

@@ -1,7 +1,7 @@
 // EM of Gaussian mixtures beside other people's programs: same points, same start, a fixed number of iterations, one
 // thread, the programs in turn, medians of CPU time over the rounds, log-likelihoods compared. Usage:
 //   compare_em [ROUNDS]           with Armadillo, where the benchmark was built with it
-//   compare_em memory             peak memory of N = 1e7, d = 3, K = 25 from k-means++ starts
+//   compare_em memory             peak memory of N = 1e7, d = 3, K = 25 from a random start
 //   compare_em serve FOLDER       for em_peers.py: writes the cases to FOLDER, then answers lines on stdin
 //                                 ("case NAME", "sweep NAME THREADS KMAX RESTARTS SEED") with seconds and
 //                                 log-likelihoods
@@ -161,9 +161,7 @@ EmRun sweep(const EmCase& problem, int threads, int most, int restarts, int seed
   EmOptions options;
   options.covariance = problem.type;
   options.restarts = restarts;
-  // What scikit-learn does: it knows no short runs and no moves.
-  options.start = StartKind::kmeans_plus_plus;
-  options.start_runs = 1;
+  // scikit-learn has no moves either.
   options.split_merge = 0;
   options.tolerance = 1e-3;
   options.max_iterations = 100;
@@ -201,7 +199,6 @@ void measure_memory() {
   EmOptions options;
   options.restarts = 1;
   options.max_iterations = 2;
-  options.start_runs = 1;
   options.split_merge = 0;
   const EmResult fit = fit_em(PointSet(points), components, options, 1);
   double sum = 0.0;

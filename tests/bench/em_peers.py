@@ -2,7 +2,7 @@
 """EM of Gaussian mixtures: modebank and Armadillo (build/compare_em) beside scikit-learn, in turn, from the same start, a
 fixed number of iterations, one thread each; medians over the rounds in CPU time, which a busy machine disturbs less than
 wall time. Then the whole study K = 1..25 with 5 restarts on 3000 points, also on two threads (wall time): both from
-k-means++ starts, full or diagonal covariance, until the mean log-likelihood gains less than 1e-3 (scikit-learn's default),
+points drawn as centres, full or diagonal covariance, until the mean log-likelihood gains less than 1e-3 (scikit-learn's default),
 at most 100 iterations, without split-and-merge moves; other seeds in every round, and the mean over the rounds of the sum
 of the log-likelihoods reached.
 Usage: em_peers.py build/compare_em [ROUNDS [FIRST_LETTERS_OF_CASES]]; run it with OMP_NUM_THREADS=1
@@ -103,7 +103,8 @@ def sweep(server, folder, kind, rounds):
         ours.append(answer[1])
         two.append(server.ask(f"sweep {name} 2 25 5 {seed}")[0])
         start = time.process_time()
-        fits = [GaussianMixture(k, covariance_type=short, n_init=5, random_state=seed).fit(points) for k in range(1, 26)]
+        fits = [GaussianMixture(k, covariance_type=short, n_init=5, init_params="random_from_data",
+                                random_state=seed).fit(points) for k in range(1, 26)]
         peer.append(time.process_time() - start)
         theirs.append(sum(fit.score(points) * len(points) for fit in fits))
     print(f"K = 1..25, 5 restarts, {kind:<9} modebank {statistics.median(own):.3f} s, two threads {statistics.median(two):.3f} s"

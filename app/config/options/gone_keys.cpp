@@ -23,6 +23,8 @@ constexpr std::array gone{
     Gone{"bank.drift", "fixed", "auto chooses how fast"},
     Gone{"bank.members", "", "--track.filter combined predicts better than one bank"},
     Gone{"window.residual", "", "refinement learns the measurement noise, see help bank.measurement_variance"},
+    Gone{"mixture.start", "kmeans++", "random"},
+    Gone{"mixture.start_runs", "", "mixture.restarts sets the number of random starts"},
     Gone{"mixture.bootstrap", "", "banks state standard errors of their coefficients"},
     Gone{"filter.parameter_noise", "", "refinement learns what it added to Q"},
     Gone{"filter.time_steps", "", "a longer time between samples is as many prediction steps as fit"},

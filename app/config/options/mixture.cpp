@@ -4,24 +4,17 @@
 namespace modebank::app {
 namespace {
 
-/// A way to start, or an archive that holds a mixture.
+/// Random starts, or an archive that holds a mixture.
 Option start_option() {
-  Option result =
-      words("mixture.start",
-            "where EM begins: at points drawn as centres, at k-means++, or at the mixture of an archive for the "
-            "candidate of its size (the others as random)",
-            MODEBANK_FIELD(mixture.selection.em.start));
-  result.range += " | an archive";
+  Option result = text("mixture.start", "random | an archive",
+                       "where EM begins: at points drawn as centres, or at the mixture of an archive for the candidate "
+                       "of its size (the others as random)",
+                       MODEBANK_FIELD(mixture_start));
   result.set = [](Config& config, const std::string& text) {
-    const std::optional<StartKind> kind = parse_name<StartKind>(text);
-    if (!kind && !text.ends_with(".h5"))
-      throw std::invalid_argument("must be one of " + words_of<StartKind>() + ", or an archive (.h5)");
-    config.mixture.selection.em.start = kind.value_or(StartKind::random);
-    config.mixture_start = kind ? "" : text;
+    if (text != "random" && !text.ends_with(".h5")) throw std::invalid_argument("must be random, or an archive (.h5)");
+    config.mixture_start = text == "random" ? "" : text;
   };
-  result.get = [get = result.get](const Config& config) {
-    return config.mixture_start.empty() ? get(config) : config.mixture_start;
-  };
+  result.get = [](const Config& config) { return config.mixture_start.empty() ? "random" : config.mixture_start; };
   return result;
 }
 
@@ -49,8 +42,6 @@ std::vector<Option> mixture_options() {
       start_option(),
       numeric("mixture.restarts", between(1, 10'000), "", "independent starts per candidate",
               MODEBANK_FIELD(mixture.selection.em.restarts)),
-      numeric("mixture.start_runs", between(1, 10'000), "", "short runs that a start is the best of; 1: single starts",
-              MODEBANK_FIELD(mixture.selection.em.start_runs)),
       numeric("mixture.split_merge", between(0, 10'000), "",
               "moves tried to leave each optimum: two components merged, one split; 0: none, and restarts are not "
               "crossed",

@@ -89,7 +89,6 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
       {"mixture.straddling", "never, unless you study how windows over a switch blur the components"},
       {"mixture.start", "an archive, to go on from a mixture found before"},
       {"mixture.restarts", "more, when a warning says that few restarts reached the best optimum"},
-      {"mixture.start_runs", "never, unless you study the starts of EM"},
       {"mixture.split_merge", "0, to see what plain restarts find; else never"},
       {"mixture.heldout", "never, to save time with many windows; always, to see scores beyond 20,000 windows"},
       {"mixture.tolerance", "never, unless candidates stop at mixture.max_iterations"},

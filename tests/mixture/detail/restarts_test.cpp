@@ -1,4 +1,4 @@
-// Short runs, crossing of restarts, and climbs that are given up.
+// Crossing of restarts, and climbs that are given up.
 #include "mixture/detail/restarts.hpp"
 
 #include <gtest/gtest.h>
@@ -53,33 +53,6 @@ TEST(Cross, TakesWhatIsRightInEither) {
   EmOptions options;
   const double child = fit_em(PointSet(points), cross(left, right), options).log_likelihood;
   EXPECT_GT(child, truth - 1.0);
-}
-
-TEST(Restarts, ShortRunsAreWhatStartRunsSays) {
-  const Eigen::MatrixXd points = draw(four_in_a_row(), 400, 4);
-  for (const StartKind kind : {StartKind::kmeans_plus_plus, StartKind::random})
-    for (const int moves : {0, 5}) {
-      EmOptions options;
-      options.start = kind;
-      options.split_merge = moves;
-      const ScaledCloud cloud(PointSet(points), options);
-      options.start_runs = 1;
-      EXPECT_EQ(make_start(cloud, 3, 1, options, 1).iterations, 0);
-      options.start_runs = 5;
-      EXPECT_GT(make_start(cloud, 3, 1, options, 1).iterations, 0);
-    }
-}
-
-/// Points beyond the subsample's number: starts are still found, and the same whatever the order of calls.
-TEST(Restarts, ShortRunsOnASubsample) {
-  const Eigen::MatrixXd points = draw(four_in_a_row(), 6000, 5);
-  EmOptions options;
-  options.start = StartKind::kmeans_plus_plus;
-  options.split_merge = 0;
-  const EmResult fit = fit_em(points, 4, options, 1);
-  EXPECT_EQ(fit.agreeing_restarts, options.restarts);
-  EXPECT_GT(fit.log_likelihood, log_density(four_in_a_row(), points).sum());
-  EXPECT_EQ(fit.log_likelihood, fit_em(points, 4, options, 1).log_likelihood);
 }
 
 /// What restarts agree on is what each finds by itself: as many as do so when every one of them is the only one.
@@ -143,7 +116,7 @@ TEST(Restarts, BadOptionsAreNamed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.tolerance = nan; });
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.covariance_floor = 1e300 * 1e300; });
-  refused([&](SelectionOptions& options, SampleDesign&) { options.em.start_runs = 0; });
+  refused([&](SelectionOptions& options, SampleDesign&) { options.em.restarts = 0; });
   // What is wrong with the call is said, not taken for a candidate that failed.
   GaussianMixture other_features = three_clusters(2.0);
   other_features.means.conservativeResize(1, Eigen::NoChange);

@@ -15,24 +15,11 @@ struct EnumNames<CovarianceType> {
   static constexpr Names<2> values{"full", "diagonal"};
 };
 
-/// Where restarts begin: at the best of EmOptions::start_runs short runs from points drawn as centres, or from
-/// k-means++ (Arthur & Vassilvitskii 2007). With moves random starts lead to higher optima: on three clouds of robot
-/// data and one simulated, K = 1..12 and six seeds, by 10 to 600 nats in the mean.
-enum class StartKind { random, kmeans_plus_plus };
-
-template <>
-struct EnumNames<StartKind> {
-  static constexpr Names<2> values{"random", "kmeans++"};
-};
-
-/// Expectation-maximisation of a Gaussian mixture (Dempster, Laird & Rubin 1977), in the log domain.
+/// Expectation-maximisation of a Gaussian mixture (Dempster, Laird & Rubin 1977), in the log domain. Restarts begin at
+/// points drawn as centres.
 struct EmOptions {
   CovarianceType covariance = CovarianceType::full;  ///< of the components
-  StartKind start = StartKind::random;               ///< where restarts begin
   int restarts = 5;                                  ///< independent, >= 1
-  /// Short runs that a start is the best of (emEM: Biernacki, Celeux & Govaert 2003), on a subsample of many points; 1:
-  /// single starts.
-  int start_runs = 2;
   /// Split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000). 0: none, and restarts are
   /// not crossed.
   int split_merge = 5;
