@@ -11,10 +11,10 @@
 #include <random>
 
 #include "ident/base/seed.hpp"
-#include "ident/fit/confidence.hpp"
 #include "ident/fit/fit_window.hpp"
 #include "ident/fit/scale.hpp"
 #include "ident/model/transitions.hpp"
+#include "tests/support/confidence.hpp"
 
 namespace modebank::test {
 namespace {

@@ -2,12 +2,12 @@
 #include <cmath>
 #include <limits>
 
-#include "ident/fit/confidence.hpp"
 #include "ident/fit/fit_window.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/scale.hpp"
 #include "tests/ident/ident_test_support.hpp"
+#include "tests/support/confidence.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

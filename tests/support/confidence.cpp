@@ -1,4 +1,4 @@
-#include "ident/fit/confidence.hpp"
+#include "tests/support/confidence.hpp"
 
 #include <algorithm>
 #include <cmath>
