@@ -50,8 +50,6 @@ double badness(const Candidate& candidate, Criterion criterion) {
       return candidate.bic;
     case Criterion::icl:
       return candidate.icl;
-    case Criterion::aic:
-      return candidate.aic;
     case Criterion::heldout:
       return -candidate.heldout;
     case Criterion::bic_naive:

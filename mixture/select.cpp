@@ -135,8 +135,7 @@ void for_each_from_the_largest(Index count, Do action) {
 
 bool wants_heldout(const Task& task) {
   if (task.design.runs.empty()) return false;
-  return task.options.criterion == Criterion::heldout || task.options.heldout == HeldoutChoice::always ||
-         (task.options.heldout == HeldoutChoice::automatic && task.points.count() <= affordable_heldout);
+  return task.options.criterion == Criterion::heldout || task.points.count() <= affordable_heldout;
 }
 
 void score_heldout(const Task& task, FittedCandidate& candidate) {

@@ -67,7 +67,7 @@ MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, whee
                     loss_scale, scale, sigma, prior, prior_sd, intercept, covariance, max_iterations, solver, seed)
 MODEBANK_KEY_FIELDS(EmOptions, covariance, restarts, split_merge, tolerance, max_iterations, covariance_floor,
                     noise_component)
-MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, heldout, em)
+MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, em)
 MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, straddling, error_aware)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, look_ahead, look_ahead_score, folds,
                     measurement_noise, screen, guards, one_theta, noise_by_input, seed, drift, transitions)

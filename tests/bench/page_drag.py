@@ -32,7 +32,6 @@ step = 100
 [mixture]
 components = 2
 restarts = 1
-heldout = never
 [bank]
 refine = none
 refine_transitions = 2000

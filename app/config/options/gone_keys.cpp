@@ -25,6 +25,8 @@ constexpr std::array gone{
     Gone{"window.residual", "", "refinement learns the measurement noise, see help bank.measurement_variance"},
     Gone{"mixture.start", "kmeans++", "random"},
     Gone{"mixture.start_runs", "", "mixture.restarts sets the number of random starts"},
+    Gone{"mixture.criterion", "aic", "bic"},
+    Gone{"mixture.heldout", "", "mixture.criterion = heldout scores candidates of any number of windows"},
     Gone{"mixture.bootstrap", "", "banks state standard errors of their coefficients"},
     Gone{"filter.parameter_noise", "", "refinement learns what it added to Q"},
     Gone{"filter.time_steps", "", "a longer time between samples is as many prediction steps as fit"},

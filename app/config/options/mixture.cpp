@@ -46,9 +46,6 @@ std::vector<Option> mixture_options() {
               "moves tried to leave each optimum: two components merged, one split; 0: none, and restarts are not "
               "crossed",
               MODEBANK_FIELD(mixture.selection.em.split_merge)),
-      words("mixture.heldout",
-            "score candidates by leaving out runs; auto: up to 20,000 windows; never: only as the criterion",
-            MODEBANK_FIELD(mixture.selection.heldout)),
       numeric("mixture.tolerance", above(0), "nats/window", "stop when the mean log-likelihood gains less",
               MODEBANK_FIELD(mixture.selection.em.tolerance)),
       numeric("mixture.max_iterations", between(1, 1e6), "", "limit of each EM run",

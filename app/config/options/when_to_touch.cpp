@@ -90,7 +90,6 @@ const std::unordered_map<std::string_view, std::string_view>& learning_keys() {
       {"mixture.start", "an archive, to go on from a mixture found before"},
       {"mixture.restarts", "more, when a warning says that few restarts reached the best optimum"},
       {"mixture.split_merge", "0, to see what plain restarts find; else never"},
-      {"mixture.heldout", "never, to save time with many windows; always, to see scores beyond 20,000 windows"},
       {"mixture.tolerance", "never, unless candidates stop at mixture.max_iterations"},
       {"mixture.max_iterations", "when `modebank show` has candidates that did not converge"},
       {"mixture.covariance_floor", "when candidates rest on the floor: your parameters are of another size than one"},

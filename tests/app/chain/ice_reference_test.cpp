@@ -152,7 +152,6 @@ TEST_P(IceReference, TheNumberOfComponentsDoesNotDependOnTheFloorOrTheSeed) {
     const FeatureCloud cloud = make_features(fits, archive.recording->states, config.mixture);
     SelectionOptions options = config.mixture.selection;
     options.components = {1, 2, 3, 4, 5, 6, 7, 8};
-    options.heldout = HeldoutChoice::never;
     for (const double floor : {1e-8, 1e-6, 1e-4})
       for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         options.em.covariance_floor = floor;

@@ -49,7 +49,6 @@ RecoveredSize recover_size(const RecoveryCase& recovery, int seed) {
   options.components.resize(system.modes.size() + 3);
   std::iota(options.components.begin(), options.components.end(), Index{1});
   options.criterion = recovery.criterion;
-  options.heldout = HeldoutChoice::never;
   options.em.restarts = 2;
   options.em.noise_component = recovery.noise_component;
   const FeatureCloud cloud =

@@ -75,7 +75,7 @@ class StageKey : public ::testing::Test {
     write_file(
         file("base.ini"),
         "[data]\ninputs = run_*.csv\nstate = wz\ninput = left, right\n[window]\nmodel = linear\nlength = 10\nstep = 3\n"
-        "[mixture]\ncomponents = 3\nrestarts = 2\nsplit_merge = 1\nheldout = never\n"
+        "[mixture]\ncomponents = 3\nrestarts = 2\nsplit_merge = 1\n"
         "[bank]\nfolds = 2\nmax_iterations = 2\nrestarts = 1\n");
   }
 

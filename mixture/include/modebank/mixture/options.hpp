@@ -33,29 +33,21 @@ struct EmOptions {
 
 /// What chooses the number of components: information criteria, or the log density of runs left out. bic_naive is BIC
 /// as if all points were independent.
-enum class Criterion { bic, icl, aic, heldout, bic_naive };
+enum class Criterion { bic, icl, heldout, bic_naive };
 
 template <>
 struct EnumNames<Criterion> {
-  static constexpr Names<5> values{"bic", "icl", "aic", "heldout", "bic_naive"};
+  static constexpr Names<4> values{"bic", "icl", "heldout", "bic_naive"};
 };
 
-/// When candidates get a held-out score, which takes several more fits each: if it is affordable (at most 20,000
-/// points) or the criterion; always; or only as the criterion.
-enum class HeldoutChoice { automatic, always, never };
-
-template <>
-struct EnumNames<HeldoutChoice> {
-  static constexpr Names<3> values{"auto", "always", "never"};
-};
-
-/// How the number of components is chosen, and each candidate fitted. Defaults are the recommended method.
+/// How the number of components is chosen, and each candidate fitted. Candidates get a held-out score, which takes
+/// several more fits each, for at most 20,000 points of known runs, or where it is the criterion. Defaults are the
+/// recommended method.
 struct SelectionOptions {
   /// Candidate numbers of components, each at least 1.
   std::vector<std::ptrdiff_t> components{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-  Criterion criterion = Criterion::bic;              ///< what chooses
-  HeldoutChoice heldout = HeldoutChoice::automatic;  ///< when candidates get a held-out score
-  EmOptions em;                                      ///< how each candidate is fitted
+  Criterion criterion = Criterion::bic;  ///< what chooses
+  EmOptions em;                          ///< how each candidate is fitted
 };
 
 /// Numbers of a window that are clustered: its parameters; besides them the logarithms of its noise variances; or both
