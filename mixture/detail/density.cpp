@@ -32,12 +32,8 @@ void pack(const Eigen::MatrixXd& W, const Eigen::VectorXd& mean, em::Packing pac
         for (Index j = diagonal ? i : 0; j <= i; ++j) out.push_back(unit * W(i, j));
       for (Index i = 0; i < F; ++i) out.push_back(-unit * W.row(i).dot(mean));
       break;
-    case em::Packing::unit_rows:
-      for (Index i = 0; i < F; ++i)
-        for (Index j = 0; j <= i; ++j) out.push_back(W(i, i) * W(j, j));
-      for (Index i = 0; i < F; ++i) out.push_back(W(i, i));
-      for (Index i = 0; i < F; ++i)
-        for (Index j = 0; j < i; ++j) out.push_back(W(i, j) / W(i, i));
+    case em::Packing::whole:
+      out.insert(out.end(), W.data(), W.data() + W.size());
       break;
     case em::Packing::tiles:
       for (Index row = 0; row < F; row += tile)
@@ -131,8 +127,7 @@ void FactoredMixture::to_plain_sums(Index component, Eigen::Ref<Eigen::VectorXd>
 KernelScratch::KernelScratch(const FactoredMixture& mixture) : components_(mixture.components().count) {
   const em::Kernels& kernels = mixture.kernels();
   const Index lanes = (2 + components_ * kernels.entries) * em::most_lanes;
-  const Index work = kernels.common_work + components_ * kernels.work;
-  const Index work_padded = (work + em::most_lanes - 1) / em::most_lanes * em::most_lanes;
+  const Index work_padded = (kernels.work + em::most_lanes - 1) / em::most_lanes * em::most_lanes;
   const Index densities = (components_ + 1) * block_size, others = 3 * block_size + lanes + work_padded;
   memory_ = AlignedBuffer::unset(densities + others);
   scratch_.relative = memory_.data();

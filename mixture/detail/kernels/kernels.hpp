@@ -40,9 +40,8 @@ struct Components {
 };
 
 /// How a kernel wants W: its diagonal; A = W sqrt(log2(e) / 2), its lower triangle by rows or its diagonal, then -A mu;
-/// W = D U with U of unit diagonal as the products D_i D_j of the lower triangle by rows, then D, then the rows of U
-/// left of its diagonal; or four rows at a time, column by column, padded with zeros.
-enum class Packing { diagonal, affine, unit_rows, tiles };
+/// all F x F entries, column by column; or four rows at a time, column by column, padded with zeros.
+enum class Packing { diagonal, affine, whole, tiles };
 
 /// Memory of one thread, aligned to 64 bytes.
 struct Scratch {
@@ -61,14 +60,14 @@ struct Scratch {
 struct Kernels {
   Packing packing = Packing::affine;
   Index entries = 0;
-  Index work = 0;         ///< doubles of Scratch::work that one component needs
-  Index common_work = 0;  ///< and as many more for all
+  Index work = 0;                                                                 ///< doubles of Scratch::work
   void (*evaluate)(const Components&, const Block&, const Scratch&) = nullptr;    ///< relative, sum, log_density
   void (*measure)(const Components&, const Block&, const Scratch&) = nullptr;     ///< and adds to the first two lanes
   void (*accumulate)(const Components&, const Block&, const Scratch&) = nullptr;  ///< and to all
 };
 
 Kernels plain_kernels(int features, bool diagonal);
+/// These serve points with errors; they are plain text, not compiled once per instruction set (points_with_errors.cpp).
 Kernels error_kernels(int features, bool diagonal);
 
 /// Lanes of doubles of this machine's kernels.

@@ -32,16 +32,14 @@ HWY_INLINE V bounded(V distance) {
   return hn::IfThenElse(hn::Lt(distance, largest), distance, largest);
 }
 
-// Of a block's points the functions below look at the first `points`, an even number of vectors.
-
 /// scratch.relative holds log densities of `rows` components and scratch.log_density their largest; turns the former
 /// into densities relative to the largest, and the latter into the log density of the mixture.
-HWY_INLINE void normalise(int rows, const Scratch& scratch, Index points = block_size) {
+HWY_INLINE void normalise(int rows, const Scratch& scratch) {
   const Exp exp;
   const Log log;
   for (int k = 0; k < rows; ++k) {
     double* relative = scratch.relative + k * block_size;
-    for (Index n = 0; n < points; n += 2 * L) {
+    for (Index n = 0; n < block_size; n += 2 * L) {
       const V a = exp(hn::Sub(load(relative + n), load(scratch.log_density + n)));
       const V b = exp(hn::Sub(load(relative + n + L), load(scratch.log_density + n + L)));
       store(a, relative + n);
@@ -50,15 +48,14 @@ HWY_INLINE void normalise(int rows, const Scratch& scratch, Index points = block
       store(k == 0 ? b : hn::Add(load(scratch.sum + n + L), b), scratch.sum + n + L);
     }
   }
-  for (Index n = 0; n < points; n += L) add_to(scratch.log_density + n, log(load(scratch.sum + n)));
+  for (Index n = 0; n < block_size; n += L) add_to(scratch.log_density + n, log(load(scratch.sum + n)));
 }
 
 /// The noise component's row comes after those of the Gaussians.
-HWY_INLINE int add_noise(const Components& components, const Block& block, const Scratch& scratch,
-                         Index points = block_size) {
+HWY_INLINE int add_noise(const Components& components, const Block& block, const Scratch& scratch) {
   if (!block.noise) return components.count;
   double* row = scratch.relative + components.count * block_size;
-  for (Index n = 0; n < points; n += L) {
+  for (Index n = 0; n < block_size; n += L) {
     const V noise = load(block.noise + n);
     store(noise, row + n);
     store(hn::Max(load(scratch.log_density + n), noise), scratch.log_density + n);
@@ -76,13 +73,12 @@ HWY_INLINE double largest_log_constant(const Components& components) {
 
 /// Ends what densities relative to exp(shift) began: adds the noise component and turns their sums into log densities.
 /// False where a point is too far from all components (or the noise too dense) for one shift to do.
-HWY_INLINE bool finish_shifted(const Components& components, const Block& block, double shift, const Scratch& scratch,
-                               Index points = block_size) {
+HWY_INLINE bool finish_shifted(const Components& components, const Block& block, double shift, const Scratch& scratch) {
   const V least = splat(1e-150), most = splat(1e150), by = splat(shift);
   const Exp exp;
   const Log log;
   auto sound = hn::Eq(by, by);
-  for (Index n = 0; n < points; n += L) {
+  for (Index n = 0; n < block_size; n += L) {
     V sum = load(scratch.sum + n);
     if (block.noise) {
       const V noise = exp(hn::Sub(load(block.noise + n), by));
@@ -97,11 +93,10 @@ HWY_INLINE bool finish_shifted(const Components& components, const Block& block,
 }
 
 /// Adds log-likelihood and noise of a block to the first two of the lane sums; leaves weight / sum in scratch.sum.
-HWY_INLINE void begin_sums(const Components& components, const Block& block, const Scratch& scratch,
-                           Index points = block_size) {
+HWY_INLINE void begin_sums(const Components& components, const Block& block, const Scratch& scratch) {
   V likelihood = load(scratch.lanes), noise = load(scratch.lanes + L);
   const double* row = scratch.relative + components.count * block_size;
-  for (Index n = 0; n < points; n += L) {
+  for (Index n = 0; n < block_size; n += L) {
     const V weight = load(block.weights + n);
     likelihood = hn::MulAdd(weight, load(scratch.log_density + n), likelihood);
     const V scale = hn::Mul(weight, reciprocal(load(scratch.sum + n)));

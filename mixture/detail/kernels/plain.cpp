@@ -16,7 +16,7 @@ Kernels kernels_of(Packing packing, int features, bool diagonal) {
   Kernels kernels;
   kernels.packing = packing;
   kernels.entries = 1 + features + (diagonal ? features : features * (features + 1) / 2);
-  kernels.common_work = Kernel::work(features);
+  kernels.work = Kernel::work(features);
   kernels.evaluate = Kernel::evaluate;
   kernels.measure = measure<Kernel>;
   kernels.accumulate = Kernel::accumulate;
