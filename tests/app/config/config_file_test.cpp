@@ -154,5 +154,22 @@ TEST_F(ConfigFile, WordsThatAreGoneAreAnsweredWithThoseThatAreLeft) {
     }
 }
 
+/// Keys and values of former versions are refused with what takes their place.
+TEST_F(ConfigFile, KeysThatWentAreAnsweredWithWhatTakesTheirPlace) {
+  using Case = std::array<std::string, 2>;
+  for (const auto& [text, instead] :
+       {Case{"[window]\nresidual = simulation\n", "help bank.measurement_variance"},
+        Case{"[mixture]\nstart = kmeans++\n", "instead: random"},
+        Case{"[mixture]\nstart_runs = 2\n", "mixture.restarts"}, Case{"[mixture]\ncriterion = aic\n", "instead: bic"},
+        Case{"[mixture]\nheldout = never\n", "mixture.criterion = heldout"},
+        Case{"[mixture]\nbootstrap = 200\n", "standard errors of their coefficients"}})
+    try {
+      load(text);
+      ADD_FAILURE() << text << " is accepted";
+    } catch (const ConfigurationError& error) {
+      EXPECT_NE(std::string(error.what()).find(instead), std::string::npos) << error.what();
+    }
+}
+
 }  // namespace
 }  // namespace modebank::app
