@@ -11,7 +11,8 @@ import sys
 IDENT = ["ident/base", "ident/data", "ident/model"]
 FIT = IDENT + ["ident/model/models", "ident/fit"]
 STEP = IDENT + ["filter/step"]
-LIBRARIES = FIT + ["ident/lag", "ident/terms", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/judge", "filter/learn", "filter/learn/chain"]
+JUDGE = ["filter/judge/run", "filter/judge/score", "filter/judge/decide"]
+LIBRARIES = FIT + ["ident/lag", "ident/terms", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/learn", "filter/learn/chain"] + JUDGE
 IO = ["io/files", "io/hdf5", "io/table", "io/csv", "io/arrays", "io/archive/groups", "io/archive/bank", "io/archive", "io/recording", "io/import", "io/simulation"]
 BELOW_APP = LIBRARIES + IO
 MAY_INCLUDE = {
@@ -26,9 +27,11 @@ MAY_INCLUDE = {
     "ident/simulate": IDENT,
     "mixture": IDENT,
     "filter/step": IDENT,
-    "filter/judge": STEP,
-    "filter/learn": FIT + ["mixture", "filter/step", "filter/judge"],
-    "filter/learn/chain": FIT + ["ident/lag", "ident/terms", "mixture", "filter/step", "filter/judge", "filter/learn"],
+    "filter/judge/run": STEP,
+    "filter/judge/score": STEP + ["filter/judge/run"],
+    "filter/judge/decide": STEP + ["filter/judge/run", "filter/judge/score"],
+    "filter/learn": FIT + ["mixture", "filter/step"] + JUDGE,
+    "filter/learn/chain": FIT + ["ident/lag", "ident/terms", "mixture", "filter/step", "filter/learn"] + JUDGE,
     "io/files": IDENT[:1],
     "io/hdf5": IDENT[:1],
     "io/table": IDENT[:1] + ["io/files"],
@@ -54,7 +57,7 @@ MAY_INCLUDE = {
     "python/bindings": BELOW_APP + [f"app/{folder}" for folder in ("chain", "config", "text", "pipeline")],
 }
 # Whose the installed headers <modebank/NAME/...> are.
-PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge",
+PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge/run",
           "learn": "filter/learn", "archive": "io/archive/bank"}
 # The way lanes of a processor's vector registers are used is the one detail that all kernels share.
 SHARED_DETAIL = "ident/base/detail"

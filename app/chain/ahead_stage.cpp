@@ -8,7 +8,7 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
-#include "filter/judge/combination.hpp"
+#include "filter/judge/score/combination.hpp"
 #include "filter/learn/chain/forecasters.hpp"
 #include "ident/base/work_counter.hpp"
 #include "modebank/base/error.hpp"

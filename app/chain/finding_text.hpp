@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "filter/judge/finding.hpp"
+#include "filter/judge/decide/finding.hpp"
 
 namespace modebank {
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/chain/stages.hpp"
-#include "filter/judge/free_run.hpp"
+#include "filter/judge/run/free_run.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {

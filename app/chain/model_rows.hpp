@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "filter/judge/finding.hpp"
+#include "filter/judge/decide/finding.hpp"
 #include "io/archive/archive.hpp"
 
 /// An archive's rows on evaluation, model by model.

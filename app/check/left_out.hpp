@@ -6,7 +6,7 @@
 
 #include "app/chain/options.hpp"
 #include "app/check/check.hpp"
-#include "filter/judge/paired_gain.hpp"
+#include "filter/judge/score/paired_gain.hpp"
 #include "filter/learn/chain/learn_left_out.hpp"
 
 /// What configurations predict of training runs that were left out, so that two of them can be compared on the same

@@ -6,7 +6,7 @@
 #include "app/chain/listener.hpp"
 #include "app/chain/options.hpp"
 #include "app/check/check.hpp"
-#include "filter/judge/paired_gain.hpp"
+#include "filter/judge/score/paired_gain.hpp"
 
 namespace modebank {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "app/chain/stage_inputs.hpp"
-#include "filter/judge/combination.hpp"
+#include "filter/judge/score/combination.hpp"
 #include "filter/step/combined_filter.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "io/archive/bank/load_bank.hpp"

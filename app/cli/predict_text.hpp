@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/free_run.hpp"
+#include "filter/judge/run/free_run.hpp"
 
 /// What `predict` says: samples without a prediction are left out.
 namespace modebank::app {

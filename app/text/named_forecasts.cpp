@@ -8,7 +8,7 @@
 #include <set>
 
 #include "app/chain/judged_runs.hpp"
-#include "filter/judge/finding.hpp"
+#include "filter/judge/decide/finding.hpp"
 #include "ident/base/clustered_error.hpp"
 
 namespace modebank::app {

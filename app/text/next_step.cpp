@@ -10,7 +10,7 @@
 #include "app/chain/judged_runs.hpp"
 #include "app/text/named_forecasts.hpp"
 #include "app/text/warnings.hpp"
-#include "filter/judge/verdict_reason.hpp"
+#include "filter/judge/decide/verdict_reason.hpp"
 #include "ident/fit/window_length.hpp"
 #include "ident/lag/structure.hpp"
 #include "io/import/split.hpp"

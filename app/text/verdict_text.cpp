@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/chain/judged_runs.hpp"
-#include "filter/judge/verdict_reason.hpp"
+#include "filter/judge/decide/verdict_reason.hpp"
 
 namespace modebank::app {
 namespace {

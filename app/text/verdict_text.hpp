@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/decide/diagnostics.hpp"
 
 /// Sentences about a filter's stated uncertainty, each made here from one row of /evaluation/diagnostics.
 namespace modebank::app {

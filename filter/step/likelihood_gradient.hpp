@@ -33,7 +33,7 @@ bool has_likelihood_gradient(const Bank& bank, const FilterOptions& options);
 /// The gradient of sum_k weight_k log p(y_k | earlier) of one run, exact for what the filter computes, at the cost of a
 /// few filter passes, however many parameters there are: the steps are gone back over in reverse (reverse mode of
 /// differentiation; Griewank & Walther 2008, "Evaluating derivatives"). `weight`: one per sample, or empty: all one.
-/// Conditions are those of log_likelihood (filter/judge/evaluate.hpp) and has_likelihood_gradient.
+/// Conditions are those of log_likelihood (filter/judge/run/evaluate.hpp) and has_likelihood_gradient.
 BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
                                      const FilterOptions& options);
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "filter/judge/evaluate.hpp"
+#include "filter/judge/run/evaluate.hpp"
 #include "tests/bench/bench_bank.hpp"
 #include "tests/bench/bench_data.hpp"
 

@@ -11,7 +11,7 @@
 #include <functional>
 #include <numbers>
 
-#include "filter/judge/evaluate.hpp"
+#include "filter/judge/run/evaluate.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/equations/filter_step.hpp"
 #include "tests/bench/bench_data.hpp"

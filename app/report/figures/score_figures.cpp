@@ -8,7 +8,7 @@
 #include "app/report/figures/run_figures.hpp"
 #include "app/report/page/assets.hpp"
 #include "app/report/page/pit_histogram.hpp"
-#include "filter/judge/finding.hpp"
+#include "filter/judge/decide/finding.hpp"
 
 namespace modebank::app::report {
 namespace {

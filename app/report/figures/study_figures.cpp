@@ -6,7 +6,7 @@
 #include "app/report/page/study_page.hpp"
 #include "app/study/answers/answers.hpp"
 #include "app/study/answers/value_groups.hpp"
-#include "filter/judge/finding.hpp"
+#include "filter/judge/decide/finding.hpp"
 #include "filter/step/combined_filter.hpp"
 
 namespace modebank::app::report {

@@ -12,7 +12,7 @@
 #include "app/report/page/assets.hpp"
 #include "app/report/page/prediction_band.hpp"
 #include "app/report/page/unit_text.hpp"
-#include "filter/judge/squared_distances.hpp"
+#include "filter/judge/score/squared_distances.hpp"
 #include "ident/base/distributions.hpp"
 #include "modebank/base/error.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "filter/judge/paired_gain.hpp"
+#include "filter/judge/score/paired_gain.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank::app::report {

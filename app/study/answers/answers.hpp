@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/study/answers/study_table.hpp"
-#include "filter/judge/scores.hpp"
+#include "filter/judge/score/scores.hpp"
 
 /// What a study's table answers, beyond the table itself. A *setting* is one combination of varied values; its repeats
 /// differ in seed alone. Only finished trials count. Nothing here reads a file or prints.

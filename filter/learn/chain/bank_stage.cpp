@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/judge/scores.hpp"
+#include "filter/judge/score/scores.hpp"
 #include "filter/learn/chain/stages.hpp"
 #include "filter/learn/from_mixture/passing_windows.hpp"
 #include "filter/learn/learn.hpp"

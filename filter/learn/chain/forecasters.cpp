@@ -1,8 +1,8 @@
 #include "filter/learn/chain/forecasters.hpp"
 
-#include "filter/judge/drifting.hpp"
-#include "filter/judge/finding.hpp"
-#include "filter/judge/free_runs.hpp"
+#include "filter/judge/decide/finding.hpp"
+#include "filter/judge/run/drifting.hpp"
+#include "filter/judge/run/free_runs.hpp"
 #include "filter/learn/chain/inputs.hpp"
 
 namespace modebank {

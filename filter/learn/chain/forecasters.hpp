@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/free_run.hpp"
-#include "filter/judge/horizon.hpp"
+#include "filter/judge/run/free_run.hpp"
+#include "filter/judge/run/horizon.hpp"
 #include "filter/learn/chain/parts.hpp"
 #include "filter/step/any_filter.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <exception>
 
-#include "filter/judge/horizon.hpp"
+#include "filter/judge/run/horizon.hpp"
 #include "filter/learn/chain/stages.hpp"
 
 namespace modebank {

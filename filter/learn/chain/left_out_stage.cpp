@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "filter/judge/combination.hpp"
+#include "filter/judge/score/combination.hpp"
 #include "filter/learn/chain/forecasters.hpp"
 #include "filter/learn/chain/stages.hpp"
 #include "filter/learn/competitors/drifting.hpp"

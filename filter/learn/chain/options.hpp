@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/scoring_options.hpp"
+#include "filter/judge/score/scoring_options.hpp"
 #include "filter/learn/competitors/noise_by_input.hpp"
 #include "ident/fit/options.hpp"
 #include "ident/lag/structure.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/drifting.hpp"
+#include "filter/judge/run/drifting.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "filter/judge/look_ahead.hpp"
+#include "filter/judge/run/look_ahead.hpp"
 #include "filter/learn/likelihood/coordinates.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "ident/data/trajectory.hpp"

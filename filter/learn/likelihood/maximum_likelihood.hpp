@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "filter/judge/look_ahead.hpp"
+#include "filter/judge/run/look_ahead.hpp"
 #include "filter/learn/likelihood/coordinates.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "filter/step/bank.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "filter/judge/evaluate.hpp"
-#include "filter/judge/look_ahead.hpp"
+#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/run/look_ahead.hpp"
 #include "filter/step/bank.hpp"
 #include "filter/step/likelihood_gradient.hpp"
 #include "ident/data/trajectory.hpp"

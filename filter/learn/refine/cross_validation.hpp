@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "filter/judge/look_ahead.hpp"
+#include "filter/judge/run/look_ahead.hpp"
 #include "filter/learn/refine/folds.hpp"
 #include "filter/learn/refine/model_choice.hpp"
 #include "filter/learn/refine/refine.hpp"

@@ -1,5 +1,5 @@
 // Forecasts of several filters, combined by how well each predicted.
-#include "filter/judge/combination.hpp"
+#include "filter/judge/score/combination.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Diagnostics on simulated truth: a true filter passes, a wrong one does not.
-#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/decide/diagnostics.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filter/judge/smoother.hpp"
+#include "filter/judge/run/smoother.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

@@ -1,5 +1,5 @@
 // What is said about modes of motion, from scores whose answer is known.
-#include "filter/judge/finding.hpp"
+#include "filter/judge/decide/finding.hpp"
 
 #include <gtest/gtest.h>
 

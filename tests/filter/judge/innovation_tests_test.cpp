@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "filter/judge/statistics.hpp"
+#include "filter/judge/score/statistics.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "tests/filter/filter_test_support.hpp"
 

@@ -1,4 +1,4 @@
-#include "filter/judge/scores.hpp"
+#include "filter/judge/score/scores.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The smoother, the mode sequence and predictions over several steps.
-#include "filter/judge/smoother.hpp"
+#include "filter/judge/run/smoother.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filter/judge/horizon.hpp"
+#include "filter/judge/run/horizon.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -175,9 +175,7 @@ void expect_alike(const Bank& a, const Bank& b, const FilterOptions& options, do
 }
 
 /// Rows of lags that only shift have shorter products.
-TEST(LaggedStates, ThatShiftAreThoseOfAnyRows) {
-  expect_alike(lagged_bank(1e-4), lagged_bank(1e-4, 1e-14), {}, 1e-10);
-}
+TEST(LaggedStates, ThatShiftAreThoseOfAnyRows) { expect_alike(lagged_bank(1e-4), lagged_bank(1e-4, 1e-14), {}, 1e-10); }
 
 /// Measured exactly they are known, and nothing is computed of them: the limit of measurement noise that goes to zero.
 TEST(LaggedStates, MeasuredExactlyAreTheLimitOfLittleNoise) {

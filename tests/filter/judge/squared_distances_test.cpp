@@ -1,5 +1,5 @@
 // Mean NIS and NEES with their intervals, whatever signals are missing: by closed forms and by simulation.
-#include "filter/judge/squared_distances.hpp"
+#include "filter/judge/score/squared_distances.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
-#include "filter/judge/diagnostics.hpp"
-#include "filter/judge/scores.hpp"
+#include "filter/judge/decide/diagnostics.hpp"
+#include "filter/judge/score/scores.hpp"
 #include "ident/base/distributions.hpp"
 #include "tests/filter/filter_test_support.hpp"
 

@@ -1,5 +1,5 @@
 // Verdicts on filters whose truth is known, and the intervals they rest on.
-#include "filter/judge/verdict.hpp"
+#include "filter/judge/decide/verdict.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <random>
 
-#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/decide/diagnostics.hpp"
 #include "ident/base/distributions.hpp"
 #include "tests/filter/filter_test_support.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "filter/judge/drifting.hpp"
+#include "filter/judge/run/drifting.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "ident/fit/global_model.hpp"
 #include "io/import/import.hpp"

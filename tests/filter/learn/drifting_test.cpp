@@ -1,5 +1,5 @@
 // How a drifting model's settings are chosen.
-#include "filter/judge/drifting.hpp"
+#include "filter/judge/run/drifting.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,10 +1,10 @@
 // Learning that looks ahead: what it counts and the pull towards one motion.
-#include "filter/judge/look_ahead.hpp"
+#include "filter/judge/run/look_ahead.hpp"
 
 #include <cmath>
 
-#include "filter/judge/evaluate.hpp"
-#include "filter/judge/horizon.hpp"
+#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/run/horizon.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/starts.hpp"

@@ -1,5 +1,5 @@
 // Noise that follows the run: the scale of every mode's Q.
-#include "filter/judge/evaluate.hpp"
+#include "filter/judge/run/evaluate.hpp"
 #include "tests/filter/learn/refine_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/decide/diagnostics.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/refine/refine.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "filter/judge/evaluate.hpp"
-#include "filter/judge/horizon.hpp"
+#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/run/horizon.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "ident/model/linear_model.hpp"
 #include "tests/filter/step/drift_test_support.hpp"

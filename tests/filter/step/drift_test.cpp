@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/drifting.hpp"
-#include "filter/judge/evaluate.hpp"
-#include "filter/judge/free_run.hpp"
-#include "filter/judge/horizon.hpp"
-#include "filter/judge/smoother.hpp"
+#include "filter/judge/run/drifting.hpp"
+#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/run/free_run.hpp"
+#include "filter/judge/run/horizon.hpp"
+#include "filter/judge/run/smoother.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/step/drift_test_support.hpp"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "filter/judge/drifting.hpp"
+#include "filter/judge/run/drifting.hpp"
 #include "filter/step/drifting.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "filter/judge/drifting.hpp"
-#include "filter/judge/statistics.hpp"
+#include "filter/judge/run/drifting.hpp"
+#include "filter/judge/score/statistics.hpp"
 #include "filter/step/student_noise.hpp"
 #include "ident/base/distributions.hpp"
 #include "tests/filter/drifting_test_support.hpp"

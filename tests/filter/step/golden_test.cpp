@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "filter/judge/evaluate.hpp"
+#include "filter/judge/run/evaluate.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

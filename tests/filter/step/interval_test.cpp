@@ -6,10 +6,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "filter/judge/drifting.hpp"
-#include "filter/judge/evaluate.hpp"
-#include "filter/judge/horizon.hpp"
-#include "filter/judge/statistics.hpp"
+#include "filter/judge/run/drifting.hpp"
+#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/run/horizon.hpp"
+#include "filter/judge/score/statistics.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <stdexcept>
 
-#include "filter/judge/evaluate.hpp"
+#include "filter/judge/run/evaluate.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/equations/imm.hpp"
 #include "modebank/base/error.hpp"

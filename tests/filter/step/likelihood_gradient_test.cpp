@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "filter/judge/evaluate.hpp"
+#include "filter/judge/run/evaluate.hpp"
 #include "filter/step/feed/sample_feed.hpp"
 #include "tests/filter/filter_test_support.hpp"
 

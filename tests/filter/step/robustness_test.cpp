@@ -1,7 +1,7 @@
 // No number makes the filter give NaN, and one code serves fixed and dynamic sizes.
 #include <gtest/gtest.h>
 
-#include "filter/judge/evaluate.hpp"
+#include "filter/judge/run/evaluate.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"

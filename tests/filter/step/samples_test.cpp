@@ -5,7 +5,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "filter/judge/evaluate.hpp"
+#include "filter/judge/run/evaluate.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"

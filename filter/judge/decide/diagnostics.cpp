@@ -1,0 +1,188 @@
+#include "filter/judge/decide/diagnostics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "filter/judge/decide/evidence.hpp"
+#include "filter/judge/decide/verdict_reason.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double negligible_R = 1e-6;  // of the innovations' variance
+
+/// A fraction of hits with its interval.
+void set_fraction(const HitsByRun& hits, double time, double& fraction, double& lower, double& upper) {
+  const SeriesByRun numbers = as_numbers(hits);
+  fraction = mean_of(numbers);
+  const Interval interval = fraction_interval(numbers, time);
+  lower = interval.lower;
+  upper = interval.upper;
+}
+
+void set_coverage(const HitsByRun& outside, double time, double& coverage, double& lower, double& upper) {
+  set_fraction(outside, time, coverage, upper, lower);
+  for (double* share : {&coverage, &lower, &upper}) *share = 1.0 - *share;
+}
+
+void set_fractions(const Evidence& e, double time, DiagnosticsRow& row) {
+  set_coverage(e.outside[0], time, row.coverage_50, row.coverage_50_lower, row.coverage_50_upper);
+  set_coverage(e.outside[1], time, row.coverage_90, row.coverage_90_lower, row.coverage_90_upper);
+  set_coverage(e.outside[2], time, row.coverage_95, row.coverage_95_lower, row.coverage_95_upper);
+  set_coverage(e.outside[3], time, row.coverage_99, row.coverage_99_lower, row.coverage_99_upper);
+  set_fraction(e.far, time, row.too_far, row.too_far_lower, row.too_far_upper);
+  set_fraction(e.close, time, row.too_close, row.too_close_lower, row.too_close_upper);
+}
+
+/// The states whose measurement noise is more than next to nothing, so that their stated covariance after the
+/// measurement is more than R.
+std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vector<Trajectory>& runs,
+                                     const std::vector<RunEvaluation>& evaluations) {
+  const Index n_y = bank.C.rows();
+  Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(n_y);
+  double samples = 0.0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].role != role) continue;
+    const RunEvaluation& e = evaluations.at(i);
+    for (Index k = 0; k < e.log_density.size(); ++k) {
+      if (std::isnan(e.log_density(k))) continue;
+      variance += e.innovation_covariance.col(k).reshaped(n_y, n_y).diagonal().array();
+      samples += 1.0;
+    }
+  }
+  std::vector<Index> states;
+  for (Index i = 0; i < n_y; ++i)
+    if (samples > 0.0 && bank.R(i, i) * samples >= negligible_R * variance(i)) states.push_back(i);
+  return states;
+}
+
+void set_distances(const Collected& c, double nees_states, DiagnosticsRow& row) {
+  const Evidence& e = c.evidence;
+  row.nis_mean = mean_distance(e.nis, e.nis_degrees);
+  const Interval nis = mean_distance_interval(e.nis, e.nis_degrees, e.chi_square_nis);
+  row.nis_lower = nis.lower;
+  row.nis_upper = nis.upper;
+  row.nees_mean = mean_distance(c.nees, nees_states);
+  const Interval nees = mean_distance_interval(c.nees, nees_states, e.chi_square_nis);
+  row.nees_lower = nees.lower;
+  row.nees_upper = nees.upper;
+}
+
+DiagnosticsRow make_row(const Collected& c, Index nees_states) {
+  DiagnosticsRow row;
+  const double N = c.samples > 0 ? static_cast<double>(c.samples) : not_a_number;
+  const double all = c.entropy_samples > 0 ? static_cast<double>(c.entropy_samples) : not_a_number;
+  row.samples = c.samples;
+  row.usage = c.usage / all;
+  row.entropy = c.entropy / all;
+  row.dwell = c.visits > 0.0 ? c.visited / c.visits : not_a_number;
+  row.dwell_model = not_a_number;
+  const double time = time_by_sizes(c.evidence.sizes);
+  set_fractions(c.evidence, time, row);
+  set_distances(c, static_cast<double>(nees_states), row);
+  row.state_rmse =
+      (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
+  row.whiteness_p = fisher_p(c.whiteness);
+  row.spread_share = c.spread / N;
+  row.verdict = verdict_of(c.evidence, time);
+  return row;
+}
+
+constexpr double takes_all = 0.99;         // usage of one mode
+constexpr double unused = 1e-3;            // usage
+constexpr double flat_entropy = 0.95;      // of log K
+constexpr double dominating_spread = 0.5;  // share of trace S
+
+void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
+
+/// "mode 3 unused", "modes 1, 3 unused"; empty without any.
+std::string unused_modes(const std::vector<DiagnosticsRow>& modes) {
+  std::string list;
+  int count = 0;
+  for (const DiagnosticsRow& mode : modes)
+    if (mode.usage < unused) list += (count++ > 0 ? ", " : " ") + std::to_string(mode.mode);
+  return count == 0 ? "" : (count > 1 ? "modes" : "mode") + list + " unused";
+}
+
+std::string two_digits(double value) {
+  std::array<char, 16> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, 2).ptr;
+  return {text.data(), end};
+}
+
+/// Flags of a filter's row, separated by "; ". `modes`: rows of the same filter's modes. `nees_states`: how
+/// many states the NEES is about.
+std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Eigen::Index nees_states) {
+  std::string flags;
+  for (const DiagnosticsRow& mode : modes)
+    if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
+  if (const std::string list = unused_modes(modes); !list.empty()) add_flag(flags, list);
+  if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
+  if (all.spread_share > dominating_spread) add_flag(flags, "spread dominates S");
+  if (all.too_far_lower > largest_close && all.too_close_lower > largest_close) add_flag(flags, "heavy tails");
+  if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above a true filter's");
+  if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below a true filter's");
+  if (all.nees_mean > all.nees_upper)
+    add_flag(flags, "NEES above a true filter's: the state's covariance is too small");
+  if (all.nees_mean < all.nees_lower)
+    add_flag(flags, "NEES below a true filter's: the state's covariance is too large");
+  if (errors_follow_a_pattern(all))
+    add_flag(flags, "innovations not white: autocorrelation " + two_digits(all.autocorrelation) + " at lag " +
+                        std::to_string(all.autocorrelation_lag));
+  if (all.verdict == Verdict::undecided && reason_of(all) == VerdictReason::few_samples)
+    add_flag(flags, "too few samples for a verdict");
+  if (nees_states < all.state_rmse.size() && all.state_rmse.allFinite())
+    add_flag(flags, nees_states == 0 ? "R is as good as zero, so the state is the measurement: no NEES"
+                                     : "R of some states is as good as zero, so they are the measurement: NEES of the "
+                                       "others alone");
+  return flags;
+}
+
+}  // namespace
+
+std::vector<DiagnosticsRow> diagnose_role(const std::string& filter, Role role, const Bank& bank,
+                                          const FilterOptions& options, const std::vector<Trajectory>& runs,
+                                          const std::vector<RunEvaluation>& evaluations,
+                                          const std::vector<RunScores>& scores) {
+  if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) return {};
+  // One Gaussian of known variance per prediction.
+  const bool chi_square_nis =
+      (bank.mode_count() == 1 || options.variant == FilterVariant::kf) && options.noise == FilterNoise::gaussian;
+  const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);
+  const auto row_of = [&](Index mode) {
+    const Collected collected = collect(bank, mode, role, chi_square_nis, nees_states, runs, evaluations, scores);
+    DiagnosticsRow row = make_row(collected, std::ssize(nees_states));
+    row.filter = filter;
+    row.role = role;
+    row.mode = mode;
+    if (mode < 0) {
+      const Autocorrelation colour = largest_autocorrelation(collected.z);
+      row.autocorrelation = colour.value;
+      row.autocorrelation_lag = colour.lag;
+    }
+    if (mode >= 0 && bank.transition_logit.empty())
+      row.dwell_model = 1.0 / (1.0 - bank.transition.matrix()(mode, mode));
+    return row;
+  };
+  std::vector<DiagnosticsRow> rows{row_of(-1)};
+  for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) rows.push_back(row_of(mode));
+  rows.front().flags = flags_of(rows.front(), {rows.begin() + 1, rows.end()}, std::ssize(nees_states));
+  return rows;
+}
+
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
+                                     const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
+                                     const std::vector<RunScores>& scores) {
+  std::vector<DiagnosticsRow> rows = diagnose_role(filter, Role::train, bank, options, runs, evaluations, scores);
+  const auto held_out = diagnose_role(filter, Role::test, bank, options, runs, evaluations, scores);
+  rows.insert(rows.end(), held_out.begin(), held_out.end());
+  return rows;
+}
+
+}  // namespace modebank

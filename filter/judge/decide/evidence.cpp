@@ -1,0 +1,141 @@
+#include "filter/judge/decide/evidence.hpp"
+
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "ident/base/distributions.hpp"
+#include "ident/base/linalg.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr double outer_probability = 0.025;
+
+/// Collects over runs for the whole filter (mode -1) or one mode.
+class Collector {
+ public:
+  /// `nees_states`: the states that the NEES is about.
+  Collector(const Bank& bank, Index mode, bool chi_square_nis, const std::vector<Index>& nees_states)
+      : mode_(mode),
+        nees_states_(nees_states),
+        lower_(chi_square_quantile(outer_probability, 1.0)),
+        upper_(chi_square_quantile(1.0 - outer_probability, 1.0)) {
+    sums.squared_state_error.setZero(bank.C.rows());
+    sums.evidence.nis_degrees = static_cast<double>(bank.C.rows());
+    sums.evidence.chi_square_nis = chi_square_nis;
+  }
+
+  Collected sums;
+
+  void add(const Trajectory& run, const RunEvaluation& e, const RunScores& scores) {
+    Evidence& evidence = sums.evidence;
+    for (HitsByRun* hits : {&evidence.far, &evidence.close}) hits->emplace_back();
+    for (HitsByRun& hits : evidence.outside) hits.emplace_back();
+    evidence.sizes.emplace_back();
+    for (SquaredDistances* distances : {&evidence.nis, &sums.nees}) distances->begin_run();
+    OutputSeries z(static_cast<std::size_t>(e.pit.rows()));  // of a mode's own samples
+    if (mode_ < 0) make_room(e, z);
+    for (Index k = 0; k < e.log_density.size(); ++k) {
+      if (std::isnan(e.log_density(k))) continue;
+      add_probabilities(e, k);
+      if (mode_ >= 0 && scores.likeliest(k) != mode_) continue;
+      add_scores(e, k, scores, z);
+      if (run.truth.size() > 0) add_truth(run, e, k);
+    }
+    sums.whiteness.push_back(mode_ < 0 ? scores.whiteness_p : whiteness_p(z));
+    if (mode_ < 0) sums.z.insert(sums.z.end(), std::make_move_iterator(z.begin()), std::make_move_iterator(z.end()));
+    add_visits(e);
+  }
+
+ private:
+  /// For all samples of a run, since growing series take up to twice of what they need.
+  void make_room(const RunEvaluation& e, OutputSeries& z) {
+    Evidence& evidence = sums.evidence;
+    const auto samples = static_cast<std::size_t>(e.log_density.size()), all = samples * z.size();
+    for (HitsByRun* hits : {&evidence.far, &evidence.close}) hits->back().reserve(all);
+    for (HitsByRun& hits : evidence.outside) hits.back().reserve(all);
+    evidence.sizes.back().reserve(all);
+    for (SeriesByRun* series : {&evidence.nis.value, &evidence.nis.degrees}) series->back().reserve(samples);
+    for (std::vector<double>& output : z) output.reserve(samples);
+  }
+
+  Index mode_;
+  const std::vector<Index>& nees_states_;
+  double lower_, upper_;
+  std::array<double, coverage_levels.size()> band_edges_ = coverage_band_edges();  ///< of |z|
+
+  void add_probabilities(const RunEvaluation& e, Index k) {
+    const auto mu = e.mode_probability.col(k);
+    ++sums.entropy_samples;
+    sums.usage += mode_ < 0 ? mu.maxCoeff() : mu(mode_);
+    if (mu.size() < 2) return;
+    double entropy = 0.0;
+    for (const double p : mu) entropy -= p > 0.0 ? p * std::log(p) : 0.0;
+    sums.entropy += entropy / std::log(static_cast<double>(mu.size()));
+  }
+
+  void add_scores(const RunEvaluation& e, Index k, const RunScores& scores, OutputSeries& z) {
+    ++sums.samples;
+    if (e.spread_share.size() > 0) sums.spread += e.spread_share(k);
+    for (Index i = 0; i < e.pit.rows(); ++i) {
+      if (std::isnan(e.pit(i, k))) continue;
+      const double score = scores.z(i, k);
+      for (std::size_t b = 0; b < band_edges_.size(); ++b)
+        sums.evidence.outside[b].back().push_back(std::abs(score) > band_edges_[b] ? 1 : 0);
+      sums.evidence.far.back().push_back(score * score > upper_ ? 1 : 0);
+      sums.evidence.close.back().push_back(score * score < lower_ ? 1 : 0);
+      sums.evidence.sizes.back().push_back(std::abs(score));
+      z[static_cast<std::size_t>(i)].push_back(score);
+    }
+    sums.evidence.nis.add(e.nis(k), scored_signals(e, k));
+  }
+
+  void add_truth(const Trajectory& run, const RunEvaluation& e, Index k) {
+    const Index n = run.truth.rows(), all = e.state.rows();
+    const Eigen::VectorXd error = e.state.col(k).head(n) - run.truth.col(k);
+    if (!error.allFinite()) return;
+    if (!nees_states_.empty()) {
+      const Eigen::MatrixXd P = e.covariance.col(k).reshaped(all, all)(nees_states_, nees_states_);
+      const Eigen::VectorXd judged = error(nees_states_);
+      sums.nees.add(judged.dot(solve_semidefinite(P, judged)), judged.size());
+    }
+    sums.squared_state_error += error.cwiseAbs2();
+    ++sums.state_errors;
+  }
+
+  int mode_at(const RunEvaluation& e, Index k) const {
+    if (e.viterbi_mode.size() > 0) return e.viterbi_mode(k);
+    int likeliest = 0;
+    e.mode_probability.col(k).maxCoeff(&likeliest);
+    return std::isnan(e.state(0, k)) ? -1 : likeliest;
+  }
+
+  void add_visits(const RunEvaluation& e) {
+    int before = -1;
+    for (Index k = 0; k < e.log_density.size(); ++k) {
+      const int mode = mode_at(e, k);
+      if (mode >= 0 && (mode_ < 0 || mode == mode_)) {
+        sums.visited += 1.0;
+        sums.visits += mode != before ? 1.0 : 0.0;
+      }
+      before = mode;
+    }
+  }
+};
+
+}  // namespace
+
+Collected collect(const Bank& bank, Index mode, Role role, bool chi_square_nis, const std::vector<Index>& nees_states,
+                  const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
+                  const std::vector<RunScores>& scores) {
+  Collector collector(bank, mode, chi_square_nis, nees_states);
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (runs[i].role == role) collector.add(runs[i], evaluations.at(i), scores.at(i));
+  return std::move(collector.sums);
+}
+
+}  // namespace modebank

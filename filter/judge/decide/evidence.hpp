@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "filter/judge/decide/verdict.hpp"
+#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/score/statistics.hpp"
+#include "filter/step/bank.hpp"
+#include "ident/data/trajectory.hpp"
+
+namespace modebank {
+
+/// What is known of the samples that belong to one row.
+struct Collected {
+  Eigen::Index samples = 0, entropy_samples = 0;
+  double usage = 0.0, entropy = 0.0, spread = 0.0, visits = 0.0, visited = 0.0;
+  Evidence evidence;
+  SquaredDistances nees;
+  SeriesByRun z;  ///< of the whole filter: one series per run and measurement
+  std::vector<double> whiteness;
+  Eigen::VectorXd squared_state_error;
+  Eigen::Index state_errors = 0;
+};
+
+/// Over the runs of a role, of one filter: the whole (mode -1) or the samples of one of its modes, those where it was
+/// the most probable before the measurement. `scores`: of all evaluations. `nees_states`: the states that the NEES is
+/// about.
+Collected collect(const Bank& bank, Eigen::Index mode, Role role, bool chi_square_nis,
+                  const std::vector<Eigen::Index>& nees_states, const std::vector<Trajectory>& runs,
+                  const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores);
+
+}  // namespace modebank

@@ -1,0 +1,70 @@
+#include "filter/judge/decide/verdict.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ident/base/distributions.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+constexpr double nis_level = 0.99;     // of the interval whose outside is a verdict
+constexpr double nis_tolerance = 0.1;  // a tenth of the variance is a twentieth of the interval's width
+constexpr double outside_level = 0.99;
+
+bool within(double value, double least, double largest) { return value >= least && value <= largest; }
+
+/// What the mean NIS says: -1 underconfident, 1 overconfident, 0 nothing.
+int judge_nis(const Evidence& evidence) {
+  if (!evidence.chi_square_nis) return 0;
+  const double degrees = evidence.nis_degrees, mean = mean_distance(evidence.nis, degrees);
+  const Interval expected = mean_distance_interval(evidence.nis, degrees, true, nis_level);
+  if (mean > expected.upper && mean > (1.0 + nis_tolerance) * degrees) return 1;
+  if (mean < expected.lower && mean < (1.0 - nis_tolerance) * degrees) return -1;
+  return 0;
+}
+
+}  // namespace
+
+bool says_nothing(const Interval& interval, double least, double largest) {
+  return interval.lower < least && interval.upper > largest;
+}
+
+SeriesByRun as_numbers(const HitsByRun& hits) {
+  SeriesByRun numbers;
+  for (const std::vector<char>& run : hits) numbers.emplace_back(run.begin(), run.end());
+  return numbers;
+}
+
+double time_by_sizes(const SeriesByRun& sizes) {
+  return cautious_time(autocorrelation_time_of_tail(sizes), sample_count(sizes));
+}
+
+Interval fraction_interval(const SeriesByRun& hits, double time, double level) {
+  const double samples = sample_count(hits) / std::max(autocorrelation_time(hits), time);
+  return binomial_interval(mean_of(hits) * samples, samples, level);
+}
+
+Verdict verdict_of(const Evidence& evidence, double time) {
+  const SeriesByRun misses = as_numbers(evidence.outside[deciding_level]), near = as_numbers(evidence.close);
+  if (sample_count(misses) == 0.0) return Verdict::undecided;
+  const double outside = mean_of(misses);
+  const Interval sure = fraction_interval(misses, time, outside_level);
+  if (outside > many_outside && sure.lower > true_outside) return Verdict::overconfident;
+  const Interval close = fraction_interval(near, time);
+  if (outside < few_outside && sure.upper < true_outside) return Verdict::underconfident;
+  if (outside < true_outside && close.lower > largest_close) return Verdict::underconfident;
+  if (const int nis = judge_nis(evidence); nis != 0) return nis > 0 ? Verdict::overconfident : Verdict::underconfident;
+  const bool inside =
+      within(outside, least_outside, largest_outside) && within(mean_of(near), least_close, largest_close);
+  const Interval likely = fraction_interval(misses, time);
+  return inside && !says_nothing(likely, least_outside, largest_outside) &&
+                 !says_nothing(close, least_close, largest_close)
+             ? Verdict::calibrated
+             : Verdict::undecided;
+}
+
+}  // namespace modebank

@@ -1,0 +1,138 @@
+#include "filter/judge/run/drifting.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "filter/judge/run/drifting_forecast.hpp"
+#include "filter/step/equations/bounds.hpp"
+#include "filter/step/feed/run_samples.hpp"
+#include "ident/base/linalg.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+/// Errors over their standard deviations, decorrelated in their order, and the log determinant of what does that.
+struct WhitenedError {
+  Eigen::VectorXd error;
+  double log_scale = 0.0;
+};
+
+WhitenedError whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
+  const Cholesky factor(covariance);
+  if (factor.definite()) return {factor.whiten(error), factor.L().diagonal().array().log().sum()};
+  const Eigen::ArrayXd deviation = covariance.diagonal().array().max(least_variance).sqrt();  // by rounding alone
+  return {error.array() / deviation, deviation.log().sum()};
+}
+
+double log_density(const StudentNoise& noise, const Eigen::Ref<const Eigen::VectorXd>& whitened) {
+  double sum = 0.0;
+  for (const double u : whitened) sum += noise.log_density(u * u);
+  return sum;
+}
+
+}  // namespace
+
+double log_density(const StudentNoise& noise, const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
+  const WhitenedError white = whiten(error, covariance);
+  return log_density(noise, white.error) - white.log_scale;
+}
+
+namespace {
+
+/// Looks ahead from where the filter stands at one moment of a run.
+class DriftingLookAhead {
+ public:
+  DriftingLookAhead(const DriftingModel& model, const RunInstants& instants, const Trajectory& run,
+                    DriftingForecasts& out)
+      : instants_(instants), run_(run), out_(out), noise_(model.nu), forecast_(model) {}
+
+  void from(Index t, const DriftingMemory& origin, const Eigen::VectorXd& v) {
+    const std::vector<Index>& horizons = out_.predictions.horizons;
+    forecast_.start(origin, v);
+    Index ahead = 0;
+    std::size_t next = 0;
+    while (next < horizons.size() && instants_.continues(t)) {
+      forecast_.step(instants_.inputs.col(++t));
+      if (const Index k = instants_.instants[static_cast<std::size_t>(t)].sample; k >= 0 && ++ahead == horizons[next])
+        score(next++, k);
+    }
+  }
+
+ private:
+  const RunInstants& instants_;
+  const Trajectory& run_;
+  DriftingForecasts& out_;
+  StudentNoise noise_;
+  DriftingForecast forecast_;
+
+  void score(std::size_t horizon, Index k) {
+    const auto y = run_.state.col(k);
+    if (missing_entries(y) > 0) return;
+    const Eigen::VectorXd error = y - forecast_.prediction();
+    const WhitenedError white = whiten(error, forecast_.covariance());
+    out_.predictions.error[horizon].col(k) = error;
+    out_.whitened[horizon].col(k) = white.error;
+    out_.predictions.log_density(static_cast<Index>(horizon), k) = log_density(noise_, white.error) - white.log_scale;
+  }
+};
+
+}  // namespace
+
+void follow(const DriftingModel& model, const RunInstants& instants, Index t, const Trajectory& run,
+            DriftingRecursion& recursion, Eigen::VectorXd& v) {
+  const Instant& instant = instants.instants[static_cast<std::size_t>(t)];
+  if (instant.starts) {
+    recursion.start(instant.start);
+    v = model.v0;
+    return;
+  }
+  recursion.predict(instants.inputs.col(t));
+  if (instant.sample < 0) return recursion.skip();
+  recursion.update(run.state.col(instant.sample));
+  adapt_variance(model, recursion, v);
+}
+
+DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, std::vector<Index> horizons) {
+  validate(model);
+  const Bank bank = fixed_bank(model);
+  check_run(bank, run);
+  const Index n = model.structure.states;
+  DriftingForecasts out{empty_horizons(std::move(horizons), n, run.samples()), {}};
+  out.whitened = out.predictions.error;
+  const RunInstants instants(bank, run);
+  DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates, model.direction());
+  Eigen::VectorXd v = model.v0;
+  DriftingLookAhead look(model, instants, run, out);
+  for (Index t = 0; t < instants.count(); ++t) {
+    const Instant& instant = instants.instants[static_cast<std::size_t>(t)];
+    follow(model, instants, t, run, recursion, v);
+    if (instant.sample >= 0) look.from(t, recursion.memory(), v);
+  }
+  return out;
+}
+
+double widening_gain(const StudentNoise& noise, const Eigen::Ref<const Eigen::VectorXd>& whitened, double factor) {
+  double gain = -0.5 * static_cast<double>(whitened.size()) * std::log(factor);
+  for (const double u : whitened) gain += noise.log_density(u * u / factor) - noise.log_density(u * u);
+  return gain;
+}
+
+HorizonEvaluation evaluate_horizons(const DriftingModel& model, const Trajectory& run, std::vector<Index> horizons) {
+  DriftingForecasts forecasts = forecast(model, run, std::move(horizons));
+  HorizonEvaluation& out = forecasts.predictions;
+  const StudentNoise noise(model.nu);
+  for (std::size_t h = 0; h < out.horizons.size(); ++h) {
+    const double factor = model.factor_at(out.horizons[h]);
+    if (factor == 1.0) continue;
+    for (Index k = 0; k < run.samples(); ++k)
+      if (double& value = out.log_density(static_cast<Index>(h), k); !std::isnan(value))
+        value += widening_gain(noise, forecasts.whitened[h].col(k), factor);
+  }
+  return std::move(out);
+}
+
+}  // namespace modebank

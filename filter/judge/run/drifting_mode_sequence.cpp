@@ -1,0 +1,56 @@
+#include "filter/judge/run/drifting_mode_sequence.hpp"
+
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/feed/run_samples.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::Index;
+
+template <int N, int NY>
+Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const RunInstants& instants,
+                              const FilterOptions& options) {
+  const FilterModel<N, NY> model(bank, options);
+  FilterStep<N, NY> step(model);
+  FilterState<N> state = initial_state(model);
+  const Index K = model.mode_count();
+  Eigen::MatrixXi from = Eigen::MatrixXi::Zero(K, instants.count());
+  Eigen::VectorXi best(instants.count());
+  Eigen::VectorXd score(K), next(K);
+  for (Index t = 0; t < instants.count(); ++t) {
+    const bool starts = instants.instants[static_cast<std::size_t>(t)].starts;
+    Eigen::MatrixXd log_T;
+    if (!starts) log_T = transition_of_step(model, state, instants.inputs.col(t), step).array().log();
+    const bool measured = step_to(model, instants, t, run, state, step);
+    for (Index j = 0; j < K && !starts; ++j) {
+      Index before = j;
+      next(j) = (score + log_T.col(j)).maxCoeff(&before);
+      from(j, t) = static_cast<int>(before);
+      if (measured) next(j) += step.log_likelihood(j);
+    }
+    if (starts) next = model.initial_probability.array().max(mode_probability_floor).log();
+    score = next.array() - next.maxCoeff();
+    score.maxCoeff(&best(t));
+  }
+  Eigen::VectorXi mode(instants.count());
+  for (Index t = instants.count() - 1; t >= 0; --t)
+    mode(t) = instants.continues(t) ? from(mode(t + 1), t + 1) : best(t);
+  return mode;
+}
+
+}  // namespace
+
+Eigen::VectorXi drifting_mode_sequence(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  const RunInstants instants(bank, run);
+  const Eigen::VectorXi modes = with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() {
+    return best_sequence<N, NY>(bank, run, instants, options);
+  });
+  Eigen::VectorXi sequence = Eigen::VectorXi::Constant(run.samples(), -1);
+  for (Index t = 0; t < instants.count(); ++t)
+    if (const Index sample = instants.instants[static_cast<std::size_t>(t)].sample; sample >= 0)
+      sequence(sample) = modes(t);
+  return sequence;
+}
+
+}  // namespace modebank

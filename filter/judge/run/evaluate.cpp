@@ -1,0 +1,124 @@
+#include "filter/judge/run/evaluate.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include "filter/judge/run/drifting.hpp"
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/feed/run_samples.hpp"
+#include "filter/step/pit_draw.hpp"
+#include "filter/step/stepper.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+RunEvaluation sized_evaluation(const Bank& bank, Index samples) {
+  const Index n = bank.structure.states, n_y = bank.C.rows(), K = bank.mode_count();
+  RunEvaluation e;
+  e.prediction.resize(n, samples);
+  e.innovation.resize(n_y, samples);
+  e.innovation_covariance.resize(n_y * n_y, samples);
+  e.state.resize(n, samples);
+  e.covariance.resize(n * n, samples);
+  e.nis.resize(samples);
+  e.pit.resize(n_y, samples);
+  if (bank.is_quantised()) e.pit_width.setZero(n_y, samples);
+  e.log_density.resize(samples);
+  e.mode_probability_predicted.resize(K, samples);
+  e.mode_probability.resize(K, samples);
+  e.spread_share.resize(samples);
+  return e;
+}
+
+void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
+  const Index n = e.state.rows();
+  e.prediction.col(k) = estimate.prediction.head(n);
+  e.innovation.col(k) = estimate.innovation;
+  e.innovation_covariance.col(k) = estimate.innovation_covariance.reshaped();
+  e.state.col(k) = estimate.state.head(n);
+  e.covariance.col(k) = estimate.covariance.topLeftCorner(n, n).reshaped();
+  e.nis(k) = estimate.nis;
+  e.pit.col(k) = estimate.pit;
+  if (e.pit_width.size() > 0) e.pit_width.col(k) = estimate.pit_width;
+  e.log_density(k) = estimate.log_density;
+  e.mode_probability_predicted.col(k) = estimate.mode_probability_predicted;
+  e.mode_probability.col(k) = estimate.mode_probability;
+  e.spread_share(k) = estimate.spread_share;
+}
+
+/// Filter alone: calls take(first, log densities) for every stretch of samples that it scores; NaN where nothing was
+/// measured.
+template <class Take>
+void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions& options, Take take) {
+  const std::unique_ptr<Stepper> stepper = make_stepper(bank, options);
+  Eigen::VectorXd log_density;
+  RunSamples(bank, run).for_each_stretch([&](const SampleFeed& feed) { stepper->start(feed.start()); },
+                                         [&](const SampleStretch& stretch) {
+                                           for (Index i = 1; i < stretch.steps; ++i)
+                                             stepper->skip(stretch.inputs.col(0));
+                                           log_density.resize(stretch.measured.cols());
+                                           stepper->follow(stretch.inputs, stretch.measured, log_density);
+                                           take(stretch.first, log_density);
+                                         });
+}
+
+/// `bank`: one of the sizes of what the filter says.
+template <class Filter>
+RunEvaluation evaluate_samples(const Bank& bank, Filter&& filter, const Trajectory& run) {
+  RunEvaluation evaluation = sized_evaluation(bank, run.samples());
+  for (Index k = 0; k < run.samples(); ++k)
+    record(filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k)), k, evaluation);
+  return evaluation;
+}
+
+}  // namespace
+
+RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
+  return evaluate_samples(bank, BankFilter(bank, options), run);
+}
+
+RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run) {
+  validate(model);
+  const Bank bank = fixed_bank(model);
+  check_run(bank, run);
+  return evaluate_samples(bank, DriftingFilter(model), run);
+}
+
+RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& filter) {
+  check_run(frame, run);
+  return evaluate_samples(frame, filter, run);
+}
+
+void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation) {
+  if (evaluation.pit_width.size() == 0) return;
+  const std::uint64_t of_run = pit_seed(seed, run.run);
+  for (Index k = 0; k < evaluation.pit.cols(); ++k)
+    draw_pit(of_run, k, evaluation.pit_width.col(k), evaluation.pit.col(k));
+}
+
+double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
+  double total = 0.0;
+  score_samples(bank, run, options, [&](Index, const Eigen::VectorXd& log_density) {
+    double sum = total;  // sample by sample, whatever the stretches
+    for (const double value : log_density) sum += std::isnan(value) ? 0.0 : value;
+    total = sum;
+  });
+  return total;
+}
+
+Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
+  Eigen::VectorXd result = Eigen::VectorXd::Constant(run.samples(), not_a_number);
+  score_samples(bank, run, options, [&](Index first, const Eigen::VectorXd& log_density) {
+    result.segment(first, log_density.size()) = log_density;
+  });
+  return result;
+}
+
+}  // namespace modebank

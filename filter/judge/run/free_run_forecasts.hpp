@@ -1,0 +1,138 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <vector>
+
+#include "filter/judge/run/drifting.hpp"
+#include "filter/judge/run/drifting_forecast.hpp"
+#include "filter/judge/run/forecast.hpp"
+#include "filter/judge/run/sample_paths.hpp"
+#include "ident/base/distributions.hpp"
+
+/// What each kind of model says of samples in a free run.
+namespace modebank {
+
+/// A bank by moments.
+template <int N, int NY>
+class MomentForecast final : public Forecast {
+ public:
+  using Vector = Eigen::Ref<const Eigen::VectorXd>;
+
+  explicit MomentForecast(const FilterModel<N, NY>& model) : bank_(model), signals_(model.C.rows()) {}
+  void start(const FilterState<N>& origin) { bank_.start(origin); }
+  void step(const Vector& inputs) override { bank_.step(inputs); }
+
+  void arrive(Eigen::Index) override {
+    const FilterStep<N, NY>& step = bank_.predicted();
+    for (NormalMixture& signal : signals_) {
+      signal.weight = step.predicted_probability;
+      signal.mean.resize(signal.weight.size());
+      signal.deviation.resize(signal.weight.size());
+    }
+    for (std::size_t h = 0; h < step.kalman.size(); ++h) {
+      const Eigen::VectorXd y = bank_.model().C * step.kalman[h].predicted.mean;
+      for (std::size_t s = 0; s < signals_.size(); ++s) {
+        const auto i = static_cast<Eigen::Index>(s), j = static_cast<Eigen::Index>(h);
+        signals_[s].mean(j) = y(i);
+        signals_[s].deviation(j) =
+            std::sqrt(std::max(step.kalman[h].innovation_covariance(i, i) + rounding(i), least_variance));
+      }
+    }
+  }
+
+  Eigen::VectorXd mean() const override {
+    Eigen::VectorXd result(std::ssize(signals_));
+    for (Eigen::Index i = 0; i < result.size(); ++i) result(i) = of(i).weight.dot(of(i).mean);
+    return result;
+  }
+  Eigen::VectorXd standard_deviation() const override {
+    Eigen::VectorXd result = mean();
+    for (Eigen::Index i = 0; i < result.size(); ++i) {
+      const auto variance = of(i).deviation.array().square() + (of(i).mean.array() - result(i)).square();
+      result(i) = std::sqrt((of(i).weight.array() * variance).sum());
+    }
+    return result;
+  }
+  double probability(Eigen::Index i, double y) const override { return of(i).probability(y); }
+  double quantile(Eigen::Index i, double p) const override { return of(i).quantile(p, normal_quantile(p)); }
+  double log_density(const Vector& y) override {
+    Eigen::VectorXd error(y.size());
+    return bank_.observe(y, error);
+  }
+  Eigen::VectorXd mode_probability() const override { return bank_.predicted().predicted_probability; }
+
+ private:
+  BankForecast<N, NY> bank_;
+  std::vector<NormalMixture> signals_;  ///< n_y, of the sample arrived at
+
+  /// What the recorded value differs by from the signal.
+  double rounding(Eigen::Index i) const { return bank_.model().quantum(i) * bank_.model().quantum(i) / 12.0; }
+  const NormalMixture& of(Eigen::Index i) const { return signals_[static_cast<std::size_t>(i)]; }
+};
+
+/// A bank by sample paths. Bands are those of the paths with measurement noise; the joint density is that of a Gaussian
+/// per mode, with the moments of the paths that are in it (before the last step's noise, whose covariance is added as
+/// it is known).
+class PathForecast final : public Forecast {
+ public:
+  using Vector = Eigen::Ref<const Eigen::VectorXd>;
+
+  /// `row`: as SamplePaths takes it.
+  PathForecast(const Bank& bank, Eigen::Index paths, std::uint64_t seed, TransitionRow row = {});
+  void start(const FilterMemory& origin) { paths_.start(origin); }
+  void step(const Vector& inputs) override { paths_.step(inputs); }
+  void arrive(Eigen::Index) override;
+  Eigen::Index lost() const { return paths_.lost(); }
+
+  Eigen::VectorXd mean() const override;
+  Eigen::VectorXd standard_deviation() const override;
+  double probability(Eigen::Index i, double y) const override;
+  double quantile(Eigen::Index i, double p) const override;
+  double log_density(const Vector& y) override;
+  Eigen::VectorXd mode_probability() const override { return share_; }
+
+ private:
+  Eigen::MatrixXd C_, R_, R_root_;
+  SamplePaths paths_;
+  Eigen::MatrixXd sorted_;  ///< count x n_y, of the sample arrived at
+  Eigen::VectorXd share_;   ///< K
+};
+
+/// The drifting model.
+class DriftingFreeForecast final : public Forecast {
+ public:
+  using Vector = Eigen::Ref<const Eigen::VectorXd>;
+
+  explicit DriftingFreeForecast(const DriftingModel& model) : model_(model), noise_(model.nu), forecast_(model) {}
+  void start(const DriftingMemory& origin, const Eigen::VectorXd& v) { forecast_.start(origin, v); }
+  void step(const Vector& inputs) override { forecast_.step(inputs); }
+  void arrive(Eigen::Index samples) override { covariance_ = model_.factor_at(samples) * forecast_.covariance(); }
+
+  Eigen::VectorXd mean() const override { return forecast_.prediction(); }
+  Eigen::VectorXd standard_deviation() const override {
+    return covariance_.diagonal().array().max(least_variance).sqrt();
+  }
+  double probability(Eigen::Index i, double y) const override {
+    return noise_.probability((y - forecast_.prediction()(i)) / standard_deviation()(i));
+  }
+  double quantile(Eigen::Index i, double p) const override {
+    const double nu = model_.nu,
+                 units = nu == 0.0 ? normal_quantile(p) : student_quantile(p, nu) * std::sqrt((nu - 2.0) / nu);
+    return forecast_.prediction()(i) + units * standard_deviation()(i);
+  }
+  double log_density(const Vector& y) override {
+    return modebank::log_density(noise_, y - forecast_.prediction(), covariance_);
+  }
+  Eigen::VectorXd mode_probability() const override { return Eigen::VectorXd::Ones(1); }
+
+ private:
+  const DriftingModel& model_;
+  StudentNoise noise_;
+  DriftingForecast forecast_;
+  Eigen::MatrixXd covariance_;
+};
+
+}  // namespace modebank

@@ -1,0 +1,132 @@
+#include "filter/judge/run/horizon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "filter/judge/run/forecast.hpp"
+#include "filter/step/feed/run_samples.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+/// Looks ahead from the filter's state at one moment.
+template <int N, int NY>
+class HorizonScores {
+ public:
+  HorizonScores(const FilterModel<N, NY>& model, const RunInstants& instants, const Trajectory& run,
+                HorizonEvaluation& out)
+      : instants_(instants), run_(run), out_(out), forecast_(model) {}
+
+  void from(Index t, const FilterState<N>& state) {
+    forecast_.start(state);
+    Index ahead = 0;
+    std::size_t next = 0;
+    while (next < out_.horizons.size() && instants_.continues(t)) {
+      forecast_.step(instants_.inputs.col(++t));
+      if (const Index k = instants_.instants[static_cast<std::size_t>(t)].sample;
+          k >= 0 && ++ahead == out_.horizons[next])
+        score(next++, k);
+    }
+  }
+
+ private:
+  const RunInstants& instants_;
+  const Trajectory& run_;
+  HorizonEvaluation& out_;
+  BankForecast<N, NY> forecast_;
+
+  void score(std::size_t horizon, Index k) {
+    const auto y = run_.state.col(k);
+    if (missing_entries(y) > 0) return;
+    out_.log_density(static_cast<Index>(horizon), k) = forecast_.observe(y, out_.error[horizon].col(k));
+  }
+};
+
+template <int N, int NY>
+void look_ahead(const Bank& bank, const Trajectory& run, const FilterOptions& options, HorizonEvaluation& out) {
+  const FilterModel<N, NY> model(bank, options);
+  const RunInstants instants(bank, run);
+  FilterStep<N, NY> step(model);
+  FilterState<N> state = initial_state(model);
+  HorizonScores<N, NY> look(model, instants, run, out);
+  for (Index t = 0; t < instants.count(); ++t) {
+    step_to(model, instants, t, run, state, step);
+    if (instants.instants[static_cast<std::size_t>(t)].sample >= 0) look.from(t, state);
+  }
+}
+
+}  // namespace
+
+HorizonEvaluation empty_horizons(std::vector<Index> horizons, Index n_y, Index samples) {
+  std::sort(horizons.begin(), horizons.end());
+  horizons.erase(std::unique(horizons.begin(), horizons.end()), horizons.end());
+  if (!horizons.empty() && horizons.front() < 1) throw std::invalid_argument("horizons must be at least 1");
+  HorizonEvaluation out;
+  out.error.assign(horizons.size(), Eigen::MatrixXd::Constant(n_y, samples, not_a_number));
+  out.log_density.setConstant(std::ssize(horizons), samples, not_a_number);
+  out.horizons = std::move(horizons);
+  return out;
+}
+
+HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,
+                                    std::vector<Index> horizons) {
+  check_run(bank, run);
+  HorizonEvaluation out = empty_horizons(std::move(horizons), bank.C.rows(), run.samples());
+  with_sizes(bank.structure.dimension(), bank.C.rows(),
+             [&]<int N, int NY>() { look_ahead<N, NY>(bank, run, options, out); });
+  return out;
+}
+
+HorizonSums& HorizonSums::operator+=(const HorizonSums& other) {
+  samples += other.samples;
+  log_density += other.log_density;
+  squared_error += other.squared_error;
+  return *this;
+}
+
+std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run) {
+  std::vector<HorizonSums> sums;
+  for (std::size_t h = 0; h < run.horizons.size(); ++h) {
+    const Eigen::MatrixXd& error = run.error[h];
+    HorizonSums& sum = sums.emplace_back(HorizonSums{run.horizons[h], 0, 0.0, Eigen::ArrayXd::Zero(error.rows())});
+    for (Index k = 0; k < error.cols(); ++k) {
+      const double value = run.log_density(static_cast<Index>(h), k);
+      if (std::isnan(value)) continue;
+      ++sum.samples;
+      sum.log_density += value;
+      sum.squared_error += error.col(k).array().square();
+    }
+  }
+  return sums;
+}
+
+std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,
+                                           const std::vector<std::vector<HorizonSums>>& sums) {
+  std::vector<HorizonRow> rows;
+  const auto add_row = [&](Role role, const std::string& run, const HorizonSums& of) {
+    const double N = of.samples > 0 ? static_cast<double>(of.samples) : not_a_number;
+    rows.push_back({filter, role, run, of.horizon, of.samples, of.log_density / N, (of.squared_error / N).sqrt()});
+  };
+  for (const Role role : {Role::train, Role::test}) {
+    std::vector<HorizonSums> pooled;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (runs[i].role != role) continue;
+      const std::vector<HorizonSums>& single = sums.at(i);
+      for (const HorizonSums& of : single) add_row(role, runs[i].run, of);
+      if (pooled.empty())
+        pooled = single;
+      else
+        for (std::size_t h = 0; h < pooled.size(); ++h) pooled[h] += single.at(h);
+    }
+    for (const HorizonSums& of : pooled) add_row(role, "*", of);
+  }
+  return rows;
+}
+
+}  // namespace modebank

@@ -1,0 +1,243 @@
+#include "filter/judge/score/combination.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "filter/judge/run/forecast.hpp"
+#include "ident/base/distributions.hpp"
+#include "modebank/filter/forecast_weights.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+using filter::ForecastWeights;
+
+void check_members(const std::vector<const HorizonEvaluation*>& members) {
+  if (members.empty()) throw std::invalid_argument("no forecasts to combine");
+  for (const HorizonEvaluation* member : members)
+    if (member->horizons != members.front()->horizons ||
+        member->log_density.cols() != members.front()->log_density.cols())
+      throw std::invalid_argument("forecasts to combine must be of the same samples and horizons");
+}
+
+/// One horizon of one run.
+class CombinedHorizon {
+ public:
+  CombinedHorizon(const std::vector<const HorizonEvaluation*>& members, std::size_t horizon, std::vector<double> start)
+      : members_(members), horizon_(horizon), start_(std::move(start)), said_(members.size()) {}
+
+  /// Fills in the forecasts of all samples: those of sample k with the weights of sample k - h.
+  void fill(CombinedForecasts& out) {
+    const Index h = members_.front()->horizons[horizon_], N = members_.front()->log_density.cols();
+    ForecastWeights now(start_, h);
+    Eigen::MatrixXd known(std::ssize(said_), N);  // after each sample
+    std::vector<double> weights(said_.size());
+    for (Index k = 0; k < N; ++k) {
+      hear(k);
+      if (!std::isnan(said_.front())) {
+        Eigen::VectorXd::Map(weights.data(), known.rows()) = known.col(k - h);
+        combine(k, weights, out);
+      }
+      now.observe(said_);
+      known.col(k) = Eigen::VectorXd::Map(now.weights().data(), known.rows());
+    }
+  }
+
+ private:
+  const std::vector<const HorizonEvaluation*>& members_;
+  std::size_t horizon_;
+  std::vector<double> start_, said_;
+
+  void hear(Index k) {
+    for (std::size_t i = 0; i < members_.size(); ++i)
+      said_[i] = members_[i]->log_density(static_cast<Index>(horizon_), k);
+  }
+
+  void combine(Index k, const std::vector<double>& weights, CombinedForecasts& out) const {
+    out.predictions.log_density(static_cast<Index>(horizon_), k) = ForecastWeights::mixed_log_density(weights, said_);
+    const std::vector<double> spoken = ForecastWeights::spoken_weights(weights, said_);
+    auto error = out.predictions.error[horizon_].col(k);
+    error.setZero();
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      out.weight[horizon_](static_cast<Index>(i), k) = spoken[i];
+      if (spoken[i] > 0.0) error += spoken[i] * members_[i]->error[horizon_].col(k);
+    }
+  }
+};
+
+}  // namespace
+
+CombinedForecasts combine_forecasts(const std::vector<const HorizonEvaluation*>& members,
+                                    const std::vector<std::vector<double>>& start) {
+  check_members(members);
+  const HorizonEvaluation& first = *members.front();
+  const Index N = first.log_density.cols();
+  CombinedForecasts out;
+  out.predictions = empty_horizons(first.horizons, first.error.empty() ? Index{0} : first.error.front().rows(), N);
+  out.weight.assign(first.horizons.size(), Eigen::MatrixXd::Constant(std::ssize(members), N, not_a_number));
+  for (std::size_t h = 0; h < first.horizons.size(); ++h)
+    CombinedHorizon(members, h, start.empty() ? std::vector<double>(members.size(), 1.0) : start.at(h)).fill(out);
+  return out;
+}
+
+namespace {
+
+/// The edge of the band at this quantile.
+double mixed_edge(const std::vector<const FreeRun*>& members, const std::vector<double>& weights, bool upper, Index i,
+                  Index k) {
+  const double probability = upper ? 0.975 : 0.025, score = normal_quantile(probability);
+  NormalMixture mixture;
+  mixture.weight = Eigen::VectorXd::Map(weights.data(), std::ssize(weights));
+  mixture.mean = Eigen::VectorXd::Zero(mixture.weight.size());
+  mixture.deviation = Eigen::VectorXd::Ones(mixture.weight.size());
+  for (std::size_t f = 0; f < members.size(); ++f) {
+    const FreeRun& one = *members[f];
+    const auto at = static_cast<Index>(f);
+    if (weights[f] == 0.0) continue;
+    mixture.mean(at) = one.mean(i, k);
+    mixture.deviation(at) =
+        std::max(((upper ? one.upper : one.lower)(i, k) - one.mean(i, k)) / score, std::sqrt(least_variance));
+  }
+  return mixture.quantile(probability, score);
+}
+
+void mix_sample(const std::vector<const FreeRun*>& members, const std::vector<double>& weights, Index k, FreeRun& out) {
+  std::vector<double> known, densities;
+  for (const FreeRun* one : members) {
+    known.push_back(one->mean.col(k).allFinite() ? 0.0 : not_a_number);
+    densities.push_back(one->log_density(k));
+  }
+  const std::vector<double> share = ForecastWeights::spoken_weights(weights, known);
+  const auto mix = [&](auto value) {
+    double sum = 0.0;
+    for (std::size_t f = 0; f < members.size(); ++f)
+      if (share[f] > 0.0) sum += share[f] * value(*members[f]);
+    return sum;
+  };
+  for (Index i = 0; i < out.mean.rows(); ++i) {
+    const double mean = out.mean(i, k) = mix([&](const FreeRun& one) { return one.mean(i, k); });
+    out.deviation(i, k) = std::sqrt(mix([&](const FreeRun& one) {
+      return one.deviation(i, k) * one.deviation(i, k) + (one.mean(i, k) - mean) * (one.mean(i, k) - mean);
+    }));
+    out.pit(i, k) = mix([&](const FreeRun& one) { return one.pit(i, k); });
+    out.lower(i, k) = mixed_edge(members, share, false, i, k);
+    out.upper(i, k) = mixed_edge(members, share, true, i, k);
+  }
+  out.log_density(k) = ForecastWeights::mixed_log_density(share, densities);
+}
+
+}  // namespace
+
+FreeRun combine_free_runs(const std::vector<const FreeRun*>& members, const std::vector<double>& weights) {
+  if (members.empty()) throw std::invalid_argument("no free runs to combine");
+  FreeRun out = *members.front();  // of its samples, with its modes
+  for (Index k = 0; k < out.mode.size(); ++k)
+    if (out.mode(k) >= 0) mix_sample(members, weights, k, out);
+  return out;
+}
+
+ForecastTables::ForecastTables(std::vector<std::string> filters, const std::vector<Trajectory>& runs,
+                               std::vector<std::vector<double>> start)
+    : filters_(std::move(filters)),
+      runs_(runs),
+      sums_(filters_.size() + 1, std::vector<std::vector<HorizonSums>>(runs.size())),
+      weights_(runs.size()),
+      densities_(runs.size()),
+      start_(std::move(start)) {
+  Index samples = 0;
+  for (const Trajectory& run : runs) samples += run.role == Role::train ? run.samples() : 0;
+  every_ = 1 + samples / enough_densities;
+}
+
+ForecastTables::Weights ForecastTables::sum_weights(const std::vector<Eigen::MatrixXd>& weight) {
+  const auto horizons = static_cast<Index>(weight.size());
+  Weights total{Eigen::MatrixXd::Zero(weight.empty() ? 0 : weight.front().rows(), horizons),
+                Eigen::VectorXd::Zero(horizons)};
+  for (Index h = 0; h < horizons; ++h)
+    for (const auto column : weight[static_cast<std::size_t>(h)].colwise()) {
+      if (std::isnan(column(0))) continue;
+      total.sum.col(h) += column;
+      total.samples(h) += 1.0;
+    }
+  return total;
+}
+
+void ForecastTables::add(std::size_t run, const std::vector<HorizonEvaluation>& of_filters) {
+  std::vector<const HorizonEvaluation*> members;
+  for (std::size_t f = 0; f < of_filters.size(); ++f) {
+    sums_.at(f).at(run) = sum_horizons(of_filters[f]);
+    members.push_back(&of_filters[f]);
+  }
+  if (!combines()) return;
+  const CombinedForecasts combined = combine_forecasts(members, start_);
+  sums_.back().at(run) = sum_horizons(combined.predictions);
+  weights_.at(run) = sum_weights(combined.weight);
+  if (runs_[run].role != Role::train || !start_.empty()) return;
+  for (std::size_t h = 0; h < combined.weight.size(); ++h) {
+    const Index samples = of_filters.front().log_density.cols();
+    Eigen::MatrixXd& kept = densities_.at(run).emplace_back(std::ssize(members), (samples + every_ - 1) / every_);
+    for (std::size_t f = 0; f < members.size(); ++f)
+      for (Index k = 0; k < kept.cols(); ++k)
+        kept(static_cast<Index>(f), k) = members[f]->log_density(static_cast<Index>(h), k * every_);
+  }
+}
+
+std::vector<HorizonRow> ForecastTables::horizons() const {
+  std::vector<HorizonRow> rows;
+  for (std::size_t f = 0; f < filters_.size() + (combines() ? 1 : 0); ++f)
+    for (HorizonRow& row : summarize_horizons(f < filters_.size() ? filters_[f] : combined_name, runs_, sums_[f]))
+      rows.push_back(std::move(row));
+  return rows;
+}
+
+/// Over the runs of a role that are there.
+ForecastTables::Weights ForecastTables::weights_of(Role role) const {
+  Weights total;
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    const Weights& run = weights_[i];
+    if (runs_[i].role != role || run.samples.size() == 0) continue;
+    if (total.samples.size() == 0) {
+      total = run;
+    } else {
+      total.sum += run.sum;
+      total.samples += run.samples;
+    }
+  }
+  return total;
+}
+
+void ForecastTables::start_as_trained() {
+  if (!start_.empty() || !combines()) return;
+  std::size_t horizons = 0;
+  for (const std::vector<Eigen::MatrixXd>& run : densities_) horizons = std::max(horizons, run.size());
+  for (std::size_t h = 0; h < horizons; ++h) {
+    std::vector<Eigen::MatrixXd> of_runs;
+    for (const std::vector<Eigen::MatrixXd>& run : densities_)
+      if (!run.empty()) of_runs.push_back(run[h]);
+    start_.push_back(stacked_weights(of_runs));
+  }
+  densities_.assign(densities_.size(), {});
+}
+
+std::vector<CombinationRow> ForecastTables::combination() const {
+  std::vector<CombinationRow> rows;
+  const auto any =
+      std::find_if(weights_.begin(), weights_.end(), [](const Weights& w) { return w.samples.size() > 0; });
+  if (any == weights_.end()) return rows;
+  const std::vector<HorizonSums>& horizons = sums_.back()[static_cast<std::size_t>(any - weights_.begin())];
+  for (const Role role : {Role::train, Role::test}) {
+    const Weights total = weights_of(role);
+    for (Index h = 0; h < total.samples.size(); ++h)
+      for (std::size_t f = 0; f < filters_.size(); ++f)
+        rows.push_back({role, horizons[static_cast<std::size_t>(h)].horizon, filters_[f],
+                        total.sum(static_cast<Index>(f), h) / total.samples(h),
+                        start_.empty() ? not_a_number : start_.at(static_cast<std::size_t>(h)).at(f)});
+  }
+  return rows;
+}
+
+}  // namespace modebank

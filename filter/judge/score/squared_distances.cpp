@@ -1,0 +1,79 @@
+#include "filter/judge/score/squared_distances.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/base/distributions.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+/// Mean of a distance per degree of freedom.
+double mean_per_degree(const SquaredDistances& d) {
+  return sample_count(d.value) > 0.0 ? sum_of(d.value) / sum_of(d.degrees) : not_a_number;
+}
+
+/// What the distances differ by from their degrees' share of the mean: of mean zero over all.
+SeriesByRun deviations(const SquaredDistances& d) {
+  const double share = mean_per_degree(d);
+  SeriesByRun result = d.value;
+  for (std::size_t r = 0; r < result.size(); ++r)
+    for (std::size_t k = 0; k < result[r].size(); ++k) result[r][k] -= share * d.degrees[r][k];
+  return result;
+}
+
+double dispersion(const SquaredDistances& distances, const SeriesByRun& deviations) {
+  const double mean = mean_per_degree(distances);
+  double squares = 0.0;
+  for (const auto& x : deviations)
+    for (const double value : x) squares += value * value;
+  return squares > 0.0 ? squares / (2.0 * mean * mean * sum_of(distances.degrees)) : 1.0;
+}
+
+}  // namespace
+
+void SquaredDistances::begin_run() {
+  value.emplace_back();
+  degrees.emplace_back();
+}
+
+void SquaredDistances::add(double distance, Eigen::Index d) {
+  if (d == 0) return;
+  value.back().push_back(distance);
+  degrees.back().push_back(static_cast<double>(d));
+}
+
+Eigen::Index scored_signals(const RunEvaluation& evaluation, Eigen::Index sample) {
+  return (!evaluation.pit.col(sample).array().isNaN()).count();
+}
+
+double mean_distance(const SquaredDistances& distances, double of_all) { return of_all * mean_per_degree(distances); }
+
+double dispersion(const SquaredDistances& distances) { return dispersion(distances, deviations(distances)); }
+
+Interval mean_distance_interval(const SquaredDistances& distances, double of_all, bool chi_square, double level) {
+  const double count = sample_count(distances.value);
+  if (count == 0.0) return {not_a_number, not_a_number};
+  const SeriesByRun about_mean = deviations(distances);
+  const double time = cautious_time(autocorrelation_time(about_mean), count);
+  const double excess = chi_square ? 1.0 : dispersion(distances, about_mean);
+  const double total = std::max(1.0, sum_of(distances.degrees) / (excess * time)), outside = 0.5 * (1.0 - level);
+  return {of_all * chi_square_quantile(outside, total) / total,
+          of_all * chi_square_quantile(1.0 - outside, total) / total};
+}
+
+Eigen::VectorXd nis_of_all_signals(const RunEvaluation& e) {
+  const Eigen::Index all = e.pit.rows();
+  Eigen::VectorXd nis = e.nis;
+  for (Eigen::Index k = 0; k < nis.size(); ++k) {
+    const Eigen::Index there = scored_signals(e, k);
+    if (there == 0 || there == all || std::isnan(nis(k))) continue;
+    const double beyond = chi_square_upper_tail(nis(k), static_cast<double>(there));
+    if (beyond > 0.0) nis(k) = chi_square_upper_quantile(beyond, static_cast<double>(all));
+  }
+  return nis;
+}
+
+}  // namespace modebank

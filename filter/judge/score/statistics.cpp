@@ -1,0 +1,214 @@
+#include "filter/judge/score/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ident/base/distributions.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+Eigen::VectorXi likeliest_modes(const RunEvaluation& e) {
+  Eigen::VectorXi modes = Eigen::VectorXi::Zero(e.log_density.size());
+  if (e.mode_probability_predicted.rows() < 2) return modes;
+  for (Eigen::Index k = 0; k < modes.size(); ++k)
+    if (!std::isnan(e.log_density(k))) e.mode_probability_predicted.col(k).maxCoeff(&modes(k));
+  return modes;
+}
+
+}  // namespace
+
+Eigen::MatrixXd normal_scores(const Eigen::MatrixXd& pit) {
+  return pit.unaryExpr([](double value) { return std::isnan(value) ? not_a_number : normal_score(value); });
+}
+
+RunScores score_run(const RunEvaluation& e) {
+  RunScores scores;
+  scores.likeliest = likeliest_modes(e);
+  scores.z = normal_scores(e.pit);
+  OutputSeries z(static_cast<std::size_t>(e.pit.rows()));
+  for (Eigen::Index k = 0; k < e.log_density.size(); ++k)
+    if (!std::isnan(e.log_density(k)))
+      for (std::size_t i = 0; i < z.size(); ++i)
+        if (const double score = scores.z(static_cast<Eigen::Index>(i), k); !std::isnan(score)) z[i].push_back(score);
+  scores.whiteness_p = whiteness_p(z);
+  return scores;
+}
+
+std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations) {
+  std::vector<RunScores> scores;
+  for (const RunEvaluation& evaluation : evaluations) scores.push_back(score_run(evaluation));
+  return scores;
+}
+
+ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, const ResidualTestOptions& options) {
+  // Sample k + 1 closes transition k, whose input is u[k].
+  return test_residuals(scores.z.rightCols(run.transitions()), run.input.leftCols(run.transitions()), options);
+}
+
+namespace {
+
+constexpr Eigen::Index most_lags = 20;
+
+}  // namespace
+
+double whiteness_p(const OutputSeries& z) {
+  std::vector<double> p_values;
+  for (const std::vector<double>& output : z) p_values.push_back(ljung_box_p(output));
+  return fisher_p(p_values);
+}
+
+double kolmogorov_distance(std::vector<double> values) {
+  if (values.empty()) return not_a_number;
+  std::sort(values.begin(), values.end());
+  const double count = static_cast<double>(values.size());
+  double distance = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double below = static_cast<double>(i) / count, above = static_cast<double>(i + 1) / count;
+    distance = std::max({distance, above - values[i], values[i] - below});
+  }
+  return distance;
+}
+
+double ljung_box_p(const std::vector<double>& series) {
+  const Eigen::Index N = static_cast<Eigen::Index>(series.size()), lags = std::min<Eigen::Index>(most_lags, N / 5);
+  if (lags < 1) return not_a_number;
+  const Eigen::Map<const Eigen::ArrayXd> z(series.data(), N);
+  const Eigen::ArrayXd centred = z - z.mean();
+  const double variance = centred.square().sum();
+  if (!(variance > 0.0)) return not_a_number;
+  Eigen::VectorXd autocorrelation(lags + 1);
+  for (Eigen::Index k = 0; k <= lags; ++k)
+    autocorrelation(k) = (centred.head(N - k) * centred.tail(N - k)).sum() / variance;
+  return ljung_box_p(autocorrelation, N);
+}
+
+double fisher_p(const std::vector<double>& p_values) {
+  double statistic = 0.0, degrees_of_freedom = 0.0;
+  for (const double p : p_values) {
+    if (std::isnan(p)) continue;
+    statistic -= 2.0 * std::log(std::max(p, std::numeric_limits<double>::min()));
+    degrees_of_freedom += 2.0;
+  }
+  return degrees_of_freedom > 0.0 ? chi_square_upper_tail(statistic, degrees_of_freedom) : not_a_number;
+}
+
+namespace {
+
+constexpr double outer_tail = 0.025;
+constexpr double root_two_pi = 2.506628274631000502415765284811;
+constexpr double near_one = 0.999;    // correlations beyond: the series below would take too many terms
+constexpr double negligible = 1e-10;  // last power of the correlation
+
+/// Autocorrelations of lag 1, 2, ... as far as pairs of them (with that of lag 0) sum to more than nothing.
+std::vector<double> autocorrelations(const SeriesByRun& series) {
+  const double mean = mean_of(series);
+  std::size_t longest = 0;
+  for (const auto& x : series) longest = std::max(longest, x.size());
+  const auto autocovariance = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (const auto& x : series)
+      for (std::size_t k = lag; k < x.size(); ++k) sum += (x[k] - mean) * (x[k - lag] - mean);
+    return sum;
+  };
+  std::vector<double> result;
+  const double variance = autocovariance(0);
+  if (!(variance > 0.0)) return result;
+  for (std::size_t lag = 0; lag + 1 < longest; lag += 2) {
+    const double even = lag == 0 ? variance : autocovariance(lag), odd = autocovariance(lag + 1);
+    if (even + odd <= 0.0) break;
+    if (lag > 0) result.push_back(even / variance);
+    result.push_back(odd / variance);
+  }
+  return result;
+}
+
+double time_of(const std::vector<double>& correlations) {
+  double time = 1.0;
+  for (const double r : correlations) time += 2.0 * r;
+  return std::max(1.0, time);
+}
+
+/// Every value by the normal quantile of its rank among all.
+SeriesByRun normal_scores(SeriesByRun series) {
+  std::vector<double*> order;
+  for (auto& x : series)
+    for (double& value : x) order.push_back(&value);
+  std::stable_sort(order.begin(), order.end(), [](const double* a, const double* b) { return *a < *b; });
+  const auto count = static_cast<double>(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) *order[i] = normal_score((static_cast<double>(i) + 0.5) / count);
+  return series;
+}
+
+/// Of the indicators that two standard normal variables of correlation r lie beyond the `outer_tail` quantile: sum over
+/// j of r^j / j He_{j-1}(q)^2 / (j-1)! times phi(q)^2 / (outer_tail (1 - outer_tail)).
+double tail_correlation(double r) {
+  r = std::clamp(r, -near_one, near_one);
+  const double q = normal_score(1.0 - outer_tail);
+  const double density = std::exp(-0.5 * q * q) / root_two_pi;
+  double before = 0.0, hermite = 1.0, power = r, sum = 0.0;  // of order j - 1, over the root of (j-1)!
+  for (double j = 1.0; std::abs(power) > negligible; ++j, power *= r) {
+    sum += power * hermite * hermite / j;
+    before = std::exchange(hermite, (q * hermite - std::sqrt(j - 1.0) * before) / std::sqrt(j));
+  }
+  return sum * density * density / (outer_tail * (1.0 - outer_tail));
+}
+
+}  // namespace
+
+double sample_count(const SeriesByRun& series) {
+  double count = 0.0;
+  for (const auto& x : series) count += static_cast<double>(x.size());
+  return count;
+}
+
+double sum_of(const SeriesByRun& series) {
+  double sum = 0.0;
+  for (const auto& x : series)
+    for (const double value : x) sum += value;
+  return sum;
+}
+
+double mean_of(const SeriesByRun& series) {
+  const double count = sample_count(series);
+  return count > 0.0 ? sum_of(series) / count : not_a_number;
+}
+
+Autocorrelation largest_autocorrelation(const SeriesByRun& series) {
+  const double mean = mean_of(series);
+  const auto sum_at = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (const auto& x : series)
+      for (std::size_t k = lag; k < x.size(); ++k) sum += (x[k] - mean) * (x[k - lag] - mean);
+    return sum;
+  };
+  Autocorrelation largest;
+  const double variance = sum_at(0);
+  const auto lags = std::min<Eigen::Index>(most_lags, static_cast<Eigen::Index>(sample_count(series)) / 5);
+  for (Eigen::Index lag = 1; lag <= lags && variance > 0.0; ++lag)
+    if (const double value = sum_at(static_cast<std::size_t>(lag)) / variance;
+        std::abs(value) > std::abs(largest.value))
+      largest = {lag, value};
+  return largest;
+}
+
+double autocorrelation_time(const SeriesByRun& series) {
+  return std::isnan(mean_of(series)) ? not_a_number : time_of(autocorrelations(series));
+}
+
+double autocorrelation_time_of_tail(const SeriesByRun& series) {
+  if (sample_count(series) == 0.0) return not_a_number;
+  std::vector<double> correlations = autocorrelations(normal_scores(series));
+  for (double& r : correlations) r = tail_correlation(r);
+  return time_of(correlations);
+}
+
+double cautious_time(double time, double samples) {
+  return 1.0 + (time - 1.0) * (1.0 + std::sqrt((8.0 * time + 2.0) / samples));
+}
+
+}  // namespace modebank
