@@ -345,10 +345,15 @@ TEST_F(StageKey, OfAStructureThatIsFoundHoldsHowOneModelIsFitted) {
   EXPECT_NE(counts("window.input_lags", "2"), base);
   EXPECT_NE(counts("window.input_lags", "auto"), base);
   EXPECT_EQ(counts("filter.horizon", "2"), base);
-  const StageKeys two = keys(with_structure(options(found), {2, 1}));
+  const auto of_found = [&](const FoundStructure& structure) {
+    ChainOptions chain = options(found);
+    static_cast<LearningOptions&>(chain) = with_structure(chain, structure);
+    return keys(chain);
+  };
+  const StageKeys two = of_found({2, 1});
   EXPECT_EQ(two[index_of(Stage::structure)], base) << "the result does not decide the search";
   EXPECT_EQ(two[index_of(Stage::windows)], keys(options({{"window.state_lags", "2"}}))[index_of(Stage::windows)]);
-  EXPECT_NE(two[index_of(Stage::windows)], keys(with_structure(options(found), {3, 1}))[index_of(Stage::windows)]);
+  EXPECT_NE(two[index_of(Stage::windows)], of_found({3, 1})[index_of(Stage::windows)]);
 }
 
 TEST_F(StageKey, HoldsTheContentOfFiles) {

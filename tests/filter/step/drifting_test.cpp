@@ -208,7 +208,7 @@ TEST(Drifting, WhereNothingIsMeasuredThePredictionStandsIn) {
   const RunEvaluation e = evaluate_run(model, run);
   EXPECT_TRUE(near(e.state.middleCols(10, 2), e.prediction.middleCols(10, 2), 0.0));
   EXPECT_TRUE(near(e.state.col(12).head(2), run.state.col(12), 0.0));
-  DriftingFilter filter(model, TimeSteps::repeat);
+  DriftingFilter filter(model);
   Eigen::VectorXd state;  // with its lags
   for (Index k = 0; k <= 12; ++k) state = filter.step(run.time_s(k), run.input.col(k), run.state.col(k)).state;
   EXPECT_TRUE(near(state.tail(2), e.prediction.col(11), 0.0));
