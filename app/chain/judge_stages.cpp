@@ -8,12 +8,12 @@
 #include "filter/judge/decide/diagnostics.hpp"
 #include "filter/judge/run/drifting.hpp"
 #include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/free_runs.hpp"
 #include "filter/judge/run/smoother.hpp"
 #include "filter/judge/score/combination.hpp"
 #include "filter/judge/score/scores.hpp"
 #include "filter/judge/score/statistics.hpp"
 #include "filter/learn/chain/forecasters.hpp"
+#include "filter/learn/chain/free_runs.hpp"
 #include "ident/base/work_counter.hpp"
 #include "ident/model/residual_tests.hpp"
 

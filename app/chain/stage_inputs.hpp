@@ -5,7 +5,7 @@
 #include "app/chain/options.hpp"
 #include "filter/learn/chain/inputs.hpp"
 
-/// What the stages around learning are given of the options (filter/learn/chain/inputs.hpp has those of learning).
+/// The options that each stage around learning gets (those of learning: filter/learn/chain/inputs.hpp).
 namespace modebank {
 
 struct DataInputs {

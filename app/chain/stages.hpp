@@ -62,7 +62,7 @@ std::optional<FilterScores> score_combined(const FilterOptions& filter, const Sc
 /// Adds what all filters of the archive, and their combination, predict as far ahead as is asked for.
 void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive);
 
-/// What is to be said of free runs, one line each: of the bank's, runs of which nothing was predicted; of all, paths
+/// Remarks on free runs, one line each: of the bank's, runs of which nothing was predicted; of all, paths
 /// lost.
 std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,
                                  const std::vector<FreeRun>& free_runs);

@@ -25,7 +25,7 @@ struct ModelMinimum {
   FitStatus status = FitStatus::failed;
 };
 
-/// What minimise_model does, in words.
+/// How minimise_model works, in words.
 inline constexpr char minimise_model_method[] = "Ceres to a relative change of the cost of 1e-16";
 
 /// Minimises 1/2 sum w_k rho(|r_k / sigma|^2) + 1/2 |(theta - m) / sd|^2 by Ceres within the parameters' bounds from

@@ -87,8 +87,7 @@ struct DataPart {
   std::optional<LagReport> lag;     ///< with data.lag_s = auto
 };
 
-/// What one execution produced, stage by stage; absent stages did not run. (Of Learning archives keep terms_asked as
-/// Finding's.)
+/// The results of one execution, stage by stage; absent stages did not run. (terms_asked is stored as Finding's.)
 struct Archive : DataPart, Learning {
   Provenance provenance;
   std::string config;                        ///< fully resolved, itself a valid configuration file

@@ -2,7 +2,7 @@
 
 #include "app/chain/stages.hpp"
 #include "app/config/config_file.hpp"
-#include "filter/judge/run/free_runs.hpp"
+#include "filter/learn/chain/free_runs.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "modebank/filter/bank.hpp"
 #include "python/bindings/arrays.hpp"

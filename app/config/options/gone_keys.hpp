@@ -4,8 +4,8 @@
 
 namespace modebank::app {
 
-/// What takes the place of a key or value of earlier versions, as the end of a sentence on it (": use KEY"); empty for
-/// others. `value`: empty where the key alone is asked for.
+/// The end of a sentence on a key or value of earlier versions: that it went, and its replacement; empty for others.
+/// `value`: empty where the key alone is asked for.
 std::string instead_of_gone(const std::string& key, const std::string& value = {});
 
 }  // namespace modebank::app

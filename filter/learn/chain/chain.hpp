@@ -7,7 +7,7 @@
 
 namespace modebank {
 
-/// What learning takes from outside beside runs and options.
+/// Callers' part in learning beside runs and options.
 struct LearningHooks {
   /// Called for each stage, in their order, with the inputs that it is given: calls `compute`, or puts what an earlier
   /// call with equal inputs computed in place. Empty: computes.

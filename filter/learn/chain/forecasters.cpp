@@ -2,7 +2,7 @@
 
 #include "filter/judge/decide/finding.hpp"
 #include "filter/judge/run/drifting.hpp"
-#include "filter/judge/run/free_runs.hpp"
+#include "filter/learn/chain/free_runs.hpp"
 #include "filter/learn/chain/inputs.hpp"
 
 namespace modebank {

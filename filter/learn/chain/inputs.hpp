@@ -7,8 +7,8 @@
 
 #include "filter/learn/chain/options.hpp"
 
-/// What each stage of learning is given of the options, and all that it is given: a stored stage's key is made of its
-/// struct, field by field, so that no stage can depend on what its key does not hold.
+/// The options that each stage of learning gets, and all that it gets: a stored stage's key is made of its struct,
+/// field by field, so that no stage can depend on what its key does not hold.
 namespace modebank {
 
 struct WindowInputs {
@@ -61,7 +61,7 @@ struct StructureInputs {
   bool with_modes = true;  ///< whether modes, and one motion whose noise switches, choose for themselves
 };
 
-/// Of all stages of learning.
+/// The inputs of all stages of learning.
 struct LearningInputs {
   std::optional<StructureInputs> structure;  ///< empty where nothing is searched for
   WindowInputs windows;

@@ -13,7 +13,7 @@
 #include "ident/lag/structure.hpp"
 #include "mixture/select.hpp"
 
-/// What each stage of learning gives; absent stages did not run.
+/// The results of each stage of learning; absent stages did not run.
 namespace modebank {
 
 struct StructurePart {
@@ -45,7 +45,7 @@ struct BankPart {
   std::vector<MergingCost> merging = {};  ///< with bank.modes, where components were merged
 };
 
-/// What has been learned of runs.
+/// All that was learned from runs.
 struct Learning : StructurePart, WindowsPart, MixturePart, CompetitorsPart, BankPart {
   bool terms_asked = false;  ///< for nonlinear, whether or not any gained
 

@@ -43,7 +43,7 @@ struct MixingWeights {
   Eigen::MatrixXd matrix;  ///< K x K
 };
 
-/// What one step computes on the way, sized once.
+/// Intermediate results of one step, sized once.
 template <int N, int NY>
 struct FilterStep {
   Eigen::VectorXd predicted_probability;  ///< K, c: before the measurement

@@ -11,7 +11,7 @@ namespace {
 
 class LearnBank : public CliTest {
  protected:
-  /// Of the runs of the archive that `run` makes with these options.
+  /// Learns from the runs of an archive that `run` makes with these arguments, and compares the banks.
   void expect_the_bank_of_run(const std::vector<std::string>& arguments, const LearnOptions& options) {
     const ProgramResult result = run(arguments);
     ASSERT_EQ(result.status, 0) << result.err;
@@ -38,19 +38,19 @@ class LearnBank : public CliTest {
 LearnOptions as_the_fixture_has_it() {
   LearnOptions options;
   options.window.length = 20;
-  options.automatic_length = false;
   options.mixture.selection.components = {1, 2};
   return options;
 }
 
 TEST_F(LearnBank, IsThatOfRun) {
-  expect_the_bank_of_run({"--window.model", "auto", "--window.length", "20", "--window.step", "auto"},
-                         as_the_fixture_has_it());
+  LearnOptions options = as_the_fixture_has_it();
+  options.search_lags = options.automatic_length = options.automatic_step = true;
+  expect_the_bank_of_run({"--window.model", "auto"}, options);
 }
 
 TEST_F(LearnBank, IsThatOfRunWithEveryStageAskedOtherwise) {
   LearnOptions options = as_the_fixture_has_it();
-  options.search_lags = options.automatic_step = options.noise_by_input = false;
+  options.noise_by_input = false;
   options.window.loss = Loss::cauchy;
   options.mixture.selection.components = {1, 2, 3};
   options.mixture.selection.em.covariance = CovarianceType::diagonal;
@@ -84,7 +84,7 @@ TEST_F(LearnBank, IsThatOfRunWithEveryStageAskedOtherwise) {
 
 TEST_F(LearnBank, IsThatOfRunWithoutRefinement) {
   LearnOptions options = as_the_fixture_has_it();
-  options.search_lags = false;
+  options.automatic_step = true;
   options.bank.refine = Refine::none;
   expect_the_bank_of_run(
       {"--window.model", "linear", "--window.length", "20", "--window.step", "auto", "--bank.refine", "none"}, options);
@@ -92,6 +92,7 @@ TEST_F(LearnBank, IsThatOfRunWithoutRefinement) {
 
 TEST_F(LearnBank, IsThatOfRunWhereOneFilterIsAskedFor) {
   LearnOptions options = as_the_fixture_has_it();
+  options.search_lags = options.automatic_step = true;
   options.filter.variant = FilterVariant::kf;
   expect_the_bank_of_run(
       {"--window.model", "auto", "--window.length", "20", "--window.step", "auto", "--filter.variant", "kf"}, options);

@@ -218,6 +218,7 @@ const std::map<std::string, std::string> without_effect{
     {"data.missing", "nothing is missing"},
     {"data.disorder", "time is in order"},
     {"window.wheel_radius_m", "is read by icr and slip alone, which are no base"},
+    {"mixture.criterion", "every one takes the same number of components"},
     {"mixture.windows", "every choice takes the same windows (cause not looked into)"},
     {"mixture.straddling", "every choice treats all windows alike (cause not looked into)"},
     {"bank.mode_names", "people's names of what was learned are no stage's"},

@@ -144,7 +144,7 @@ TEST_F(ConfigFile, KeyOutsideAnySectionIsExplained) {
 TEST_F(ConfigFile, WordsThatAreGoneAreAnsweredWithThoseThatAreLeft) {
   using Case = std::array<std::string, 3>;
   for (const auto& [key, gone, left] :
-       {Case{"straddling", "trim", "leave_out | keep"}, Case{"start", "hierarchical", "random | an archive"},
+       {Case{"windows", "trim", "automatic | full_rank | all"}, Case{"start", "hierarchical", "random | an archive"},
         Case{"start", "auto", ".h5"}})
     try {
       load("[mixture]\n" + key + " = " + gone + "\n");

@@ -42,7 +42,6 @@ TEST(LearnDoor, TakesMotionModels) {
 
 TEST(LearnDoor, FindsTwoModesAndTheirErrors) {
   LearnOptions options = few_candidates(Refine::automatic);
-  options.search_lags = false;
   const learn::Learned learned = learn::learn_bank(test::recorded_runs(two_modes()), options);
   EXPECT_EQ(learned.bank.modes(), 2);
   EXPECT_FALSE(learned.uncertainty.Q_standard_error.empty());
@@ -62,7 +61,6 @@ TEST(LearnDoor, ASingleFilterIsTheBaseline) {
 TEST(LearnDoor, BadArgumentsAreNamed) {
   LearnOptions options;
   options.window.step = 0;
-  options.automatic_step = false;
   EXPECT_THROW(learn::learn_bank(test::recorded_runs(two_modes()), options), ConfigurationError);
   options = {};
   options.bank.noise = NoiseSource::fixed;

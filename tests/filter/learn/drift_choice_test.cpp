@@ -45,7 +45,7 @@ Refinement refined(const Recording& recording, Drift drift, bool competitor) {
   return refine_bank(recording, fits, {start}, options.em, {});
 }
 
-constexpr DriftRates wandering{0.05, 5.0, 0.97}, no_drift{0.0, 0.0, 1.0};
+constexpr DriftRates wandering{0.02, 2.0, 0.97}, no_drift{0.0, 0.0, 1.0};
 
 TEST(DriftChoice, TakesDriftWhereCoefficientsWander) {
   for (const bool competitor : {false, true}) {
@@ -53,7 +53,7 @@ TEST(DriftChoice, TakesDriftWhereCoefficientsWander) {
     EXPECT_TRUE(r.drift.taken);
     EXPECT_FALSE(r.bank.drift.empty()) << "otherwise what drift is worth would be counted for the modes";
     EXPECT_GT(r.drift.gain, 2.0 * r.drift.gain_standard_error);
-    EXPECT_GE(r.drift.start, 1.0) << "5 is true, on a grid of tens";
+    EXPECT_GE(r.drift.start, 1.0) << "2 is true, on a grid of tens";
     EXPECT_TRUE(refined(wandering_runs(wandering, 1), Drift::none, competitor).bank.drift.empty());
   }
 }

@@ -103,19 +103,20 @@ struct BankOptions {
   RefineOptions em;                            ///< how, then
 };
 
-/// All that decides what is learned from runs. Defaults are those of `modebank run`.
+/// All that decides what is learned from runs. `modebank run` finds lags, delay and windows from the data unless it is
+/// told otherwise: search_lags, automatic_length and automatic_step say so here.
 struct LearnOptions {
-  FitOptions window;             ///< how windows are cut and fitted
-  ClusterOptions mixture;        ///< how they are clustered
-  BankOptions bank;              ///< how their mixture becomes a bank
-  FilterOptions filter;          ///< that will run the bank; variant kf asks for a single Kalman filter: the baseline
-  std::uint64_t seed = 1;        ///< the one seed: takes the place of those in `window` and `bank`
-  bool search_lags = true;       ///< lags and delay of linear models are those that training runs left out prefer,
-                                 ///< whatever `window` has; not of motion models
-  bool automatic_length = true;  ///< window.length follows the number of regressors
-  bool automatic_step = true;    ///< window.step leaves 100,000 windows
-  bool noise_by_input = true;    ///< all process noise has one factor that follows states and inputs, where training
-                                 ///< runs left out gain by it
+  FitOptions window;              ///< how windows are cut and fitted
+  ClusterOptions mixture;         ///< how they are clustered
+  BankOptions bank;               ///< how their mixture becomes a bank
+  FilterOptions filter;           ///< that will run the bank; variant kf asks for a single Kalman filter: the baseline
+  std::uint64_t seed = 1;         ///< the one seed: takes the place of those in `window` and `bank`
+  bool search_lags = false;       ///< lags and delay are those that training runs left out prefer, whatever `window`
+                                  ///< has; not of motion models
+  bool automatic_length = false;  ///< window.length follows the number of regressors
+  bool automatic_step = false;    ///< window.step leaves 100,000 windows
+  bool noise_by_input = true;     ///< all process noise has one factor that follows states and inputs, where training
+                                  ///< runs left out gain by it
 };
 
 }  // namespace modebank

@@ -1,4 +1,4 @@
-#include "filter/judge/run/free_runs.hpp"
+#include "filter/learn/chain/free_runs.hpp"
 
 #include <tbb/parallel_for.h>
 
