@@ -11,7 +11,7 @@ import pandas
 
 SOURCE = pathlib.Path(os.environ["MODEBANK_SOURCE"])
 # What keeps the demo's chain to seconds.
-QUICK = {"window.model": "linear", "window.step": 5, "mixture.components": [1, 2], "mixture.restarts": 1, "bank.refine": "none"}
+QUICK = {"window.model": "linear", "window.step": 5, "mixture.components": [1, 2], "mixture.restarts": 2, "bank.refine": "none"}
 
 
 @functools.lru_cache

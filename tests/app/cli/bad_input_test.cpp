@@ -75,7 +75,7 @@ TEST_F(BadInput, AbbreviatedKeyInFile) {
 }
 TEST_F(BadInput, AbbreviatedOption) { expect(run({"--window.len", "20"}), 2, {"window.len", "window.length"}); }
 TEST_F(BadInput, ValueOutOfRange) {
-  expect(run({"--bank.stay", "1.5"}), 2, {"bank.stay", "1.5", "above 0 and below 1"});
+  expect(run({"--bank.stay", "1.5"}), 2, {"bank.stay", "1.5", "above 0 and at most 1"});
 }
 TEST_F(BadInput, TextForANumber) { expect(run({"--window.length", "2x"}), 2, {"window.length", "2x"}); }
 TEST_F(BadInput, WordThatIsNone) { expect(run({"--window.loss", "hubert"}), 2, {"window.loss", "hubert", "huber"}); }
