@@ -20,7 +20,7 @@ namespace {
 template <class P>
 Archive part_of(const Archive& archive) {
   Archive part;
-  static_cast<P&>(part) = archive;
+  static_cast<P&>(part) = static_cast<const P&>(archive);
   return part;
 }
 

@@ -107,7 +107,7 @@ class Run {
 /// As far as the data have to say something of the options.
 LearningOptions found_in(const Recording& recording, LearningOptions options,
                          const std::optional<FoundStructure>& structure) {
-  if (structure) options = with_structure(std::move(options), *structure);
+  if (structure) options = with_structure(options, *structure);
   if (options.automatic_windows.length) options.window.length = automatic_length(recording, options.window);
   if (options.automatic_windows.step) options.window.step = automatic_step(recording);
   return options;

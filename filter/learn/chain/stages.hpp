@@ -20,7 +20,7 @@ namespace modebank {
 /// The lags and the delay of one linear model of the training runs (ident/lag/structure_search.hpp).
 FoundStructure search_structure(const Recording& recording, const StructureInputs& inputs, const Progress& progress);
 /// The options with that structure, which stays one that is searched for.
-LearningOptions with_structure(LearningOptions options, const FoundStructure& found);
+LearningOptions with_structure(const LearningOptions& of, const FoundStructure& found);
 
 /// A mixture to start from beside random ones, over the features of the cloud; none without.
 using MixtureStart = std::function<std::optional<GaussianMixture>(const FeatureCloud& cloud)>;

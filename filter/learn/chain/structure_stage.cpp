@@ -15,7 +15,8 @@ FoundStructure search_structure(const Recording& recording, const StructureInput
   return found;
 }
 
-LearningOptions with_structure(LearningOptions options, const FoundStructure& found) {
+LearningOptions with_structure(const LearningOptions& of, const FoundStructure& found) {
+  LearningOptions options = of;
   FitOptions& window = options.window;
   window.state_lags = found.state_lags;
   window.input_lags = found.input_lags;
