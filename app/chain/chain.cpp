@@ -103,7 +103,8 @@ void Chain::learn(const ChainOptions& options, Stage last) {
   if (!inputs_.structure) held_[index_of(Stage::structure)].clear();
   LearningHooks hooks;
   hooks.provide = [&](Stage stage, const LearningInputs& inputs, const std::function<void()>& compute) {
-    inputs_ = chain_inputs(options, inputs);
+    static_cast<LearningInputs&>(inputs_) = inputs;
+    inputs_.competitor_scores.window = inputs.windows.window;
     const std::string data_key = wanted_[index_of(Stage::data)];
     wanted_ = stage_keys(inputs_, data_.data_hash);
     wanted_[index_of(Stage::data)] = data_key;

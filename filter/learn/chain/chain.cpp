@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "filter/learn/chain/training_check.hpp"
-#include "filter/learn/refine/learning_part.hpp"
 #include "ident/fit/window_length.hpp"
 
 namespace modebank {
@@ -18,8 +17,7 @@ class Run {
       : recording_(recording), hooks_(hooks), progress_(progress), learned_(learned) {}
 
   void find_lags(const LearningInputs& inputs) {
-    learned_.structure = inputs.structure ? std::move(learned_.structure) : std::nullopt;
-    if (!inputs.structure) return;
+    if (!inputs.structure) return learned_.structure.reset();
     provide(Stage::structure, inputs,
             [&] { learned_.structure = search_structure(recording_, *inputs.structure, progress_); });
   }
