@@ -160,7 +160,9 @@ Switching switching_seed(int seed) {
   result.overshoot = cluster(simulated.recording, fits, {1, 2, 3, 4, 5, 6, 7}, seed).mixture.components() - modes;
   const MixtureResult at_truth = cluster(simulated.recording, fits, {modes}, seed);
   const double R = system.measurement_sd * system.measurement_sd;
-  const Bank bank = learn_bank(simulated.recording, fits, at_truth, BankOptions{}, Eigen::MatrixXd::Constant(1, 1, R));
+  const Bank bank = learn_refined_bank(simulated.recording, fits, at_truth, BankOptions{},
+                                       Eigen::MatrixXd::Constant(1, 1, R), FilterOptions{})
+                        .bank;
   const std::vector<Index> truth = match(bank, system);
   result.worst_theta_error =
       is_permutation_of_modes(truth, system.modes.size()) ? relative_error(bank, system, truth) : 1.0;
@@ -174,8 +176,8 @@ TEST(Recovery, SwitchesInsideRuns) {
   tbb::parallel_for(0, switching_seeds, [&](int s) { results[static_cast<std::size_t>(s)] = switching_seed(s + 1); });
   int exact = 0, one_more = 0, more = 0, less = 0;
   for (const Switching& r : results) {
-    EXPECT_LE(r.worst_theta_error, 0.10) << "seed " << &r - results.data() + 1;
-    EXPECT_GE(r.sequence_right, 0.90) << "seed " << &r - results.data() + 1;
+    EXPECT_LE(r.worst_theta_error, 0.03) << "seed " << &r - results.data() + 1;
+    EXPECT_GE(r.sequence_right, 0.99) << "seed " << &r - results.data() + 1;
     (r.overshoot < 0 ? less : r.overshoot == 0 ? exact : r.overshoot == 1 ? one_more : more)++;
   }
   fmt::print("with switches BIC finds fewer than K in {}, K in {}, K + 1 in {}, more in {} of {} seeds\n", less, exact,
