@@ -29,7 +29,7 @@ void check_export(const CommandLine& line, const path& output, const FileForm& f
 }
 
 /// The verdict on the bank opens exports to C, Python and YAML.
-FileForm bank_form() { return form_by_front("an export of a bank", " Verdict: ", 16); }
+FileForm bank_form() { return form_by_front("an export of a bank", " Calibration: ", 16); }
 
 /// How much earlier than recorded the inputs were taken that the bank was learned from.
 double input_lag_of(const Archive& archive, const Config& config) {

@@ -53,7 +53,7 @@ std::string python_opening(const ExportedBank& exported) {
   const LinearStructure& s = exported.structure();
   std::string remarks;
   for (const std::string& remark : exported.remarks()) remarks += "# " + comment_text(remark) + ".\n";
-  return fmt::format(R"py(# Verdict: {}
+  return fmt::format(R"py(# Calibration: {}
 # A bank of modes for CasADi, made by modebank {} of {},
 # SHA-256 {}, filter {}.
 # {}

@@ -6,8 +6,8 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/mode_names.hpp"
+#include "app/text/calibration_text.hpp"
 #include "app/text/mode_words.hpp"
-#include "app/text/verdict_text.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/bank/load_bank.hpp"

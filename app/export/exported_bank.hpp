@@ -24,7 +24,7 @@ struct ExportedBank {
   std::string sha256;     ///< of the archive's content
   Provenance provenance;  ///< of the archive
   FilterOptions options;  ///< how the archive ran it
-  Verdict verdict = Verdict::undecided;
+  Calibration verdict = Calibration::undecided;
   std::string verdict_words;  ///< with what it rests on
   std::string judged_on;      ///< held-out, training; empty: it was not judged
   double coverage_95 = 0.0;
@@ -42,7 +42,9 @@ struct ExportedBank {
 
   const LinearStructure& structure() const { return bank.structure; }
   Eigen::MatrixXd A(Eigen::Index mode) const { return bank.modes[static_cast<std::size_t>(mode)].model.full_form(); }
-  bool may_be_trusted() const { return verdict != Verdict::overconfident && verdict != Verdict::underconfident; }
+  bool may_be_trusted() const {
+    return verdict != Calibration::overconfident && verdict != Calibration::underconfident;
+  }
   /// The verdict in a sentence.
   std::string verdict_text() const;
   /// Sentences on what a reader of the bank's numbers alone would not learn.

@@ -10,7 +10,7 @@
 #include "app/chain/judged_runs.hpp"
 #include "app/text/named_forecasts.hpp"
 #include "app/text/warnings.hpp"
-#include "filter/judge/decide/verdict_reason.hpp"
+#include "filter/judge/decide/calibration_reason.hpp"
 #include "ident/fit/window_length.hpp"
 #include "ident/lag/structure.hpp"
 #include "io/import/split.hpp"
@@ -51,7 +51,7 @@ Index window_and_lags(const Situation& s) {
 }
 
 bool is_uncertain_wrongly(const Situation& s) {
-  return s.bank.verdict == Verdict::overconfident || s.bank.verdict == Verdict::underconfident;
+  return s.bank.verdict == Calibration::overconfident || s.bank.verdict == Calibration::underconfident;
 }
 
 constexpr int many_restarts = 20, many_iterations = 400;  // advised once: what does not help then never does
@@ -172,7 +172,7 @@ const Rule rules[] = {
        return "train on runs like the held-out ones: `modebank check CONFIG` compares runs, --data.train names them";
      }},
     {[](const Situation& s) {
-       return s.bank.verdict == Verdict::undecided && reason_of(s.bank) != VerdictReason::close;
+       return s.bank.verdict == Calibration::undecided && reason_of(s.bank) != CalibrationReason::close;
      },
      [](const Situation&) -> std::string {
        return "record more: held-out samples, to know whether the band is false, or name more with --data.test";

@@ -37,7 +37,7 @@ struct FirstScreen {
   std::optional<Answer> answer;
   double gain = 0.0, gain_error = 0.0;  ///< of log score over the competitor [nats/sample]; NaN where not known
   double coverage = 0.0, coverage_lower = 0.0, coverage_upper = 0.0;  ///< of the 95 % band; NaN where not known
-  Verdict verdict = Verdict::undecided;
+  Calibration verdict = Calibration::undecided;
   std::string verdict_words;       ///< with what it rests on; empty where the bank was not scored
   std::vector<ErrorAhead> errors;  ///< one step ahead, and as far as filter.horizon looks
   Index free_run_start = 0;        ///< measured samples that free runs begin with; 0: there are none

@@ -7,6 +7,7 @@
 
 #include "filter/step/truncated_normal.hpp"
 #include "ident/base/distributions.hpp"
+#include "ident/base/log_two_pi.hpp"
 
 namespace modebank {
 
@@ -15,7 +16,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 double student_log_constant(double degrees) {
-  if (degrees == 0.0) return -0.5 * std::log(2.0 * pi);
+  if (degrees == 0.0) return -0.5 * log_two_pi;
   return std::lgamma(0.5 * (degrees + 1.0)) - std::lgamma(0.5 * degrees) - 0.5 * std::log(pi * (degrees - 2.0));
 }
 

@@ -6,12 +6,12 @@
 #include <numbers>
 #include <utility>
 
+#include "ident/base/log_two_pi.hpp"
+
 namespace modebank {
 namespace {
 
-constexpr double log_root_two_pi = 0.91893853320467274178;
-
-double density(double x) { return std::exp(-0.5 * x * x - log_root_two_pi); }
+double density(double x) { return std::exp(-0.5 * x * x - 0.5 * log_two_pi); }
 
 /// By the error function; `low` not far above zero, the interval not narrow.
 TruncatedNormal by_differences(double low, double high) {
@@ -52,7 +52,7 @@ TruncatedNormal by_quadrature(double low, double whole_width) {
       add(middle + half * x, weight);
     }
   const double mean = first / sum, square = second / sum, cube = third / sum;
-  return {-0.5 * low * low - log_root_two_pi + std::log(sum * half), low + mean, square - mean * mean,
+  return {-0.5 * low * low - 0.5 * log_two_pi + std::log(sum * half), low + mean, square - mean * mean,
           cube - mean * (3.0 * square - 2.0 * mean * mean),
           fourth / sum - mean * (4.0 * cube - mean * (6.0 * square - 3.0 * mean * mean))};
 }
@@ -65,7 +65,7 @@ TruncatedNormal within_interval(double low, double high, double width) {
   if (mirrored) low = -std::exchange(high, -low);
   if (!(width > 0.0)) {  // so far out that rounding leaves a point
     const double mean = mirrored ? -low : low;
-    return {-0.5 * low * low - log_root_two_pi + std::log(std::numeric_limits<double>::min()), mean};
+    return {-0.5 * low * low - 0.5 * log_two_pi + std::log(std::numeric_limits<double>::min()), mean};
   }
   const bool narrow = width < truncated::least_width;
   TruncatedNormal result =
@@ -84,7 +84,7 @@ TruncatedNormal truncated_normal(double low, double high) { return within_interv
 
 SignalLikelihood signal_likelihood(double e, double s, double quantum) {
   const double deviation = std::sqrt(s), z = e / deviation;
-  if (quantum == 0.0) return {-log_root_two_pi - std::log(deviation) - 0.5 * z * z, z};
+  if (quantum == 0.0) return {-0.5 * log_two_pi - std::log(deviation) - 0.5 * z * z, z};
   const double half = 0.5 * quantum;
   const TruncatedNormal within = within_interval((e - half) / deviation, (e + half) / deviation, quantum / deviation);
   return {within.log_mass - std::log(quantum), within.mean, within.variance, within.third, within.fourth};

@@ -11,6 +11,5 @@ inline constexpr double inlier_weight = 0.5;   ///< an inlier keeps at least thi
 inline constexpr double least_one_minus_leverage = 1e-6;
 /// A fit has ended where the gradient, in orthonormal coordinates, is at most this share of |psi|.
 inline constexpr double stationary_gradient = 1e-10;
-inline constexpr double log_two_pi = 1.8378770664093454836;
 
 }  // namespace modebank

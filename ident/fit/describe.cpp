@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/base/log_two_pi.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/constants.hpp"
 #include "ident/fit/covariance.hpp"

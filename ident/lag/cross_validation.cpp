@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "ident/base/linalg.hpp"
+#include "ident/base/log_two_pi.hpp"
 #include "ident/base/work_counter.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/lag/objective.hpp"
@@ -36,8 +36,8 @@ RunScore score(const Trajectory& run, const GlobalModel& global, const LinearStr
   const Index n = structure.states;
   const Cholesky noise(global.residual_covariance + least_variance * MatrixXd::Identity(n, n));
   const MatrixXd L = noise.L();
-  const double log_constant = -static_cast<double>(structure.states) * 0.5 * std::log(2.0 * std::numbers::pi) -
-                              L.diagonal().array().log().sum();
+  const double log_constant =
+      -static_cast<double>(structure.states) * 0.5 * log_two_pi - L.diagonal().array().log().sum();
   for (Index k = 0; k < run.transitions(); ++k) {
     if (run.time_s(k) < first_s || run.time_s(k + 1) > last_s) continue;
     const VectorXd error = run.state.col(k + 1) - model.next(run.state.col(k), run.input.col(k));

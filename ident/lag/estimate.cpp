@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ident/base/lagged_product.hpp"
 #include "ident/lag/objective.hpp"
 #include "ident/lag/uncertainty.hpp"
 
@@ -133,7 +134,7 @@ double effective_samples(const LagObjective::Fit& fit) {
     const auto r = fit.residuals.row(i);
     const double square_sum = r.squaredNorm();
     if (!(square_sum > 0.0)) continue;
-    numerator += r.tail(N - 1).dot(r.head(N - 1)) / square_sum;
+    numerator += lagged_product(r, r, 1) / square_sum;
     denominator += 1.0;
   }
   const double rho = denominator > 0.0 ? std::clamp(numerator / denominator, 0.0, 0.99) : 0.0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ident/base/distributions.hpp"
+#include "ident/base/lagged_product.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/model/transitions.hpp"
 
@@ -37,11 +38,10 @@ struct Centred {
 
 /// Correlation of a with b `lag` samples earlier, at lags 0 .. lags; NaN where one is constant.
 VectorXd correlations(const Centred& a, const Centred& b, Index lags) {
-  const Index N = a.values.size();
   const double scale = std::sqrt(a.square_sum) * std::sqrt(b.square_sum);
   if (!(scale > 0.0)) return VectorXd::Constant(lags + 1, not_a_number);
   VectorXd result(lags + 1);
-  for (Index lag = 0; lag <= lags; ++lag) result(lag) = (a.values.tail(N - lag) * b.values.head(N - lag)).sum() / scale;
+  for (Index lag = 0; lag <= lags; ++lag) result(lag) = lagged_product(a.values, b.values, lag) / scale;
   return result;
 }
 

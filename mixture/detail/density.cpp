@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include "ident/base/linalg.hpp"
+#include "ident/base/log_two_pi.hpp"
 
 namespace modebank {
 
@@ -62,19 +64,16 @@ FactoredMixture::FactoredMixture(const GaussianMixture& mixture, bool errors)
       central_(new bool[static_cast<std::size_t>(mixture.components())]),
       log_constants_(mixture.components()) {
   const Index F = mixture.features();
-  const double log_normal = -0.5 * static_cast<double>(F) * std::log(2.0 * std::numbers::pi);
-  Eigen::LLT<Eigen::MatrixXd> cholesky;
-  Eigen::MatrixXd L, W;
+  const double log_normal = -0.5 * static_cast<double>(F) * log_two_pi;
+  Cholesky cholesky;
   for (Index k = 0; k < mixture.components(); ++k) {
     const Eigen::MatrixXd& covariance = mixture.covariances[k];
     if (diagonal_)
-      cholesky.compute(Eigen::MatrixXd(covariance.diagonal().asDiagonal()));
+      cholesky.factorise(covariance.diagonal().asDiagonal());
     else
-      cholesky.compute(covariance);
-    L = cholesky.matrixL();
-    W.setIdentity(F, F);
-    cholesky.matrixL().solveInPlace(W);
-    if (cholesky.info() != Eigen::Success || !L.allFinite() || !W.allFinite())
+      cholesky.factorise(covariance);
+    const Eigen::MatrixXd L = cholesky.L(), W = cholesky.whiten(Eigen::MatrixXd(Eigen::MatrixXd::Identity(F, F)));
+    if (!cholesky.definite() || !L.allFinite() || !W.allFinite())
       throw NotPositiveDefinite(fmt::format(
           "covariance of mixture component {} of {} features is not positive definite (smallest variance {})", k, F,
           covariance.diagonal().minCoeff()));

@@ -118,7 +118,8 @@ std::string opening(const ExportedBank& exported, const char* what) {
   std::string remarks;
   for (const std::string& remark : exported.remarks()) remarks += "\n * " + c_comment(remark) + ".";
   return fmt::format(
-      "/* Verdict: {}\n *\n * {}, made by modebank {} of\n * {}, filter {}, SHA-256\n * {}\n * {}\n * dt_s = {:.17g} "
+      "/* Calibration: {}\n *\n * {}, made by modebank {} of\n * {}, filter {}, SHA-256\n * {}\n * {}\n * dt_s = "
+      "{:.17g} "
       "s; "
       "{} state lag(s), {} input lag(s), delay {} sample(s){}{}\n * {} */\n\n",
       c_comment(exported.verdict_text()), what, c_comment(exported.provenance.modebank_version),

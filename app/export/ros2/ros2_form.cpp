@@ -175,7 +175,8 @@ std::vector<std::pair<std::string, std::string>> to_ros2(const ExportedBank& exp
     const auto at = static_cast<std::size_t>(k);
     const RobotNumbers numbers = robot_numbers(exported, k, channels, sizes);
     const std::string opening = fmt::format(
-        "# Verdict: {}\n# {}, {:.1f} % of the windows, of a bank made by modebank {} of {},\n# SHA-256 {}, filter {}.\n"
+        "# Calibration: {}\n# {}, {:.1f} % of the windows, of a bank made by modebank {} of {},\n# SHA-256 {}, filter "
+        "{}.\n"
         "# {}\n# dt_s = {} s. {}.\n{}# Keys are those that the bank determines; what it does not is a comment that "
         "says "
         "why.\n\n",

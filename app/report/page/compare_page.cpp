@@ -107,7 +107,7 @@ std::string gain_sentence(const PairedGain& gain, const std::string& first, cons
 }
 
 /// Whether the bank of run k predicts better than the first's, with what it is known by.
-json verdict_of(const Runs& runs, std::size_t k) {
+json calibration_of(const Runs& runs, std::size_t k) {
   const std::string letter(1, static_cast<char>('A' + k));
   const ArchiveGain found = gain_between(runs[k].archive, runs[0].archive);
   json verdict = {{"runs", found.runs},
@@ -125,7 +125,7 @@ json verdict_of(const Runs& runs, std::size_t k) {
 
 json verdicts_of(const Runs& runs) {
   json verdicts = json::array();
-  for (std::size_t k = 1; k < runs.size(); ++k) verdicts.push_back(verdict_of(runs, k));
+  for (std::size_t k = 1; k < runs.size(); ++k) verdicts.push_back(calibration_of(runs, k));
   return verdicts;
 }
 

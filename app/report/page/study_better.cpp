@@ -56,7 +56,7 @@ std::optional<Archive> archive_of(const TrialPlace& place) {
 /// Less than this in log score is nobody's reason to choose [nats/sample].
 constexpr double no_matter = 0.001;
 
-std::string verdict_of(double gain, double margin) {
+std::string calibration_of(double gain, double margin) {
   if (std::abs(gain) < no_matter && !(margin >= no_matter)) return "the same";
   if (!std::isfinite(margin)) return "error not known";
   return gain > margin ? "worse" : gain < -margin ? "better" : "cannot tell";
@@ -93,7 +93,7 @@ json row_json(const StudyTable& table, std::size_t row, const JudgedGain& gain) 
           {"gain", gain_cell(gain.gain, gain.standard_error)},
           {"margin",
            std::isfinite(gain.margin) ? number(gain.margin, fmt::format("{:.4f}", gain.margin)) : number(gain.margin)},
-          {"verdict", verdict_of(gain.gain, gain.margin)},
+          {"verdict", calibration_of(gain.gain, gain.margin)},
           {"by", gain.by}};
 }
 

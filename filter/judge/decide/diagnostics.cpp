@@ -5,8 +5,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "filter/judge/decide/evidence.hpp"
-#include "filter/judge/decide/verdict_reason.hpp"
+#include "filter/judge/decide/calibration_reason.hpp"
+#include "filter/judge/decide/collected.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -31,7 +31,7 @@ void set_coverage(const HitsByRun& outside, double time, double& coverage, doubl
   for (double* share : {&coverage, &lower, &upper}) *share = 1.0 - *share;
 }
 
-void set_fractions(const Evidence& e, double time, DiagnosticsRow& row) {
+void set_fractions(const BandCounts& e, double time, DiagnosticsRow& row) {
   set_coverage(e.outside[0], time, row.coverage_50, row.coverage_50_lower, row.coverage_50_upper);
   set_coverage(e.outside[1], time, row.coverage_90, row.coverage_90_lower, row.coverage_90_upper);
   set_coverage(e.outside[2], time, row.coverage_95, row.coverage_95_lower, row.coverage_95_upper);
@@ -63,7 +63,7 @@ std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vec
 }
 
 void set_distances(const Collected& c, double nees_states, DiagnosticsRow& row) {
-  const Evidence& e = c.evidence;
+  const BandCounts& e = c.counts;
   row.nis_mean = mean_distance(e.nis, e.nis_degrees);
   const Interval nis = mean_distance_interval(e.nis, e.nis_degrees, e.chi_square_nis);
   row.nis_lower = nis.lower;
@@ -83,14 +83,14 @@ DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   row.entropy = c.entropy / all;
   row.dwell = c.visits > 0.0 ? c.visited / c.visits : not_a_number;
   row.dwell_model = not_a_number;
-  const double time = time_by_sizes(c.evidence.sizes);
-  set_fractions(c.evidence, time, row);
+  const double time = time_by_sizes(c.counts.sizes);
+  set_fractions(c.counts, time, row);
   set_distances(c, static_cast<double>(nees_states), row);
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);
   row.spread_share = c.spread / N;
-  row.verdict = verdict_of(c.evidence, time);
+  row.verdict = calibration_of(c.counts, time);
   return row;
 }
 
@@ -135,7 +135,7 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
   if (errors_follow_a_pattern(all))
     add_flag(flags, "innovations not white: autocorrelation " + two_digits(all.autocorrelation) + " at lag " +
                         std::to_string(all.autocorrelation_lag));
-  if (all.verdict == Verdict::undecided && reason_of(all) == VerdictReason::few_samples)
+  if (all.verdict == Calibration::undecided && reason_of(all) == CalibrationReason::few_samples)
     add_flag(flags, "too few samples for a verdict");
   if (nees_states < all.state_rmse.size() && all.state_rmse.allFinite())
     add_flag(flags, nees_states == 0 ? "R is as good as zero, so the state is the measurement: no NEES"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/decide/verdict.hpp"
+#include "filter/judge/decide/calibration.hpp"
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
@@ -15,7 +15,7 @@ namespace modebank {
 /// judged on the samples where it was the most probable before the measurement, so that a true filter is calibrated
 /// there, too (the transform is uniform given whatever was known before: Rosenblatt 1952; Diebold, Gunther & Tay 1998).
 /// Intervals hold with 95 %: Clopper & Pearson's (1934) for fractions, of as many samples as there are independent
-/// ones by verdict.hpp; chi-square's for mean NIS and NEES (squared_distances.hpp). They hold for a true filter: a
+/// ones by calibration.hpp; chi-square's for mean NIS and NEES (squared_distances.hpp). They hold for a true filter: a
 /// learned one's error comes on top. NaN: not known.
 struct DiagnosticsRow {
   std::string filter;
@@ -41,7 +41,7 @@ struct DiagnosticsRow {
   double autocorrelation = 0.0;  ///< of z, the largest by size, at this lag; of the whole filter, else 0
   Eigen::Index autocorrelation_lag = 0;
   double spread_share = 0.0;  ///< mean share of the modes' differences in trace S
-  Verdict verdict = Verdict::undecided;
+  Calibration verdict = Calibration::undecided;
   std::string flags;  ///< what stands out, separated by "; "
 };
 

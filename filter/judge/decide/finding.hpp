@@ -60,7 +60,7 @@ enum class Doubt {
   short_stays
 };
 
-/// A description that loses less is as good [nats per sample], as where modes are counted (model_choice.hpp).
+/// A description that loses less is as good [nats per sample], as where modes are counted (rule.hpp).
 inline constexpr double negligible_gain = 0.02;
 
 /// The part of a bank's errors on its training runs that past errors and inputs predict.

@@ -4,6 +4,7 @@
 
 #include "filter/judge/run/backward_pass.hpp"
 #include "filter/judge/run/drifting_mode_sequence.hpp"
+#include "ident/base/log_two_pi.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -14,7 +15,6 @@ using Eigen::Index;
 
 /// Pairs of modes less probable than this change no digit of what is smoothed.
 constexpr double negligible_pair = 1e-18;
-constexpr double log_two_pi = 1.8378770664093454836;
 constexpr double rounding = 1e-6;  // nats, far above that of a log density
 
 template <int N, int NY>

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ident/base/distributions.hpp"
+#include "ident/base/lagged_product.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -54,6 +55,32 @@ namespace {
 
 constexpr Eigen::Index most_lags = 20;
 
+/// Runs of a series about the mean of all of them.
+class CentredSeries {
+ public:
+  explicit CentredSeries(const SeriesByRun& series) {
+    const double mean = mean_of(series);
+    for (const std::vector<double>& x : series)
+      runs_.emplace_back(Eigen::Map<const Eigen::ArrayXd>(x.data(), std::ssize(x)) - mean);
+  }
+
+  Eigen::Index longest() const {
+    Eigen::Index samples = 0;
+    for (const Eigen::ArrayXd& run : runs_) samples = std::max(samples, run.size());
+    return samples;
+  }
+
+  /// Sum of the products of values `lag` samples apart in one run.
+  double autocovariance(Eigen::Index lag) const {
+    double sum = 0.0;
+    for (const Eigen::ArrayXd& run : runs_) sum += lagged_product(run, run, lag);
+    return sum;
+  }
+
+ private:
+  std::vector<Eigen::ArrayXd> runs_;
+};
+
 }  // namespace
 
 double whiteness_p(const OutputSeries& z) {
@@ -75,15 +102,12 @@ double kolmogorov_distance(std::vector<double> values) {
 }
 
 double ljung_box_p(const std::vector<double>& series) {
+  const CentredSeries centred({series});
   const Eigen::Index N = static_cast<Eigen::Index>(series.size()), lags = std::min<Eigen::Index>(most_lags, N / 5);
-  if (lags < 1) return not_a_number;
-  const Eigen::Map<const Eigen::ArrayXd> z(series.data(), N);
-  const Eigen::ArrayXd centred = z - z.mean();
-  const double variance = centred.square().sum();
-  if (!(variance > 0.0)) return not_a_number;
+  const double variance = centred.autocovariance(0);
+  if (lags < 1 || !(variance > 0.0)) return not_a_number;
   Eigen::VectorXd autocorrelation(lags + 1);
-  for (Eigen::Index k = 0; k <= lags; ++k)
-    autocorrelation(k) = (centred.head(N - k) * centred.tail(N - k)).sum() / variance;
+  for (Eigen::Index k = 0; k <= lags; ++k) autocorrelation(k) = centred.autocovariance(k) / variance;
   return ljung_box_p(autocorrelation, N);
 }
 
@@ -106,20 +130,12 @@ constexpr double negligible = 1e-10;  // last power of the correlation
 
 /// Autocorrelations of lag 1, 2, ... as far as pairs of them (with that of lag 0) sum to more than nothing.
 std::vector<double> autocorrelations(const SeriesByRun& series) {
-  const double mean = mean_of(series);
-  std::size_t longest = 0;
-  for (const auto& x : series) longest = std::max(longest, x.size());
-  const auto autocovariance = [&](std::size_t lag) {
-    double sum = 0.0;
-    for (const auto& x : series)
-      for (std::size_t k = lag; k < x.size(); ++k) sum += (x[k] - mean) * (x[k - lag] - mean);
-    return sum;
-  };
+  const CentredSeries centred(series);
   std::vector<double> result;
-  const double variance = autocovariance(0);
+  const double variance = centred.autocovariance(0);
   if (!(variance > 0.0)) return result;
-  for (std::size_t lag = 0; lag + 1 < longest; lag += 2) {
-    const double even = lag == 0 ? variance : autocovariance(lag), odd = autocovariance(lag + 1);
+  for (Eigen::Index lag = 0; lag + 1 < centred.longest(); lag += 2) {
+    const double even = centred.autocovariance(lag), odd = centred.autocovariance(lag + 1);
     if (even + odd <= 0.0) break;
     if (lag > 0) result.push_back(even / variance);
     result.push_back(odd / variance);
@@ -179,19 +195,12 @@ double mean_of(const SeriesByRun& series) {
 }
 
 Autocorrelation largest_autocorrelation(const SeriesByRun& series) {
-  const double mean = mean_of(series);
-  const auto sum_at = [&](std::size_t lag) {
-    double sum = 0.0;
-    for (const auto& x : series)
-      for (std::size_t k = lag; k < x.size(); ++k) sum += (x[k] - mean) * (x[k - lag] - mean);
-    return sum;
-  };
+  const CentredSeries centred(series);
   Autocorrelation largest;
-  const double variance = sum_at(0);
+  const double variance = centred.autocovariance(0);
   const auto lags = std::min<Eigen::Index>(most_lags, static_cast<Eigen::Index>(sample_count(series)) / 5);
   for (Eigen::Index lag = 1; lag <= lags && variance > 0.0; ++lag)
-    if (const double value = sum_at(static_cast<std::size_t>(lag)) / variance;
-        std::abs(value) > std::abs(largest.value))
+    if (const double value = centred.autocovariance(lag) / variance; std::abs(value) > std::abs(largest.value))
       largest = {lag, value};
   return largest;
 }

@@ -4,13 +4,13 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <unsupported/Eigen/KroneckerProduct>
 #include <utility>
 
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "ident/base/linalg.hpp"
+#include "ident/base/log_two_pi.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "mixture/reduction.hpp"
 
@@ -23,7 +23,7 @@ Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eige
   const Eigen::MatrixXd r =
       transitions.data.increments - transitions.data.regressors * coefficients(transitions.structure, theta);
   const Eigen::MatrixXd whitened = Cholesky(Q).whiten(Eigen::MatrixXd(r.transpose()));
-  const double constant = static_cast<double>(Q.rows()) * std::log(2.0 * std::numbers::pi) + log_determinant(Q);
+  const double constant = static_cast<double>(Q.rows()) * log_two_pi + log_determinant(Q);
   Eigen::ArrayXd log_density = -0.5 * (whitened.colwise().squaredNorm().array() + constant).transpose();
   if (transitions.log_noise_factor.size() > 0)  // of rows as they were before they were divided
     log_density -= (transitions.usable.array() > 0.0)

@@ -13,6 +13,7 @@
 #include "filter/step/equations/interval.hpp"
 #include "filter/step/equations/kalman.hpp"
 #include "filter/step/equations/model.hpp"
+#include "ident/base/log_two_pi.hpp"
 
 /// The interacting multiple model filter: Blom & Bar-Shalom 1988, "The interacting multiple model algorithm for systems
 /// with Markovian switching coefficients", IEEE Transactions on Automatic Control 33(8). Equation numbers are those of
@@ -184,8 +185,7 @@ void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N
 /// log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) of the signals that are there; of quantised ones interval.hpp.
 template <int N, int NY, class Sensor, class Y>
 void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vector<Gaussian<N>>& estimates) {
-  constexpr double half_log_two_pi = 0.91893853320467274178;
-  const double excess = half_log_two_pi * static_cast<double>(step.partial.missing);
+  const double excess = 0.5 * log_two_pi * static_cast<double>(step.partial.missing);
   for (std::size_t h = 0; h < step.kalman.size(); ++h) {
     if (sensor.quantised) {
       correct_intervals(sensor, y, step.kalman[h], estimates[h]);

@@ -8,6 +8,7 @@
 #include "filter/step/equations/bounds.hpp"
 #include "filter/step/equations/model.hpp"
 #include "filter/step/equations/partial_sensor.hpp"
+#include "ident/base/log_two_pi.hpp"
 #include "ident/model/linear_model.hpp"
 
 namespace modebank {
@@ -195,7 +196,6 @@ void KalmanStep<N, NY>::observe(const Sensor& sensor, const Y& y) {
 template <int N, int NY>
 template <class Vector>
 double KalmanStep<N, NY>::log_normal(Vector& residual) const {
-  constexpr double log_two_pi = 1.8378770664093454836;
   cholesky.decorrelate(residual);
   const double value = -0.5 * (static_cast<double>(residual.size()) * log_two_pi + cholesky.log_determinant() +
                                cholesky.squared_distance(residual));

@@ -30,7 +30,7 @@ class Export : public CliTest {
     return modebank(words);
   }
   /// As if the bank had been judged so.
-  void judge(Verdict verdict) const {
+  void judge(Calibration verdict) const {
     Archive stored = read_archive(archive());
     for (DiagnosticsRow& row : stored.diagnostics) row.verdict = verdict;
     write_archive(archive(), stored);
@@ -38,7 +38,7 @@ class Export : public CliTest {
 };
 
 TEST_F(Export, JsonIsTheArchivesBank) {
-  judge(Verdict::calibrated);
+  judge(Calibration::calibrated);
   const ProgramResult result = exported("json");
   ASSERT_EQ(result.status, 0) << result.err;
   const json page = json::parse(result.out);
@@ -67,7 +67,7 @@ TEST_F(Export, JsonIsTheArchivesBank) {
 
 /// A value that its standard error exceeds, a parameter that the runs leave open, R at its bound: never a bare number.
 TEST_F(Export, DoubtfulNumbersAreRemarkedInEveryForm) {
-  judge(Verdict::calibrated);
+  judge(Calibration::calibrated);
   Archive stored = read_archive(archive());
   Mode& mode = stored.bank->modes[0];
   mode.standard_error = Eigen::VectorXd::Constant(mode.standard_error.size(), 1e-6);
@@ -96,7 +96,7 @@ TEST_F(Export, DoubtfulNumbersAreRemarkedInEveryForm) {
 }
 
 TEST_F(Export, ModesHaveTheirNames) {
-  judge(Verdict::calibrated);
+  judge(Calibration::calibrated);
   Archive stored = read_archive(archive());
   stored.mode_names.assign(static_cast<std::size_t>(stored.bank->mode_count()), "");
   stored.mode_names[0] = "ice\n*/";
@@ -158,7 +158,7 @@ TEST_F(Export, CsvOfARunHasARowPerSample) {
 }
 
 TEST_F(Export, WritesFilesWholeOrNotAtAll) {
-  judge(Verdict::calibrated);
+  judge(Calibration::calibrated);
   ASSERT_EQ(exported("c", {"-o", file("robot.c").string()}).status, 0);
   EXPECT_THAT(text_of(file("robot.h")), HasSubstr("typedef double robot_real;"));
   ASSERT_EQ(exported("c", {"-o", file("robot.c").string(), "--float"}).status, 0);
@@ -166,9 +166,9 @@ TEST_F(Export, WritesFilesWholeOrNotAtAll) {
   ASSERT_EQ(exported("mat", {"-o", file("robot.mat").string()}).status, 0);
   EXPECT_EQ(text_of(file("robot.mat")).rfind("MATLAB 5.0 MAT-file", 0), 0u);
   ASSERT_EQ(exported("casadi", {"-o", file("robot.py").string()}).status, 0);
-  EXPECT_EQ(text_of(file("robot.py")).rfind("# Verdict: calibrated", 0), 0u);
+  EXPECT_EQ(text_of(file("robot.py")).rfind("# Calibration: calibrated", 0), 0u);
   ASSERT_EQ(exported("ros2", {"-o", file("ros2").string(), "--wheel_separation_m", "0.5"}).status, 0);
-  EXPECT_EQ(text_of(file("ros2") / "mode_0.yaml").rfind("# Verdict: calibrated", 0), 0u);
+  EXPECT_EQ(text_of(file("ros2") / "mode_0.yaml").rfind("# Calibration: calibrated", 0), 0u);
   EXPECT_THAT(left_behind(), ::testing::ElementsAre("out.h5", "robot.c", "robot.h", "robot.mat", "robot.py", "ros2"));
   EXPECT_EQ(exported("json", {"-o", file("none/robot.json").string()}).status, 2);
   EXPECT_THAT(exported("json", {"-o", archive()}).err, HasSubstr("is read by this command"));
@@ -178,7 +178,7 @@ TEST_F(Export, WritesFilesWholeOrNotAtAll) {
 }
 
 TEST_F(Export, RefusesABankWhoseUncertaintyIsFoundFalse) {
-  for (const Verdict verdict : {Verdict::overconfident, Verdict::underconfident}) {
+  for (const Calibration verdict : {Calibration::overconfident, Calibration::underconfident}) {
     judge(verdict);
     for (const std::string form : {"json", "mat", "c", "casadi", "ros2"}) {
       const ProgramResult result = exported(form, {"-o", file("refused.c").string()});
@@ -195,7 +195,7 @@ TEST_F(Export, RefusesABankWhoseUncertaintyIsFoundFalse) {
 }
 
 TEST_F(Export, TakesTheFilterAsItWasJudged) {
-  judge(Verdict::calibrated);
+  judge(Calibration::calibrated);
   EXPECT_THAT(exported("json", {"--filter.noise", "adaptive"}).err, HasSubstr("export does not read --filter.noise"));
   const ProgramResult baseline = exported("json", {"--track.filter", "baseline"});
   ASSERT_EQ(baseline.status, 0) << baseline.err;

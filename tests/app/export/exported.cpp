@@ -186,7 +186,7 @@ ExportedBank as_exported(Bank bank, const FilterOptions& options) {
   exported.filter = "bank";
   exported.archive = "test.h5";
   exported.options = options;
-  exported.verdict = Verdict::calibrated;
+  exported.verdict = Calibration::calibrated;
   exported.verdict_words = "calibrated";
   exported.judged_on = "held-out";
   exported.coverage_95 = 0.95;

@@ -118,7 +118,7 @@ TEST(ExportedRos2, SaysWhatIsMissing) {
   EXPECT_THAT(text, HasSubstr("# wheel_separation_multiplier: "));
   EXPECT_THAT(text, HasSubstr("--wheel_separation_m"));
   EXPECT_THAT(text, HasSubstr("model_delay_vx: not determined: no state is known to be the forward speed"));
-  EXPECT_EQ(text.rfind("# Verdict: calibrated", 0), 0u);
+  EXPECT_EQ(text.rfind("# Calibration: calibrated", 0), 0u);
   const json drive = read_yaml(text).at("diff_drive_controller").at("ros__parameters");
   EXPECT_FALSE(drive.contains("wheel_separation_multiplier"));
   EXPECT_NEAR(

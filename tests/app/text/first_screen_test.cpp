@@ -204,7 +204,7 @@ TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {
   EXPECT_EQ(screen.coverage, 0.966);
   EXPECT_EQ(screen.coverage_lower, 0.956);
   EXPECT_EQ(screen.coverage_upper, 0.974);
-  EXPECT_EQ(screen.verdict, Verdict::calibrated);
+  EXPECT_EQ(screen.verdict, Calibration::calibrated);
   ASSERT_EQ(screen.errors.size(), 2u);
   EXPECT_EQ(screen.errors[0].steps, 1);
   EXPECT_EQ(screen.errors[1].steps, 10);
@@ -334,14 +334,14 @@ TEST_F(NextStep, ColouredErrorsWithoutAPatternAskForACheck) {
 }
 
 TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
-  for (const Verdict verdict : {Verdict::overconfident, Verdict::underconfident}) {
+  for (const Calibration verdict : {Calibration::overconfident, Calibration::underconfident}) {
     row().verdict = verdict;
     settings["filter.noise"] = "gaussian";
     EXPECT_THAT(advice(), HasSubstr("--filter.noise adaptive"));
     settings["filter.noise"] = "adaptive";
     EXPECT_THAT(advice(), AllOf(HasSubstr("--data.train"), Not(HasSubstr("adaptive"))));
   }
-  row().verdict = Verdict::undecided;
+  row().verdict = Calibration::undecided;
   row().coverage_95_lower = 0.9, row().coverage_95_upper = 0.99;
   EXPECT_THAT(advice(), HasSubstr("record more: held-out samples"));
 }

@@ -40,7 +40,7 @@ inline Archive screen_archive(Index states, Index inputs, Index modes, Role judg
     row.coverage_90_lower = 0.895, row.coverage_90_upper = 0.944;
     row.coverage_95_lower = 0.956, row.coverage_95_upper = 0.974;
     row.coverage_99_lower = 0.983, row.coverage_99_upper = 0.993;
-    row.verdict = Verdict::calibrated;
+    row.verdict = Calibration::calibrated;
     if (k < 0 || modes > 1) archive.diagnostics.push_back(row);
   }
   for (const char* filter : {"bank", "drifting"}) {

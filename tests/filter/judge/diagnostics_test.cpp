@@ -45,7 +45,7 @@ TEST(Diagnostics, ATrueFilterIsInsideItsBoundsAndAWrongOneIsNot) {
     const DiagnosticsRow right = diagnose_runs(bank, runs).front();
     EXPECT_TRUE(inside(right.nis_mean, right.nis_lower, right.nis_upper)) << right.nis_mean;
     EXPECT_TRUE(inside(right.nees_mean, right.nees_lower, right.nees_upper)) << right.nees_mean;
-    EXPECT_EQ(right.verdict, Verdict::calibrated);
+    EXPECT_EQ(right.verdict, Calibration::calibrated);
     EXPECT_NEAR(right.nis_mean, static_cast<double>(n), 0.1);
     EXPECT_EQ(right.flags, "");
     for (const double factor : {0.25, 4.0})
@@ -67,8 +67,9 @@ TEST(Diagnostics, ATrueFilterIsInsideItsBoundsAndAWrongOneIsNot) {
 TEST(Diagnostics, VerdictsNameTheDirection) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
   const std::vector<Trajectory> runs = truth_runs(bank, 2, 1500);
-  for (const auto& [factor, verdict] : {std::pair(1.0, Verdict::calibrated), std::pair(0.25, Verdict::overconfident),
-                                        std::pair(4.0, Verdict::underconfident)}) {
+  for (const auto& [factor, verdict] :
+       {std::pair(1.0, Calibration::calibrated), std::pair(0.25, Calibration::overconfident),
+        std::pair(4.0, Calibration::underconfident)}) {
     Bank scaled = bank;
     scaled.modes[0].Q *= factor;
     EXPECT_EQ(diagnose_runs(scaled, runs).front().verdict, verdict) << factor;
@@ -78,11 +79,11 @@ TEST(Diagnostics, VerdictsNameTheDirection) {
 TEST(Diagnostics, FewSamplesAllowNoVerdictUnlessTheyArePlain) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
   const DiagnosticsRow few = diagnose_runs(bank, truth_runs(bank, 1, 120)).front();
-  EXPECT_EQ(few.verdict, Verdict::undecided);
+  EXPECT_EQ(few.verdict, Calibration::undecided);
   EXPECT_THAT(few.flags, testing::HasSubstr("too few samples for a verdict"));
   Bank narrow = bank;
   narrow.modes[0].Q *= 0.05;
-  EXPECT_EQ(diagnose_runs(narrow, truth_runs(bank, 1, 120)).front().verdict, Verdict::overconfident);
+  EXPECT_EQ(diagnose_runs(narrow, truth_runs(bank, 1, 120)).front().verdict, Calibration::overconfident);
 }
 
 TEST(Diagnostics, NisSpeaksWhereTheTailsDoNot) {
@@ -90,10 +91,10 @@ TEST(Diagnostics, NisSpeaksWhereTheTailsDoNot) {
   std::vector<Trajectory> runs = truth_runs(bank, 1, 800);
   std::vector<RunEvaluation> evaluations{evaluate_run(bank, runs[0], {})};
   EXPECT_EQ(diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front().verdict,
-            Verdict::calibrated);
+            Calibration::calibrated);
   evaluations[0].nis *= 0.5;
   const DiagnosticsRow row = diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front();
-  EXPECT_EQ(row.verdict, Verdict::underconfident);
+  EXPECT_EQ(row.verdict, Calibration::underconfident);
   EXPECT_THAT(row.flags, testing::HasSubstr("mean NIS below a true filter's"));
 }
 
@@ -140,7 +141,7 @@ TEST(Diagnostics, ASwitchingBankIsCalibratedModeByMode) {
   Index samples = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(rows[i].mode, static_cast<Index>(i) - 1);
-    EXPECT_EQ(rows[i].verdict, Verdict::calibrated) << "mode " << rows[i].mode;
+    EXPECT_EQ(rows[i].verdict, Calibration::calibrated) << "mode " << rows[i].mode;
     EXPECT_TRUE(inside(0.025, rows[i].too_far_lower, rows[i].too_far_upper)) << "mode " << rows[i].mode;
     if (i == 0) continue;
     usage += rows[i].usage;

@@ -110,7 +110,7 @@ TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
     EXPECT_LT(row.nis_lower, 3.0);
     EXPECT_GT(row.nis_upper, 3.0);
     EXPECT_NEAR(row.nis_upper - row.nis_lower, 2.0 * 1.96 * 3.0 * std::sqrt(2.0 / signals), 0.02) << missing;
-    EXPECT_EQ(row.verdict, Verdict::calibrated) << missing;
+    EXPECT_EQ(row.verdict, Calibration::calibrated) << missing;
   }
 }
 

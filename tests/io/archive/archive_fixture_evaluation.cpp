@@ -111,7 +111,7 @@ DiagnosticsRow make_diagnostics(const std::string& filter, Index mode, Index n) 
           0.63,
           5,
           0.1,
-          Verdict::overconfident,
+          Calibration::overconfident,
           "probabilities flat; heavy tails"};
 }
 

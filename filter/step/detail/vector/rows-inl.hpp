@@ -14,6 +14,7 @@
 #include "filter/step/equations/bounds.hpp"
 #include "ident/base/detail/exp-inl.hpp"
 #include "ident/base/detail/simd-inl.hpp"
+#include "ident/base/log_two_pi.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
@@ -33,7 +34,6 @@ using M = hn::Mask<D>;
 
 static_assert(hn::MaxLanes(D()) <= row_multiple);
 
-inline constexpr double log_two_pi = 1.8378770664093454836;
 inline constexpr double far = 1e300;  ///< the squared distance of an impossible mode
 
 HWY_INLINE V splat(double value) { return hn::Set(D(), value); }

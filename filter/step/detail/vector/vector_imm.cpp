@@ -8,6 +8,7 @@
 #include "filter/step/equations/imm.hpp"
 #include "filter/step/equations/noise_scale.hpp"
 #include "filter/step/equations/predicted_mixture.hpp"
+#include "ident/base/log_two_pi.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -19,7 +20,6 @@ using vector_imm::row_multiple;
 namespace {
 
 constexpr std::size_t register_bytes = row_multiple * sizeof(double);
-constexpr double half_log_two_pi = 0.91893853320467274178;
 
 Index packed_size(Index n) { return n * (n + 1) / 2; }
 
@@ -200,7 +200,7 @@ double VectorImm::update(const Vector& y) {
   }
   last_ = kernels_.update(rows_, sensor, missing > 0 ? y_.data() : y.data(), adaptive_ ? applied_scale_ : 0.0);
   if (adaptive_) move_noise_scale(adaptation_, last_.share, last_.square, sensor.signals, noise_scale_, noise_samples_);
-  return last_.log_density + half_log_two_pi * static_cast<double>(missing);
+  return last_.log_density + 0.5 * log_two_pi * static_cast<double>(missing);
 }
 
 void VectorImm::follow(const Columns& inputs, const Columns& measurements, Eigen::Ref<Eigen::VectorXd> log_density) {

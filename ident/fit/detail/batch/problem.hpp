@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ident/base/log_two_pi.hpp"
 #include "ident/fit/constants.hpp"
 #include "ident/model/local_model.hpp"
 #include "ident/model/transitions.hpp"

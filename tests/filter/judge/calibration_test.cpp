@@ -1,5 +1,5 @@
 // Verdicts on filters whose truth is known, and the intervals they rest on.
-#include "filter/judge/decide/verdict.hpp"
+#include "filter/judge/decide/calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,13 +20,13 @@ using test::example_bank;
 using test::simulate_truth;
 
 /// How many of `seeds` simulated runs get each verdict, by a filter whose Q and R are wrong by a factor.
-std::map<Verdict, int> verdicts(const Bank& truth, double of_Q, double of_R, Index samples, int seeds,
-                                FilterNoise noise = FilterNoise::gaussian) {
+std::map<Calibration, int> verdicts(const Bank& truth, double of_Q, double of_R, Index samples, int seeds,
+                                    FilterNoise noise = FilterNoise::gaussian) {
   Bank filter = truth;
   for (Mode& mode : filter.modes) mode.Q *= of_Q;
   filter.R *= of_R;
   const FilterOptions options{.noise = noise};
-  std::map<Verdict, int> counts;
+  std::map<Calibration, int> counts;
   for (int seed = 0; seed < seeds; ++seed) {
     std::vector<Trajectory> runs{simulate_truth(truth, samples, 7000 + static_cast<std::uint64_t>(seed)).run};
     runs[0].role = Role::test;
@@ -36,47 +36,47 @@ std::map<Verdict, int> verdicts(const Bank& truth, double of_Q, double of_R, Ind
   return counts;
 }
 
-TEST(Verdict, VerdictsAreRightSeedBySeed) {
+TEST(Calibration, VerdictsAreRightSeedBySeed) {
   constexpr int seeds = 20, nearly_all = 19;
   for (const double r : {1e-8, 1.3e-4, 1.3e-3}) {  // Q = 1.3e-4
     const Bank bank = test::single_mode(example_bank(1, 1, 1, r), 0);
-    EXPECT_GE(verdicts(bank, 1, 1, 1500, seeds)[Verdict::calibrated], nearly_all) << r;
-    std::map<Verdict, int> few = verdicts(bank, 1, 1, 30, seeds);
-    EXPECT_GE(few[Verdict::undecided] + few[Verdict::calibrated], nearly_all) << r;
+    EXPECT_GE(verdicts(bank, 1, 1, 1500, seeds)[Calibration::calibrated], nearly_all) << r;
+    std::map<Calibration, int> few = verdicts(bank, 1, 1, 30, seeds);
+    EXPECT_GE(few[Calibration::undecided] + few[Calibration::calibrated], nearly_all) << r;
     if (r < 1e-3) {  // under ten times as much R, Q hardly shows
-      EXPECT_GE(verdicts(bank, 0.25, 1, 500, seeds)[Verdict::overconfident], nearly_all) << r;
-      EXPECT_GE(verdicts(bank, 4, 1, 500, seeds)[Verdict::underconfident], nearly_all) << r;
+      EXPECT_GE(verdicts(bank, 0.25, 1, 500, seeds)[Calibration::overconfident], nearly_all) << r;
+      EXPECT_GE(verdicts(bank, 4, 1, 500, seeds)[Calibration::underconfident], nearly_all) << r;
     }
     if (r > 1e-6) {
-      EXPECT_GE(verdicts(bank, 1, 0.25, 500, seeds)[Verdict::overconfident], nearly_all) << r;
-      EXPECT_GE(verdicts(bank, 1, 4, 500, seeds)[Verdict::underconfident], nearly_all) << r;
+      EXPECT_GE(verdicts(bank, 1, 0.25, 500, seeds)[Calibration::overconfident], nearly_all) << r;
+      EXPECT_GE(verdicts(bank, 1, 4, 500, seeds)[Calibration::underconfident], nearly_all) << r;
     }
   }
   // No measurement noise: thirty samples are enough for a factor of four.
   const Bank exact = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
-  EXPECT_GE(verdicts(exact, 0.25, 1, 30, seeds)[Verdict::overconfident], nearly_all);
-  EXPECT_GE(verdicts(exact, 4, 1, 30, seeds)[Verdict::underconfident], nearly_all);
+  EXPECT_GE(verdicts(exact, 0.25, 1, 30, seeds)[Calibration::overconfident], nearly_all);
+  EXPECT_GE(verdicts(exact, 4, 1, 30, seeds)[Calibration::underconfident], nearly_all);
 }
 
 /// A scale learned on the way is not known exactly: the mean NIS of a true filter then lies above n_y, which many
 /// samples would call significant.
-TEST(Verdict, AdaptiveNoiseIsJudgedByTailsAlone) {
+TEST(Calibration, AdaptiveNoiseIsJudgedByTailsAlone) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
   for (const double factor : {1.0, 4.0})  // the scale makes up for it
-    EXPECT_EQ(verdicts(bank, factor, 1, 10000, 2, FilterNoise::adaptive)[Verdict::calibrated], 2) << factor;
+    EXPECT_EQ(verdicts(bank, factor, 1, 10000, 2, FilterNoise::adaptive)[Calibration::calibrated], 2) << factor;
   const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // but not for measurement noise
-  EXPECT_EQ(verdicts(noisy, 1, 4, 1500, 10, FilterNoise::adaptive)[Verdict::underconfident], 10);
+  EXPECT_EQ(verdicts(noisy, 1, 4, 1500, 10, FilterNoise::adaptive)[Calibration::underconfident], 10);
 }
 
 /// Many samples make a deviation significant that nobody would notice.
-TEST(Verdict, AFewPercentOfVarianceAreNoVerdict) {
+TEST(Calibration, AFewPercentOfVarianceAreNoVerdict) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
   for (const double factor : {0.95, 1.05})
-    EXPECT_EQ(verdicts(bank, factor, 1, 20000, 1)[Verdict::calibrated], 1) << factor;
+    EXPECT_EQ(verdicts(bank, factor, 1, 20000, 1)[Calibration::calibrated], 1) << factor;
 }
 
 /// Innovations of the right size that follow each other closely: hits come in groups, and a group is not many samples.
-TEST(Verdict, GroupsOfHitsAreFewSamples) {
+TEST(Calibration, GroupsOfHitsAreFewSamples) {
   Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-12), 0);
   bank.modes[0].model.A(0, 0) = -1.0;
   bank.modes[0].model.B.setZero();
@@ -87,8 +87,8 @@ TEST(Verdict, GroupsOfHitsAreFewSamples) {
     for (Index k = 1; k < 1000; ++k)
       run.state(0, k) = 0.9 * run.state(0, k - 1) + std::sqrt(1 - 0.9 * 0.9) * run.state(0, k);
     const std::vector<RunEvaluation> evaluations{evaluate_run(bank, run, {})};
-    const Verdict verdict = diagnose("bank", bank, {}, {run}, evaluations, score_runs(evaluations)).front().verdict;
-    wrong += verdict == Verdict::overconfident || verdict == Verdict::underconfident;
+    const Calibration verdict = diagnose("bank", bank, {}, {run}, evaluations, score_runs(evaluations)).front().verdict;
+    wrong += verdict == Calibration::overconfident || verdict == Calibration::underconfident;
   }
   EXPECT_LE(wrong, 4);
 }
@@ -108,90 +108,89 @@ std::vector<double> related_scores(int samples, double rho, bool sizes_alone, st
 }
 
 /// What a filter shows that states 1 for a standard deviation of `scale`.
-Evidence evidence_of(const std::vector<double>& scores, double scale, bool with_nis) {
+BandCounts counts_of(const std::vector<double>& scores, double scale, bool with_nis) {
   const double upper = chi_square_quantile(0.975, 1.0), lower = chi_square_quantile(0.025, 1.0);
-  Evidence evidence;
-  for (HitsByRun* hits : {&evidence.far, &evidence.close}) hits->emplace_back();
-  evidence.sizes.emplace_back();
-  evidence.nis.begin_run();
-  for (HitsByRun& hits : evidence.outside) hits.emplace_back();
+  BandCounts counts;
+  for (HitsByRun* hits : {&counts.far, &counts.close}) hits->emplace_back();
+  counts.sizes.emplace_back();
+  counts.nis.begin_run();
+  for (HitsByRun& hits : counts.outside) hits.emplace_back();
   const auto edges = coverage_band_edges();
   for (const double score : scores) {
     const double square = score * score * scale * scale;
-    for (std::size_t b = 0; b < edges.size(); ++b)
-      evidence.outside[b][0].push_back(square > edges[b] * edges[b] ? 1 : 0);
-    evidence.far[0].push_back(square > upper ? 1 : 0);
-    evidence.close[0].push_back(square < lower ? 1 : 0);
-    evidence.sizes[0].push_back(square);
-    evidence.nis.add(square, 1);
+    for (std::size_t b = 0; b < edges.size(); ++b) counts.outside[b][0].push_back(square > edges[b] * edges[b] ? 1 : 0);
+    counts.far[0].push_back(square > upper ? 1 : 0);
+    counts.close[0].push_back(square < lower ? 1 : 0);
+    counts.sizes[0].push_back(square);
+    counts.nis.add(square, 1);
   }
-  evidence.chi_square_nis = with_nis;
-  return evidence;
+  counts.chi_square_nis = with_nis;
+  return counts;
 }
 
-Verdict verdict_on(const Evidence& evidence) { return verdict_of(evidence, time_by_sizes(evidence.sizes)); }
+Calibration calibration_on(const BandCounts& counts) { return calibration_of(counts, time_by_sizes(counts.sizes)); }
 
 /// Percentages of 100 series.
-std::map<Verdict, int> verdicts_of_related(int samples, double rho, bool sizes_alone, double scale, bool with_nis) {
+std::map<Calibration, int> verdicts_of_related(int samples, double rho, bool sizes_alone, double scale, bool with_nis) {
   std::mt19937_64 generator(17);
-  std::map<Verdict, int> counts;
+  std::map<Calibration, int> counts;
   for (int i = 0; i < 100; ++i)
-    ++counts[verdict_on(evidence_of(related_scores(samples, rho, sizes_alone, generator), scale, with_nis))];
+    ++counts[calibration_on(counts_of(related_scores(samples, rho, sizes_alone, generator), scale, with_nis))];
   return counts;
 }
 
 /// With the hits' own autocorrelation time up to half of these were wrong: a few groups of hits do not show it. Most
 /// are where 120 samples are worth two or three.
-TEST(Verdict, ShortRelatedSamplesOfATrueFilterAreSeldomJudgedWrong) {
+TEST(Calibration, ShortRelatedSamplesOfATrueFilterAreSeldomJudgedWrong) {
   for (const int samples : {120, 500, 1000})
     for (const double rho : {0.0, 0.5, 0.9, 0.97})
       for (const bool sizes_alone : {false, true})
         for (const bool with_nis : {false, true}) {
-          std::map<Verdict, int> counts = verdicts_of_related(samples, rho, sizes_alone, 1.0, with_nis);
-          EXPECT_LE(counts[Verdict::overconfident] + counts[Verdict::underconfident], 7)
+          std::map<Calibration, int> counts = verdicts_of_related(samples, rho, sizes_alone, 1.0, with_nis);
+          EXPECT_LE(counts[Calibration::overconfident] + counts[Calibration::underconfident], 7)
               << samples << " samples, " << rho << ", sizes alone " << sizes_alone << ", NIS " << with_nis;
         }
-  EXPECT_GE(verdicts_of_related(1000, 0.5, false, 1.0, true)[Verdict::calibrated], 95);
-  EXPECT_GE(verdicts_of_related(3000, 0.9, false, 1.0, false)[Verdict::calibrated], 90);
+  EXPECT_GE(verdicts_of_related(1000, 0.5, false, 1.0, true)[Calibration::calibrated], 95);
+  EXPECT_GE(verdicts_of_related(3000, 0.9, false, 1.0, false)[Calibration::calibrated], 90);
 }
 
 /// Variances off by 1.7 or more are found, and where they are not, nothing is said instead of "calibrated".
-TEST(Verdict, AWrongFilterIsNotCalledCalibrated) {
-  EXPECT_GE(verdicts_of_related(1000, 0.5, false, 1.3, false)[Verdict::overconfident], 95);
-  EXPECT_GE(verdicts_of_related(3000, 0.5, false, 0.75, false)[Verdict::underconfident], 95);
+TEST(Calibration, AWrongFilterIsNotCalledCalibrated) {
+  EXPECT_GE(verdicts_of_related(1000, 0.5, false, 1.3, false)[Calibration::overconfident], 95);
+  EXPECT_GE(verdicts_of_related(3000, 0.5, false, 0.75, false)[Calibration::underconfident], 95);
   for (const int samples : {120, 500, 1000})
     for (const double rho : {0.0, 0.5, 0.9})
       for (const double scale : {0.75, 1.3})
-        EXPECT_LE(verdicts_of_related(samples, rho, false, scale, false)[Verdict::calibrated], 5)
+        EXPECT_LE(verdicts_of_related(samples, rho, false, scale, false)[Calibration::calibrated], 5)
             << samples << " samples, " << rho << ", scale " << scale;
 }
 
 /// A mixture of quiet and rough samples: too many are close to the middle, and over 6.3 % lie outside the 95 % band.
 /// The first is harmless, the second is what users are hurt by.
-TEST(Verdict, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
+TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   boost::random::normal_distribution<double> normal;
   std::mt19937_64 generator(5);
   std::vector<double> scores;
   for (int k = 0; k < 3000; ++k) scores.push_back((k % 4 == 0 ? 0.3 : 1.2) * normal(generator));
-  const Evidence evidence = evidence_of(scores, 1.0, false);
-  EXPECT_GT(mean_of(as_numbers(evidence.outside[deciding_level])), 0.063);
-  EXPECT_GT(mean_of(as_numbers(evidence.close)), 0.03);
-  EXPECT_EQ(verdict_on(evidence), Verdict::overconfident);
+  const BandCounts counts = counts_of(scores, 1.0, false);
+  EXPECT_GT(mean_of(as_numbers(counts.outside[deciding_level])), 0.063);
+  EXPECT_GT(mean_of(as_numbers(counts.close)), 0.03);
+  EXPECT_EQ(calibration_on(counts), Calibration::overconfident);
 }
 
 /// Inside the central bands of a true filter lie as many as they say.
-TEST(Verdict, BandsOfAStandardNormalHoldTheirShare) {
+TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
   const auto edges = coverage_band_edges();
   EXPECT_NEAR(edges[0], 0.6744897501960817, 1e-12);
   EXPECT_NEAR(edges[2], 1.959963984540054, 1e-12);
   std::mt19937_64 generator(6);
-  const Evidence evidence = evidence_of(related_scores(200000, 0.0, false, generator), 1.0, false);
+  const BandCounts counts = counts_of(related_scores(200000, 0.0, false, generator), 1.0, false);
   for (std::size_t b = 0; b < edges.size(); ++b)
-    EXPECT_NEAR(mean_of(as_numbers(evidence.outside[b])), 1.0 - coverage_levels[b], 4e-3) << b;
+    EXPECT_NEAR(mean_of(as_numbers(counts.outside[b])), 1.0 - coverage_levels[b], 4e-3) << b;
 }
 
 /// Of an autoregression it is the coefficient, at lag one.
-TEST(Verdict, TheLargestAutocorrelationOfAnAutoregressionIsItsCoefficient) {
+TEST(Calibration, TheLargestAutocorrelationOfAnAutoregressionIsItsCoefficient) {
   for (const double rho : {-0.6, 0.3, 0.8}) {
     std::mt19937_64 generator(8);
     const Autocorrelation found = largest_autocorrelation({related_scores(100000, rho, false, generator)});
@@ -202,7 +201,7 @@ TEST(Verdict, TheLargestAutocorrelationOfAnAutoregressionIsItsCoefficient) {
   EXPECT_EQ(largest_autocorrelation({}).lag, 0);
 }
 
-TEST(Verdict, TimeOfATailIsItsHits) {
+TEST(Calibration, TimeOfATailIsItsHits) {
   for (const double rho : {0.0, 0.5, 0.9}) {
     std::mt19937_64 generator(4);
     const std::vector<double> scores = related_scores(200000, rho, false, generator);
@@ -217,7 +216,7 @@ TEST(Verdict, TimeOfATailIsItsHits) {
   EXPECT_NEAR(cautious_time(4.0, 3400.0), 4.3, 1e-12);  // Madras & Sokal: 2 (2 M + 1) / N with M = 2 time
 }
 
-TEST(Verdict, IntervalsAreTheBooks) {
+TEST(Calibration, IntervalsAreTheBooks) {
   // Clopper & Pearson (1934), table for 95 %: 3 of 10; 0 of 10; 10 of 10.
   EXPECT_NEAR(binomial_interval(3, 10).lower, 0.0667, 5e-5);
   EXPECT_NEAR(binomial_interval(3, 10).upper, 0.6525, 5e-5);

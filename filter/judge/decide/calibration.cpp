@@ -1,4 +1,4 @@
-#include "filter/judge/decide/verdict.hpp"
+#include "filter/judge/decide/calibration.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,10 +18,10 @@ constexpr double outside_level = 0.99;
 bool within(double value, double least, double largest) { return value >= least && value <= largest; }
 
 /// What the mean NIS says: -1 underconfident, 1 overconfident, 0 nothing.
-int judge_nis(const Evidence& evidence) {
-  if (!evidence.chi_square_nis) return 0;
-  const double degrees = evidence.nis_degrees, mean = mean_distance(evidence.nis, degrees);
-  const Interval expected = mean_distance_interval(evidence.nis, degrees, true, nis_level);
+int judge_nis(const BandCounts& counts) {
+  if (!counts.chi_square_nis) return 0;
+  const double degrees = counts.nis_degrees, mean = mean_distance(counts.nis, degrees);
+  const Interval expected = mean_distance_interval(counts.nis, degrees, true, nis_level);
   if (mean > expected.upper && mean > (1.0 + nis_tolerance) * degrees) return 1;
   if (mean < expected.lower && mean < (1.0 - nis_tolerance) * degrees) return -1;
   return 0;
@@ -48,23 +48,24 @@ Interval fraction_interval(const SeriesByRun& hits, double time, double level) {
   return binomial_interval(mean_of(hits) * samples, samples, level);
 }
 
-Verdict verdict_of(const Evidence& evidence, double time) {
-  const SeriesByRun misses = as_numbers(evidence.outside[deciding_level]), near = as_numbers(evidence.close);
-  if (sample_count(misses) == 0.0) return Verdict::undecided;
+Calibration calibration_of(const BandCounts& counts, double time) {
+  const SeriesByRun misses = as_numbers(counts.outside[deciding_level]), near = as_numbers(counts.close);
+  if (sample_count(misses) == 0.0) return Calibration::undecided;
   const double outside = mean_of(misses);
   const Interval sure = fraction_interval(misses, time, outside_level);
-  if (outside > many_outside && sure.lower > true_outside) return Verdict::overconfident;
+  if (outside > many_outside && sure.lower > true_outside) return Calibration::overconfident;
   const Interval close = fraction_interval(near, time);
-  if (outside < few_outside && sure.upper < true_outside) return Verdict::underconfident;
-  if (outside < true_outside && close.lower > largest_close) return Verdict::underconfident;
-  if (const int nis = judge_nis(evidence); nis != 0) return nis > 0 ? Verdict::overconfident : Verdict::underconfident;
+  if (outside < few_outside && sure.upper < true_outside) return Calibration::underconfident;
+  if (outside < true_outside && close.lower > largest_close) return Calibration::underconfident;
+  if (const int nis = judge_nis(counts); nis != 0)
+    return nis > 0 ? Calibration::overconfident : Calibration::underconfident;
   const bool inside =
       within(outside, least_outside, largest_outside) && within(mean_of(near), least_close, largest_close);
   const Interval likely = fraction_interval(misses, time);
   return inside && !says_nothing(likely, least_outside, largest_outside) &&
                  !says_nothing(close, least_close, largest_close)
-             ? Verdict::calibrated
-             : Verdict::undecided;
+             ? Calibration::calibrated
+             : Calibration::undecided;
 }
 
 }  // namespace modebank

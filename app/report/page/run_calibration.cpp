@@ -38,13 +38,13 @@ json gain_card(const FirstScreen& screen) {
 std::string use_words(const FirstScreen& screen) {
   const bool held_out = screen.role == Role::test;
   switch (screen.verdict) {
-    case Verdict::calibrated:
+    case Calibration::calibrated:
       return held_out ? "use it" : "nothing was held out";
-    case Verdict::overconfident:
+    case Calibration::overconfident:
       return "do not rely on it";
-    case Verdict::underconfident:
+    case Calibration::underconfident:
       return held_out ? "usable, wider than need be" : "nothing was held out";
-    case Verdict::undecided:
+    case Calibration::undecided:
       break;
   }
   return "cannot tell yet";
@@ -111,8 +111,8 @@ json goodness(const FirstScreen& screen) {
   if (!screen.answer || *screen.answer == Answer::cannot_tell || *screen.answer == Answer::not_comparable ||
       *screen.answer == Answer::not_yet)
     return nullptr;
-  if (*screen.answer == Answer::one_mode) return screen.verdict == Verdict::calibrated ? json(true) : json(nullptr);
-  return *screen.answer == Answer::evidence && screen.verdict == Verdict::calibrated;
+  if (*screen.answer == Answer::one_mode) return screen.verdict == Calibration::calibrated ? json(true) : json(nullptr);
+  return *screen.answer == Answer::evidence && screen.verdict == Calibration::calibrated;
 }
 
 std::string headline(const FirstScreen& screen) {

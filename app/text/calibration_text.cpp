@@ -1,9 +1,9 @@
-#include "app/text/verdict_text.hpp"
+#include "app/text/calibration_text.hpp"
 
 #include <fmt/format.h>
 
 #include "app/chain/judged_runs.hpp"
-#include "filter/judge/decide/verdict_reason.hpp"
+#include "filter/judge/decide/calibration_reason.hpp"
 
 namespace modebank::app {
 namespace {
@@ -22,16 +22,16 @@ std::string close_words(const DiagnosticsRow& row) {
 }
 
 std::string overconfidence_words(const DiagnosticsRow& row) {
-  if (reason_of(row) == VerdictReason::nis)
+  if (reason_of(row) == CalibrationReason::nis)
     return fmt::format("the band holds enough, but errors are larger than stated, {}", nis_words(row));
   return "it claims more certainty than it has";
 }
 
 std::string underconfidence_words(const DiagnosticsRow& row) {
   switch (reason_of(row)) {
-    case VerdictReason::nis:
+    case CalibrationReason::nis:
       return fmt::format("errors are smaller than stated, {}", nis_words(row));
-    case VerdictReason::close:
+    case CalibrationReason::close:
       return close_words(row);
     default:
       return "it claims less certainty than it has";
@@ -40,9 +40,9 @@ std::string underconfidence_words(const DiagnosticsRow& row) {
 
 std::string doubt_words(const DiagnosticsRow& row) {
   switch (reason_of(row)) {
-    case VerdictReason::few_samples:
+    case CalibrationReason::few_samples:
       return "too few independent samples to tell";
-    case VerdictReason::close:
+    case CalibrationReason::close:
       return fmt::format("{} ({:g} to {:g} % passes)", close_words(row), 100.0 * least_close, 100.0 * largest_close);
     default:
       return fmt::format("outside the {} that pass, but not beyond doubt", passing_words());
@@ -63,13 +63,13 @@ std::string other_band(double level, double coverage, double lower, double upper
 std::string verdict_text(const DiagnosticsRow& row) {
   const auto with = [&](const std::string& why) { return fmt::format("{}, {}", name_of(row.verdict), why); };
   switch (row.verdict) {
-    case Verdict::calibrated:
+    case Calibration::calibrated:
       return with(fmt::format("you can rely on this band ({} passes)", passing_words()));
-    case Verdict::overconfident:
+    case Calibration::overconfident:
       return with(overconfidence_words(row));
-    case Verdict::underconfident:
+    case Calibration::underconfident:
       return with(underconfidence_words(row));
-    case Verdict::undecided:
+    case Calibration::undecided:
       break;
   }
   return with(doubt_words(row));

@@ -1,4 +1,4 @@
-#include "filter/judge/decide/evidence.hpp"
+#include "filter/judge/decide/collected.hpp"
 
 #include <array>
 #include <cmath>
@@ -25,18 +25,18 @@ class Collector {
         lower_(chi_square_quantile(outer_probability, 1.0)),
         upper_(chi_square_quantile(1.0 - outer_probability, 1.0)) {
     sums.squared_state_error.setZero(bank.C.rows());
-    sums.evidence.nis_degrees = static_cast<double>(bank.C.rows());
-    sums.evidence.chi_square_nis = chi_square_nis;
+    sums.counts.nis_degrees = static_cast<double>(bank.C.rows());
+    sums.counts.chi_square_nis = chi_square_nis;
   }
 
   Collected sums;
 
   void add(const Trajectory& run, const RunEvaluation& e, const RunScores& scores) {
-    Evidence& evidence = sums.evidence;
-    for (HitsByRun* hits : {&evidence.far, &evidence.close}) hits->emplace_back();
-    for (HitsByRun& hits : evidence.outside) hits.emplace_back();
-    evidence.sizes.emplace_back();
-    for (SquaredDistances* distances : {&evidence.nis, &sums.nees}) distances->begin_run();
+    BandCounts& counts = sums.counts;
+    for (HitsByRun* hits : {&counts.far, &counts.close}) hits->emplace_back();
+    for (HitsByRun& hits : counts.outside) hits.emplace_back();
+    counts.sizes.emplace_back();
+    for (SquaredDistances* distances : {&counts.nis, &sums.nees}) distances->begin_run();
     OutputSeries z(static_cast<std::size_t>(e.pit.rows()));  // of a mode's own samples
     if (mode_ < 0) make_room(e, z);
     for (Index k = 0; k < e.log_density.size(); ++k) {
@@ -54,12 +54,12 @@ class Collector {
  private:
   /// For all samples of a run, since growing series take up to twice of what they need.
   void make_room(const RunEvaluation& e, OutputSeries& z) {
-    Evidence& evidence = sums.evidence;
+    BandCounts& counts = sums.counts;
     const auto samples = static_cast<std::size_t>(e.log_density.size()), all = samples * z.size();
-    for (HitsByRun* hits : {&evidence.far, &evidence.close}) hits->back().reserve(all);
-    for (HitsByRun& hits : evidence.outside) hits.back().reserve(all);
-    evidence.sizes.back().reserve(all);
-    for (SeriesByRun* series : {&evidence.nis.value, &evidence.nis.degrees}) series->back().reserve(samples);
+    for (HitsByRun* hits : {&counts.far, &counts.close}) hits->back().reserve(all);
+    for (HitsByRun& hits : counts.outside) hits.back().reserve(all);
+    counts.sizes.back().reserve(all);
+    for (SeriesByRun* series : {&counts.nis.value, &counts.nis.degrees}) series->back().reserve(samples);
     for (std::vector<double>& output : z) output.reserve(samples);
   }
 
@@ -85,13 +85,13 @@ class Collector {
       if (std::isnan(e.pit(i, k))) continue;
       const double score = scores.z(i, k);
       for (std::size_t b = 0; b < band_edges_.size(); ++b)
-        sums.evidence.outside[b].back().push_back(std::abs(score) > band_edges_[b] ? 1 : 0);
-      sums.evidence.far.back().push_back(score * score > upper_ ? 1 : 0);
-      sums.evidence.close.back().push_back(score * score < lower_ ? 1 : 0);
-      sums.evidence.sizes.back().push_back(std::abs(score));
+        sums.counts.outside[b].back().push_back(std::abs(score) > band_edges_[b] ? 1 : 0);
+      sums.counts.far.back().push_back(score * score > upper_ ? 1 : 0);
+      sums.counts.close.back().push_back(score * score < lower_ ? 1 : 0);
+      sums.counts.sizes.back().push_back(std::abs(score));
       z[static_cast<std::size_t>(i)].push_back(score);
     }
-    sums.evidence.nis.add(e.nis(k), scored_signals(e, k));
+    sums.counts.nis.add(e.nis(k), scored_signals(e, k));
   }
 
   void add_truth(const Trajectory& run, const RunEvaluation& e, Index k) {

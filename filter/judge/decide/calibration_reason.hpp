@@ -4,11 +4,12 @@
 
 namespace modebank {
 
-/// Which numbers of a row its verdict rests on (verdict.hpp has the rules). band: the share in the 95 % band. close:
-/// the share next to its middle. nis: the mean NIS. few_samples: an interval is wider than what counts as calibrated.
-enum class VerdictReason { band, close, nis, few_samples };
+/// Which numbers of a row its verdict rests on (calibration.hpp has the rules). band: the share in the 95 % band.
+/// close: the share next to its middle. nis: the mean NIS. few_samples: an interval is wider than what counts as
+/// calibrated.
+enum class CalibrationReason { band, close, nis, few_samples };
 
-VerdictReason reason_of(const DiagnosticsRow& row);
+CalibrationReason reason_of(const DiagnosticsRow& row);
 
 /// A band whose interval leaves out its nominal share.
 enum class BandWidth { as_stated, too_wide, too_narrow };

@@ -22,17 +22,17 @@ namespace modebank {
 ///
 /// Samples that follow each other closely count as fewer: of a band's misses as few as their autocorrelation time says
 /// or that of all samples' sizes (hits are too few to show it in short runs), with a margin for its own error.
-enum class Verdict { undecided, calibrated, overconfident, underconfident };
+enum class Calibration { undecided, calibrated, overconfident, underconfident };
 
 template <>
-struct EnumNames<Verdict> {
+struct EnumNames<Calibration> {
   static constexpr Names<4> values{"undecided", "calibrated", "overconfident", "underconfident"};
 };
 
 /// What counts as calibrated: fractions outside the deciding band, and fractions too close to the middle.
 inline constexpr double least_outside = 0.025, largest_outside = 0.075, least_close = 0.01, largest_close = 0.04;
 
-/// Shares outside that are a verdict where they are beyond doubt (verdict_of).
+/// Shares outside that are a verdict where they are beyond doubt (calibration_of).
 inline constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 0.025;
 
 /// 1 where a signal is a hit, else 0: run by run, in the order of time. In a byte, since there are six of every sample.
@@ -40,7 +40,7 @@ using HitsByRun = std::vector<std::vector<char>>;
 SeriesByRun as_numbers(const HitsByRun& hits);
 
 /// What a verdict rests on, over the scored signals of some samples.
-struct Evidence {
+struct BandCounts {
   std::array<HitsByRun, coverage_levels.size()> outside;  ///< 1 where a signal lies outside that band, else 0
   HitsByRun far, close;         ///< 1 where its z^2 lies above the 97.5 % or below the 2.5 % quantile of chi-square(1)
   SeriesByRun sizes;            ///< of the same signals: rises with the distance of the PIT from 1/2
@@ -58,6 +58,6 @@ Interval fraction_interval(const SeriesByRun& hits, double time, double level = 
 bool says_nothing(const Interval& interval, double least, double largest);
 
 /// `time`: of time_by_sizes.
-Verdict verdict_of(const Evidence& evidence, double time);
+Calibration calibration_of(const BandCounts& counts, double time);
 
 }  // namespace modebank

@@ -1,4 +1,4 @@
-#include "filter/judge/decide/verdict_reason.hpp"
+#include "filter/judge/decide/calibration_reason.hpp"
 
 #include <cmath>
 
@@ -8,41 +8,42 @@ namespace {
 constexpr double coloured = 0.01;          // whiteness p
 constexpr double noticeable_colour = 0.1;  // autocorrelation
 
-VerdictReason reason_of_overconfidence(const DiagnosticsRow& row) {
+CalibrationReason reason_of_overconfidence(const DiagnosticsRow& row) {
   const bool many = 1.0 - row.coverage_95 > many_outside && row.coverage_95_upper < 1.0 - true_outside;
-  return many ? VerdictReason::band : VerdictReason::nis;
+  return many ? CalibrationReason::band : CalibrationReason::nis;
 }
 
-VerdictReason reason_of_underconfidence(const DiagnosticsRow& row) {
+CalibrationReason reason_of_underconfidence(const DiagnosticsRow& row) {
   const double outside = 1.0 - row.coverage_95;
-  if (outside < few_outside && row.coverage_95_lower > 1.0 - true_outside) return VerdictReason::band;
-  return outside < true_outside && row.too_close_lower > largest_close ? VerdictReason::close : VerdictReason::nis;
+  if (outside < few_outside && row.coverage_95_lower > 1.0 - true_outside) return CalibrationReason::band;
+  return outside < true_outside && row.too_close_lower > largest_close ? CalibrationReason::close
+                                                                       : CalibrationReason::nis;
 }
 
-VerdictReason reason_of_doubt(const DiagnosticsRow& row) {
+CalibrationReason reason_of_doubt(const DiagnosticsRow& row) {
   const Interval outside{1.0 - row.coverage_95_upper, 1.0 - row.coverage_95_lower};
   const bool unknown = row.samples == 0 || std::isnan(row.coverage_95) ||
                        says_nothing(outside, least_outside, largest_outside) ||
                        says_nothing({row.too_close_lower, row.too_close_upper}, least_close, largest_close);
-  if (unknown) return VerdictReason::few_samples;
+  if (unknown) return CalibrationReason::few_samples;
   const double missed = 1.0 - row.coverage_95;
-  return missed < least_outside || missed > largest_outside ? VerdictReason::band : VerdictReason::close;
+  return missed < least_outside || missed > largest_outside ? CalibrationReason::band : CalibrationReason::close;
 }
 
 }  // namespace
 
-VerdictReason reason_of(const DiagnosticsRow& row) {
+CalibrationReason reason_of(const DiagnosticsRow& row) {
   switch (row.verdict) {
-    case Verdict::overconfident:
+    case Calibration::overconfident:
       return reason_of_overconfidence(row);
-    case Verdict::underconfident:
+    case Calibration::underconfident:
       return reason_of_underconfidence(row);
-    case Verdict::undecided:
+    case Calibration::undecided:
       return reason_of_doubt(row);
-    case Verdict::calibrated:
+    case Calibration::calibrated:
       break;
   }
-  return VerdictReason::band;
+  return CalibrationReason::band;
 }
 
 BandWidth width_of(double level, double coverage_lower, double coverage_upper) {

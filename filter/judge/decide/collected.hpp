@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/judge/decide/verdict.hpp"
+#include "filter/judge/decide/calibration.hpp"
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/score/statistics.hpp"
 #include "filter/step/bank.hpp"
@@ -15,7 +15,7 @@ namespace modebank {
 struct Collected {
   Eigen::Index samples = 0, entropy_samples = 0;
   double usage = 0.0, entropy = 0.0, spread = 0.0, visits = 0.0, visited = 0.0;
-  Evidence evidence;
+  BandCounts counts;
   SquaredDistances nees;
   SeriesByRun z;  ///< of the whole filter: one series per run and measurement
   std::vector<double> whiteness;
