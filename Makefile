@@ -3,7 +3,7 @@
 JOBS := $(shell awk -v cores=$$(nproc) '/^MemAvailable/ { most = int($$2 / 2500000); print most < 1 ? 1 : most < cores ? most : cores }' /proc/meminfo)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test dist dist-test pip-test test bench-programs bench benchmarks guards uncertainty recovery evidence systems quantised scale cost features track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
+.PHONY: all api build demo packages package-test dist dist-test pip-test test bench-programs bench benchmarks guards uncertainty recovery evidence rule systems quantised scale cost features track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
 
 all: build
 
@@ -103,6 +103,11 @@ recovery: bench-programs
 # How often modes of motion are claimed where there are none, and found where there are some; hours on two cores.
 evidence: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_evidence.py build/modebank --table docs/results/evidence.csv --revision $$(git log -1 --format=%h -- app filter ident io mixture)
+
+# How often the rule on what a bank may add takes what is not there, and what is, as docs/results/rule.md has it; half an hour of two processors.
+rule: bench-programs
+	build/measure_rule 60 > docs/results/rule.csv
+	/usr/bin/python3 tests/bench/rule_table.py docs/results/rule.csv
 
 # How much is lost against the filter with the true parameters, on systems that are known; about three hours of a processor.
 systems: build

@@ -27,6 +27,13 @@ struct RefineTuning {
   /// few runs know their differences badly, and a fifth of what modes are typically worth should not go unseen.
   double most_loss = 0.02;
 
+  // What a model may add (left_out/rule.hpp).
+  /// The probability of it, of all proposals together, where there is nothing to be found.
+  double taken_by_chance = 0.05;
+  /// That one configuration may ask about: number of modes, prior, measurement noise, noise by input, transitions by
+  /// state, drift, look-ahead.
+  int proposals = 7;
+
   // The prior.
   double Q_transitions = 4.0;                            ///< that the prior on Q is worth while starts are compared
   std::array<double, 2> other_Q_transitions{1.0, 16.0};  ///< tried for the best start: a factor of four either way
@@ -67,15 +74,14 @@ struct RefineTuning {
   std::array<double, 8> drift_forgettings{0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0};
   std::array<double, 5> drift_noise_prior_samples{1e-3, 1e-2, 0.1, 1.0, 5.0};  ///< that a run's start is worth
 
-  // Measurement noise and averaging.
+  // Measurement noise.
   double least_R_share = 1e-9;  ///< of the global residual variance: the least R that refinement knows, as good as none
   /// Of the mean Q, where the searches for R start; below a half, because R counts twice in what Q held. From 5 % alone
   /// an R of a per cent of Q, or of many times Q, could be missed.
   std::array<double, 4> R_start_shares{0.05, 0.005, 0.2, 0.45};
   /// The same where theta is searched, too, because with the theta of exact states no R was likelier than none.
   double R_start_share_with_theta = 0.2;
-  /// Nats per sample for R, for its fit, for one more member and for more modes: less would not survive on other runs
-  /// (seeds move held-out scores by 0.03 to 0.07).
+  /// Nats per sample: less would not survive on other runs (seeds move held-out scores by 0.03 to 0.07).
   double least_gain = 1e-3;
 };
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "filter/learn/chain/inputs.hpp"
-#include "filter/learn/refine/folds.hpp"
+#include "filter/learn/left_out/folds.hpp"
 
 /// Cross-validation of the chain: banks learned as `run` learns them without some training runs, and what they predict
 /// of these.

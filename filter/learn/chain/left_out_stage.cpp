@@ -9,7 +9,7 @@
 #include "filter/learn/chain/stages.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/learn.hpp"
-#include "filter/learn/refine/folds.hpp"
+#include "filter/learn/left_out/folds.hpp"
 #include "filter/learn/refine/learning_part.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/fit/global_model.hpp"

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
-#include "filter/learn/refine/folds.hpp"
+#include "filter/learn/left_out/folds.hpp"
+#include "filter/learn/left_out/rule.hpp"
 #include "filter/learn/refine/learning_part.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "filter/learn/tuning.hpp"
-#include "ident/base/clustered_error.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/fit/constants.hpp"
 #include "ident/fit/global_model.hpp"
@@ -32,7 +32,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index most_transitions = 20'000;
-constexpr double least_gain_by_input = 0.02, significance = 2.0;
 constexpr double nu = 5.0;                // of the residuals' Student t
 constexpr double ridge = 4.0;             // one sample's information about each standardised logarithm
 constexpr double largest_exponent = 6.0;  // of a scale while it is searched
@@ -183,8 +182,9 @@ FoundNoiseFactor find_noise_factor(const Recording& all, const LinearStructure& 
   const Recording training = training_part(part ? *part : all);
   // Runs left out gain less than the runs that chose the factor: where these gain too little, the question is answered.
   const auto [of_all, rows] = gains(training, training, structure);
-  found.gain = of_all.sum() / rows.sum();
-  if (!(found.gain >= least_gain_by_input)) return found;
+  const PairedLoss seen = paired_loss(of_all, VectorXd::Zero(of_all.size()), rows);
+  found.gain = seen.mean;
+  if (!is_worth_it(seen, rows)) return found;
   const std::vector<ValidationSplit> splits = validation_splits(training, folds);
   if (splits.empty()) return found;
   std::vector<std::pair<VectorXd, VectorXd>> left_out(splits.size());
@@ -198,10 +198,10 @@ FoundNoiseFactor find_noise_factor(const Recording& all, const LinearStructure& 
     }
   const VectorXd sum = VectorXd::Map(sums.data(), std::ssize(sums)),
                  count = VectorXd::Map(samples.data(), std::ssize(samples));
-  found.gain = sum.sum() / count.sum();
-  found.standard_error = clustered_error(sum, count);
-  if (found.gain >= std::max(least_gain_by_input, significance * found.standard_error))
-    found.factor = fit_noise_factor(training, structure);
+  const PairedLoss gain = paired_loss(sum, VectorXd::Zero(sum.size()), count);
+  found.gain = gain.mean;
+  found.standard_error = gain.standard_error;
+  if (is_worth_it(gain, count)) found.factor = fit_noise_factor(training, structure);
   return found;
 }
 

@@ -34,9 +34,9 @@ struct FoundNoiseFactor {
   double standard_error = not_a_number;  ///< over the runs left out; NaN where none were
 };
 
-/// Compares one motion whose noise switches between four levels by itself, with and without the factor. Taken where
-/// runs left out gain at least 0.02 nats per sample and two standard errors. Nothing is asked of rounded or weighted
-/// samples. Learns from at most 20,000 transitions, drawn with the seed.
+/// Compares one motion whose noise switches between four levels by itself, with and without the factor. Taken where it
+/// is worth it on runs left out (left_out/rule.hpp). Nothing is asked of rounded or weighted samples. Learns from at
+/// most 20,000 transitions, drawn with the seed.
 FoundNoiseFactor find_noise_factor(const Recording& recording, const LinearStructure& structure, Eigen::Index folds,
                                    std::uint64_t seed);
 

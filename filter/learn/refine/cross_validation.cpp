@@ -160,10 +160,6 @@ Eigen::VectorXd CrossValidation::run_scores(const std::vector<Bank>& banks, cons
   return scores;
 }
 
-double CrossValidation::score(const std::vector<Bank>& banks, const LookAhead& look) const {
-  return mean_score({0, run_scores(banks, look)});
-}
-
 double CrossValidation::mean_score(const LeftOutScores& scores) const {
   const double sum = scores.log_likelihood.sum();
   return std::isnan(sum) ? -std::numeric_limits<double>::infinity() : sum / samples_.sum();

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "filter/judge/run/look_ahead.hpp"
-#include "filter/learn/refine/folds.hpp"
-#include "filter/learn/refine/model_choice.hpp"
+#include "filter/learn/left_out/folds.hpp"
+#include "filter/learn/left_out/rule.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "filter/learn/refine/split_fits.hpp"
 #include "filter/learn/refine/training_fit.hpp"
@@ -48,13 +48,13 @@ class CrossValidation {
   std::vector<ScoredFit> best_of_each_size() const;
 
   /// Log-likelihoods of the runs left out; `banks`: one per split.
-  LeftOutScores scores(const std::vector<Bank>& banks) const {
-    return {banks.front().mode_count(), run_scores(banks, look_)};
-  }
-  /// Mean log score of the runs left out, nats per sample; `banks`: one per split. Minus infinity where there is none.
-  double score(const std::vector<Bank>& banks) const { return score(banks, look_); }
+  LeftOutScores scores(const std::vector<Bank>& banks) const { return scores(banks, look_); }
   /// The same of what is counted by learning that looks ahead so.
-  double score(const std::vector<Bank>& banks, const LookAhead& look) const;
+  LeftOutScores scores(const std::vector<Bank>& banks, const LookAhead& look) const {
+    return {banks.front().mode_count(), run_scores(banks, look)};
+  }
+  /// Nats per sample; minus infinity where there is no score.
+  double mean_score(const LeftOutScores& scores) const;
 
   /// How the noise scale should move in the filter of these banks, one per split: of ways that the runs left out do not
   /// tell apart, the one that soonest leaves its start.
@@ -63,7 +63,6 @@ class CrossValidation {
  private:
   /// Of each run left out.
   Eigen::VectorXd run_scores(const std::vector<Bank>& banks, const LookAhead& look) const;
-  double mean_score(const LeftOutScores& scores) const;
   ScoredFit best_iterations(const RefineStart& start) const;
 
   RefineInput in_;

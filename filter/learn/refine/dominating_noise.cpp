@@ -8,6 +8,7 @@
 
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "filter/learn/left_out/rule.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/tuning.hpp"
 
@@ -64,9 +65,9 @@ std::optional<Bank> start_of_dominating_noise(const RefineInput& in, const Recor
   Bank exact = one_model(bank, global, 0.0);
   exact.R = least_measurement_noise(in.fits, refine_tuning).asDiagonal();
   exact.modes.front().Q.topLeftCorner(n, n) = global.residual_covariance;
-  const double least = refine_tuning.least_gain * static_cast<double>(recording.transitions(Role::train));
+  const auto samples = static_cast<double>(recording.transitions(Role::train));
   const LikelihoodTarget likelihood{recording, exact_filter(in.filter), std::nullopt};
-  if (!best || !(best->value > likelihood.value(exact) + least)) return std::nullopt;
+  if (!best || !(best->value > likelihood.value(exact) + samples * least_worth(samples))) return std::nullopt;
   const Eigen::MatrixXd Q = best->bank.modes.front().Q.topLeftCorner(n, n);
   if (!(best->bank.R.diagonal().array() > Q.diagonal().array()).any()) return std::nullopt;
   const Eigen::VectorXd moved = best->bank.theta(0) - global.theta;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/left_out/rule.hpp"
 #include "filter/learn/tuning.hpp"
 
 namespace modebank {
@@ -103,7 +104,7 @@ std::optional<DriftChoice> choose_drift(const RefineInput& in, const CrossValida
   const Eigen::VectorXd without = scores_without(validation, steady);
   const PairedLoss gain = paired_loss(best.scores.log_likelihood, without, validation.samples());
   const DriftRates& rates = best.choice.drift.rates;
-  stage.taken = gain.mean > std::max(gain.standard_error, refine_tuning.least_gain);
+  stage.taken = is_worth_it(gain, validation.samples());
   stage.modes = best.scores.modes;
   stage.rate = rates.q;
   stage.start = rates.p0;

@@ -18,8 +18,8 @@ struct DriftChoice {
 /// Whether theta of each mode follows a run (equations/drift.hpp), how fast, and how the noise scale moves then. For
 /// the best fit of each number of modes (`other_sizes`; else for `steady` alone) the settings of the highest score of
 /// the runs left out are searched on the grids of RefineTuning, one after the other until none gains; of the numbers of
-/// modes the fewest that are as good are chosen (fewest_modes_as_good). Empty where the runs left out do not gain more
-/// than one standard error and least_gain over the chosen fit without drift, or where nothing can be left out. `stage`
+/// modes the fewest that are as good are chosen (fewest_modes_as_good). Empty where it is not worth it
+/// (is_worth_it) against the chosen fit without drift, or where nothing can be left out. `stage`
 /// says what was found.
 std::optional<DriftChoice> choose_drift(const RefineInput& in, const CrossValidation& validation,
                                         const ScoredFit& steady, bool other_sizes, DriftStage& stage);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "filter/learn/left_out/rule.hpp"
 #include "filter/learn/refine/split_fits.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/mode_screening.hpp"
@@ -120,7 +121,7 @@ std::optional<Guards> choose_guards(const RefineInput& in, const CrossValidation
   stage.score_before = without.log_likelihood.sum() / validation.samples().sum();
   stage.gain = gain.mean;
   stage.gain_standard_error = gain.standard_error;
-  if (!(gain.mean > std::max(gain.standard_error, tuning.least_gain))) return std::nullopt;
+  if (!is_worth_it(gain, validation.samples())) return std::nullopt;
   stage.width = best.prior.width;
   stage.memory_sd = best.prior.memory_sd;
   return best;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "filter/learn/left_out/rule.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/refine/split_fits.hpp"
@@ -93,12 +94,12 @@ Bank without_errors(Bank bank) {
   return bank;
 }
 
-/// Whether the runs left out, each scored by a fit that has not seen it, gain enough.
+/// Whether the runs left out, each scored by a fit that has not seen it, gain enough (left_out/rule.hpp).
 bool gains(const LookAheadFit& fit, const CrossValidation& validation, const ChosenFit& chosen, const Bank& bank,
            LookAheadStage& stage, std::vector<Bank>& of_splits) {
   std::vector<Bank> banks = chosen.of_splits;
   for (Bank& of_split : banks) of_split.noise_adaptation = bank.noise_adaptation;
-  stage.score_before = validation.score(banks, fit.look);
+  const LeftOutScores before = validation.scores(banks, fit.look);
   tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
     const SplitData& split = validation.splits()[s];
     SwitchingPrior of_split = prior_of_split(
@@ -106,8 +107,12 @@ bool gains(const LookAheadFit& fit, const CrossValidation& validation, const Cho
     of_split = with_guard(std::move(of_split), split.transitions, chosen.guard);
     banks[s] = fit.taken_on(split.runs.training, of_split, banks[s]);
   });
-  stage.score = validation.score(banks, fit.look);
-  if (!(stage.score > stage.score_before + refine_tuning.least_gain)) return false;
+  const LeftOutScores after = validation.scores(banks, fit.look);
+  stage.score_before = validation.mean_score(before);
+  stage.score = validation.mean_score(after);
+  const PairedLoss gain = paired_loss(after.log_likelihood, before.log_likelihood, validation.samples());
+  stage.gain_standard_error = gain.standard_error;
+  if (!is_worth_it(gain, validation.samples())) return false;
   of_splits = std::move(banks);
   return true;
 }

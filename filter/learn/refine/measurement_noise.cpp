@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "filter/learn/left_out/rule.hpp"
 #include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
 #include "filter/learn/refine/dominating_noise.hpp"
@@ -23,6 +24,12 @@ namespace {
 
 // The search for R alone: its end is where the fit of everything begins.
 constexpr AscentLimits search_limits{30, 1e-7};
+
+/// Nats that R has to add to the likelihood of these training runs.
+double least_rise(const LikelihoodTarget& target) {
+  const auto samples = static_cast<double>(target.recording.transitions(Role::train));
+  return samples * least_worth(samples);
+}
 
 /// R = `share` of the mean Q, taken out of Q: white measurement noise of variance r enters a residual of exact states
 /// about twice.
@@ -78,7 +85,7 @@ std::vector<Bank> starts_of_R(const LikelihoodTarget& target, const FreeParamete
 
 /// The fit that took the state as measured exactly has its theta drawn to errors in variables, at times so far that
 /// with this theta no R is likelier than none. Then theta is searched with R and one factor on Q, if the gradient
-/// promises anything. Empty where that does not lead above the bank by least_gain per sample either. `transitions`: of
+/// promises anything. Empty where that does not lead above the bank by least_rise either. `transitions`: of
 /// the target's recording.
 std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const RefineInput& in,
                                         const TrainingTransitions& transitions, const SwitchingPrior& prior,
@@ -90,8 +97,7 @@ std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const Re
       all_parameters(bank, sums, prior, in.options.one_theta, false, least_measurement_noise(in.fits, tuning))
           .theta_unit;
   if (is_large(bank) && BankCoordinates(bank, free).size() > most_coordinates_of_large_filters) return std::nullopt;
-  const double level =
-      target.value(bank) + tuning.least_gain * static_cast<double>(target.recording.transitions(Role::train));
+  const double level = target.value(bank) + least_rise(target);
   const Bank start = with_share_as_R(bank, tuning.R_start_share_with_theta);
   if (!promises(target, free, start, level)) return std::nullopt;
   LikelihoodMaximum end = maximise_likelihood(target, free, start, search_limits);
@@ -125,8 +131,7 @@ MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, c
   };
   Bank dominated = at_maximum(*start);
   const double rival = target.value(noise.bank ? at_maximum(*noise.bank) : bank);
-  const double least = refine_tuning.least_gain * static_cast<double>(target.recording.transitions(Role::train));
-  if (target.value(dominated) > rival + least) noise.bank = std::move(dominated);
+  if (target.value(dominated) > rival + least_rise(target)) noise.bank = std::move(dominated);
   return noise;
 }
 
@@ -142,7 +147,7 @@ class MeasuredSplits {
 
   const std::vector<Bank>& banks() const { return banks_; }
   /// Mean log score of the runs left out.
-  double score() const { return validation_.score(banks_); }
+  double score() const { return validation_.mean_score(validation_.scores(banks_)); }
 
   /// R of each split; a split may ask for none.
   void estimate_R() {
@@ -184,7 +189,7 @@ class MeasuredSplits {
 MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
                                             const RefineTuning& tuning) {
   const double transitions = static_cast<double>(target.recording.transitions(Role::train));
-  const double level = target.value(bank) + tuning.least_gain * transitions;
+  const double level = target.value(bank) + least_rise(target);
   const FreeParameters free = free_noise(bank.R.rows());
   const std::vector<Bank> starts = starts_of_R(target, free, bank, level, tuning);
   std::vector<LikelihoodMaximum> ends(starts.size());

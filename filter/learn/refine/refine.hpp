@@ -15,8 +15,9 @@ namespace modebank {
 
 /// What a fit that looks ahead was worth (look_ahead_fit.hpp).
 struct LookAheadStage {
-  double score_before = 0.0;  ///< mean look-ahead score of the runs left out [nats per sample]
-  double score = 0.0;         ///< the same of the fits taken on; equal to the other where that was not tried
+  double score_before = 0.0;         ///< mean look-ahead score of the runs left out [nats per sample]
+  double score = 0.0;                ///< the same of the fits taken on; equal to the other where that was not tried
+  double gain_standard_error = 0.0;  ///< of the difference, by run
   bool taken = false;
   bool of_errors = false;  ///< scores are minus half of mean squared errors, in no unit
 };

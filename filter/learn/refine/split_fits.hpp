@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
-#include "filter/learn/refine/folds.hpp"
+#include "filter/learn/left_out/folds.hpp"
 #include "filter/learn/refine/training_fit.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/step/bank.hpp"

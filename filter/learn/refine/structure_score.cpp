@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include "filter/learn/refine/folds.hpp"
+#include "filter/learn/left_out/folds.hpp"
+#include "filter/learn/left_out/rule.hpp"
 #include "filter/learn/refine/learning_part.hpp"
-#include "filter/learn/refine/model_choice.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "filter/learn/tuning.hpp"

@@ -10,7 +10,7 @@ namespace modebank {
 
 /// How well modes of each structure predict training runs that were left out [nats/sample], and which structure is
 /// taken: the incumbent, unless another gains least_structure_gain over it, and one standard error where it has as many
-/// parameters or more; then the fewest lags as good as the best (fewest_modes_as_good, model_choice.hpp).
+/// parameters or more; then the fewest lags as good as the best (fewest_modes_as_good, left_out/rule.hpp).
 struct StructuresOfModes {
   std::vector<double> scores;  ///< minus infinity where nothing can be learned
   std::size_t chosen = 0;

@@ -1,5 +1,5 @@
 // What is left out of learning, in turn.
-#include "filter/learn/refine/folds.hpp"
+#include "filter/learn/left_out/folds.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "filter/learn/refine/model_choice.hpp"
+#include "filter/learn/left_out/rule.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +22,16 @@ PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& wor
   return {difference.sum() / samples.sum(), clustered_error(difference, samples)};
 }
 
+double least_worth(double samples) {
+  const double evidence = std::log(static_cast<double>(refine_tuning.proposals) / refine_tuning.taken_by_chance);
+  return std::max(refine_tuning.least_gain, evidence / samples);
+}
+
+bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples, double most_error) {
+  return std::isfinite(gain.mean) &&
+         gain.mean > std::max(std::min(gain.standard_error, most_error), least_worth(samples.sum()));
+}
+
 std::size_t best_candidate(const std::vector<LeftOutScores>& candidates) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < candidates.size(); ++i)
@@ -32,7 +42,7 @@ std::size_t best_candidate(const std::vector<LeftOutScores>& candidates) {
 bool as_good(const LeftOutScores& candidate, const LeftOutScores& best, const Eigen::VectorXd& samples,
              const RefineTuning& tuning) {
   const PairedLoss loss = paired_loss(best.log_likelihood, candidate.log_likelihood, samples);
-  return loss.mean <= std::max(std::min(loss.standard_error, tuning.most_loss), tuning.least_gain);
+  return std::isfinite(loss.mean) && !is_worth_it(loss, samples, tuning.most_loss);
 }
 
 std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,

@@ -1,5 +1,5 @@
 // The choice of a bank by the runs left out: paired losses, their errors, and the fewest modes.
-#include "filter/learn/refine/model_choice.hpp"
+#include "filter/learn/left_out/rule.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace modebank {
 namespace {
 
-const Eigen::VectorXd hundreds = Eigen::Vector4d(100.0, 100.0, 100.0, 100.0);
+const Eigen::VectorXd thousands = Eigen::Vector4d(1000.0, 1000.0, 1000.0, 1000.0);
 
 RefineTuning losing(double most) {
   RefineTuning tuning;
@@ -17,17 +17,17 @@ RefineTuning losing(double most) {
   return tuning;
 }
 
-/// A candidate whose runs score so many nats below 200 each.
+/// A candidate whose runs score so many nats per hundred samples below 2000 each.
 LeftOutScores below(Eigen::Index modes, const Eigen::Vector4d& losses) {
-  return {modes, Eigen::VectorXd::Constant(4, 200.0) - losses};
+  return {modes, Eigen::VectorXd::Constant(4, 2000.0) - 10.0 * losses};
 }
 
-// m = 10 / 400, deviations from 100 m: -1.5, 0.5, 1.5, -0.5; sqrt(4 / 3 * 5) / 400.
+// m = 100 / 4000, deviations from 1000 m: -15, 5, 15, -5; sqrt(4 / 3 * 500) / 4000.
 TEST(ModelChoice, PairedLossIsClusteredByRun) {
   const PairedLoss loss =
-      paired_loss(below(3, {0, 0, 0, 0}).log_likelihood, below(2, {1, 3, 4, 2}).log_likelihood, hundreds);
+      paired_loss(below(3, {0, 0, 0, 0}).log_likelihood, below(2, {1, 3, 4, 2}).log_likelihood, thousands);
   EXPECT_NEAR(loss.mean, 0.025, 1e-15);
-  EXPECT_NEAR(loss.standard_error, std::sqrt(20.0 / 3.0) / 400.0, 1e-15);
+  EXPECT_NEAR(loss.standard_error, std::sqrt(2000.0 / 3.0) / 4000.0, 1e-15);
 }
 
 /// A loss that is the same in every sample is known exactly, however long the runs are.
@@ -41,8 +41,8 @@ TEST(ModelChoice, RunsOfDifferentLengthDoNotBlurALossPerSample) {
 TEST(ModelChoice, ACandidateWithoutAScoreLosesInfinitely) {
   Eigen::VectorXd broken = Eigen::VectorXd::Zero(4);
   broken(2) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(std::isinf(paired_loss(Eigen::VectorXd::Zero(4), broken, hundreds).mean));
-  EXPECT_EQ(fewest_modes_as_good({{1, broken}, below(2, {0, 0, 0, 0})}, hundreds, losing(0.02)), 1u);
+  EXPECT_TRUE(std::isinf(paired_loss(Eigen::VectorXd::Zero(4), broken, thousands).mean));
+  EXPECT_EQ(fewest_modes_as_good({{1, broken}, below(2, {0, 0, 0, 0})}, thousands, losing(0.02)), 1u);
 }
 
 TEST(ModelChoice, FewestModesWithinOneStandardError) {
@@ -50,29 +50,45 @@ TEST(ModelChoice, FewestModesWithinOneStandardError) {
   const std::vector<LeftOutScores> candidates{below(4, {0, 0, 0, 0}), below(3, {4, -2, 2, -2}),
                                               below(2, {1, 1.5, 0.5, 1}), below(1, {50, 50, 50, 50})};
   EXPECT_EQ(best_candidate(candidates), 0u);
-  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, losing(0.02)), 1u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, thousands, losing(0.02)), 1u);
 }
 
 /// Few runs know differences badly: a standard error alone would excuse any loss.
 TEST(ModelChoice, ALossAboveTheLimitIsNotExcusedByItsError) {
   // One mode loses 0.025 +- 0.095.
   const std::vector<LeftOutScores> candidates{below(2, {0, 0, 0, 0}), below(1, {30, -10, 0, -10})};
-  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, losing(0.02)), 0u);
-  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, losing(0.03)), 1u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, thousands, losing(0.02)), 0u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, thousands, losing(0.03)), 1u);
 }
 
 /// Four modes gain 0.0008 +- 0.0001 nats per sample over three: sure, and nothing that three should grow to four for.
 TEST(ModelChoice, AGainTooSmallToMatterAddsNoMode) {
   const std::vector<LeftOutScores> candidates{below(4, {0, 0, 0, 0}), below(3, {0.08, 0.06, 0.1, 0.08}),
                                               below(2, {0.2, 0.22, 0.18, 0.2})};
-  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, losing(0.02)), 1u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, thousands, losing(0.02)), 1u);
 }
 
 TEST(ModelChoice, OfAsManyModesTheBestThatQualifies) {
   const std::vector<LeftOutScores> candidates{below(3, {0, 0, 0, 0}), below(2, {4, -2, 2, -2}),
                                               below(2, {3, -2, 1, -1})};
-  EXPECT_EQ(fewest_modes_as_good(candidates, hundreds, losing(0.02)), 2u);
-  EXPECT_EQ(fewest_modes_as_good({candidates[0], candidates[0]}, hundreds, losing(0.02)), 0u);
+  EXPECT_EQ(fewest_modes_as_good(candidates, thousands, losing(0.02)), 2u);
+  EXPECT_EQ(fewest_modes_as_good({candidates[0], candidates[0]}, thousands, losing(0.02)), 0u);
+}
+
+/// log(7 / 0.05) nats of all samples, and of many samples 0.001 each.
+TEST(Rule, TheLeastThatCountsIsAProbabilityOfErrorAndNotTooSmallToMatter) {
+  EXPECT_NEAR(least_worth(1200.0), 4.94164242 / 1200.0, 1e-10);
+  EXPECT_EQ(least_worth(1e6), 1e-3);
+}
+
+TEST(Rule, WhatIsAddedGainsMoreThanItsErrorAndTheLeast) {
+  const Eigen::VectorXd samples = Eigen::VectorXd::Constant(6, 200.0);
+  EXPECT_TRUE(is_worth_it({0.01, 0.005}, samples));
+  EXPECT_FALSE(is_worth_it({0.01, 0.02}, samples)) << "less than its error";
+  EXPECT_TRUE(is_worth_it({0.01, 0.02}, samples, 0.005)) << "of which so much counts";
+  EXPECT_FALSE(is_worth_it({0.004, 0.0}, samples)) << "4.8 nats";
+  EXPECT_TRUE(is_worth_it({0.004, 0.0}, 10.0 * samples)) << "48 nats";
+  EXPECT_FALSE(is_worth_it({std::numeric_limits<double>::infinity(), 0.0}, samples)) << "one has no score";
 }
 
 }  // namespace

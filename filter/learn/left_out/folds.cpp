@@ -1,4 +1,4 @@
-#include "filter/learn/refine/folds.hpp"
+#include "filter/learn/left_out/folds.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,0 +1,195 @@
+// How often the rule on what a model may add (filter/learn/left_out/rule.hpp) takes something that is not there, and
+// something that is: docs/results/rule.md. Prints CSV.
+//
+//   measure_rule SEEDS [FIRST]     both tables, from seed FIRST (1) on
+//   measure_rule worth RUNS        what each thing gains on so many runs, at sizes about those below
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "filter/learn/competitors/noise_by_input.hpp"
+#include "filter/learn/learn.hpp"
+#include "filter/learn/left_out/rule.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/base/seed.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
+
+namespace {
+
+using Eigen::Index;
+using modebank::Recording;
+using modebank::Refinement;
+
+constexpr Index samples = 200;
+constexpr double sd = 0.1;
+
+/// One run of x[k+1] = a x[k] + 0.3 u[k] + w, and what changes from step to step.
+struct Step {
+  double x, u, memory;  // memory: whatever a system keeps
+};
+using Draw = std::function<double()>;
+/// The next x; may change the step's memory.
+using Motion = std::function<double(Step&, double size, const Draw& normal, const Draw& uniform)>;
+
+Recording simulate(const Motion& motion, double size, double start_memory_sd, Index runs, int seed,
+                   double measurement_sd = 0.0) {
+  std::mt19937_64 generator = modebank::make_generator(static_cast<std::uint64_t>(seed), "measure rule", 0);
+  boost::random::normal_distribution<double> gauss;
+  boost::random::uniform_01<double> unit;
+  const Draw normal = [&] { return gauss(generator); }, uniform = [&] { return unit(generator); };
+  Recording recording = modebank::test::empty_recording(1, 1);
+  for (Index r = 0; r < runs; ++r) {
+    Eigen::MatrixXd x(1, samples), u(1, samples);
+    Step at{0.0, 0.0, start_memory_sd * normal()};
+    for (Index k = 0; k < samples; ++k) {
+      if (k % 5 == 0) at.u = 2.0 * uniform() - 1.0;
+      u(k) = at.u;
+      x(k) = at.x + measurement_sd * normal();
+      at.x = motion(at, size, normal, uniform);
+    }
+    modebank::test::add_run(recording, x, u);
+  }
+  return recording;
+}
+
+double one_motion(Step& at, double, const Draw& normal, const Draw&) { return 0.8 * at.x + 0.3 * at.u + sd * normal(); }
+
+/// A proposal's answer.
+struct Answer {
+  double gain = 0.0, standard_error = 0.0;
+  bool taken = false;
+};
+
+struct Question {
+  std::string proposal;
+  std::array<double, 2> sizes;  ///< worth .06 and .03 nats per sample
+  std::function<Recording(double size, Index runs, int seed)> system;
+  std::function<Answer(const Recording&)> ask;
+};
+
+Refinement refined(const Recording& recording, const std::function<void(modebank::RefineOptions&)>& change) {
+  const modebank::WindowFits fits = modebank::test::windows_of(recording, 25, 5);
+  const modebank::Bank start = modebank::learn_baseline(recording, fits.global, fits.structure).bank;
+  modebank::RefineOptions options;
+  options.measurement_noise = false;
+  options.restarts = 0;
+  change(options);
+  return modebank::refine_bank(recording, fits, {start}, options, {});
+}
+
+Answer modes(const Recording& recording) {
+  const Refinement r = refined(recording, [](auto& o) { o.restarts = 2, o.most_modes = 2; });
+  double one = -1e300, more = -1e300, loss_of_one = 0.0;
+  for (const auto& candidate : r.candidates) {
+    double& best = candidate.modes == 1 ? one : more;
+    if (candidate.modes == 1 && candidate.score > one) loss_of_one = candidate.loss_standard_error;
+    best = std::max(best, candidate.score);
+  }
+  return {more - one, loss_of_one, r.bank.mode_count() > 1};
+}
+
+Answer measurement_noise(const Recording& recording) {
+  const Refinement r = refined(recording, [](auto& o) { o.measurement_noise = true; });
+  return {r.measurement.score - r.measurement.score_before, modebank::not_a_number,
+          r.bank.R.diagonal().maxCoeff() > 1e-3 * sd * sd};
+}
+
+Answer noise_by_input(const Recording& recording) {
+  const auto found = modebank::find_noise_factor(recording, modebank::test::structure_of(recording), 6, 1);
+  return {found.gain, found.standard_error, !found.factor.empty()};
+}
+
+Answer guards(const Recording& recording) {
+  const Refinement r = refined(recording, [](auto& o) { o.restarts = 2, o.most_modes = 2, o.guards = true; });
+  return {r.switching.gain, r.switching.gain_standard_error, !r.bank.transition_logit.empty()};
+}
+
+Answer drift(const Recording& recording) {
+  const Refinement r = refined(recording, [](auto& o) { o.drift = modebank::Drift::automatic; });
+  return {r.drift.gain, r.drift.gain_standard_error, r.drift.taken};
+}
+
+Answer look_ahead(const Recording& recording) {
+  const Refinement r = refined(recording, [](auto& o) { o.look_ahead = 10; });
+  return {r.look_ahead.score - r.look_ahead.score_before, r.look_ahead.gain_standard_error, r.look_ahead.taken};
+}
+
+std::vector<Question> questions() {
+  const auto of = [](Motion motion, double start_memory_sd = 0.0) {
+    return [=](double size, Index runs, int seed) { return simulate(motion, size, start_memory_sd, runs, seed); };
+  };
+  const Motion two_modes = [](Step& at, double size, const Draw& normal, const Draw& uniform) {
+    if (at.memory == 0.0 || uniform() < 0.02) at.memory = at.memory > 0.0 ? -1.0 : 1.0;
+    return 0.8 * at.x + (0.3 + size * at.memory) * at.u + sd * normal();
+  };
+  const Motion noise_follows = [](Step& at, double size, const Draw& normal, const Draw&) {
+    return 0.8 * at.x + 0.3 * at.u + sd * std::pow(std::abs(at.u) + 0.02, size) * normal();
+  };
+  const Motion border = [](Step& at, double size, const Draw& normal, const Draw&) {
+    return 0.8 * at.x + (at.x > 0.0 ? 0.3 + size : 0.3 - size) * at.u + sd * normal();
+  };
+  const Motion wandering = [](Step& at, double size, const Draw& normal, const Draw&) {
+    at.memory = 0.99 * at.memory + 0.14 * normal();
+    return 0.8 * at.x + (0.3 + size * at.memory) * at.u + sd * normal();
+  };
+  const Motion hidden = [](Step& at, double size, const Draw& normal, const Draw&) {
+    at.memory = 0.97 * at.memory + 0.24 * normal();
+    return 0.5 * at.x + 0.3 * at.u + size * at.memory + sd * normal();
+  };
+  const auto measured = [](double size, Index runs, int seed) {
+    return simulate(one_motion, 0.0, 0.0, runs, seed, size);
+  };
+  return {{"modes", {0.081, 0.061}, of(two_modes), modes},
+          {"measurement noise", {0.22, 0.155}, measured, measurement_noise},
+          {"noise by input", {0.36, 0.235}, of(noise_follows), noise_by_input},
+          {"transitions by state", {0.069, 0.046}, of(border), guards},
+          {"drift", {0.08, 0.057}, of(wandering, 1.0), drift},
+          {"look-ahead", {0.094, 0.065}, of(hidden, 1.0), look_ahead}};
+}
+
+void print_worth(Index runs) {
+  for (const Question& q : questions())
+    for (const double scale : {1.0, 0.85, 1.15})
+      for (const double base : q.sizes) {
+        const double size = scale * base;
+        fmt::print("{}, size {:.4f}: {:.4f}\n", q.proposal, size, q.ask(q.system(size, runs, 1000)).gain);
+        std::fflush(stdout);
+      }
+}
+
+void print_seed(int seed) {
+  constexpr std::array<Index, 2> runs{6, 12};
+  for (const Question& q : questions()) {
+    const auto row = [&](double worth, Index count, const Recording& recording) {
+      const Answer answer = q.ask(recording);
+      fmt::print("{},{},{},{},{:.5f},{:.5f},{:d}\n", q.proposal, worth, count, seed, answer.gain, answer.standard_error,
+                 answer.taken ? 1 : 0);
+    };
+    row(0.0, runs[0], simulate(one_motion, 0.0, 0.0, runs[0], seed));
+    row(0.06, runs[0], q.system(q.sizes[0], runs[0], seed));
+    row(0.03, runs[1], q.system(q.sizes[1], runs[1], seed));
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc == 3 && std::string_view(argv[1]) == "worth") {
+    print_worth(std::atoi(argv[2]));
+    return 0;
+  }
+  const int seeds = argc > 1 ? std::atoi(argv[1]) : 60, first = argc > 2 ? std::atoi(argv[2]) : 1;
+  fmt::print("proposal,worth,runs,seed,gain,standard_error,taken\n");
+  for (int seed = first; seed < first + seeds; ++seed) print_seed(seed);
+}
