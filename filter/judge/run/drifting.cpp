@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include "filter/judge/run/drifting_forecast.hpp"
 #include "filter/step/equations/bounds.hpp"
 #include "filter/step/feed/run_samples.hpp"
+#include "filter/step/forecast.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -51,15 +51,9 @@ class DriftingLookAhead {
       : instants_(instants), run_(run), out_(out), noise_(model.nu), forecast_(model) {}
 
   void from(Index t, const DriftingMemory& origin, const Eigen::VectorXd& v) {
-    const std::vector<Index>& horizons = out_.predictions.horizons;
     forecast_.start(origin, v);
-    Index ahead = 0;
-    std::size_t next = 0;
-    while (next < horizons.size() && instants_.continues(t)) {
-      forecast_.step(instants_.inputs.col(++t));
-      if (const Index k = instants_.instants[static_cast<std::size_t>(t)].sample; k >= 0 && ++ahead == horizons[next])
-        score(next++, k);
-    }
+    look_ahead(forecast_, instants_, t, out_.predictions.horizons,
+               [&](std::size_t horizon, Index k) { score(horizon, k); });
   }
 
  private:

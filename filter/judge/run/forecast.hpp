@@ -5,11 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "filter/judge/run/drifting_forecast.hpp"
-#include "filter/step/equations/filter_step.hpp"
 #include "filter/step/equations/predicted_mixture.hpp"
 
-/// Prediction without measurements: what a filter says of later samples from where it stands, with the inputs known.
+/// The interface of predictions to free runs, whichever model makes them (filter/step/forecast.hpp).
 namespace modebank {
 
 /// The measurement so many model steps ahead as some model predicts it, each signal by itself and all jointly.
@@ -34,71 +32,6 @@ class Forecast {
   Forecast() = default;
   Forecast(const Forecast&) = default;
   Forecast& operator=(const Forecast&) = default;
-};
-
-/// A bank's moments: a Gaussian per mode, mixed (merged) as the filter does and propagated. With a constant transition
-/// matrix every mode's probability, mean and covariance are exactly those of the switching system (moments of mixtures
-/// merge without loss); that each mode's distribution is a Gaussian is the approximation. The one place where banks
-/// predict without measuring.
-template <int N, int NY>
-class BankForecast {
- public:
-  explicit BankForecast(const FilterModel<N, NY>& model)
-      : model_(model),
-        step_(model),
-        state_(initial_state(model)),
-        posterior_(step_.predicted_probability.size()),
-        unused_(model.structure.dimension()) {}
-
-  void start(const FilterState<N>& origin) {
-    state_ = origin;
-    ahead_ = contracted_ = false;
-  }
-  template <class U>
-  void step(const U& inputs) {
-    if (ahead_) skip_measurement(model_, step_, state_);
-    if (ahead_ && !contracted_) contract();
-    predict(model_, state_, inputs, step_);
-    ahead_ = true;
-  }
-
-  const FilterModel<N, NY>& model() const { return model_; }
-  const FilterStep<N, NY>& predicted() const { return step_; }
-
-  /// Of a whole measurement [nats]; `error`: it minus the combined prediction.
-  template <class Y, class Error>
-  double observe(const Y& y, Error&& error) {
-    error = y;
-    for (std::size_t h = 0; h < step_.kalman.size(); ++h) {
-      const auto i = static_cast<Eigen::Index>(h);
-      if (model_.quantised)
-        correct_intervals(model_, y, step_.kalman[h], unused_);
-      else
-        step_.kalman[h].observe(model_, y);
-      step_.log_likelihood(i) = step_.kalman[h].log_density;
-      error -= step_.predicted_probability(i) * (y - step_.kalman[h].innovation);
-    }
-    return bayes(step_.predicted_probability, step_.log_likelihood, posterior_);
-  }
-
- private:
-  const FilterModel<N, NY>& model_;
-  FilterStep<N, NY> step_;
-  FilterState<N> state_;
-  Eigen::VectorXd posterior_;
-  Gaussian<N> unused_;
-  bool ahead_ = false, contracted_ = false;
-
-  /// Coefficients that drifted to where they are unstable, good for one step, would run away in many; as
-  /// DriftingForecast has it.
-  void contract() {
-    contracted_ = true;
-    const LinearStructure& s = model_.structure;
-    if (!model_.drift.on()) return;
-    const Eigen::VectorXd units = Eigen::VectorXd::Ones(s.regressors());
-    for (auto theta : state_.drift.theta.colwise())
-      theta = contracted(s, units, theta.reshaped(s.regressors(), s.states)).reshaped();
-  }
 };
 
 /// A mixture of normal distributions of one signal.

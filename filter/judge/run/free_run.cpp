@@ -8,6 +8,7 @@
 #include "filter/judge/run/free_run_forecasts.hpp"
 #include "filter/step/equations/filter_memory.hpp"
 #include "filter/step/feed/run_samples.hpp"
+#include "filter/step/forecast.hpp"
 #include "ident/base/interruption.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
@@ -109,34 +110,35 @@ class Given {
   }
 };
 
+/// Stores the prediction of sample k, where `forecast` has arrived.
+void record(const Forecast& forecast, const Eigen::VectorXd& mean, Index k, FreeRun& out) {
+  out.mean.col(k) = mean;
+  out.deviation.col(k) = forecast.standard_deviation();
+  forecast.mode_probability().maxCoeff(&out.mode(k));
+  for (Index i = 0; i < mean.size(); ++i) {
+    out.lower(i, k) = forecast.quantile(i, 0.5 * (1.0 - band_level));
+    out.upper(i, k) = forecast.quantile(i, 0.5 * (1.0 + band_level));
+  }
+}
+
 /// Predicts from the moment t, at which the filter stands, to the sample before `end`.
 void predict_on(Forecast& forecast, const Given& given, Index t, Index end, FreeRun& out) {
-  const RunInstants& instants = given.instants();
-  Index ahead = 0;
-  while (instants.continues(t)) {
+  look_ahead(forecast, given.instants(), t, [&](Index ahead, Index k) {
     interruption_point();
-    forecast.step(instants.inputs.col(++t));
-    const Index k = instants.instants[static_cast<std::size_t>(t)].sample;
-    if (k >= end) return;
-    if (k < 0) continue;
-    forecast.arrive(++ahead);
+    if (k >= end) return false;
+    forecast.arrive(ahead);
     const Eigen::VectorXd mean = forecast.mean();
     if (!mean.allFinite()) {
       out.notes.push_back("is predicted up to sample " + std::to_string(k - 1) + ": beyond it nothing is finite");
-      return;
+      return false;
     }
-    out.mean.col(k) = mean;
-    out.deviation.col(k) = forecast.standard_deviation();
-    forecast.mode_probability().maxCoeff(&out.mode(k));
+    record(forecast, mean, k, out);
     const auto y = given.run().state.col(k);
-    const bool whole = missing_entries(y) == 0;
-    for (Index i = 0; i < mean.size(); ++i) {
-      out.lower(i, k) = forecast.quantile(i, 0.5 * (1.0 - band_level));
-      out.upper(i, k) = forecast.quantile(i, 0.5 * (1.0 + band_level));
-      if (whole) out.pit(i, k) = forecast.probability(i, y(i));
-    }
-    if (whole) out.log_density(k) = forecast.log_density(y);
-  }
+    if (missing_entries(y) > 0) return true;
+    for (Index i = 0; i < mean.size(); ++i) out.pit(i, k) = forecast.probability(i, y(i));
+    out.log_density(k) = forecast.log_density(y);
+    return true;
+  });
 }
 
 /// Runs the bank's filter over each start; hands its state to from(state, t, end).

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "filter/judge/run/drifting.hpp"
-#include "filter/judge/run/drifting_forecast.hpp"
 #include "filter/judge/run/forecast.hpp"
 #include "filter/judge/run/sample_paths.hpp"
+#include "filter/step/drifting_forecast.hpp"
 #include "ident/base/distributions.hpp"
 
 /// What each kind of model says of samples in a free run.

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "filter/judge/run/forecast.hpp"
 #include "filter/step/feed/run_samples.hpp"
+#include "filter/step/forecast.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -25,14 +25,7 @@ class HorizonScores {
 
   void from(Index t, const FilterState<N>& state) {
     forecast_.start(state);
-    Index ahead = 0;
-    std::size_t next = 0;
-    while (next < out_.horizons.size() && instants_.continues(t)) {
-      forecast_.step(instants_.inputs.col(++t));
-      if (const Index k = instants_.instants[static_cast<std::size_t>(t)].sample;
-          k >= 0 && ++ahead == out_.horizons[next])
-        score(next++, k);
-    }
+    look_ahead(forecast_, instants_, t, out_.horizons, [&](std::size_t horizon, Index k) { score(horizon, k); });
   }
 
  private:
@@ -49,7 +42,7 @@ class HorizonScores {
 };
 
 template <int N, int NY>
-void look_ahead(const Bank& bank, const Trajectory& run, const FilterOptions& options, HorizonEvaluation& out) {
+void score_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options, HorizonEvaluation& out) {
   const FilterModel<N, NY> model(bank, options);
   const RunInstants instants(bank, run);
   FilterStep<N, NY> step(model);
@@ -79,7 +72,7 @@ HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, con
   check_run(bank, run);
   HorizonEvaluation out = empty_horizons(std::move(horizons), bank.C.rows(), run.samples());
   with_sizes(bank.structure.dimension(), bank.C.rows(),
-             [&]<int N, int NY>() { look_ahead<N, NY>(bank, run, options, out); });
+             [&]<int N, int NY>() { score_horizons<N, NY>(bank, run, options, out); });
   return out;
 }
 

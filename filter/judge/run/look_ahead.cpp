@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/forecast.hpp"
 #include "filter/step/feed/run_samples.hpp"
+#include "filter/step/forecast.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -29,17 +29,11 @@ class FarScores {
 
   void from(Index t, const FilterState<N>& state) {
     forecast_.start(state);
-    for (Index ahead = 0; ahead < look_.samples && instants_.continues(t);) {
-      forecast_.step(instants_.inputs.col(++t));
-      const Index k = instants_.instants[static_cast<std::size_t>(t)].sample;
+    look_ahead(forecast_, instants_, t, [&](Index ahead, Index k) {
       // One sample ahead the filter itself has scored every sample by its density.
-      if (k < 0 || (++ahead == 1 && !look_.counts_errors())) continue;
-      const auto y = run_.state.col(k);
-      if (missing_entries(y) > 0) continue;
-      const double density = forecast_.observe(y, error_);
-      sums_(k) +=
-          weight_ * (look_.counts_errors() ? -0.5 * error_.cwiseQuotient(look_.error_unit).squaredNorm() : density);
-    }
+      if (ahead > 1 || look_.counts_errors()) count(k);
+      return ahead < look_.samples;
+    });
   }
 
  private:
@@ -50,6 +44,14 @@ class FarScores {
   Eigen::VectorXd& sums_;
   BankForecast<N, NY> forecast_;
   Eigen::VectorXd error_;
+
+  void count(Index k) {
+    const auto y = run_.state.col(k);
+    if (missing_entries(y) > 0) return;
+    const double density = forecast_.observe(y, error_);
+    sums_(k) +=
+        weight_ * (look_.counts_errors() ? -0.5 * error_.cwiseQuotient(look_.error_unit).squaredNorm() : density);
+  }
 };
 
 template <int N, int NY>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "filter/judge/run/drifting.hpp"
-#include "filter/judge/run/drifting_forecast.hpp"
+#include "filter/step/drifting_forecast.hpp"
 #include "ident/base/linalg.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"

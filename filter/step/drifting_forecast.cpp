@@ -1,4 +1,4 @@
-#include "filter/judge/run/drifting_forecast.hpp"
+#include "filter/step/drifting_forecast.hpp"
 
 #include <algorithm>
 #include <cmath>

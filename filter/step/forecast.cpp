@@ -1,0 +1,85 @@
+#include "filter/step/forecast.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "filter/step/equations/filter_memory.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+/// BankForecast, its sizes hidden.
+struct Forecaster::Sized {
+  Sized() = default;
+  Sized(const Sized&) = delete;
+  Sized& operator=(const Sized&) = delete;
+  virtual ~Sized() = default;
+  virtual void start(const FilterMemory& origin) = 0;
+  virtual void step(const Eigen::Ref<const Eigen::VectorXd>& inputs) = 0;
+  virtual StateForecast predicted() const = 0;
+};
+
+template <int N, int NY>
+struct Forecaster::OfSize final : Forecaster::Sized {
+  FilterModel<N, NY> model;
+  BankForecast<N, NY> forecast{model};
+  FilterState<N> state{initial_state(model)};
+
+  OfSize(const Bank& bank, const FilterOptions& options) : model(bank, options) {}
+
+  void start(const FilterMemory& origin) override {
+    restore(origin, model.exact, state);
+    forecast.start(state);
+  }
+  void step(const Eigen::Ref<const Eigen::VectorXd>& inputs) override { forecast.step(inputs); }
+  StateForecast predicted() const override {
+    const Index n = model.structure.dimension();
+    StateForecast result{Eigen::VectorXd(n), Eigen::MatrixXd(n, n), forecast.predicted().predicted_probability};
+    forecast.moments(result.state, result.covariance);
+    return result;
+  }
+};
+
+Forecaster::Forecaster(const Bank& bank, const FilterOptions& options)
+    : sized_(with_sizes(
+          bank.structure.dimension(), bank.C.rows(),
+          [&]<int N, int NY>() -> std::unique_ptr<Sized> { return std::make_unique<OfSize<N, NY>>(bank, options); })),
+      inputs_(bank.structure.inputs),
+      input_delay_(bank.structure.input_delay),
+      measurements_(bank.C.rows()),
+      feed_(bank) {}
+
+Forecaster::~Forecaster() = default;
+
+std::vector<StateForecast> Forecaster::ahead(const FilterSnapshot& from,
+                                             const Eigen::Ref<const Eigen::MatrixXd>& inputs, Index steps) {
+  if (steps < 1) throw std::invalid_argument("steps: a forecast takes at least 1 step, not " + std::to_string(steps));
+  if (inputs_ > 0 && (inputs.rows() != inputs_ || inputs.cols() < steps - input_delay_))
+    throw std::invalid_argument("inputs: a forecast of " + std::to_string(steps) + " steps takes " +
+                                std::to_string(inputs_) + " inputs of " +
+                                std::to_string(std::max<Index>(steps - input_delay_, 0)) + " samples or more, not " +
+                                std::to_string(inputs.rows()) + " of " + std::to_string(inputs.cols()));
+  if (!inputs.allFinite()) throw std::invalid_argument("inputs: planned inputs must be finite");
+  const Index n = from.means.rows();
+  const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(measurements_, not_a_number);
+  const Eigen::VectorXd held = Eigen::VectorXd::Constant(inputs_, not_a_number);
+  feed_.restore(from.samples);
+  if (from.started) sized_->start(from);
+  std::vector<StateForecast> result;
+  for (Index i = 0; i < steps; ++i) {
+    if (!from.started) {
+      result.push_back({Eigen::VectorXd::Constant(n, not_a_number), Eigen::MatrixXd::Constant(n, n, not_a_number),
+                        from.mode_probability});
+      continue;
+    }
+    feed_.push(not_a_number, inputs_ > 0 && i < inputs.cols() ? Eigen::VectorXd(inputs.col(i)) : held, nothing);
+    sized_->step(feed_.inputs());
+    result.push_back(sized_->predicted());
+  }
+  return result;
+}
+
+}  // namespace modebank

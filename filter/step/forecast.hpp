@@ -1,0 +1,152 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "filter/step/bank_filter.hpp"
+#include "filter/step/drifting_forecast.hpp"
+#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/feed/run_samples.hpp"
+
+/// Prediction without measurements, from where a filter stands and with the inputs known: the one place where it is
+/// done. A forecast is an object with start(...) and step(acting inputs): BankForecast of a bank by its moments,
+/// DriftingForecast of the drifting model, SamplePaths of a bank by chance. look_ahead takes one through a recorded
+/// run, Forecaster through planned inputs.
+namespace modebank {
+
+/// Steps `forecast`, which was started at moment t of a run, through the moments after it. Calls arrive(ahead, k) at
+/// each sample k, the `ahead`-th from there, until that returns false or the stretch ends.
+template <class Forecast, class Arrive>
+void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, Arrive arrive) {
+  Eigen::Index ahead = 0;
+  while (run.continues(t)) {
+    forecast.step(run.inputs.col(++t));
+    const Eigen::Index k = run.instants[static_cast<std::size_t>(t)].sample;
+    if (k >= 0 && !arrive(++ahead, k)) return;
+  }
+}
+
+/// The same up to the longest of `horizons` (samples ahead, ascending); calls arrive(i, k) at the i-th of them.
+template <class Forecast, class Arrive>
+void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, const std::vector<Eigen::Index>& horizons,
+                Arrive arrive) {
+  if (horizons.empty()) return;
+  std::size_t next = 0;
+  look_ahead(forecast, run, t, [&](Eigen::Index ahead, Eigen::Index k) {
+    if (ahead == horizons[next]) arrive(next++, k);
+    return next < horizons.size();
+  });
+}
+
+/// A bank's moments: a Gaussian per mode, mixed (merged) as the filter does and propagated. With a constant transition
+/// matrix every mode's probability, mean and covariance are exactly those of the switching system (moments of mixtures
+/// merge without loss); that each mode's distribution is a Gaussian is the approximation.
+template <int N, int NY>
+class BankForecast {
+ public:
+  explicit BankForecast(const FilterModel<N, NY>& model)
+      : model_(model),
+        step_(model),
+        state_(initial_state(model)),
+        posterior_(step_.predicted_probability.size()),
+        unused_(model.structure.dimension()) {}
+
+  void start(const FilterState<N>& origin) {
+    state_ = origin;
+    ahead_ = contracted_ = false;
+  }
+  template <class U>
+  void step(const U& inputs) {
+    if (ahead_) skip_measurement(model_, step_, state_);
+    if (ahead_ && !contracted_) contract();
+    predict(model_, state_, inputs, step_);
+    ahead_ = true;
+  }
+
+  const FilterModel<N, NY>& model() const { return model_; }
+  const FilterStep<N, NY>& predicted() const { return step_; }
+
+  /// Mean and covariance of the predicted state, all modes combined.
+  template <class Mean, class Covariance>
+  void moments(Mean&& mean, Covariance&& covariance) const {
+    const auto each = [&](auto add) {
+      for (std::size_t j = 0; j < step_.kalman.size(); ++j)
+        add(step_.predicted_probability(static_cast<Eigen::Index>(j)), step_.kalman[j].predicted);
+    };
+    mean.setZero();
+    each([&](double weight, const Gaussian<N>& mode) { mean += weight * mode.mean; });
+    covariance.setZero();
+    each([&](double weight, const Gaussian<N>& mode) {
+      const Eigen::Matrix<double, N, 1> apart = mode.mean - mean;
+      small::add_spread(covariance, weight, mode.covariance, apart);
+    });
+  }
+
+  /// Of a whole measurement [nats]; `error`: it minus the combined prediction.
+  template <class Y, class Error>
+  double observe(const Y& y, Error&& error) {
+    error = y;
+    for (std::size_t h = 0; h < step_.kalman.size(); ++h) {
+      const auto i = static_cast<Eigen::Index>(h);
+      if (model_.quantised)
+        correct_intervals(model_, y, step_.kalman[h], unused_);
+      else
+        step_.kalman[h].observe(model_, y);
+      step_.log_likelihood(i) = step_.kalman[h].log_density;
+      error -= step_.predicted_probability(i) * (y - step_.kalman[h].innovation);
+    }
+    return bayes(step_.predicted_probability, step_.log_likelihood, posterior_);
+  }
+
+ private:
+  const FilterModel<N, NY>& model_;
+  FilterStep<N, NY> step_;
+  FilterState<N> state_;
+  Eigen::VectorXd posterior_;
+  Gaussian<N> unused_;
+  bool ahead_ = false, contracted_ = false;
+
+  /// Coefficients that drifted to where they are unstable, good for one step, would run away in many; as
+  /// DriftingForecast has it.
+  void contract() {
+    contracted_ = true;
+    const LinearStructure& s = model_.structure;
+    if (!model_.drift.on()) return;
+    const Eigen::VectorXd units = Eigen::VectorXd::Ones(s.regressors());
+    for (auto theta : state_.drift.theta.colwise())
+      theta = contracted(s, units, theta.reshaped(s.regressors(), s.states)).reshaped();
+  }
+};
+
+/// Prediction of one later sample, all modes combined.
+struct StateForecast {
+  Eigen::VectorXd state;             ///< n
+  Eigen::MatrixXd covariance;        ///< n x n
+  Eigen::VectorXd mode_probability;  ///< K
+};
+
+/// Forecasts of a bank of any sizes under planned inputs.
+class Forecaster {
+ public:
+  /// Conditions of BankFilter.
+  Forecaster(const Bank& bank, const FilterOptions& options);
+  ~Forecaster();
+
+  /// The next `steps` samples, a model step apart, from where a filter of this bank stood. Column i of `inputs` (m x c)
+  /// is the input recorded at the sample i + 1 ahead. An input acts input_delay samples later, so that the last
+  /// input_delay columns have no effect and may be left out. Before a filter's start states are NaN. Throws
+  /// std::invalid_argument for fewer inputs, inputs that are not finite and steps below 1.
+  std::vector<StateForecast> ahead(const FilterSnapshot& from, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                   Eigen::Index steps);
+
+ private:
+  struct Sized;
+  template <int N, int NY>
+  struct OfSize;
+  std::unique_ptr<Sized> sized_;
+  Eigen::Index inputs_, input_delay_, measurements_;
+  SampleFeed feed_;
+};
+
+}  // namespace modebank
