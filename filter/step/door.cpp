@@ -1,10 +1,13 @@
 // The installed face of this library: plain vectors outside, Eigen inside.
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "filter/step/bank_filter.hpp"
+#include "filter/step/forecast.hpp"
 #include "filter/step/pit_draw.hpp"
+#include "filter/step/snapshot_numbers.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"
 
@@ -128,17 +131,27 @@ BankDescription Bank::description() const {
 }
 
 struct BankFilter::Inside {
+  Bank bank;
+  FilterOptions options;
   modebank::BankFilter filter;
   Index inputs, measurements;
-  Estimate estimate;
+  std::optional<Forecaster> forecaster = {};  ///< made when first asked for
+  Estimate estimate = {};
   std::uint64_t seed = pit_seed(1, "");
   Index samples = 0;  ///< that were taken in
+
+  Inside(const Bank& stepped, const FilterOptions& how)
+      : bank(stepped),
+        options(how),
+        filter(bank.internal(), options),
+        inputs(bank.inputs()),
+        measurements(bank.measurements()) {
+    assign(filter.estimate(), estimate);
+  }
 };
 
 BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
-    : inside_(new Inside{modebank::BankFilter(bank.internal(), options), bank.inputs(), bank.measurements(), {}}) {
-  assign(inside_->filter.estimate(), inside_->estimate);
-}
+    : inside_(std::make_unique<Inside>(bank, options)) {}
 BankFilter::~BankFilter() = default;
 BankFilter::BankFilter(BankFilter&&) noexcept = default;
 BankFilter& BankFilter::operator=(BankFilter&&) noexcept = default;
@@ -163,6 +176,29 @@ const Estimate& BankFilter::step(double time_s, const double* input, const doubl
 }
 
 const Estimate& BankFilter::estimate() const { return inside_->estimate; }
+
+std::vector<Forecast> BankFilter::forecast(const Matrix& inputs, std::ptrdiff_t steps) const {
+  if (!inside_->forecaster) inside_->forecaster.emplace(inside_->bank.internal(), inside_->options);
+  std::vector<Forecast> result;
+  for (const StateForecast& ahead : inside_->forecaster->ahead(inside_->filter.snapshot(), view(inputs), steps))
+    result.push_back({to_vector(ahead.state), to_matrix(ahead.covariance), to_vector(ahead.mode_probability)});
+  return result;
+}
+
+std::vector<double> BankFilter::snapshot() const {
+  std::vector<double> numbers = to_numbers(inside_->filter.snapshot());
+  numbers.push_back(static_cast<double>(inside_->samples));  // of which the transform's draws depend
+  return numbers;
+}
+
+void BankFilter::restore(const std::vector<double>& snapshot) {
+  constexpr double most_samples = 9007199254740992.0;  // 2^53
+  if (snapshot.empty() || !(snapshot.back() >= 0.0 && snapshot.back() <= most_samples))
+    throw std::invalid_argument("the snapshot is not one that a filter has made: its last number counts no samples");
+  inside_->filter.restore(snapshot_of({snapshot.begin(), snapshot.end() - 1}));
+  inside_->samples = static_cast<Index>(snapshot.back());
+}
+
 void BankFilter::restart() { inside_->filter.restart(); }
 bool BankFilter::started() const { return inside_->filter.started(); }
 

@@ -1,3 +1,6 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -5,6 +8,7 @@
 #include "app/chain/stage_inputs.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "modebank/archive/load_bank.hpp"
+#include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
@@ -59,6 +63,18 @@ class Filter {
     take("y", measurement, measurement_);
     return filter_.step(time, input_, measurement_);
   }
+  std::vector<filter::Forecast> forecast(const std::optional<Samples>& inputs, std::ptrdiff_t steps) const {
+    if (!inputs) return filter_.forecast(Matrix(std::ssize(input_), 0), steps);
+    require_samples("u", *inputs);
+    if (columns(*inputs).rows() != std::ssize(input_))
+      throw std::invalid_argument("u must be (samples, " + std::to_string(input_.size()) + ")");
+    return filter_.forecast(to_matrix(columns(*inputs)), steps);
+  }
+  py::array_t<double> snapshot() const { return copied(filter_.snapshot()); }
+  void restore(const Samples& snapshot) {
+    if (snapshot.ndim() != 1) throw std::invalid_argument("snapshot must be what Filter.snapshot() gave");
+    filter_.restore({snapshot.data(), snapshot.data() + snapshot.size()});
+  }
   filter::Estimate estimate() const { return filter_.estimate(); }
   void restart() { filter_.restart(); }
   bool started() const { return filter_.started(); }
@@ -77,6 +93,23 @@ Filter make_filter(const py::object& bank, const std::string& which, const py::k
   const FilterOptions options = which == "bank" ? of_bank : competitor_filter(which, of_bank);
   return {archive::load_bank(path, single ? "baseline" : which), options};
 }
+
+/// Forecasts as arrays over the samples ahead.
+struct ForecastArrays {
+  py::array_t<double> state, covariance, mode_probability;
+
+  explicit ForecastArrays(const std::vector<filter::Forecast>& ahead)
+      : state(Shape{std::ssize(ahead), std::ssize(ahead.front().state)}),
+        covariance(Shape{std::ssize(ahead), std::ssize(ahead.front().state), std::ssize(ahead.front().state)}),
+        mode_probability(Shape{std::ssize(ahead), std::ssize(ahead.front().mode_probability)}) {
+    double *x = state.mutable_data(), *P = covariance.mutable_data(), *mu = mode_probability.mutable_data();
+    for (const filter::Forecast& sample : ahead) {
+      x = std::ranges::copy(sample.state, x).out;
+      P = std::ranges::copy(sample.covariance.values, P).out;  // symmetric
+      mu = std::ranges::copy(sample.mode_probability, mu).out;
+    }
+  }
+};
 
 #define MODEBANK_ESTIMATE_VECTOR(name, text)                                         \
   .def_property_readonly(                                                            \
@@ -120,6 +153,11 @@ void bind_filter(py::module_& module) {
                                                 "of the modes' differences in the innovation covariance's trace")
                                   .def_readonly("steps", &Estimate::steps,
                                                 "model steps since the sample before; 0: (re)started here");
+  py::class_<ForecastArrays>(
+      module, "Forecast", "Predictions of the samples ahead, all modes combined; NaN before the start of the filter.")
+      .def_readonly("state", &ForecastArrays::state, "(steps, n) [state unit]")
+      .def_readonly("covariance", &ForecastArrays::covariance, "(steps, n, n) [state unit^2]")
+      .def_readonly("mode_probability", &ForecastArrays::mode_probability, "(steps, K)");
   py::class_<Filter>(module, "Filter",
                      "A bank at work, sample by sample; one object per stream. Filter(archive) steps as the archive's "
                      "evaluation did, Filter(bank) by the defaults.")
@@ -130,6 +168,18 @@ void bind_filter(py::module_& module) {
            "The next sample in the order of time: t [s] (None or NaN: one step after the last), u: the inputs recorded "
            "at it (NaN: the last known one), y: the measurement (NaN where missing; None: nothing was measured). The "
            "first whole measurement is the start. Returns an Estimate that later steps do not change.")
+      .def(
+          "forecast",
+          [](const Filter& self, const std::optional<Samples>& u, std::ptrdiff_t steps) {
+            return ForecastArrays(self.forecast(u, steps));
+          },
+          py::arg("u"), py::arg("steps"),
+          "The next `steps` samples without measurements; the filter stays as it is. u (samples, inputs): row i is the "
+          "input planned for the sample i + 1 ahead, as step will be given it; steps minus the bank's input delay "
+          "(usually 1) of them are enough, None: none. Returns a Forecast.")
+      .def("snapshot", &Filter::snapshot, "All that the filter remembers, as an array to keep or to write.")
+      .def("restore", &Filter::restore, py::arg("snapshot"),
+           "Goes on from a snapshot of a filter of the same bank and options; later steps are the same to the bit.")
       .def_property_readonly("estimate", &Filter::estimate, "what the last step said")
       .def("restart", &Filter::restart, "Forgets everything; the next whole measurement is a start.")
       .def_property_readonly("started", &Filter::started, "whether it has had a start");

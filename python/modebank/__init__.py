@@ -24,12 +24,12 @@ import pandas
 
 from . import _modebank
 from ._archive import Archive, Array, Run
-from ._modebank import Bank, ConfigurationError, DataError, Estimate, Filter, FreeRun, Mixture, Windows, __version__
+from ._modebank import Bank, ConfigurationError, DataError, Estimate, Filter, Forecast, FreeRun, Mixture, Windows, __version__
 
 Path = Union[str, os.PathLike]
 Frames = Mapping[str, Union[pandas.DataFrame, Sequence[pandas.DataFrame]]]
 
-__all__ = ["Archive", "Array", "Bank", "ConfigurationError", "DataError", "Estimate", "Filter", "FreeRun", "Mixture",
+__all__ = ["Archive", "Array", "Bank", "ConfigurationError", "DataError", "Estimate", "Filter", "Forecast", "FreeRun", "Mixture",
            "Run", "Windows", "fit_mixture", "identify", "read", "read_iddata", "run", "simulate"]
 
 

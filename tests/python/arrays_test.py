@@ -209,6 +209,41 @@ class Filters(unittest.TestCase):
         f.restart()
         self.assertFalse(f.started)
 
+    def test_a_forecast_is_the_closed_form(self):
+        states, inputs = linear_run(40, 0.1)
+        f = modebank.Filter(self.bank())
+        for k in range(20):
+            now = f.step(0.1 * k, inputs[k], states[k])
+        ahead = f.forecast(inputs[20:24], 5)  # the fifth step is made by the input before it
+        x, P, F = now.state, now.covariance, np.eye(2) + A
+        for i in range(5):
+            x, P = F @ x + B @ inputs[19 + i], F @ P @ F.T + 0.01 * np.eye(2)
+            np.testing.assert_allclose(ahead.state[i], x, atol=1e-12)
+            np.testing.assert_allclose(ahead.covariance[i], P, atol=1e-12)
+        np.testing.assert_array_equal(ahead.mode_probability, np.ones((5, 1)))
+        np.testing.assert_array_equal(f.forecast(None, 1).state[0], ahead.state[0])
+        np.testing.assert_allclose(f.step(2.0, inputs[20], states[20]).prediction, ahead.state[0], atol=1e-12)
+        with self.assertRaisesRegex(ValueError, "inputs: a forecast of 5 steps"):
+            f.forecast(inputs[20:22], 5)
+        with self.assertRaisesRegex(ValueError, "steps"):
+            f.forecast(inputs[20:22], 0)
+        with self.assertRaisesRegex(ValueError, r"u must be \(samples, 2\)"):
+            f.forecast(np.zeros((5, 3)), 5)
+
+    def test_a_snapshot_goes_on_to_the_bit(self):
+        states, inputs = linear_run(40, 0.1)
+        first, second = modebank.Filter(self.bank()), modebank.Filter(self.bank())
+        for k in range(20):
+            first.step(0.1 * k, inputs[k], states[k])
+        second.restore(np.frombuffer(first.snapshot().tobytes()))  # written and read
+        self.assertTrue(second.started)
+        for k in range(20, 40):
+            said, expected = (f.step(0.1 * k, inputs[k], states[k]) for f in (first, second))
+            np.testing.assert_array_equal(said.state, expected.state)
+            self.assertEqual(said.log_density, expected.log_density)
+        with self.assertRaisesRegex(ValueError, "snapshot"):
+            first.restore(np.zeros(3))
+
     def test_later_steps_leave_an_estimate_alone(self):
         f = modebank.Filter(self.bank())
         first = f.step(0.0, [0.0, 0.0], [1.0, 2.0])

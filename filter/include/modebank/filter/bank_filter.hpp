@@ -29,6 +29,14 @@ struct Estimate {
   std::ptrdiff_t steps = 0;                        ///< model steps since the sample before; 0: (re)started here
 };
 
+/// Prediction of one later sample, all modes combined. Before the filter's start state and covariance are
+/// NaN.
+struct Forecast {
+  std::vector<double> state;             ///< n
+  Matrix covariance;                     ///< n x n
+  std::vector<double> mode_probability;  ///< K
+};
+
 /// A bank at work, sample by sample. One object per stream; different objects may run in different threads.
 class BankFilter {
  public:
@@ -53,6 +61,19 @@ class BankFilter {
   }
   /// What the last step said.
   const Estimate& estimate() const;
+  /// Predictions of the next `steps` samples, element 0 of the next one, each a sample period of the bank after the one
+  /// before it and without measurements; the filter stays as it is. Column i of `inputs` (inputs() x c) is the input
+  /// planned for the sample i + 1 ahead, as step will be given it. An input first acts input_delay samples later, so
+  /// that c = steps - input_delay columns are enough. One step ahead it is the prediction of the next step, further
+  /// ahead what `judge` scores at that horizon. Throws std::invalid_argument when steps is below 1, when inputs are
+  /// missing and when one is not finite. Allocates.
+  std::vector<Forecast> forecast(const Matrix& inputs, std::ptrdiff_t steps) const;
+  /// All that the filter remembers, as numbers to keep or to write; some are NaN. estimate() is not among them.
+  std::vector<double> snapshot() const;
+  /// Goes on from a snapshot of a filter of the same bank and options: later steps give the same bits as that filter's.
+  /// Throws std::invalid_argument for a snapshot of another bank and for numbers that are none; the filter is then as
+  /// it was.
+  void restore(const std::vector<double>& snapshot);
   /// Forgets everything; the next whole measurement is a start.
   void restart();
   /// Whether it has had a start.

@@ -1,0 +1,273 @@
+// Predictions without measurements from where a filter stands, and going on from what it remembers.
+#include "filter/step/forecast.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "filter/judge/run/horizon.hpp"
+#include "modebank/base/eigen.hpp"
+#include "modebank/filter/bank_filter.hpp"
+#include "tests/filter/filter_test_support.hpp"
+#include "tests/filter/free_run_test_support.hpp"
+#include "tests/filter/step/drift_test_support.hpp"
+#include "tests/support/matrix_compare.hpp"
+
+namespace modebank {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::Index;
+
+constexpr double two_texts = 1e-10;  // vector registers and equations differ by rounding
+
+struct NamedBank {
+  std::string name;
+  Bank bank;
+  FilterOptions options = {};
+};
+
+Bank with_logit_of_state_and_input() {
+  Bank bank = test::example_bank(2, 1, 3);
+  bank.transition_logit = {MatrixXd{{0.5, -1.0, 2.0}, {-2.0, 0.3, 0.1}, {0.0, 1.0, -0.5}}, VectorXd::Constant(3, 0.1)};
+  return bank;
+}
+
+Bank with_noise_by_input() {
+  Bank bank = test::example_bank(2, 2, 3);
+  bank.noise_factor = {MatrixXd{{0.0, 0.0, 1.0, -1.0}}, VectorXd::Constant(1, 0.7), -0.3};
+  return bank;
+}
+
+Bank of_lags(Index delay) {
+  const LinearStructure s{2, 1, true, 3, 2, delay};
+  Bank bank = test::arx_bank(s, test::stable_theta(s));
+  bank.modes.push_back(bank.modes.front());
+  bank.modes[1].model.A.topRows(2) *= 0.5;
+  bank.modes[1].Q *= 4.0;
+  bank.transition = TransitionMatrix::sticky(2, 0.8);
+  bank.initial_probability = VectorXd::Constant(2, 0.5);
+  return bank;
+}
+
+std::vector<NamedBank> banks() {
+  Bank quantised = test::example_bank(1, 1, 2);
+  quantised.quantum = VectorXd::Constant(1, 0.05);
+  Bank quick = test::example_bank(1, 1, 2);
+  quick.dt_s = 1.0;  // gaps are several steps
+  return {{"vector registers", test::example_bank(2, 1, 3)},
+          {"many states", test::example_bank(5, 2, 2)},
+          {"one mode", test::single_mode(test::example_bank(3, 2, 2), 1), {FilterVariant::kf}},
+          {"the paper's", test::example_bank(2, 1, 3), {FilterVariant::salvi2025}},
+          {"adaptive noise", test::example_bank(2, 1, 3), {FilterVariant::imm, FilterNoise::adaptive}},
+          {"gaps", quick},
+          {"logit", with_logit_of_state_and_input()},
+          {"noise by input", with_noise_by_input()},
+          {"lags without delay", of_lags(0)},
+          {"lags", of_lags(1)},
+          {"lags with delay 3", of_lags(3)},
+          {"quantised", quantised},
+          {"drift", test::drifting(test::exact_bank(2, 2), {1e-3, 1e-2, 0.99})}};
+}
+
+filter::Bank installed(const Bank& bank) { return filter::Bank(std::make_shared<const Bank>(bank)); }
+
+VectorXd input_at(const Bank& bank, Index k) {
+  VectorXd u(bank.structure.inputs);
+  for (Index i = 0; i < u.size(); ++i) u(i) = 0.4 * std::sin(0.9 * static_cast<double>(k) + static_cast<double>(i));
+  return u;
+}
+
+/// Measurements with a gap in time after sample 12 and a missing one at sample 15.
+VectorXd measurement_at(const Bank& bank, Index k) {
+  VectorXd y(bank.C.rows());
+  for (Index i = 0; i < y.size(); ++i) y(i) = 0.1 * std::sin(0.4 * static_cast<double>(k) + static_cast<double>(i));
+  if (k == 15) y.setConstant(std::nan(""));
+  return bank.is_quantised() ? VectorXd(bank.quantum(0) * (y / bank.quantum(0)).array().round()) : y;
+}
+double time_at(Index k) { return static_cast<double>(k > 12 ? k + 2 : k); }
+
+const filter::Estimate& take(filter::BankFilter& live, const Bank& bank, Index k) {
+  return live.step(time_at(k), input_at(bank, k), measurement_at(bank, k));
+}
+
+Matrix planned(const Bank& bank, Index now, Index count) {
+  Matrix inputs(bank.structure.inputs, count);
+  for (Index i = 0; i < count; ++i)
+    for (Index j = 0; j < inputs.rows; ++j) inputs(j, i) = input_at(bank, now + 1 + i)(j);
+  return inputs;
+}
+
+void expect_same_bits(const filter::Estimate& a, const filter::Estimate& b) {
+  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  const auto all = [&](const std::vector<double>& x, const std::vector<double>& y) {
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), same);
+  };
+  EXPECT_TRUE(all(a.state, b.state) && all(a.covariance.values, b.covariance.values) && all(a.pit, b.pit) &&
+              all(a.prediction, b.prediction) && all(a.innovation_covariance.values, b.innovation_covariance.values) &&
+              all(a.mode_probability, b.mode_probability) && same(a.log_density, b.log_density) && same(a.nis, b.nis) &&
+              a.steps == b.steps);
+}
+
+TEST(Forecast, OfTheNextSampleIsThePredictionOfTheNextStep) {
+  for (const auto& [name, bank, options] : banks()) {
+    SCOPED_TRACE(name);
+    filter::BankFilter live(installed(bank), options);
+    for (Index k = 0; k < 25; ++k) {
+      const std::vector<filter::Forecast> ahead = live.forecast(planned(bank, k - 1, 1), 1);
+      const bool predicts = live.started();
+      const filter::Estimate& said = take(live, bank, k);
+      if (!predicts || said.steps != 1) continue;
+      ASSERT_EQ(ahead.size(), 1U);
+      EXPECT_TRUE(test::near(view(ahead[0].state), view(said.prediction), two_texts)) << k;
+      EXPECT_TRUE(test::near(view(ahead[0].mode_probability), view(said.mode_probability_predicted), two_texts)) << k;
+      MatrixXd S = bank.C * view(ahead[0].covariance) * bank.C.transpose() + bank.R;
+      if (bank.is_quantised()) S.array() += bank.quantum(0) * bank.quantum(0) / 12.0;
+      EXPECT_TRUE(test::near(S, view(said.innovation_covariance), two_texts)) << k;
+    }
+  }
+}
+
+TEST(Forecast, IsWhatStepsWithoutMeasurementsPredict) {
+  for (const auto& [name, bank, options] : banks()) {
+    if (name == "drift") continue;  // coefficients that are unstable are contracted where nothing is measured
+    SCOPED_TRACE(name);
+    filter::BankFilter live(installed(bank), options);
+    for (Index k = 0; k < 20; ++k) take(live, bank, k);
+    const Index steps = 7;
+    const std::vector<filter::Forecast> ahead =
+        live.forecast(planned(bank, 19, std::max<Index>(steps - bank.structure.input_delay, 0)), steps);
+    for (Index i = 0; i < steps; ++i) {
+      const filter::Estimate& said =
+          live.step(std::nan(""), input_at(bank, 20 + i), VectorXd(VectorXd::Constant(bank.C.rows(), std::nan(""))));
+      const filter::Forecast& forecast = ahead[static_cast<std::size_t>(i)];
+      EXPECT_TRUE(test::near(view(forecast.state), view(said.state), two_texts)) << i;
+      EXPECT_TRUE(test::near(view(forecast.covariance), view(said.covariance), two_texts)) << i;
+      EXPECT_TRUE(test::near(view(forecast.mode_probability), view(said.mode_probability), two_texts)) << i;
+    }
+  }
+}
+
+TEST(Forecast, IsWhatTheJudgeScores) {
+  for (const auto& [name, bank, options] : banks()) {
+    SCOPED_TRACE(name);
+    Trajectory run;
+    run.run = "any";
+    const Index samples = 24, steps = 4;
+    run.time_s = VectorXd::NullaryExpr(samples, [](Index k) { return time_at(k); });
+    run.state.resize(bank.C.rows(), samples);
+    run.input.resize(bank.structure.inputs, samples);
+    for (Index k = 0; k < samples; ++k) {
+      run.state.col(k) = measurement_at(bank, k);
+      run.input.col(k) = input_at(bank, k);
+    }
+    const HorizonEvaluation judged = evaluate_horizons(bank, run, options, {1, 2, 3, 4});
+    filter::BankFilter live(installed(bank), options);
+    for (Index k = 0; k + steps < samples; ++k) {
+      take(live, bank, k);
+      if (k >= 9 && k <= 12) continue;  // the gap lies ahead: the judge takes more steps
+      const std::vector<filter::Forecast> ahead = live.forecast(planned(bank, k, steps), steps);
+      for (Index h = 1; h <= steps && live.started(); ++h) {
+        const VectorXd error = judged.error[static_cast<std::size_t>(h - 1)].col(k + h);
+        if (!error.allFinite()) continue;
+        const VectorXd y = bank.C * view(ahead[static_cast<std::size_t>(h - 1)].state);
+        EXPECT_TRUE(test::near(run.state.col(k + h) - y, error, two_texts)) << k << " + " << h;
+      }
+    }
+  }
+}
+
+TEST(Forecast, OfOneModeIsTheClosedForm) {
+  const Bank bank = test::single_mode(test::example_bank(3, 2, 2), 1);
+  filter::BankFilter live(installed(bank), {FilterVariant::kf});
+  for (Index k = 0; k < 10; ++k) take(live, bank, k);
+  const Matrix inputs = planned(bank, 9, 5);
+  const std::vector<filter::Forecast> ahead = live.forecast(inputs, 6);
+  const LinearModel& model = bank.modes[0].model;
+  const MatrixXd F = MatrixXd::Identity(3, 3) + model.A;
+  VectorXd x = view(live.estimate().state);
+  MatrixXd P = view(live.estimate().covariance);
+  for (Index i = 0; i < 6; ++i) {
+    x = (F * x + model.B * input_at(bank, 9 + i) + model.c).eval();
+    P = (F * P * F.transpose() + bank.modes[0].Q).eval();
+    EXPECT_TRUE(test::near(view(ahead[static_cast<std::size_t>(i)].state), x, 1e-13));
+    EXPECT_TRUE(test::near(view(ahead[static_cast<std::size_t>(i)].covariance), P, 1e-13));
+  }
+}
+
+TEST(Forecast, LeavesTheFilterAsItWas) {
+  for (const auto& [name, bank, options] : banks()) {
+    SCOPED_TRACE(name);
+    filter::BankFilter asked(installed(bank), options), alone(installed(bank), options);
+    for (Index k = 0; k < 25; ++k) {
+      expect_same_bits(take(asked, bank, k), take(alone, bank, k));
+      asked.forecast(planned(bank, k, 5), 5);
+    }
+  }
+}
+
+TEST(Forecast, BeforeTheStartIsNotANumber) {
+  const Bank bank = test::example_bank(2, 1, 3);
+  const std::vector<filter::Forecast> ahead = filter::BankFilter(installed(bank)).forecast(planned(bank, 0, 2), 3);
+  ASSERT_EQ(ahead.size(), 3U);
+  EXPECT_TRUE(std::isnan(ahead[2].state[0]) && std::isnan(ahead[2].covariance(1, 1)));
+  EXPECT_TRUE(test::near(view(ahead[2].mode_probability), bank.initial_probability, 0.0));
+}
+
+std::string refusal(const filter::BankFilter& live, const Matrix& inputs, Index steps) {
+  try {
+    live.forecast(inputs, steps);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Forecast, RefusesMissingInputsByTheNameOfTheArgument) {
+  const Bank bank = of_lags(1);
+  filter::BankFilter live(installed(bank));
+  for (Index k = 0; k < 10; ++k) take(live, bank, k);
+  EXPECT_EQ(refusal(live, planned(bank, 9, 3), 4), "");
+  EXPECT_EQ(refusal(live, planned(bank, 9, 2), 4),
+            "inputs: a forecast of 4 steps takes 1 inputs of 3 samples or more, not 1 of 2");
+  EXPECT_NE(refusal(live, {}, 4), "");
+  EXPECT_NE(refusal(live, Matrix(2, 4), 4), "");
+  EXPECT_EQ(refusal(live, Matrix(1, 4, std::nan("")), 4), "inputs: planned inputs must be finite");
+  EXPECT_EQ(refusal(live, planned(bank, 9, 3), 0), "steps: a forecast takes at least 1 step, not 0");
+}
+
+TEST(Snapshot, GoesOnToTheBit) {
+  for (const auto& [name, bank, options] : banks())
+    for (const Index stop : {0, 2, 14}) {
+      SCOPED_TRACE(name + " after " + std::to_string(stop));
+      filter::BankFilter first(installed(bank), options), second(installed(bank), options);
+      for (Index k = 0; k < stop; ++k) take(first, bank, k);
+      take(second, bank, 3);  // has a past of its own
+      second.restore(first.snapshot());
+      EXPECT_EQ(second.started(), first.started());
+      for (Index k = stop; k < 25; ++k) expect_same_bits(take(second, bank, k), take(first, bank, k));
+    }
+}
+
+TEST(Snapshot, IsRefusedWhereItDoesNotFit) {
+  const Bank bank = test::example_bank(2, 1, 3);
+  filter::BankFilter live(installed(bank)), other(installed(test::example_bank(3, 1, 3)));
+  for (Index k = 0; k < 10; ++k) take(live, bank, k);
+  const std::vector<double> good = live.snapshot();
+  EXPECT_THROW(other.restore(good), std::invalid_argument);
+  EXPECT_THROW(live.restore({}), std::invalid_argument);
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    std::vector<double> cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(i)), longer = good;
+    EXPECT_THROW(live.restore(cut), std::invalid_argument) << i;
+    longer.insert(longer.begin() + static_cast<std::ptrdiff_t>(i), 1e18);
+    EXPECT_THROW(live.restore(longer), std::invalid_argument) << i;
+  }
+  EXPECT_EQ(live.snapshot(), good);
+}
+
+}  // namespace
+}  // namespace modebank
