@@ -46,16 +46,17 @@ std::shared_ptr<const modebank::Bank> inside(const BankDescription& d) {
   bank.R = view(d.R);
   bank.quantum = view(d.quantum);
   bank.transition = TransitionMatrix(view(d.transition));
-  if (!d.transition_weights.values.empty())
-    bank.transition_logit = {view(d.transition_weights), view(d.transition_reference)};
+  if (const StateDependentTransition& t = d.state_dependent_transition; !t.weights.values.empty())
+    bank.transition_logit = {view(t.weights), view(t.reference)};
   bank.initial_probability = d.initial_probability.empty() ? Eigen::VectorXd::Constant(K, 1.0 / static_cast<double>(K))
                                                            : Eigen::VectorXd(view(d.initial_probability));
   bank.state_names = d.state_names;
   bank.input_names = d.input_names;
   bank.dt_s = d.dt_s;
-  bank.noise_adaptation = {d.noise_forgetting, d.noise_prior_samples};
-  if (!d.noise_weights.empty()) bank.noise_factor = {view(d.noise_directions), view(d.noise_weights), d.noise_offset};
-  bank.drift = {{d.drift_rate, d.drift_start, d.drift_leak}, view(d.drift_scale)};
+  bank.noise_adaptation = {d.noise_memory.forgetting, d.noise_memory.prior_samples};
+  if (const NoiseByState& noise = d.noise_by_state; !noise.weights.empty())
+    bank.noise_factor = {view(noise.directions), view(noise.weights), noise.offset};
+  bank.drift = {{d.drift.rate, d.drift.start, d.drift.leak}, view(d.drift.scale)};
   validate(bank);
   return std::make_shared<const modebank::Bank>(std::move(bank));
 }
@@ -107,8 +108,8 @@ BankDescription Bank::description() const {
   d.R = to_matrix(bank_->R);
   d.quantum = to_vector(bank_->quantum);
   d.transition = to_matrix(bank_->transition.matrix());
-  d.transition_weights = to_matrix(bank_->transition_logit.weights);
-  d.transition_reference = to_vector(bank_->transition_logit.reference);
+  d.state_dependent_transition = {to_matrix(bank_->transition_logit.weights),
+                                  to_vector(bank_->transition_logit.reference)};
   d.initial_probability = to_vector(bank_->initial_probability);
   d.state_names = bank_->state_names;
   d.input_names = bank_->input_names;
@@ -118,15 +119,10 @@ BankDescription Bank::description() const {
   d.input_lags = bank_->structure.input_lags;
   d.input_delay = bank_->structure.input_delay;
   d.intercept = bank_->structure.intercept;
-  d.noise_forgetting = bank_->noise_adaptation.forgetting;
-  d.noise_prior_samples = bank_->noise_adaptation.prior_samples;
-  d.noise_directions = to_matrix(bank_->noise_factor.directions);
-  d.noise_weights = to_vector(bank_->noise_factor.weights);
-  d.noise_offset = bank_->noise_factor.offset;
-  d.drift_scale = to_vector(bank_->drift.scale);
-  d.drift_rate = bank_->drift.rates.q;
-  d.drift_start = bank_->drift.rates.p0;
-  d.drift_leak = bank_->drift.rates.leak;
+  d.noise_memory = {bank_->noise_adaptation.forgetting, bank_->noise_adaptation.prior_samples};
+  d.noise_by_state = {to_matrix(bank_->noise_factor.directions), to_vector(bank_->noise_factor.weights),
+                      bank_->noise_factor.offset};
+  d.drift = {to_vector(bank_->drift.scale), bank_->drift.rates.q, bank_->drift.rates.p0, bank_->drift.rates.leak};
   return d;
 }
 

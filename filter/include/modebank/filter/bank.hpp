@@ -24,41 +24,56 @@ struct Mode {
   double weight = 1.0;          ///< share of the windows
 };
 
+/// How state and input change the switches: P(j | i, z) is proportional to transition_ij exp(w_j' (z - reference)), z
+/// the state and the acting inputs as a step starts. Empty: the transition matrix holds whatever z is.
+struct StateDependentTransition {
+  Matrix weights;                 ///< K x d, row j is w_j; d = n + acting inputs
+  std::vector<double> reference;  ///< d, the z at which the transition matrix holds
+};
+
+/// How state and input scale the process noise: a step from z has Q times exp(sum_i weights_i log(|directions_i z| +
+/// 0.1) - offset), bounded to between a fifth and five, z the state and the acting inputs. Empty: Q itself.
+struct NoiseByState {
+  Matrix directions;            ///< d x (n + acting inputs)
+  std::vector<double> weights;  ///< d
+  double offset = 0.0;          ///< of the exponent
+};
+
+/// How every mode's theta wanders in a run, regressor by regressor of [z; v; (1)]. Empty: it stays.
+struct CoefficientDrift {
+  std::vector<double> scale;  ///< per regressor its size, in whose units the coefficient wanders
+  double rate = 0.0;          ///< variance that a step adds to each coefficient, in units of Q, >= 0
+  double start = 0.0;         ///< variance of each coefficient at a start, in units of Q, >= 0
+  double leak = 1.0;          ///< what a step leaves of a coefficient's difference from the mode's, in (0, 1]
+};
+
+/// How fast the noise scale of FilterNoise::adaptive follows a run.
+struct NoiseMemory {
+  double forgetting = 0.98;    ///< per sample, in (0, 1]
+  double prior_samples = 5.0;  ///< samples at scale one that a run's start is worth, > 0
+};
+
 /// All numbers of a bank, to write one down or to read it: K modes, how they follow each other, and how the state is
 /// measured, y = C x + v, v ~ N(0, R).
 struct BankDescription {
-  std::vector<Mode> modes;  ///< K >= 1
-  Matrix C;                 ///< n_y x n; empty: the state is measured
-  Matrix R;                 ///< n_y x n_y, covariance of the measurement noise [state unit^2]
-  std::vector<double>
-      quantum;        ///< n_y, of what measured values are multiples [state unit], 0: continuous; may be empty
-  Matrix transition;  ///< K x K, row i: probabilities of the mode that follows mode i
-  /// Where state and input move the switches: K x d, d = n + acting inputs. P(j | i, z) is proportional to T_ij
-  /// exp(w_j' (z - reference)), z = (x, v) as a step starts; empty: T whatever z is.
-  Matrix transition_weights;
-  std::vector<double> transition_reference;  ///< d, the z at which T holds
-  std::vector<double> initial_probability;   ///< K; empty: all alike
-  std::vector<std::string> state_names;      ///< of the measured states; may be empty
-  std::vector<std::string> input_names;      ///< of the inputs; may be empty
-  double dt_s = 0.0;                         ///< sample period that one step stands for [s]; 0: whatever comes
-  std::ptrdiff_t inputs = 0;                 ///< input channels
-  std::ptrdiff_t state_lags = 1;             ///< samples of the state that predict the next one
-  std::ptrdiff_t input_lags = 1;             ///< samples of the input that act on one transition
-  std::ptrdiff_t input_delay = 1;            ///< samples from an input to its first effect
-  bool intercept = false;                    ///< whether c is part of theta
-  double noise_forgetting = 0.98;            ///< of the adaptive noise scale, per sample, in (0, 1]
-  double noise_prior_samples = 5.0;          ///< samples at scale one that a run's start is worth, > 0
-  /// Where state and input scale every Q: d x (n + acting inputs). A step from z under v has Q times exp(sum_i
-  /// weights_i log(|directions_i [z; v]| + 0.1) - offset), bounded to between a fifth and five; empty: Q itself.
-  Matrix noise_directions;
-  std::vector<double> noise_weights;  ///< d
-  double noise_offset = 0.0;          ///< of the exponent
-  /// Of modes whose theta follows the run: a size per regressor [z; v; (1)], in whose units it wanders; empty: it
-  /// stays.
-  std::vector<double> drift_scale;
-  double drift_rate = 0.0;   ///< variance that a step adds to each coefficient, in units of Q, >= 0
-  double drift_start = 0.0;  ///< variance of each coefficient at a start, in units of Q, >= 0
-  double drift_leak = 1.0;   ///< what a step leaves of a coefficient's difference from the mode's, in (0, 1]
+  std::vector<Mode> modes;      ///< K >= 1
+  Matrix C;                     ///< n_y x n; empty: the state is measured
+  Matrix R;                     ///< n_y x n_y, covariance of the measurement noise [state unit^2]
+  std::vector<double> quantum;  ///< n_y, of what measured values are multiples [state unit], 0: continuous; empty: all
+  Matrix transition;            ///< K x K, row i: probabilities of the mode that follows mode i
+  StateDependentTransition state_dependent_transition;  ///< empty: constant
+  std::vector<double> initial_probability;              ///< K; empty: all alike
+  std::vector<std::string> state_names;                 ///< of the measured states; may be empty
+  std::vector<std::string> input_names;                 ///< of the inputs; may be empty
+  double dt_s = 0.0;               ///< sample period that one step stands for [s]; 0: whatever comes
+  std::ptrdiff_t inputs = 0;       ///< input channels
+  std::ptrdiff_t state_lags = 1;   ///< samples of the state that predict the next one
+  std::ptrdiff_t input_lags = 1;   ///< samples of the input that act on one transition
+  std::ptrdiff_t input_delay = 1;  ///< samples from an input to its first effect
+  bool intercept = false;          ///< whether c is part of theta
+  NoiseMemory noise_memory;        ///< for filters whose noise is adaptive
+  NoiseByState noise_by_state;     ///< empty: constant
+  CoefficientDrift drift;          ///< empty: none
 };
 
 /// A bank of modes, immutable and cheap to copy; its numbers live inside the library.
