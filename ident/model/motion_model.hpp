@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "modebank/ident/motion_model.hpp"  // models are written once as a template: templated_model.hpp
+#include "modebank/ident/motion_model.hpp"
 
 namespace modebank {
 

@@ -17,7 +17,7 @@
 #include "ident/fit/detail/batch/solver.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/motion_fit.hpp"
-#include "ident/model/templated_model.hpp"
+#include "modebank/ident/auto_diff_motion_model.hpp"
 #include "tests/bench/bench_data.hpp"
 #include "tests/bench/window_peers.hpp"
 
@@ -145,18 +145,15 @@ void measure(std::vector<Entry>& entries, int rounds) {
 
 /// x[k+1] = x + A x + B u as the user of a motion model would write it.
 struct PlainModel {
-  static constexpr int states = 1, inputs = 2, parameters = 3;
-  std::string name() const { return "plain"; }
-  std::vector<ModelParameter> table() const { return {{"A", ""}, {"B1", ""}, {"B2", ""}}; }
   template <class T>
-  void predict(const T* theta, const T* x, const T* u, double, T* next) const {
+  void operator()(const T* theta, const T* x, const T* u, double, T* next) const {
     next[0] = x[0] + theta[0] * x[0] + theta[1] * u[0] + theta[2] * u[1];
   }
 };
 
 /// The first windows as those of a motion model, from a start that suits none of the regimes.
 void run_general(const Trajectory& run, Loss loss, Index windows, Eigen::MatrixXd& theta) {
-  const auto model = make_templated_model(PlainModel());
+  const auto model = make_auto_diff_model<1, 2, 3>(PlainModel(), "plain", {{"A", ""}, {"B1", ""}, {"B2", ""}});
   const ModelEstimator estimator = make_model_estimator(*model, peer_options(loss));
   const Eigen::VectorXd sigma = Eigen::VectorXd::Constant(1, residual_scale / default_loss_scale(loss));
   for (Index i = 0; i < windows; ++i) {

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <memory>
-#include <string>
+#include <utility>
 #include <vector>
 
-#include "ident/model/templated_model.hpp"
+#include "ident/model/motion_model.hpp"
 #include "modebank/base/error.hpp"
+#include "modebank/ident/auto_diff_motion_model.hpp"
 
 namespace modebank::models {
 
@@ -15,19 +16,10 @@ namespace modebank::models {
 ///   w = (a_r v_r - a_l v_l) / (y_l - y_r),   v_x = a_l v_l + y_l w,   v_y = -x_v w.
 /// The velocity follows the wheels at once: x[k+1] = f(u[k]). States: v_x and yaw rate w.
 struct IcrModel {
-  static constexpr int states = 2, inputs = 2, parameters = 4;
   double wheel_radius_m = 1.0;
 
-  std::string name() const { return "icr"; }
-  std::vector<ModelParameter> table() const {
-    return {{"icr_left_m", "m", 0.5, 0.02, 100.0},
-            {"icr_right_m", "m", -0.5, -100.0, -0.02},
-            {"efficiency_left", "1", 1.0, 0.0, 5.0},
-            {"efficiency_right", "1", 1.0, 0.0, 5.0}};
-  }
-
   template <class T>
-  void predict(const T* theta, const T*, const T* u, double, T* next) const {
+  void operator()(const T* theta, const T*, const T* u, double, T* next) const {
     const T left = theta[2] * (wheel_radius_m * u[0]), right = theta[3] * (wheel_radius_m * u[1]);
     next[1] = (right - left) / (theta[0] - theta[1]);
     next[0] = left + theta[0] * next[1];
@@ -36,20 +28,12 @@ struct IcrModel {
 
 /// With the lateral speed measured, too: states v_x, v_y, w.
 struct LateralIcrModel {
-  static constexpr int states = 3, inputs = 2, parameters = 5;
   IcrModel planar;
 
-  std::string name() const { return "icr"; }
-  std::vector<ModelParameter> table() const {
-    std::vector<ModelParameter> all = planar.table();
-    all.push_back({"icr_forward_m", "m", 0.0, -100.0, 100.0});
-    return all;
-  }
-
   template <class T>
-  void predict(const T* theta, const T* x, const T* u, double dt_s, T* next) const {
+  void operator()(const T* theta, const T* x, const T* u, double dt_s, T* next) const {
     T forward_and_yaw[2];
-    planar.predict(theta, x, u, dt_s, forward_and_yaw);
+    planar(theta, x, u, dt_s, forward_and_yaw);
     next[0] = forward_and_yaw[0];
     next[1] = -theta[4] * forward_and_yaw[1];
     next[2] = forward_and_yaw[1];
@@ -58,22 +42,27 @@ struct LateralIcrModel {
 
 /// Seen through the yaw rate alone: the distance y_l - y_r of the two centres.
 struct YawIcrModel {
-  static constexpr int states = 1, inputs = 2, parameters = 1;
   double wheel_radius_m = 1.0;
 
-  std::string name() const { return "icr"; }
-  std::vector<ModelParameter> table() const { return {{"icr_distance_m", "m", 1.0, 0.02, 200.0}}; }
-
   template <class T>
-  void predict(const T* theta, const T*, const T* u, double, T* next) const {
+  void operator()(const T* theta, const T*, const T* u, double, T* next) const {
     next[0] = wheel_radius_m * (u[1] - u[0]) / theta[0];
   }
 };
 
 inline std::shared_ptr<const MotionModel> make_icr(const ModelSettings& s) {
-  if (s.inputs == 2 && s.states == 1) return make_templated_model(YawIcrModel{s.wheel_radius_m});
-  if (s.inputs == 2 && s.states == 2) return make_templated_model(IcrModel{s.wheel_radius_m});
-  if (s.inputs == 2 && s.states == 3) return make_templated_model(LateralIcrModel{{s.wheel_radius_m}});
+  std::vector<ModelParameter> planar{{"icr_left_m", "m", 0.5, 0.02, 100.0},
+                                     {"icr_right_m", "m", -0.5, -100.0, -0.02},
+                                     {"efficiency_left", "1", 1.0, 0.0, 5.0},
+                                     {"efficiency_right", "1", 1.0, 0.0, 5.0}};
+  if (s.inputs == 2 && s.states == 1)
+    return make_auto_diff_model<1, 2, 1>(YawIcrModel{s.wheel_radius_m}, "icr",
+                                         {{"icr_distance_m", "m", 1.0, 0.02, 200.0}});
+  if (s.inputs == 2 && s.states == 2)
+    return make_auto_diff_model<2, 2, 4>(IcrModel{s.wheel_radius_m}, "icr", std::move(planar));
+  planar.push_back({"icr_forward_m", "m", 0.0, -100.0, 100.0});
+  if (s.inputs == 2 && s.states == 3)
+    return make_auto_diff_model<3, 2, 5>(LateralIcrModel{{s.wheel_radius_m}}, "icr", std::move(planar));
   throw ConfigurationError(
       "model = icr needs the inputs left and right wheel speed, and the states yaw rate; forward speed and yaw "
       "rate; or forward speed, lateral speed and yaw rate, in this order");

@@ -2,11 +2,10 @@
 
 #include <cmath>
 #include <memory>
-#include <string>
-#include <vector>
 
-#include "ident/model/templated_model.hpp"
+#include "ident/model/motion_model.hpp"
 #include "modebank/base/error.hpp"
+#include "modebank/ident/auto_diff_motion_model.hpp"
 
 namespace modebank::models {
 
@@ -17,19 +16,10 @@ namespace modebank::models {
 ///   x[k+1] = x[k] + (1 - exp(-dt / tau)) (x_ss - x[k])    (exact for inputs held over the step).
 /// States: forward speed and yaw rate (m/s, rad/s). Left turns and forward motion are positive.
 struct SlipModel {
-  static constexpr int states = 2, inputs = 2, parameters = 4;
   double wheel_radius_m = 1.0;
 
-  std::string name() const { return "slip"; }
-  std::vector<ModelParameter> table() const {
-    return {{"effective_track_m", "m", 1.0, 0.05, 100.0},
-            {"slip_left", "1", 0.1, -5.0, 1.0},
-            {"slip_right", "1", 0.1, -5.0, 1.0},
-            {"time_constant_s", "s", 0.2, 1e-4, 100.0}};
-  }
-
   template <class T>
-  void predict(const T* theta, const T* x, const T* u, double dt_s, T* next) const {
+  void operator()(const T* theta, const T* x, const T* u, double dt_s, T* next) const {
     using std::exp;
     const T left = (1.0 - theta[1]) * (wheel_radius_m * u[0]), right = (1.0 - theta[2]) * (wheel_radius_m * u[1]);
     const T gain = 1.0 - exp(-dt_s / theta[3]);
@@ -42,18 +32,10 @@ struct SlipModel {
 /// the track that explains the mean gain, and slip_difference d what the left side loses more than the right one:
 ///   w_ss = [(1 + d/2) v_r - (1 - d/2) v_l] / W.
 struct YawSlipModel {
-  static constexpr int states = 1, inputs = 2, parameters = 3;
   double wheel_radius_m = 1.0;
 
-  std::string name() const { return "slip"; }
-  std::vector<ModelParameter> table() const {
-    return {{"effective_track_m", "m", 1.0, 0.05, 100.0},
-            {"slip_difference", "1", 0.0, -2.0, 2.0},
-            {"time_constant_s", "s", 0.2, 1e-4, 100.0}};
-  }
-
   template <class T>
-  void predict(const T* theta, const T* x, const T* u, double dt_s, T* next) const {
+  void operator()(const T* theta, const T* x, const T* u, double dt_s, T* next) const {
     using std::exp;
     const T left = (1.0 - 0.5 * theta[1]) * (wheel_radius_m * u[0]),
             right = (1.0 + 0.5 * theta[1]) * (wheel_radius_m * u[1]);
@@ -62,8 +44,15 @@ struct YawSlipModel {
 };
 
 inline std::shared_ptr<const MotionModel> make_slip(const ModelSettings& s) {
-  if (s.inputs == 2 && s.states == 1) return make_templated_model(YawSlipModel{s.wheel_radius_m});
-  if (s.inputs == 2 && s.states == 2) return make_templated_model(SlipModel{s.wheel_radius_m});
+  const ModelParameter track{"effective_track_m", "m", 1.0, 0.05, 100.0};
+  const ModelParameter time_constant{"time_constant_s", "s", 0.2, 1e-4, 100.0};
+  if (s.inputs == 2 && s.states == 1)
+    return make_auto_diff_model<1, 2, 3>(YawSlipModel{s.wheel_radius_m}, "slip",
+                                         {track, {"slip_difference", "1", 0.0, -2.0, 2.0}, time_constant});
+  if (s.inputs == 2 && s.states == 2)
+    return make_auto_diff_model<2, 2, 4>(
+        SlipModel{s.wheel_radius_m}, "slip",
+        {track, {"slip_left", "1", 0.1, -5.0, 1.0}, {"slip_right", "1", 0.1, -5.0, 1.0}, time_constant});
   throw ConfigurationError(
       "model = slip needs the inputs left and right wheel speed, and the states yaw rate, or forward speed and "
       "yaw rate, in this order");

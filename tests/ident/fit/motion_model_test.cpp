@@ -1,9 +1,12 @@
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/linearise.hpp"
 #include "ident/fit/motion_fit.hpp"
 #include "modebank/base/error.hpp"
+#include "modebank/ident/auto_diff_motion_model.hpp"
 #include "tests/ident/fit/decay.hpp"
 #include "tests/ident/fit/linear_motion.hpp"
 #include "tests/ident/ident_test_support.hpp"
@@ -261,6 +264,92 @@ TEST(MotionModel, TheExampleOfThePagesIsAWholeModel) {
   options.model = "decay";
   const WindowFits fits = fit_windows(test::make_recording({test::make_run(x, u)}), options, *model);
   for (Index i = 0; i < fits.count(); ++i) EXPECT_LT((fits.parameters.col(i) - theta).norm(), 1e-6);
+}
+
+/// The equation of LinearMotion, whose derivatives are by hand: one state, two inputs.
+struct LinearFunctor {
+  template <class T>
+  void operator()(const T* theta, const T* x, const T* u, double, T* next) const {
+    next[0] = x[0] + theta[0] * x[0] + theta[1] * u[0] + theta[2] * u[1] + theta[3];
+  }
+};
+
+std::vector<ModelParameter> named(const std::vector<std::string>& names) {
+  std::vector<ModelParameter> parameters;
+  for (const std::string& name : names) parameters.push_back({name, ""});
+  return parameters;
+}
+
+TEST(AutoDiffMotionModel, GivesTheDerivativesByHand) {
+  const LinearStructure structure{1, 2, true};
+  const test::LinearMotion by_hand(structure);
+  const AutoDiffMotionModel<LinearFunctor, 1, 2, 4> model({}, "linear", named(structure.parameter_names()));
+  const double theta[]{-0.3, 0.4, -0.5, 0.1}, x[]{0.7}, u[]{-1.0, 2.0};
+  std::array<double, 8> a{}, b{};
+  model.predict(theta, x, u, 0.1, &a[0], &a[1], &a[5], &a[6]);
+  by_hand.predict(theta, x, u, 0.1, &b[0], &b[1], &b[5], &b[6]);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-15) << i;
+  double alone = 0.0;
+  model.predict(theta, x, u, 0.1, &alone);
+  EXPECT_EQ(alone, a[0]);
+}
+
+TEST(AutoDiffMotionModel, FitsTheWindowsOfTheModelByHand) {
+  std::mt19937_64 generator(41);
+  const LinearStructure structure{1, 2, true};
+  const Recording recording = test::make_recording(
+      {test::gaussian_run(structure, Eigen::Vector4d(-0.4, -0.5, 0.6, 0.02), 0.05, 120, generator)});
+  const AutoDiffMotionModel<LinearFunctor, 1, 2, 4> model({}, "linear", named(structure.parameter_names()));
+  FitOptions options;
+  options.model = "own";
+  const WindowFits ours = fit_windows(recording, options, model);
+  const WindowFits by_hand = fit_windows(recording, options, test::LinearMotion(structure));
+  ASSERT_EQ(ours.count(), by_hand.count());
+  for (Index i = 0; i < ours.count(); ++i) {  // sums in another order end as far apart as iterations converge
+    const LocalModel a = ours.at(i), b = by_hand.at(i);
+    const Eigen::ArrayXd standard_error = b.covariance.diagonal().array().sqrt();
+    EXPECT_LT(((a.theta - b.theta).array() / standard_error).abs().maxCoeff(), 5e-7) << i;
+    EXPECT_LT((a.covariance - b.covariance).norm(), 1e-6 * b.covariance.norm()) << i;
+  }
+}
+
+TEST(AutoDiffMotionModel, RefusesAnotherNumberOfParameters) {
+  using Model = AutoDiffMotionModel<LinearFunctor, 1, 2, 4>;
+  EXPECT_THROW(Model({}, "linear", named({"a", "b"})), std::invalid_argument);
+}
+
+/// The derivatives of a function of two numbers against central differences, which have them to some 1e-9.
+template <class F>
+void expect_slopes(const char* name, F f) {
+  constexpr double step = 1e-6;
+  for (const auto& [a, b] : {std::pair{0.4, 1.3}, {1.1, 0.7}}) {
+    const Dual<2> result = f(Dual<2>(a, 0), Dual<2>(b, 1));
+    EXPECT_EQ(result.value, f(a, b)) << name;
+    EXPECT_NEAR(result.slope[0], (f(a + step, b) - f(a - step, b)) / (2.0 * step), 1e-8) << name;
+    EXPECT_NEAR(result.slope[1], (f(a, b + step) - f(a, b - step)) / (2.0 * step), 1e-8) << name;
+  }
+}
+
+TEST(Dual, HasTheDerivativesOfFiniteDifferences) {
+  using namespace std;
+  expect_slopes("arithmetic", [](auto a, auto b) { return (2.0 - a * b) / (a + 3.0 * b) - -b / 7.0; });
+  expect_slopes("in place", [](auto a, auto b) {
+    auto c = a;
+    c += b;
+    c *= a;
+    c -= b;
+    c /= a;
+    return c;
+  });
+  expect_slopes("comparison", [](auto a, auto b) { return a < b ? a * a : b * a; });
+  expect_slopes("exp, log", [](auto a, auto b) { return exp(a * b) * log(a + b); });
+  expect_slopes("sqrt, abs", [](auto a, auto b) { return sqrt(a) * abs(a - b); });
+  expect_slopes("sin, cos, tan", [](auto a, auto b) { return sin(a) * cos(b) + tan(a); });
+  expect_slopes("tanh, atan", [](auto a, auto b) { return tanh(a) * atan(b); });
+  expect_slopes("atan2", [](auto a, auto b) { return atan2(a, b); });
+  expect_slopes("hypot", [](auto a, auto b) { return hypot(a, b); });
+  expect_slopes("pow", [](auto a, auto b) { return pow(a, b); });
+  expect_slopes("pow of a whole number", [](auto a, auto b) { return pow(a - b, 2.0) + pow(2.0, b); });
 }
 
 TEST(MotionModel, UnknownModelsAndWrongStatesAreSaid) {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "ident/fit/motion_fit.hpp"
-#include "ident/model/templated_model.hpp"
+#include "modebank/ident/auto_diff_motion_model.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/paths.hpp"
 
@@ -14,18 +14,11 @@
 namespace modebank {
 namespace {
 
-/// y = Function(b, u) with P parameters.
-template <class Function, int P>
+/// y = Function(b, u).
+template <class Function>
 struct Regression {
-  static constexpr int states = 1, inputs = 1, parameters = P;
-  std::string name() const { return "regression"; }
-  std::vector<ModelParameter> table() const {
-    std::vector<ModelParameter> all(P);
-    for (int j = 0; j < P; ++j) all[j].name = "b" + std::to_string(j + 1);
-    return all;
-  }
   template <class T>
-  void predict(const T* b, const T*, const T* u, double, T* next) const {
+  void operator()(const T* b, const T*, const T* u, double, T* next) const {
     next[0] = Function()(b, u[0]);
   }
 };
@@ -138,7 +131,9 @@ template <class Function, int P>
 void expect_certified(const std::string& name, int start = 0) {
   const NistSet set = read_nist(name);
   ASSERT_EQ(set.certified.size(), P) << name;
-  const auto model = make_templated_model(Regression<Function, P>());
+  std::vector<ModelParameter> b(P);
+  for (int j = 0; j < P; ++j) b[j].name = "b" + std::to_string(j + 1);
+  const auto model = make_auto_diff_model<1, 1, P>(Regression<Function>(), "regression", b);
   const ModelResiduals residuals(*model, {{&set.run, 0, set.run.transitions()}});
   FitOptions options;
   options.loss = Loss::trivial;

@@ -6,8 +6,8 @@
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/motion_fit.hpp"
-#include "ident/model/templated_model.hpp"
 #include "io/import/import.hpp"
+#include "modebank/ident/auto_diff_motion_model.hpp"
 #include "tests/support/paths.hpp"
 
 // The DRIVE data (a Husky under random commands) against the figures of ../shared/data/drive_husky/README.md and of
@@ -33,11 +33,8 @@ Recording all_training(Recording recording) {
 
 /// y = c + g (right - left), a model without memory.
 struct YawRegression {
-  static constexpr int states = 1, inputs = 2, parameters = 2;
-  std::string name() const { return "yaw regression"; }
-  std::vector<ModelParameter> table() const { return {{"c", "rad/s"}, {"g", "1"}}; }
   template <class T>
-  void predict(const T* b, const T*, const T* u, double, T* next) const {
+  void operator()(const T* b, const T*, const T* u, double, T* next) const {
     next[0] = b[0] + b[1] * (u[1] - u[0]);
   }
 };
@@ -66,7 +63,7 @@ LineFit regress(const Recording& recording, Index i, bool steady_only) {
   line.state.rightCols(N) = Eigen::Map<const Eigen::RowVectorXd>(y.data(), N);
   line.input.row(0).head(N) = Eigen::Map<const Eigen::RowVectorXd>(left.data(), N);
   line.input.row(1).head(N) = Eigen::Map<const Eigen::RowVectorXd>(right.data(), N);
-  const auto model = make_templated_model(YawRegression());
+  const auto model = make_auto_diff_model<1, 2, 2>(YawRegression(), "yaw regression", {{"c", "rad/s"}, {"g", "1"}});
   Recording single;
   single.states = {{"y", ""}};
   single.inputs = {{"left", ""}, {"right", ""}};

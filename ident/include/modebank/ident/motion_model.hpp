@@ -17,8 +17,8 @@ struct ModelParameter {
 };
 
 /// A model of motion with p parameters: a one-step prediction x[k+1] = f(theta, x[k], u[k], dt) of n states from m
-/// inputs held over the step. Immutable, shared by threads. A program may bring its own, with derivatives by hand or
-/// from its own dual numbers.
+/// inputs held over the step. Immutable, shared by threads. A program may bring its own: an AutoDiffMotionModel
+/// (auto_diff_motion_model.hpp) of one equation, or a class of its own with derivatives by hand.
 class MotionModel {
  public:
   virtual ~MotionModel() = default;
