@@ -42,6 +42,7 @@ MAY_INCLUDE = {
     "io/archive": LIBRARIES + ["io/files", "io/hdf5", "io/archive/groups", "io/archive/bank"],
     "io/recording": IDENT[:1] + ["io/files", "io/table"],
     "io/import": FIT + ["ident/lag", "ident/check", "io/files", "io/table", "io/csv", "io/arrays", "io/recording"],
+    "io/include": LIBRARIES + ["io/archive/bank"],  # modebank/modebank.hpp, which includes all that is installed
     "io/simulation": IDENT + ["ident/simulate", "io/files"],
     "app/chain": BELOW_APP,
     "app/check": BELOW_APP + ["app/chain"],
@@ -82,8 +83,15 @@ def offence(source, header):
     return None
 
 
+def left_out_of_the_whole(root):
+    """Installed headers that modebank/modebank.hpp does not include."""
+    headers = {path.as_posix().split("/include/")[1] for path in root.glob("*/include/**/*.hpp")} - {"modebank/modebank.hpp"}
+    included = set(re.findall(r'#include "([^"]+)"', (root / "io/include/modebank/modebank.hpp").read_text()))
+    return [f"modebank/modebank.hpp does not include {header}" for header in sorted(headers - included)]
+
+
 def main(root):
-    bad = []
+    bad = left_out_of_the_whole(root)
     for folder in sorted({f.split("/")[0] for f in MAY_INCLUDE}):
         for source in sorted((root / folder).rglob("*.[hc]pp")):
             name = source.relative_to(root).as_posix()
