@@ -27,7 +27,7 @@ struct RefineTuning {
   /// few runs know their differences badly, and a fifth of what modes are typically worth should not go unseen.
   double most_loss = 0.02;
 
-  // What a model may add (left_out/rule.hpp).
+  // The rule on additions (left_out/rule.hpp).
   /// The probability of it, of all proposals together, where there is nothing to be found.
   double taken_by_chance = 0.05;
   /// That one configuration may ask about: number of modes, prior, measurement noise, noise by input, transitions by

@@ -15,9 +15,9 @@ struct LeftOutScores {
   Eigen::VectorXd log_likelihood;  ///< of each run left out [nats]
 };
 
-/// What a candidate loses to another one, or gains over it, sample by sample on the same runs.
+/// The difference between the scores of two candidates, sample by sample on the same runs.
 struct PairedLoss {
-  double mean = 0.0;            ///< nats per sample; infinite where one has no score
+  double mean = 0.0;            ///< nats per sample; infinite where a score is not finite
   double standard_error = 0.0;  ///< of it, clustered by run; 0 for a single run
 };
 

@@ -53,7 +53,7 @@ class CrossValidation {
   LeftOutScores scores(const std::vector<Bank>& banks, const LookAhead& look) const {
     return {banks.front().mode_count(), run_scores(banks, look)};
   }
-  /// Nats per sample; minus infinity where there is no score.
+  /// Mean over all samples [nats]; minus infinity where a score is NaN.
   double mean_score(const LeftOutScores& scores) const;
 
   /// How the noise scale should move in the filter of these banks, one per split: of ways that the runs left out do not

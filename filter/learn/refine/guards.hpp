@@ -23,7 +23,8 @@ struct Guards {
 /// zone three modes by themselves ended 0.4 nats per sample below three that six had been merged to. The likeliest of
 /// each number of modes then goes on without the runs left out, first with the weights' middle width; the fewest modes
 /// that are as good are chosen (fewest_modes_as_good), and for these the width. Empty where it is not worth it
-/// (is_worth_it) against the chosen fit with a constant T, which is the case of no weights, and where nothing can be left out. `stage` says what was found.
+/// (is_worth_it) against the chosen fit with a constant T, which is the case of no weights, and where nothing can be
+/// left out. `stage` says what was found.
 std::optional<Guards> choose_guards(const RefineInput& in, const CrossValidation& validation, SwitchingStage& stage);
 
 /// The same fit to all training runs.
