@@ -9,13 +9,13 @@
 
 namespace modebank {
 
-/// At an installed door an argument that cannot be used is a ConfigurationError, whoever inside found it.
+/// Turns every refusal of an argument into the std::invalid_argument that the installed interface promises.
 template <class Call>
 auto at_the_door(Call&& call) {
   try {
     return std::forward<Call>(call)();
-  } catch (const std::invalid_argument& error) {
-    throw ConfigurationError(error.what());
+  } catch (const ConfigurationError& error) {
+    throw std::invalid_argument(error.what());
   }
 }
 

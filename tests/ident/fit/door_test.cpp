@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "modebank/base/error.hpp"
 #include "modebank/ident/windows.hpp"
@@ -76,14 +77,14 @@ TEST(IdentDoor, TakesMotionModelsByNameAndOnesOwn) {
   const Recording one =
       test::make_recording({test::gaussian_run({1, 1, false}, Eigen::Vector2d(-0.6, 0.7), 0.01, 80, generator)});
   expect_same(ident::fit_windows(test::recorded_runs(one), FitOptions(), *own), fit_windows(one, decay, *own));
-  EXPECT_THROW(ident::fit_windows(test::recorded_runs(skid), FitOptions(), *own), ConfigurationError);
+  EXPECT_THROW(ident::fit_windows(test::recorded_runs(skid), FitOptions(), *own), std::invalid_argument);
 }
 
 /// What is said of bad arguments.
 std::string refusal(const RecordedRuns& runs, const FitOptions& options) {
   try {
     ident::fit_windows(runs, options);
-  } catch (const ConfigurationError& error) {
+  } catch (const std::invalid_argument& error) {
     return error.what();
   }
   return "";

@@ -12,7 +12,7 @@ struct EnumNames<FilterVariant> {
   static constexpr Names<3> values{"imm", "salvi2025", "kf"};
 };
 
-/// gaussian: Q as learned. adaptive: Q times a scale that follows the run (equations/noise_scale.hpp).
+/// gaussian: Q as learned. adaptive: Q times a scale that follows how large the run's innovations are.
 enum class FilterNoise { gaussian, adaptive };
 
 template <>

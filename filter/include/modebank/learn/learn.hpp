@@ -54,8 +54,8 @@ struct Learned {
 
 /// Fits windows, clusters them and learns a bank from the runs that are not held out, on all cores: the numbers are
 /// those of `modebank run` for the same options and the same for any number of threads. Log-likelihoods are from each
-/// run's second sample. Throws ConfigurationError (modebank/base/error.hpp) for an option out of range and for runs
-/// whose sizes do not fit, DataError where nothing can be learned from these runs.
+/// run's second sample. Throws std::invalid_argument for an option out of range and for runs
+/// whose sizes do not fit, DataError (modebank/base/error.hpp) where nothing can be learned from these runs.
 Learned learn_bank(const RecordedRuns& runs, const LearnOptions& options = {});
 
 /// The same for a motion model of one's own; options.window.model does not count. Refinement is for linear models only.

@@ -4,12 +4,12 @@
 
 namespace modebank {
 
-/// The caller's mistake, found before any sample is read: usage, key, value, path, column, run name. Exit status 2.
+/// A mistake of the program's user; exit status 2. Functions of the C++ library throw std::invalid_argument instead.
 struct ConfigurationError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The content of a file, or of the data as a whole, cannot be used. Exit status 1.
+/// The content of a file, or of the data as a whole, cannot be used. The program ends with exit status 1.
 struct DataError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

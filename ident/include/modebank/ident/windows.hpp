@@ -32,9 +32,9 @@ struct Windows {
 std::vector<std::string> model_names();
 
 /// Cuts and fits every window of the runs that are not held out, on all cores; the numbers are those of `modebank
-/// identify`, and the same for any number of threads. Throws ConfigurationError (modebank/base/error.hpp) for an option
-/// out of range ("length = 0 is out of range: at least 1") and for runs whose sizes do not fit, DataError where no run
-/// has the transitions of a window.
+/// identify`, and the same for any number of threads. Throws std::invalid_argument for an option
+/// out of range ("length = 0 is out of range: at least 1") and for runs whose sizes do not fit, DataError
+/// (modebank/base/error.hpp) where no run has the transitions of a window.
 Windows fit_windows(const RecordedRuns& runs, const FitOptions& options = {});
 
 /// The same for a motion model of one's own; options.model does not count, nor do the batch solver's windows. `model`

@@ -39,12 +39,12 @@ struct Clusters {
 };
 
 /// Fits every candidate number of components, on all cores, and keeps the best by the criterion: the same numbers for
-/// any number of threads. Throws ConfigurationError (modebank/base/error.hpp) for an option out of range and for sizes
-/// or numbers that cannot be, DataError when no candidate can be fitted to these points.
+/// any number of threads. Throws std::invalid_argument for an option out of range and for sizes
+/// or numbers that cannot be, DataError (modebank/base/error.hpp) when no candidate can be fitted to these points.
 Clusters select(const Points& points, const SelectionOptions& options = {}, std::uint64_t seed = 1);
 
 /// Posterior probabilities of the components at other points (F x N), K x N; columns sum to one, or to one minus the
-/// probability of noise. Throws ConfigurationError for sizes that do not fit and a covariance that is none.
+/// probability of noise. Throws std::invalid_argument for sizes that do not fit and a covariance that is none.
 Matrix responsibilities(const Mixture& mixture, const Matrix& points);
 
 /// Log density at other points (F x N), N [nats]. Throws as responsibilities does.
