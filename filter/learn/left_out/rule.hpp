@@ -31,11 +31,11 @@ PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& wor
 /// ratio is one, and Markov's inequality does the rest.
 double least_worth(double samples);
 
-/// The rule by which whatever a model may add is taken (more modes, measurement noise, noise by input, transitions by
-/// state, drift, a fit that looks ahead): `gain` on runs left out is above least_worth and above its standard error by
-/// run, of which `most_error` counts at most. That error alone takes what is not there in three systems of ten, and a
-/// t-test over six runs passes over drift that is worth 0.06 nats in four of five (docs/results/rule.md). `samples`: of
-/// each run left out.
+/// The rule by which whatever a model may add is taken (more modes, noise by input, transitions by state, drift, a fit
+/// that looks ahead): `gain` on runs left out is above least_worth and above its standard error by run, of which
+/// `most_error` counts at most. That error alone takes what is not there in three systems of ten, and a t-test over six
+/// runs passes over drift that is worth 0.06 nats in four of five (docs/results/rule.md). `samples`: of each run left
+/// out.
 bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples,
                  double most_error = std::numeric_limits<double>::infinity());
 

@@ -8,7 +8,6 @@
 
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
-#include "filter/learn/left_out/rule.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/tuning.hpp"
 
@@ -67,7 +66,7 @@ std::optional<Bank> start_of_dominating_noise(const RefineInput& in, const Recor
   exact.modes.front().Q.topLeftCorner(n, n) = global.residual_covariance;
   const auto samples = static_cast<double>(recording.transitions(Role::train));
   const LikelihoodTarget likelihood{recording, exact_filter(in.filter), std::nullopt};
-  if (!best || !(best->value > likelihood.value(exact) + samples * least_worth(samples))) return std::nullopt;
+  if (!best || !(best->value > likelihood.value(exact) + samples * refine_tuning.least_gain)) return std::nullopt;
   const Eigen::MatrixXd Q = best->bank.modes.front().Q.topLeftCorner(n, n);
   if (!(best->bank.R.diagonal().array() > Q.diagonal().array()).any()) return std::nullopt;
   const Eigen::VectorXd moved = best->bank.theta(0) - global.theta;

@@ -8,7 +8,6 @@
 #include <numeric>
 #include <utility>
 
-#include "filter/learn/left_out/rule.hpp"
 #include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
 #include "filter/learn/refine/dominating_noise.hpp"
@@ -28,7 +27,7 @@ constexpr AscentLimits search_limits{30, 1e-7};
 /// Nats that R has to add to the likelihood of these training runs.
 double least_rise(const LikelihoodTarget& target) {
   const auto samples = static_cast<double>(target.recording.transitions(Role::train));
-  return samples * least_worth(samples);
+  return samples * refine_tuning.least_gain;
 }
 
 /// R = `share` of the mean Q, taken out of Q: white measurement noise of variance r enters a residual of exact states

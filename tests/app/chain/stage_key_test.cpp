@@ -224,6 +224,7 @@ const std::map<std::string, std::string> without_effect{
     {"mixture.straddling", "every choice treats all windows alike (cause not looked into)"},
     {"bank.mode_names", "people's names of what was learned are no stage's"},
     {"bank.screen", "no mode is left out"},
+    {"bank.look_ahead_score", "what looks ahead gains too little on runs as short as these"},
 };
 
 bool may_be_refused(const Case& c) {

@@ -19,7 +19,7 @@ struct EnumNames<CovarianceType> {
 /// points drawn as centres.
 struct EmOptions {
   CovarianceType covariance = CovarianceType::full;  ///< of the components
-  int restarts = 20;                                 ///< independent, >= 1; with five the best optimum is often missed
+  int restarts = 5;                                  ///< independent, >= 1
   /// Split-and-merge moves that each restart tries to leave its optimum (Ueda et al. 2000). 0: none, and restarts are
   /// not crossed.
   int split_merge = 5;
