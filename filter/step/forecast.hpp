@@ -83,7 +83,7 @@ class BankForecast {
     });
   }
 
-  /// Of a whole measurement [nats]; `error`: it minus the combined prediction.
+  /// Log density of a whole measurement [nats]; `error`: it minus the combined prediction.
   template <class Y, class Error>
   double observe(const Y& y, Error&& error) {
     error = y;

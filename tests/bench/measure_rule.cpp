@@ -6,20 +6,23 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <random>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "filter/learn/competitors/noise_by_input.hpp"
 #include "filter/learn/learn.hpp"
-#include "filter/learn/left_out/rule.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"

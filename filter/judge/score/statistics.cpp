@@ -135,7 +135,7 @@ std::vector<double> autocorrelations(const SeriesByRun& series) {
   const double variance = centred.autocovariance(0);
   if (!(variance > 0.0)) return result;
   for (Eigen::Index lag = 0; lag + 1 < centred.longest(); lag += 2) {
-    const double even = centred.autocovariance(lag), odd = centred.autocovariance(lag + 1);
+    const double even = lag == 0 ? variance : centred.autocovariance(lag), odd = centred.autocovariance(lag + 1);
     if (even + odd <= 0.0) break;
     if (lag > 0) result.push_back(even / variance);
     result.push_back(odd / variance);

@@ -9,7 +9,7 @@
 
 namespace modebank {
 
-/// What a candidate says of the runs left out.
+/// Scores of a candidate on the runs left out.
 struct LeftOutScores {
   Eigen::Index modes = 0;
   Eigen::VectorXd log_likelihood;  ///< of each run left out [nats]
