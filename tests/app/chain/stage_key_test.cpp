@@ -98,7 +98,7 @@ const std::vector<KeyValues> bases{
      {"filter.simulate", "5"},
      {"filter.simulate_method", "paths"},
      {"filter.paths", "10"}},
-    {{"bank.modes", "2"}, {"bank.refine", "em"}},
+    {{"bank.modes", "2"}, {"bank.refine", "em"}, {"bank.max_iterations", "6"}},
     {{"bank.refine", "em"}, {"filter.noise", "adaptive"}},
     {{"bank.refine", "em"}, {"bank.drift", "auto"}},
     {{"window.model", "varx"}, {"bank.modes", "2"}},
