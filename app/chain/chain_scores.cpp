@@ -15,11 +15,8 @@ std::optional<EvaluationStream> Chain::stream_to_sink() const {
 
 void Chain::score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring) {
   const std::optional<EvaluationStream> stream = stream_to_sink();
-  const EvaluationStream* const to = stream ? &*stream : nullptr;
-  if (filter == "drifting" && archive_.drifting)
-    put(score_drifting(*archive_.drifting, *archive_.recording, scoring, to));
-  else if (const std::optional<Bank> bank = archive_.bank_of(filter))
-    put(score_filter(filter, *bank, *archive_.recording, options, scoring, to));
+  if (const std::optional<Bank> bank = archive_.bank_of(filter))
+    put(score_filter(filter, *bank, *archive_.recording, options, scoring, stream ? &*stream : nullptr));
 }
 
 /// Several steps ahead, all filters together, and what the scores come to.

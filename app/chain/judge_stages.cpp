@@ -6,7 +6,6 @@
 
 #include "app/chain/stages.hpp"
 #include "filter/judge/decide/diagnostics.hpp"
-#include "filter/judge/run/drifting.hpp"
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/run/smoother.hpp"
 #include "filter/judge/score/combination.hpp"
@@ -135,28 +134,15 @@ bool streams_evaluations(const Recording& recording) {
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring, const EvaluationStream* stream) {
   const std::vector<Trajectory>& runs = recording.runs;
+  FilterOptions judged = filter;
+  if (!bank.running_noise.empty())
+    judged.noise = FilterNoise::adaptive;  // learned on the way, so its NIS is not chi-square
   check_free_run(bank.structure, scoring.free_run);
-  return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(bank, runs, filter, scoring.free_run),
+  return score_runs({name, bank, judged, runs, scoring, stream}, free_runs(bank, runs, filter, scoring.free_run),
                     [&](std::size_t i) {
                       RunEvaluation said = evaluate_run(bank, runs[i], filter);
                       draw_pit(runs[i], scoring.seed, said);
                       if (scoring.smooth) smooth_run(bank, runs[i], filter, said);
-                      return said;
-                    });
-}
-
-FilterScores score_drifting(const DriftingModel& model, const Recording& recording, const ScoringOptions& scoring,
-                            const EvaluationStream* stream) {
-  const std::vector<Trajectory>& runs = recording.runs;
-  FilterOptions filter;
-  filter.noise = FilterNoise::adaptive;  // its variance is learned on the way, so its NIS is not chi-square
-  const std::string name = "drifting";
-  const Bank bank = fixed_bank(model);
-  check_free_run(bank.structure, scoring.free_run);
-  return score_runs({name, bank, filter, runs, scoring, stream}, free_runs(model, runs, scoring.free_run),
-                    [&](std::size_t i) {
-                      RunEvaluation said = evaluate_run(model, runs[i]);
-                      draw_pit(runs[i], scoring.seed, said);
                       return said;
                     });
 }

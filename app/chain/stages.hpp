@@ -50,10 +50,6 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
                           const FilterOptions& filter, const ScoringOptions& scoring,
                           const EvaluationStream* stream = nullptr);
 
-/// The same of the drifting competitor.
-FilterScores score_drifting(const DriftingModel& model, const Recording& recording, const ScoringOptions& scoring,
-                            const EvaluationStream* stream = nullptr);
-
 /// Scores all filters of the archive together, after score_ahead; none where there is one. Adds rows on their weights
 /// in free runs.
 std::optional<FilterScores> score_combined(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive,

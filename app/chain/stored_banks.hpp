@@ -14,7 +14,7 @@ namespace modebank {
 struct StoredBanks {
   Bank bank;
   std::optional<Bank> baseline, noise_only, one_motion, unrefined;
-  std::optional<DriftingModel> drifting;
+  std::optional<Bank> drifting;
   MeasuredFit measured_fit = MeasuredFit::none;
   std::vector<std::string> mode_names = {};
   std::optional<Bank> nonlinear = {};

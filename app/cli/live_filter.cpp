@@ -25,7 +25,8 @@ namespace {
 BankFilter& kept(AnyFilter& filter) {
   if (BankFilter* const bank = filter.of_bank()) return *bank;
   throw ConfigurationError(
-      "track.checkpoint and track.resume: only a bank's state can be written; leave them out, or track a bank");
+      "track.checkpoint and track.resume: the state of several filters together cannot be written; leave them out, or "
+      "track one filter");
 }
 
 }  // namespace
@@ -77,11 +78,6 @@ void require_bank(const Config& config, const std::string& what) {
 
 namespace {
 
-OpenedFilter open_drifting(const OpenArchive& archive, const FilterOptions& options) {
-  const DriftingModel model = load_drifting(archive);
-  return {fixed_bank(model), options, any_filter(model)};
-}
-
 OpenedFilter open_bank(const OpenArchive& archive, const std::string& which, const FilterOptions& options) {
   Bank bank = load_bank(archive, which);
   auto filter = any_filter(bank, options);
@@ -90,7 +86,7 @@ OpenedFilter open_bank(const OpenArchive& archive, const std::string& which, con
 
 OpenedFilter open_one(const OpenArchive& archive, const std::string& which, const Config& config) {
   const FilterOptions options = which == "bank" ? config.filter : competitor_filter(which, config.filter);
-  return which == "drifting" ? open_drifting(archive, options) : open_bank(archive, which, options);
+  return open_bank(archive, which, options);
 }
 
 /// The filters that the archive has combined one sample ahead, the bank first, with the weights that training left.
@@ -123,9 +119,8 @@ CombinedMembers combined_members(const OpenArchive& archive, Index horizon) {
 }
 
 OpenedFilter open_filter(const OpenArchive& archive, const Config& config) {
-  OpenedFilter opened = config.track.filter == TrackedFilter::combined ? open_combined(archive, config)
-                        : config.track.filter == TrackedFilter::drifting
-                            ? open_drifting(archive, tracked_options(config))
+  OpenedFilter opened = config.track.filter == TrackedFilter::combined
+                            ? open_combined(archive, config)
                             : open_bank(archive, tracked_bank(config), tracked_options(config));
   if (!config.track.checkpoint.empty() || !config.track.resume.empty()) kept(*opened.filter);
   return opened;

@@ -26,19 +26,13 @@ namespace modebank::app {
 namespace {
 
 double period_of(const OpenArchive& archive, const Config& config) {
-  return config.track.filter == TrackedFilter::drifting ? fixed_bank(load_drifting(archive)).dt_s
-                                                        : load_bank(archive, tracked_bank(config)).dt_s;
+  return load_bank(archive, tracked_bank(config)).dt_s;
 }
 
 /// By one filter of the archive.
 std::vector<FreeRun> predict_alone(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const FilterOptions options = tracked_options(config);
   const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
-  if (config.track.filter == TrackedFilter::drifting) {
-    const DriftingModel model = load_drifting(archive);
-    check_free_run(model.structure, how);
-    return free_runs(model, recording.runs, how);
-  }
   const Bank bank = load_bank(archive, tracked_bank(config));
   check_free_run(bank.structure, how);
   return free_runs(bank, recording.runs, options, how);
@@ -64,8 +58,7 @@ std::vector<FreeRun> predict_together(const OpenArchive& archive, const Config& 
 }
 
 std::vector<FreeRun> predict_all(const OpenArchive& archive, const Config& config, const Recording& recording) {
-  const Bank bank = config.track.filter == TrackedFilter::drifting ? fixed_bank(load_drifting(archive))
-                                                                   : load_bank(archive, tracked_bank(config));
+  const Bank bank = load_bank(archive, tracked_bank(config));
   check_columns(config, bank, archive);
   if (const std::string remark = period_remark(archive.path().string(), bank, recording); !remark.empty())
     spdlog::warn("{}", remark);

@@ -153,7 +153,7 @@ Gain gain_over(const Archive& archive, const std::string& better, const std::str
 
 /// Whether `export --to c` takes the filter.
 bool runs_in_c(const Archive& archive, const std::string& filter) {
-  if (filter == "drifting" || filter == combined_name) return false;
+  if (filter == combined_name) return false;
   const std::optional<Bank> bank = archive.bank_of(filter);
   return bank && bank->drift.empty() && bank->terms.empty() && bank->noise_factor.empty() && !bank->is_quantised();
 }

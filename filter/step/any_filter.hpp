@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/drifting.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
-/// A filter at work whose kind the caller need not know: a bank's, the drifting model's or several together.
+/// A filter at work whose kind the caller need not know: a bank's, or several together.
 class AnyFilter {
  public:
   virtual ~AnyFilter() = default;
@@ -26,7 +25,7 @@ class AnyFilter {
   /// Keeps the present state, and goes back to it.
   virtual void remember() = 0;
   virtual void go_back() = 0;
-  /// The filter of a bank, whose snapshot can be written; null for others.
+  /// The filter of a bank, whose snapshot can be written; null of several together.
   virtual BankFilter* of_bank() { return nullptr; }
 
  protected:
@@ -35,17 +34,15 @@ class AnyFilter {
   AnyFilter& operator=(const AnyFilter&) = default;
 };
 
-/// One of BankFilter and DriftingFilter.
-template <class Filter, class Snapshot>
 class OneFilter final : public AnyFilter {
  public:
-  explicit OneFilter(Filter filter) : filter_(std::move(filter)) {}
+  explicit OneFilter(BankFilter filter) : filter_(std::move(filter)) {}
   const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                              const Eigen::Ref<const Eigen::VectorXd>& measurement) override {
     return filter_.step(time_s, input, measurement);
   }
   FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) override {
-    const Snapshot now = filter_.snapshot();
+    const FilterSnapshot now = filter_.snapshot();
     const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(filter_.estimate().innovation.size(), not_a_number);
     FilterEstimate ahead = filter_.step(time_s, input, nothing);
     filter_.restore(now);
@@ -55,21 +52,15 @@ class OneFilter final : public AnyFilter {
   void restart() override { filter_.restart(); }
   void remember() override { remembered_ = filter_.snapshot(); }
   void go_back() override { filter_.restore(*remembered_); }
-  BankFilter* of_bank() override {
-    if constexpr (std::is_same_v<Filter, BankFilter>) return &filter_;
-    return nullptr;
-  }
+  BankFilter* of_bank() override { return &filter_; }
 
  private:
-  Filter filter_;
-  std::optional<Snapshot> remembered_;
+  BankFilter filter_;
+  std::optional<FilterSnapshot> remembered_;
 };
 
 inline std::unique_ptr<AnyFilter> any_filter(const Bank& bank, const FilterOptions& options) {
-  return std::make_unique<OneFilter<BankFilter, FilterSnapshot>>(BankFilter(bank, options));
-}
-inline std::unique_ptr<AnyFilter> any_filter(const DriftingModel& model) {
-  return std::make_unique<OneFilter<DriftingFilter, DriftingSnapshot>>(DriftingFilter(model));
+  return std::make_unique<OneFilter>(BankFilter(bank, options));
 }
 
 }  // namespace modebank

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "filter/step/student_noise.hpp"
 #include "ident/base/covariance.hpp"
 
 namespace modebank {
@@ -91,6 +92,26 @@ void check_drift(const Bank& bank) {
   require(weight > 0.0 && std::isfinite(weight), "modes of one theta that drifts need weights, not all of them 0");
 }
 
+void check_running_noise(const Bank& bank) {
+  const RunningNoise& noise = bank.running_noise;
+  const Wandering wandering = bank.drift.wandering;
+  require(wandering == Wandering::all || !noise.empty(), "drift of a part of its coefficients needs running noise");
+  if (noise.empty()) return;
+  const LinearStructure& s = bank.structure;
+  const auto positive = [](const auto& x) { return x.allFinite() && (x.array() > 0.0).all(); };
+  expect_size("least variance of the running noise", noise.floor.size(), 1, s.states, 1);
+  require(positive(noise.floor), "running noise needs a positive least variance of each state");
+  require(bank.mode_count() == 1, "running noise is that of one mode");
+  require(positive(bank.noise_variance()), "running noise starts from a positive variance");
+  require(!bank.drift.empty(), "running noise needs a mode that drifts");
+  require(wandering != Wandering::constant || s.intercept, "structure has no constant that could wander");
+  require(wandering != Wandering::gain || s.inputs > 0, "structure has no inputs whose gain could wander");
+  require(noise.lam >= 0.0 && noise.lam <= 1.0, "running noise needs lam in [0, 1]");
+  for (const auto& [ahead, factor] : noise.horizon_factor)
+    require(ahead > 1 && factor > 0.0 && std::isfinite(factor), "factor of a horizon is positive, and 1 at horizon 1");
+  StudentNoise{noise.nu};
+}
+
 StartMoments measured_lags(const Bank& bank) {
   const Eigen::Index n = bank.structure.dimension(), n_y = bank.R.rows();
   StartMoments moments{Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd::Zero(n, n)};
@@ -148,6 +169,20 @@ void check_sizes(const Bank& bank) {
                                 std::to_string(bank.structure.states) + " states");
 }
 
+Bank one_mode_bank(const LinearStructure& structure, const Eigen::VectorXd& theta, const Eigen::VectorXd& variance) {
+  const Index n = structure.states, dimension = structure.dimension(), p = structure.parameters();
+  Bank bank;
+  bank.structure = structure;
+  bank.C = Eigen::MatrixXd::Identity(n, dimension);
+  bank.R = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(dimension, dimension);
+  Q.diagonal().head(n) = variance;
+  bank.modes.push_back(
+      {unpack(structure, theta), std::move(Q), Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p), 1.0});
+  bank.initial_probability = Eigen::VectorXd::Ones(1);
+  return bank;
+}
+
 bool has_one_theta(const Bank& bank) {
   for (Eigen::Index k = 1; k < bank.mode_count(); ++k)
     if (bank.theta(k) != bank.theta(0) || bank.modes[static_cast<std::size_t>(k)].bend != bank.modes.front().bend)
@@ -171,6 +206,7 @@ void validate(const Bank& bank) {
   check_adaptation(bank.noise_adaptation);
   check_noise_factor(bank);
   check_drift(bank);
+  check_running_noise(bank);
 }
 
 Eigen::MatrixXd Bank::recording_noise() const {

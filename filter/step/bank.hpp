@@ -6,6 +6,7 @@
 
 #include "filter/step/drift_rates.hpp"
 #include "filter/step/noise_factor.hpp"
+#include "filter/step/running_noise.hpp"
 #include "filter/step/transition_logit.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"
@@ -79,6 +80,7 @@ struct Bank {
   BankDrift drift;                                ///< how theta of each mode wanders in a run; empty: not at all
   MotionTerms terms = {};                         ///< what bends the modes' motion, the same for all; empty: nothing
   NoiseFactor noise_factor = {};                  ///< how state and input scale every Q; empty: not at all
+  RunningNoise running_noise = {};                ///< of one mode that drifts, the competitor `drifting`; empty: Q
   Eigen::MatrixXd R_standard_error;               ///< n_y x n_y; empty unless R was estimated with the bank
   Eigen::MatrixXd transition_standard_error;      ///< K x K; of refined banks, empty otherwise
   Eigen::MatrixXd transition_weight_error;        ///< K x d standard errors of the logit's weights; empty: not known
@@ -87,8 +89,15 @@ struct Bank {
   bool is_quantised() const { return (quantum.array() > 0.0).any(); }
   /// Variances of what a recorded value differs from C x by: R's, and of rounding that is uniform within the quantum.
   Eigen::MatrixXd recording_noise() const;
+  /// n_s, variances of the first mode's process noise.
+  auto noise_variance() { return modes.front().Q.diagonal().head(structure.states); }
+  Eigen::VectorXd noise_variance() const { return modes.front().Q.diagonal().head(structure.states); }
   Eigen::VectorXd theta(Eigen::Index mode) const { return pack(structure, modes[mode].model); }
 };
+
+/// One mode whose states are measured exactly: C takes the newest sample, R = 0, Q = diag(variance) of the measured
+/// states.
+Bank one_mode_bank(const LinearStructure& structure, const Eigen::VectorXd& theta, const Eigen::VectorXd& variance);
 
 /// Whether these are several modes of the very same theta, which differ in noise alone.
 bool has_one_theta(const Bank& bank);

@@ -46,12 +46,13 @@ void check_memory(const DriftState& drift, const DriftState& own) {
     });
   };
   if (drift.theta.rows() != own.theta.rows() || drift.theta.cols() != own.theta.cols() || !same(drift.P, own.P) ||
-      !same(drift.cross, own.cross))
+      !same(drift.cross, own.cross) || drift.variance.size() != own.variance.size())
     throw std::invalid_argument("the snapshot is not of a filter whose modes drift as these do");
   const auto finite = [](const Eigen::MatrixXd& x) { return x.allFinite(); };
   const auto variances = [](const Eigen::MatrixXd& P) { return P.allFinite() && (P.diagonal().array() >= 0.0).all(); };
   if (!drift.theta.allFinite() || !std::all_of(drift.P.begin(), drift.P.end(), variances) ||
-      !std::all_of(drift.cross.begin(), drift.cross.end(), finite))
+      !std::all_of(drift.cross.begin(), drift.cross.end(), finite) || !drift.variance.allFinite() ||
+      (drift.variance.array() <= 0.0).any())
     throw std::invalid_argument("the snapshot holds numbers that no drifting mode has");
 }
 

@@ -1,6 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "modebank/base/names.hpp"
 
 namespace modebank {
 
@@ -13,10 +17,30 @@ struct DriftRates {
   bool operator==(const DriftRates&) const = default;
 };
 
+/// Coefficients that wander. all: every coefficient by itself. constant: the constant. gain: one factor on all
+/// coefficients of inputs, each keeping its share. The others of the last two are learned in a run, from p0 on.
+enum class Wandering { all, constant, gain };
+
+template <>
+struct EnumNames<Wandering> {
+  static constexpr Names<3> values{"all", "constant", "gain"};
+};
+
+/// How well settings that were chosen on a grid do on the training runs, and whether the grid was wide enough.
+struct GridTuning {
+  double log_score = 0.0;    ///< of the training runs [nats/sample]
+  Eigen::Index samples = 0;  ///< scored there
+  /// Settings whose best value is the grid's last while it could go on: of "q", "p0", "leak", "lam", "nu", "floor",
+  /// "horizon_factor".
+  std::vector<std::string> at_grid_end;
+};
+
 /// How the coefficients of a bank's modes wander in a run (equations/drift.hpp); each mode's Q is its v.
 struct BankDrift {
   DriftRates rates = {};
-  Eigen::VectorXd scale = {};  ///< r, root mean square of each regressor, positive; empty: nothing drifts
+  Eigen::VectorXd scale = {};            ///< r, root mean square of each regressor, positive; empty: nothing drifts
+  Wandering wandering = Wandering::all;  ///< other than all only with running noise
+  GridTuning tuning = {};                ///< of `drifting`
 
   bool empty() const { return scale.size() == 0; }
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "filter/step/drifting_recursion.hpp"
 #include "filter/step/equations/bounds.hpp"
 #include "ident/base/linalg.hpp"
 
@@ -28,23 +29,24 @@ Eigen::MatrixXd contracted(const LinearStructure& s, const Eigen::VectorXd& scal
   return theta;
 }
 
-DriftingForecast::DriftingForecast(const DriftingModel& model)
-    : model_(model),
-      inverse_scale_(model.scale.cwiseInverse()),
-      theta0_(scaled_coefficients(model.structure, model.theta0, model.scale)),
-      stable_theta0_(contracted(model.structure, model.scale, theta0_)),
-      h_(model.structure.regressors()),
-      direction_(model.direction()),
-      cross_(static_cast<std::size_t>(model.structure.states)),
+DriftingForecast::DriftingForecast(const Bank& bank)
+    : structure_(bank.structure),
+      rates_(bank.drift.rates),
+      scale_(bank.drift.scale),
+      inverse_scale_(scale_.cwiseInverse()),
+      theta0_(scaled_coefficients(structure_, bank.theta(0), scale_)),
+      stable_theta0_(contracted(structure_, scale_, theta0_)),
+      h_(structure_.regressors()),
+      direction_(wandering_direction(bank)),
+      cross_(static_cast<std::size_t>(structure_.states)),
       next_cross_(cross_) {}
 
-void DriftingForecast::start(const DriftingMemory& origin, const Eigen::VectorXd& v) {
-  const LinearStructure& s = model_.structure;
-  origin_ = &origin;
-  v_ = v;
-  z_ = origin.z;
+void DriftingForecast::start(const Eigen::Ref<const Eigen::VectorXd>& z, const DriftState& origin) {
+  const LinearStructure& s = structure_;
+  origin_ = origin;
+  z_ = z;
   towards_ = theta0_;
-  deviation_ = origin.theta - theta0_;
+  deviation_ = origin.theta.reshaped(s.regressors(), s.states) - theta0_;
   of_origin_ = 1.0;
   of_drift_ = 0.0;
   Z_.setZero(s.dimension(), s.dimension());
@@ -54,18 +56,18 @@ void DriftingForecast::start(const DriftingMemory& origin, const Eigen::VectorXd
   steps_ = 0;
 }
 
-void DriftingForecast::leak() {
-  const double leak = model_.rates.leak;
+void DriftingForecast::pass_time() {
+  const double leak = rates_.leak;
   deviation_ *= leak;
   of_origin_ *= leak * leak;
-  of_drift_ = leak * leak * of_drift_ + model_.rates.q;
+  of_drift_ = leak * leak * of_drift_ + rates_.q;
   for (Eigen::MatrixXd& C : cross_) C *= leak;
 }
 
 void DriftingForecast::step(const Eigen::Ref<const Eigen::VectorXd>& inputs) {
-  if (steps_ > 0 || !origin_->fresh) leak();
+  if (steps_ > 0) pass_time();
   if (++steps_ == 2) {
-    deviation_ = contracted(model_.structure, model_.scale, towards_ + deviation_) - stable_theta0_;
+    deviation_ = contracted(structure_, scale_, towards_ + deviation_) - stable_theta0_;
     towards_ = stable_theta0_;
   }
   theta_ = towards_ + deviation_;
@@ -76,14 +78,14 @@ void DriftingForecast::step(const Eigen::Ref<const Eigen::VectorXd>& inputs) {
 }
 
 void DriftingForecast::predict_mean(const Eigen::Ref<const Eigen::VectorXd>& inputs) {
-  fill_regressor(model_.structure, z_, inputs, h_);
+  fill_regressor(structure_, z_, inputs, h_);
   h_.array() *= inverse_scale_.array();
-  prediction_ = z_.head(model_.structure.states) + theta_.transpose() * h_;
+  prediction_ = z_.head(structure_.states) + theta_.transpose() * h_;
   for (double& value : prediction_) value = std::clamp(value, -largest_mean, largest_mean);
 }
 
 void DriftingForecast::propagate_errors() {
-  const Index n = model_.structure.states, dimension = model_.structure.dimension();
+  const Index n = structure_.states, dimension = structure_.dimension();
   of_lagged_ = (inverse_scale_.head(dimension).asDiagonal() * theta_.topRows(dimension)).transpose();
   of_lagged_.leftCols(n).diagonal().array() += 1.0;
   with_lagged_.noalias() = of_lagged_ * Z_;
@@ -95,22 +97,21 @@ void DriftingForecast::propagate_errors() {
   with_lagged_ += through_;
   for (Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const auto& P = origin_->P[static_cast<std::size_t>(origin_->P_of[at])];
-    Eigen::VectorXd Ph = P.selfadjointView<Eigen::Lower>() * h_;
+    Eigen::VectorXd Ph = origin_.P[at].selfadjointView<Eigen::Lower>() * h_;
     if (direction_.size() == 0)
       Ph = of_origin_ * Ph + of_drift_ * h_;
     else
       Ph = of_origin_ * Ph + of_drift_ * direction_.col(i).dot(h_) * direction_.col(i);
-    covariance_(i, i) += v_(i) * (1.0 + std::max(0.0, h_.dot(Ph)));
+    covariance_(i, i) += origin_.variance(i) * (1.0 + std::max(0.0, h_.dot(Ph)));
     Eigen::MatrixXd& next = next_cross_[at];
     next.leftCols(n).noalias() = cross_[at] * of_lagged_.transpose();
-    next.col(i) += v_(i) * Ph;
+    next.col(i) += origin_.variance(i) * Ph;
     next.rightCols(dimension - n) = cross_[at].leftCols(dimension - n);
   }
 }
 
 void DriftingForecast::push() {
-  const Index n = model_.structure.states, lagged = model_.structure.dimension() - n;
+  const Index n = structure_.states, lagged = structure_.dimension() - n;
   next_Z_.topLeftCorner(n, n) = covariance_;
   next_Z_.topRightCorner(n, lagged) = with_lagged_.leftCols(lagged);
   next_Z_.bottomLeftCorner(lagged, n) = with_lagged_.leftCols(lagged).transpose();

@@ -3,13 +3,14 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/step/drifting.hpp"
+#include "filter/step/bank.hpp"
+#include "filter/step/equations/drift_state.hpp"
 
 namespace modebank {
 
-/// Predicts from where a drifting model's filter stands, with known inputs and nothing measured any more.
+/// Predicts from where the filter of a bank with running noise stands, with known inputs and nothing measured any more.
 ///
-/// Coefficients: those of the origin, theta0 + leak^j (theta - theta0) in step j. Where they are unstable they are
+/// Coefficients: those of the origin, theta0 + leak^j (theta - theta0) in step j + 1. Where they are unstable they are
 /// contracted before the second step: A_i (of x[k-i+1], in full form) becomes A_i / rho^i with rho > 1 the largest
 /// modulus of a root of the polynomial, which divides every root by rho. theta0 is contracted likewise, so that leaking
 /// towards it does not undo that. The first step is the filter's own.
@@ -19,21 +20,24 @@ namespace modebank {
 /// phi the coefficients of the lagged samples; joint covariance of d and the lagged e, v as at the origin.
 class DriftingForecast {
  public:
-  explicit DriftingForecast(const DriftingModel& model);
+  explicit DriftingForecast(const Bank& bank);
 
-  /// `origin`: the filter's coefficients and samples after a sample, v its running variances.
-  void start(const DriftingMemory& origin, const Eigen::VectorXd& v);
+  /// z and coefficients: the filter's after a sample (DriftingRecursion).
+  void start(const Eigen::Ref<const Eigen::VectorXd>& z, const DriftState& origin);
   void step(const Eigen::Ref<const Eigen::VectorXd>& inputs);
 
   const Eigen::VectorXd& prediction() const { return prediction_; }  ///< n
   const Eigen::MatrixXd& covariance() const { return covariance_; }  ///< n x n, of its error
+  const Eigen::VectorXd& state() const { return z_; }                ///< the prediction and the samples before it
+  const Eigen::MatrixXd& state_covariance() const { return Z_; }
 
  private:
-  const DriftingModel& model_;
-  Eigen::VectorXd inverse_scale_;
+  LinearStructure structure_;
+  DriftRates rates_;
+  Eigen::VectorXd scale_, inverse_scale_;
   Eigen::MatrixXd theta0_, stable_theta0_;  ///< r x n, scaled
-  const DriftingMemory* origin_ = nullptr;
-  Eigen::VectorXd v_, z_, h_, prediction_;
+  DriftState origin_;
+  Eigen::VectorXd z_, h_, prediction_;
   Eigen::MatrixXd towards_, deviation_, theta_;         ///< r x n: what is leaked to, and the difference from it
   Eigen::MatrixXd direction_;                           ///< r x n, what wanders; empty: all
   double of_origin_ = 1.0, of_drift_ = 0.0;             ///< cov(d) / v = of_origin P + of_drift W
@@ -43,7 +47,7 @@ class DriftingForecast {
   Eigen::MatrixXd of_lagged_;                           ///< n x dimension, phi
   int steps_ = 0;
 
-  void leak();
+  void pass_time();
   void predict_mean(const Eigen::Ref<const Eigen::VectorXd>& inputs);
   void propagate_errors();
   void push();

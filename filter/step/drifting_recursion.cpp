@@ -18,6 +18,21 @@ Eigen::MatrixXd scaled_coefficients(const LinearStructure& s, const Eigen::Vecto
   return scale.asDiagonal() * theta.reshaped(s.regressors(), s.states);
 }
 
+Eigen::MatrixXd wandering_direction(const Bank& bank) {
+  const LinearStructure& s = bank.structure;
+  const Wandering wandering = bank.drift.wandering;
+  if (wandering == Wandering::all) return {};
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(s.regressors(), s.states);
+  if (wandering == Wandering::constant) {
+    d.bottomRows(1).setOnes();
+    return d;
+  }
+  const auto inputs = Eigen::seqN(s.dimension(), s.acting_inputs());
+  d(inputs, Eigen::all) = scaled_coefficients(s, bank.theta(0), bank.drift.scale)(inputs, Eigen::all);
+  d.colwise().normalize();  // of an output that no input moves nothing wanders
+  return d;
+}
+
 namespace {
 
 /// A covariance that rounding made indefinite (samples of very different sizes) keeps its variances and loses its
@@ -30,47 +45,55 @@ void make_usable(Eigen::MatrixXd& P) {
 
 }  // namespace
 
-DriftingRecursion::DriftingRecursion(const LinearStructure& structure, const Eigen::VectorXd& theta0,
-                                     const Eigen::VectorXd& scale, const DriftRates& rates, Eigen::MatrixXd direction)
-    : structure_(structure),
-      theta0_(scaled_coefficients(structure, theta0, scale)),
-      inverse_scale_(scale.cwiseInverse()),
-      rates_(rates),
-      direction_(std::move(direction)),
-      h_(structure.regressors()),
-      prediction_(structure.states),
-      innovation_(structure.states),
-      sample_(structure.states),
-      Ph_(structure.regressors(), structure.states),
-      growth_(Eigen::VectorXd::Ones(structure.states)) {
-  const Index r = structure.regressors();
-  memory_.P.assign(static_cast<std::size_t>(structure.states), Eigen::MatrixXd::Zero(r, r));
-  memory_.P_of.resize(static_cast<std::size_t>(structure.states));
-  start(Eigen::VectorXd::Zero(structure.dimension()));
+DriftingRecursion::DriftingRecursion(const Bank& bank)
+    : structure_(bank.structure),
+      rates_(bank.drift.rates),
+      keep_(bank.running_noise.lam),
+      start_variance_(bank.noise_variance()),
+      floor_(bank.running_noise.floor),
+      inverse_scale_(bank.drift.scale.cwiseInverse()),
+      theta0_(scaled_coefficients(structure_, bank.theta(0), bank.drift.scale)),
+      direction_(wandering_direction(bank)),
+      h_(structure_.regressors()),
+      prediction_(structure_.states),
+      variance_(structure_.states),
+      innovation_(structure_.states),
+      sample_(structure_.states),
+      Ph_(structure_.regressors(), structure_.states),
+      growth_(Eigen::VectorXd::Ones(structure_.states)) {
+  const Index r = structure_.regressors();
+  P_.assign(static_cast<std::size_t>(structure_.states), Eigen::MatrixXd::Zero(r, r));
+  P_of_.resize(static_cast<std::size_t>(structure_.states));
+  start(Eigen::VectorXd::Zero(structure_.dimension()));
+}
+
+/// Each output has a P by itself.
+void DriftingRecursion::own_P() {
+  std::iota(P_of_.begin(), P_of_.end(), Index{0});
+  P_count_ = structure_.states;
 }
 
 void DriftingRecursion::start(const Vector& z) {
-  memory_.theta = theta0_;
-  memory_.P[0].setZero();
-  memory_.P[0].diagonal().setConstant(rates_.p0);
-  std::fill(memory_.P_of.begin(), memory_.P_of.end(), Index{0});
-  memory_.P_count = 1;
-  if (direction_.size() > 0) {  // each output has its own
-    std::iota(memory_.P_of.begin(), memory_.P_of.end(), Index{0});
-    memory_.P_count = structure_.states;
-    for (Eigen::MatrixXd& P : memory_.P) P = memory_.P[0];
-  }
-  memory_.z = z;
-  memory_.fresh = true;
+  theta_ = theta0_;
+  v_ = start_variance_;
+  z_ = z;
+  P_[0].setZero();
+  P_[0].diagonal().setConstant(rates_.p0);
+  std::fill(P_of_.begin(), P_of_.end(), Index{0});
+  P_count_ = 1;
+  if (direction_.size() == 0) return;
+  own_P();
+  for (Eigen::MatrixXd& P : P_) P = P_[0];
 }
 
-void DriftingRecursion::drift() {
+/// Between two samples: coefficients leak to where they came from, and wander.
+void DriftingRecursion::pass_time() {
   if (rates_.leak != 1.0) {
-    memory_.theta = theta0_ + rates_.leak * (memory_.theta - theta0_);
-    for (Index g = 0; g < memory_.P_count; ++g) memory_.P[static_cast<std::size_t>(g)] *= rates_.leak * rates_.leak;
+    theta_ = theta0_ + rates_.leak * (theta_ - theta0_);
+    for (Index g = 0; g < P_count_; ++g) P_[static_cast<std::size_t>(g)] *= rates_.leak * rates_.leak;
   }
-  for (Index g = 0; g < memory_.P_count; ++g) {
-    Eigen::MatrixXd& P = memory_.P[static_cast<std::size_t>(g)];
+  for (Index g = 0; g < P_count_; ++g) {
+    Eigen::MatrixXd& P = P_[static_cast<std::size_t>(g)];
     if (direction_.size() == 0)
       P.diagonal().array() += rates_.q;
     else
@@ -80,38 +103,63 @@ void DriftingRecursion::drift() {
 }
 
 void DriftingRecursion::predict(const Vector& inputs) {
-  if (!memory_.fresh) drift();
-  memory_.fresh = false;
-  fill_regressor(structure_, memory_.z, inputs, h_);
+  fill_regressor(structure_, z_, inputs, h_);
   h_.array() *= inverse_scale_.array();
-  prediction_ = memory_.z.head(structure_.states);
-  prediction_.noalias() += memory_.theta.transpose() * h_;
+  prediction_ = z_.head(structure_.states);
+  prediction_.noalias() += theta_.transpose() * h_;
   for (double& value : prediction_) value = std::clamp(value, -largest_mean, largest_mean);
-  for (Index g = 0; g < memory_.P_count; ++g) {
-    Ph_.col(g).noalias() = memory_.P[static_cast<std::size_t>(g)].selfadjointView<Eigen::Lower>() * h_;
+  for (Index g = 0; g < P_count_; ++g) {
+    Ph_.col(g).noalias() = P_[static_cast<std::size_t>(g)].selfadjointView<Eigen::Lower>() * h_;
     growth_(g) = 1.0 + std::max(0.0, h_.dot(Ph_.col(g)));
   }
+  for (Index i = 0; i < variance_.size(); ++i) variance_(i) = v_(i) * growth(i);
 }
 
 void DriftingRecursion::skip() {
   innovation_.setConstant(not_a_number);
   push(prediction_);
+  pass_time();
 }
 
 /// Outputs that share a P, of which some are measured and others not: the others get a copy.
 void DriftingRecursion::split_partial() {
-  const Index before = memory_.P_count;
+  const Index before = P_count_;
   for (Index g = 0; g < before; ++g) {
     Index measured = 0, missing = 0;
     for (Index i = 0; i < innovation_.size(); ++i)
-      if (memory_.P_of[static_cast<std::size_t>(i)] == g) ++(std::isnan(innovation_(i)) ? missing : measured);
+      if (of(i) == g) ++(std::isnan(innovation_(i)) ? missing : measured);
     if (measured == 0 || missing == 0) continue;
-    const Index copy = memory_.P_count++;
-    memory_.P[static_cast<std::size_t>(copy)] = memory_.P[static_cast<std::size_t>(g)];
+    const Index copy = P_count_++;
+    P_[static_cast<std::size_t>(copy)] = P_[static_cast<std::size_t>(g)];
     Ph_.col(copy) = Ph_.col(g);
     growth_(copy) = growth_(g);
     for (Index i = 0; i < innovation_.size(); ++i)
-      if (Index& of = memory_.P_of[static_cast<std::size_t>(i)]; of == g && std::isnan(innovation_(i))) of = copy;
+      if (of(i) == g && std::isnan(innovation_(i))) P_of_[static_cast<std::size_t>(i)] = copy;
+  }
+}
+
+void DriftingRecursion::learn() {
+  for (Index g = 0; g < P_count_; ++g) {
+    bool learns = false;
+    for (Index i = 0; i < innovation_.size(); ++i) {
+      if (of(i) != g || std::isnan(innovation_(i))) continue;
+      theta_.col(i) += innovation_(i) / growth_(g) * Ph_.col(g);
+      learns = true;
+    }
+    if (!learns) continue;
+    Eigen::MatrixXd& P = P_[static_cast<std::size_t>(g)];
+    for (Index j = 0; j < P.cols(); ++j)
+      P.col(j).tail(P.rows() - j) -= Ph_(j, g) / growth_(g) * Ph_.col(g).tail(P.rows() - j);
+    make_usable(P);
+  }
+}
+
+/// What is missing of a sample changes nothing.
+void DriftingRecursion::adapt_variance() {
+  for (Index i = 0; i < v_.size(); ++i) {
+    const double e = innovation_(i);
+    if (std::isnan(e)) continue;
+    v_(i) = std::max(keep_ * v_(i) + (1.0 - keep_) * (e * e / growth(i)), floor_(i));
   }
 }
 
@@ -124,27 +172,44 @@ void DriftingRecursion::update(const Vector& measured) {
     whole = whole && !missing;
   }
   if (!whole) split_partial();
-  for (Index g = 0; g < memory_.P_count; ++g) {
-    bool learns = false;
-    for (Index i = 0; i < innovation_.size(); ++i) {
-      if (memory_.P_of[static_cast<std::size_t>(i)] != g || std::isnan(innovation_(i))) continue;
-      memory_.theta.col(i) += innovation_(i) / growth_(g) * Ph_.col(g);
-      learns = true;
-    }
-    if (!learns) continue;
-    Eigen::MatrixXd& P = memory_.P[static_cast<std::size_t>(g)];
-    for (Index j = 0; j < P.cols(); ++j)
-      P.col(j).tail(P.rows() - j) -= Ph_(j, g) / growth_(g) * Ph_.col(g).tail(P.rows() - j);
-    make_usable(P);
-  }
+  learn();
+  adapt_variance();
   push(sample_);
+  pass_time();
 }
 
 void DriftingRecursion::push(const Eigen::VectorXd& sample) {
-  double* const z = memory_.z.data();
+  double* const z = z_.data();
   const Index n = structure_.states;
-  for (Index i = memory_.z.size() - 1; i >= n; --i) z[i] = z[i - n];
-  memory_.z.head(n) = sample;
+  for (Index i = z_.size() - 1; i >= n; --i) z[i] = z[i - n];
+  z_.head(n) = sample;
+}
+
+DriftState DriftingRecursion::save() const {
+  DriftState state;
+  state.theta = theta_.reshaped(theta_.size(), 1);
+  for (Index i = 0; i < structure_.states; ++i) state.P.push_back(P_[static_cast<std::size_t>(of(i))]);
+  state.variance = v_;
+  return state;
+}
+
+void DriftingRecursion::restore(const Vector& z, const DriftState& state) {
+  z_ = z;
+  theta_ = state.theta.reshaped(theta_.rows(), theta_.cols());
+  v_ = state.variance;
+  P_ = state.P;
+  own_P();
+  if (direction_.size() > 0) return;
+  P_count_ = 0;  // outputs whose P are equal share one, as before
+  for (std::size_t i = 0; i < P_of_.size(); ++i) {
+    const auto equal = [&](Index g) { return P_[static_cast<std::size_t>(g)] == state.P[i]; };
+    Index g = 0;
+    while (g < P_count_ && !equal(g)) ++g;
+    P_of_[i] = g;
+    if (g < P_count_) continue;
+    P_[static_cast<std::size_t>(g)] = state.P[i];
+    ++P_count_;
+  }
 }
 
 }  // namespace modebank

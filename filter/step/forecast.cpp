@@ -43,10 +43,36 @@ struct Forecaster::OfSize final : Forecaster::Sized {
   }
 };
 
+/// DriftingForecast of a bank whose noise runs.
+struct Forecaster::OfRunningNoise final : Forecaster::Sized {
+  RunningNoise noise;
+  DriftingForecast forecast;
+  Index ahead = 0;
+
+  explicit OfRunningNoise(const Bank& bank) : noise(bank.running_noise), forecast(bank) {}
+
+  void start(const FilterMemory& origin) override {
+    forecast.start(origin.means.col(0), origin.drift);
+    ahead = 0;
+  }
+  void step(const Eigen::Ref<const Eigen::VectorXd>& inputs) override {
+    forecast.step(inputs);
+    ++ahead;
+  }
+  StateForecast predicted() const override {
+    return {forecast.state(), noise.factor_at(ahead) * forecast.state_covariance(), Eigen::VectorXd::Ones(1)};
+  }
+};
+
+std::unique_ptr<Forecaster::Sized> Forecaster::sized(const Bank& bank, const FilterOptions& options) {
+  if (!bank.running_noise.empty()) return std::make_unique<OfRunningNoise>(bank);
+  return with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() -> std::unique_ptr<Sized> {
+    return std::make_unique<OfSize<N, NY>>(bank, options);
+  });
+}
+
 Forecaster::Forecaster(const Bank& bank, const FilterOptions& options)
-    : sized_(with_sizes(
-          bank.structure.dimension(), bank.C.rows(),
-          [&]<int N, int NY>() -> std::unique_ptr<Sized> { return std::make_unique<OfSize<N, NY>>(bank, options); })),
+    : sized_(sized(bank, options)),
       inputs_(bank.structure.inputs),
       input_delay_(bank.structure.input_delay),
       measurements_(bank.C.rows()),

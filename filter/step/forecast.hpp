@@ -11,7 +11,7 @@
 
 /// Prediction without measurements, from where a filter stands and with the inputs known: the one place where it is
 /// done. A forecast is an object with start(...) and step(acting inputs): BankForecast of a bank by its moments,
-/// DriftingForecast of the drifting model, SamplePaths of a bank by chance. look_ahead takes one through a recorded
+/// DriftingForecast of one whose noise runs, SamplePaths of a bank by chance. look_ahead takes one through a recorded
 /// run, Forecaster through planned inputs.
 namespace modebank {
 
@@ -144,6 +144,8 @@ class Forecaster {
   struct Sized;
   template <int N, int NY>
   struct OfSize;
+  struct OfRunningNoise;
+  static std::unique_ptr<Sized> sized(const Bank& bank, const FilterOptions& options);
   std::unique_ptr<Sized> sized_;
   Eigen::Index inputs_, input_delay_, measurements_;
   SampleFeed feed_;

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double numbers_format = 1.0;
+constexpr double numbers_format = 2.0;
 
 /// Calls part(x) for everything in a snapshot, in the order of the numbers.
 template <class Snapshot, class Part>
@@ -24,6 +24,7 @@ void for_each_part(Snapshot& snapshot, Part part) {
   part(snapshot.drift.theta);
   part(snapshot.drift.P);
   part(snapshot.drift.cross);
+  part(snapshot.drift.variance);
   part(snapshot.samples.inputs);
   part(snapshot.samples.measurements);
   part(snapshot.samples.samples);

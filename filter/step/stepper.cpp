@@ -1,6 +1,7 @@
 #include "filter/step/stepper.hpp"
 
 #include "filter/step/detail/vector/vector_imm.hpp"
+#include "filter/step/drifting_stepper.hpp"
 #include "filter/step/equations/filter_memory.hpp"
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/equations/predicted_mixture.hpp"
@@ -59,6 +60,7 @@ class EquationStepper final : public Stepper {
 }  // namespace
 
 std::unique_ptr<Stepper> make_stepper(const Bank& bank, const FilterOptions& options) {
+  if (!bank.running_noise.empty()) return std::make_unique<DriftingStepper>(bank);
   if (VectorImm::can_step(bank, options)) return std::make_unique<VectorImm>(bank, options);
   return with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() -> std::unique_ptr<Stepper> {
     return std::make_unique<EquationStepper<N, NY>>(bank, options);

@@ -17,7 +17,6 @@
 #include "filter/judge/score/scores.hpp"
 #include "filter/learn/chain/parts.hpp"
 #include "filter/step/bank.hpp"
-#include "filter/step/drifting.hpp"
 #include "ident/data/run_labels.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/fit/fit_windows.hpp"

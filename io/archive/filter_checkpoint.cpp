@@ -72,7 +72,8 @@ std::vector<Eigen::MatrixXd> matrices_of(const json& stored) {
 DriftState drift_of(const json& stored) {
   if (!stored.contains("drift")) return {};
   const json& drift = stored.at("drift");
-  return {matrix_of(drift.at("theta")), matrices_of(drift.at("P")), matrices_of(drift.at("cross"))};
+  return {matrix_of(drift.at("theta")), matrices_of(drift.at("P")), matrices_of(drift.at("cross")),
+          drift.contains("variance") ? vector_of(drift.at("variance")) : Eigen::VectorXd()};
 }
 
 }  // namespace
@@ -102,6 +103,7 @@ void save_checkpoint(const std::filesystem::path& path, const std::string& ident
               {"time_s", std::isfinite(snapshot.samples.time_s) ? json(snapshot.samples.time_s) : json()}};
   if (const DriftState& drift = snapshot.drift; drift.theta.size() > 0)
     stored["drift"] = {{"theta", to_json(drift.theta)}, {"P", to_json(drift.P)}, {"cross", to_json(drift.cross)}};
+  if (snapshot.drift.variance.size() > 0) stored["drift"]["variance"] = to_json(snapshot.drift.variance);
   stored["sha256"] = digest_of(stored);
   replace_file(final_target(path), {stored.dump(1), "\n"});
 }

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <random>
 
-#include "filter/step/drifting.hpp"
+#include "filter/step/bank_filter.hpp"
 #include "filter/step/drifting_recursion.hpp"
 #include "ident/data/trajectory.hpp"
 
@@ -17,10 +17,9 @@ namespace modebank::test {
 using Eigen::Index;
 
 /// A stable drifting model of n states with `lags` samples of states and inputs, m inputs and an intercept.
-inline DriftingModel example_drifting(Index n, Index m, Index lags) {
-  DriftingModel model;
-  model.structure = {n, m, true, lags, lags, 1};
-  const Index r = model.structure.regressors();
+inline Bank example_drifting(Index n, Index m, Index lags) {
+  const LinearStructure structure{n, m, true, lags, lags, 1};
+  const Index r = structure.regressors();
   Eigen::MatrixXd theta = Eigen::MatrixXd::Zero(r, n);
   for (Index i = 0; i < n; ++i) {
     theta(i, i) = -0.5;
@@ -29,13 +28,19 @@ inline DriftingModel example_drifting(Index n, Index m, Index lags) {
     for (Index j = 0; j < m; ++j) theta(n * lags + j, i) = 0.4 - 0.1 * static_cast<double>(i + j);
     theta(r - 1, i) = 0.05;
   }
-  model.theta0 = theta.reshaped();
-  model.scale = Eigen::VectorXd::LinSpaced(r, 0.2, 1.0);
-  model.rates = {1e-3, 0.1, 0.97};
-  model.v0 = Eigen::VectorXd::LinSpaced(n, 0.01, 0.02);
-  model.variance_floor = 1e-3 * model.v0;
-  model.lam = 0.9;
-  model.nu = 5.0;
+  Bank model = one_mode_bank(structure, theta.reshaped(), Eigen::VectorXd::LinSpaced(n, 0.01, 0.02));
+  model.drift.scale = Eigen::VectorXd::LinSpaced(r, 0.2, 1.0);
+  model.drift.rates = {1e-3, 0.1, 0.97};
+  model.running_noise.floor = 1e-3 * model.noise_variance();
+  model.running_noise.lam = 0.9;
+  model.running_noise.nu = 5.0;
+  return model;
+}
+
+/// The same motion and noise, both constant.
+inline Bank fixed(Bank model) {
+  model.drift = {};
+  model.running_noise = {};
   return model;
 }
 
@@ -46,7 +51,7 @@ inline double draw_noise(double nu, std::mt19937_64& generator) {
 }
 
 /// A run of the model with its variance held at v0: starts at zero, coefficients drawn as cov(theta[first]) says.
-inline Trajectory simulate_drifting(const DriftingModel& model, Index samples, std::uint64_t seed) {
+inline Trajectory simulate_drifting(const Bank& model, Index samples, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;
   boost::random::uniform_01<double> uniform;
@@ -57,26 +62,27 @@ inline Trajectory simulate_drifting(const DriftingModel& model, Index samples, s
   run.state = Eigen::MatrixXd::Zero(s.states, samples);
   run.input.resize(s.inputs, samples);
   for (double& u : run.input.reshaped()) u = 2.0 * uniform(generator) - 1.0;
-  const Eigen::MatrixXd theta0 = scaled_coefficients(s, model.theta0, model.scale);
+  const Eigen::MatrixXd theta0 = scaled_coefficients(s, model.theta(0), model.drift.scale);
   Eigen::MatrixXd theta = theta0;
   const auto wander = [&](double variance) {
     for (Index i = 0; i < s.states; ++i)
-      for (double& value : theta.col(i)) value += std::sqrt(variance * model.v0(i)) * normal(generator);
+      for (double& value : theta.col(i)) value += std::sqrt(variance * model.noise_variance()(i)) * normal(generator);
   };
   Eigen::VectorXd h(s.regressors());
   for (Index k = s.first_transition() + 1; k < samples; ++k) {
     if (k == s.first_transition() + 1) {
-      wander(model.rates.p0);
+      wander(model.drift.rates.p0);
     } else {
-      theta = theta0 + model.rates.leak * (theta - theta0);
-      wander(model.rates.q);
+      theta = theta0 + model.drift.rates.leak * (theta - theta0);
+      wander(model.drift.rates.q);
     }
     Eigen::VectorXd z(s.dimension()), v(s.acting_inputs());
     for (Index i = 0; i < s.state_lags; ++i) z.segment(i * s.states, s.states) = run.state.col(k - 1 - i);
     for (Index i = 0; i < s.input_lags; ++i) v.segment(i * s.inputs, s.inputs) = run.input.col(k - s.input_delay - i);
     fill_regressor(s, z, v, h);
-    run.state.col(k) = run.state.col(k - 1) + theta.transpose() * h.cwiseQuotient(model.scale);
-    for (Index i = 0; i < s.states; ++i) run.state(i, k) += std::sqrt(model.v0(i)) * draw_noise(model.nu, generator);
+    run.state.col(k) = run.state.col(k - 1) + theta.transpose() * h.cwiseQuotient(model.drift.scale);
+    for (Index i = 0; i < s.states; ++i)
+      run.state(i, k) += std::sqrt(model.noise_variance()(i)) * draw_noise(model.running_noise.nu, generator);
   }
   return run;
 }

@@ -175,7 +175,7 @@ TEST(Em, FindsSeparatedClustersAndOrdersThemByWeight) {
   const EmResult fit = fit_em(draw(truth, 3000, 11), unweighted, 3, EmOptions(), 1);
   EXPECT_TRUE(fit.converged);
   EXPECT_FALSE(fit.floor_active);
-  EXPECT_GE(fit.agreeing_restarts, 1);
+  EXPECT_GE(fit.agreeing_restarts, 2);  // clusters twelve deviations apart are found again
   // Six standard errors: of a weight 0.0091, of a mean 0.045 (600 points), of a variance 0.07.
   EXPECT_TRUE(near(fit.mixture.weights, truth.weights, 6 * 0.0091));
   EXPECT_TRUE(near(fit.mixture.means, truth.means, 6 * 0.045));

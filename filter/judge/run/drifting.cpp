@@ -46,12 +46,11 @@ namespace {
 /// Looks ahead from where the filter stands at one moment of a run.
 class DriftingLookAhead {
  public:
-  DriftingLookAhead(const DriftingModel& model, const RunInstants& instants, const Trajectory& run,
-                    DriftingForecasts& out)
-      : instants_(instants), run_(run), out_(out), noise_(model.nu), forecast_(model) {}
+  DriftingLookAhead(const Bank& bank, const RunInstants& instants, const Trajectory& run, DriftingForecasts& out)
+      : instants_(instants), run_(run), out_(out), noise_(bank.running_noise.nu), forecast_(bank) {}
 
-  void from(Index t, const DriftingMemory& origin, const Eigen::VectorXd& v) {
-    forecast_.start(origin, v);
+  void from(Index t, const DriftingRecursion& origin) {
+    forecast_.start(origin.z(), origin.save());
     look_ahead(forecast_, instants_, t, out_.predictions.horizons,
                [&](std::size_t horizon, Index k) { score(horizon, k); });
   }
@@ -76,35 +75,25 @@ class DriftingLookAhead {
 
 }  // namespace
 
-void follow(const DriftingModel& model, const RunInstants& instants, Index t, const Trajectory& run,
-            DriftingRecursion& recursion, Eigen::VectorXd& v) {
+void follow(const RunInstants& instants, Index t, const Trajectory& run, DriftingRecursion& recursion) {
   const Instant& instant = instants.instants[static_cast<std::size_t>(t)];
-  if (instant.starts) {
-    recursion.start(instant.start);
-    v = model.v0;
-    return;
-  }
+  if (instant.starts) return recursion.start(instant.start);
   recursion.predict(instants.inputs.col(t));
   if (instant.sample < 0) return recursion.skip();
   recursion.update(run.state.col(instant.sample));
-  adapt_variance(model, recursion, v);
 }
 
-DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, std::vector<Index> horizons) {
-  validate(model);
-  const Bank bank = fixed_bank(model);
+DriftingForecasts drifting_forecasts(const Bank& bank, const Trajectory& run, std::vector<Index> horizons) {
+  validate(bank);
   check_run(bank, run);
-  const Index n = model.structure.states;
-  DriftingForecasts out{empty_horizons(std::move(horizons), n, run.samples()), {}};
+  DriftingForecasts out{empty_horizons(std::move(horizons), bank.C.rows(), run.samples()), {}};
   out.whitened = out.predictions.error;
   const RunInstants instants(bank, run);
-  DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates, model.direction());
-  Eigen::VectorXd v = model.v0;
-  DriftingLookAhead look(model, instants, run, out);
+  DriftingRecursion recursion(bank);
+  DriftingLookAhead look(bank, instants, run, out);
   for (Index t = 0; t < instants.count(); ++t) {
-    const Instant& instant = instants.instants[static_cast<std::size_t>(t)];
-    follow(model, instants, t, run, recursion, v);
-    if (instant.sample >= 0) look.from(t, recursion.memory(), v);
+    follow(instants, t, run, recursion);
+    if (instants.instants[static_cast<std::size_t>(t)].sample >= 0) look.from(t, recursion);
   }
   return out;
 }
@@ -115,12 +104,12 @@ double widening_gain(const StudentNoise& noise, const Eigen::Ref<const Eigen::Ve
   return gain;
 }
 
-HorizonEvaluation evaluate_horizons(const DriftingModel& model, const Trajectory& run, std::vector<Index> horizons) {
-  DriftingForecasts forecasts = forecast(model, run, std::move(horizons));
+HorizonEvaluation drifting_horizons(const Bank& bank, const Trajectory& run, std::vector<Index> horizons) {
+  DriftingForecasts forecasts = drifting_forecasts(bank, run, std::move(horizons));
   HorizonEvaluation& out = forecasts.predictions;
-  const StudentNoise noise(model.nu);
+  const StudentNoise noise(bank.running_noise.nu);
   for (std::size_t h = 0; h < out.horizons.size(); ++h) {
-    const double factor = model.factor_at(out.horizons[h]);
+    const double factor = bank.running_noise.factor_at(out.horizons[h]);
     if (factor == 1.0) continue;
     for (Index k = 0; k < run.samples(); ++k)
       if (double& value = out.log_density(static_cast<Index>(h), k); !std::isnan(value))

@@ -3,17 +3,15 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/run/horizon.hpp"
-#include "filter/step/drifting.hpp"
+#include "filter/step/bank.hpp"
+#include "filter/step/drifting_recursion.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "filter/step/student_noise.hpp"
 #include "ident/data/trajectory.hpp"
 
+/// Banks whose noise runs (RunningNoise), several steps ahead.
 namespace modebank {
-
-/// What DriftingFilter says of every sample of a run, under the conventions and conditions of evaluate_run of a bank.
-RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run);
 
 /// Predictions some samples ahead (DriftingForecast), before the factor of their horizon has widened them.
 struct DriftingForecasts {
@@ -21,11 +19,10 @@ struct DriftingForecasts {
   /// Per horizon n x N: errors of variance one and uncorrelated, L^-1 error with L L' = cov(error).
   std::vector<Eigen::MatrixXd> whitened;
 };
-DriftingForecasts forecast(const DriftingModel& model, const Trajectory& run, std::vector<Eigen::Index> horizons);
+DriftingForecasts drifting_forecasts(const Bank& bank, const Trajectory& run, std::vector<Eigen::Index> horizons);
 
-/// Takes the recursion from the moment before to moment t of a run; v follows where something was measured.
-void follow(const DriftingModel& model, const RunInstants& instants, Eigen::Index t, const Trajectory& run,
-            DriftingRecursion& recursion, Eigen::VectorXd& v);
+/// Takes the recursion from the moment before to moment t of a run.
+void follow(const RunInstants& instants, Eigen::Index t, const Trajectory& run, DriftingRecursion& recursion);
 
 /// Log density of the error of a prediction: outputs decorrelated in their order, then each Student's [nats].
 double log_density(const StudentNoise& noise, const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
@@ -33,9 +30,8 @@ double log_density(const StudentNoise& noise, const Eigen::VectorXd& error, cons
 /// By how much the log density of whitened errors changes when their variance is multiplied by `factor`.
 double widening_gain(const StudentNoise& noise, const Eigen::Ref<const Eigen::VectorXd>& whitened, double factor);
 
-/// The same conventions as those of banks. Log densities: Student's, times the model's factor of the horizon; outputs
-/// whose errors are correlated are decorrelated in their order first.
-HorizonEvaluation evaluate_horizons(const DriftingModel& model, const Trajectory& run,
-                                    std::vector<Eigen::Index> horizons);
+/// evaluate_horizons of such a bank. Log densities: Student's, times the bank's factor of the horizon; outputs whose
+/// errors are correlated are decorrelated in their order first.
+HorizonEvaluation drifting_horizons(const Bank& bank, const Trajectory& run, std::vector<Eigen::Index> horizons);
 
 }  // namespace modebank

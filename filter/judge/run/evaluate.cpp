@@ -3,7 +3,6 @@
 #include <cmath>
 #include <memory>
 
-#include "filter/judge/run/drifting.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "filter/step/pit_draw.hpp"
@@ -80,13 +79,6 @@ RunEvaluation evaluate_samples(const Bank& bank, Filter&& filter, const Trajecto
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
   return evaluate_samples(bank, BankFilter(bank, options), run);
-}
-
-RunEvaluation evaluate_run(const DriftingModel& model, const Trajectory& run) {
-  validate(model);
-  const Bank bank = fixed_bank(model);
-  check_run(bank, run);
-  return evaluate_samples(bank, DriftingFilter(model), run);
 }
 
 RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& filter) {

@@ -155,12 +155,26 @@ void from_each_start(const FilterModel<N, NY>& model, const Given& given, FreeRu
   });
 }
 
+void predict_with_running_noise(const Bank& bank, const Given& given, FreeRun& out) {
+  DriftingRecursion recursion(bank);
+  DriftingFreeForecast forecast(bank);
+  given.for_each(out, [&](Index first, Index last, Index end) {
+    for (Index t = first; t <= last; ++t) follow(given.instants(), t, given.run(), recursion);
+    forecast.start(recursion);
+    predict_on(forecast, given, last, end, out);
+  });
+}
+
 }  // namespace
 
 FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& filter, const FreeRunOptions& options) {
   check_run(bank, run);
   const Given given(bank, run, options);
   FreeRun out = sized_free_run(bank.C.rows(), run.samples());
+  if (!bank.running_noise.empty()) {
+    predict_with_running_noise(bank, given, out);
+    return out;
+  }
   if (options.method == FreeRunMethod::paths) {
     const FilterModel<Eigen::Dynamic, Eigen::Dynamic> model(bank, filter);
     FilterMemory memory;
@@ -180,23 +194,6 @@ FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& f
       forecast.start(state);
       predict_on(forecast, given, t, end, out);
     });
-  });
-  return out;
-}
-
-FreeRun free_run(const DriftingModel& model, const Trajectory& run, const FreeRunOptions& options) {
-  validate(model);
-  const Bank bank = fixed_bank(model);
-  check_run(bank, run);
-  const Given given(bank, run, options);
-  FreeRun out = sized_free_run(bank.C.rows(), run.samples());
-  DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates, model.direction());
-  DriftingFreeForecast forecast(model);
-  Eigen::VectorXd v = model.v0;
-  given.for_each(out, [&](Index first, Index last, Index end) {
-    for (Index t = first; t <= last; ++t) follow(model, given.instants(), t, given.run(), recursion, v);
-    forecast.start(recursion.memory(), v);
-    predict_on(forecast, given, last, end, out);
   });
   return out;
 }

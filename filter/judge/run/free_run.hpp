@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "filter/step/bank.hpp"
-#include "filter/step/drifting.hpp"
 #include "ident/data/trajectory.hpp"
 #include "modebank/base/names.hpp"
 #include "modebank/filter/options.hpp"
@@ -59,10 +58,9 @@ struct FreeRun {
   std::vector<std::string> notes;  ///< why there is no prediction where there is none
 };
 
-/// Conditions as those of evaluate_run; throws std::invalid_argument for fewer samples than the model needs.
+/// Conditions as those of evaluate_run; throws std::invalid_argument for fewer samples than the model needs. Of banks
+/// whose noise runs coefficients decay as where horizons are predicted (DriftingForecast), and it is always by moments.
 FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& filter, const FreeRunOptions& options);
-/// The coefficients of the origin decay as where horizons are predicted (DriftingForecast); always by moments.
-FreeRun free_run(const DriftingModel& model, const Trajectory& run, const FreeRunOptions& options);
 
 /// One row of /evaluation/free_run. Over the samples that are predicted and measured; each signal by itself, but for
 /// the log score.

@@ -101,15 +101,16 @@ class PathForecast final : public Forecast {
   Eigen::VectorXd share_;   ///< K
 };
 
-/// The drifting model.
+/// A bank whose noise runs.
 class DriftingFreeForecast final : public Forecast {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
-  explicit DriftingFreeForecast(const DriftingModel& model) : model_(model), noise_(model.nu), forecast_(model) {}
-  void start(const DriftingMemory& origin, const Eigen::VectorXd& v) { forecast_.start(origin, v); }
+  explicit DriftingFreeForecast(const Bank& bank)
+      : running_(bank.running_noise), noise_(running_.nu), forecast_(bank) {}
+  void start(const DriftingRecursion& origin) { forecast_.start(origin.z(), origin.save()); }
   void step(const Vector& inputs) override { forecast_.step(inputs); }
-  void arrive(Eigen::Index samples) override { covariance_ = model_.factor_at(samples) * forecast_.covariance(); }
+  void arrive(Eigen::Index samples) override { covariance_ = running_.factor_at(samples) * forecast_.covariance(); }
 
   Eigen::VectorXd mean() const override { return forecast_.prediction(); }
   Eigen::VectorXd standard_deviation() const override {
@@ -119,7 +120,7 @@ class DriftingFreeForecast final : public Forecast {
     return noise_.probability((y - forecast_.prediction()(i)) / standard_deviation()(i));
   }
   double quantile(Eigen::Index i, double p) const override {
-    const double nu = model_.nu,
+    const double nu = running_.nu,
                  units = nu == 0.0 ? normal_quantile(p) : student_quantile(p, nu) * std::sqrt((nu - 2.0) / nu);
     return forecast_.prediction()(i) + units * standard_deviation()(i);
   }
@@ -129,7 +130,7 @@ class DriftingFreeForecast final : public Forecast {
   Eigen::VectorXd mode_probability() const override { return Eigen::VectorXd::Ones(1); }
 
  private:
-  const DriftingModel& model_;
+  RunningNoise running_;
   StudentNoise noise_;
   DriftingForecast forecast_;
   Eigen::MatrixXd covariance_;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "filter/judge/run/drifting.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "filter/step/forecast.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -69,6 +70,7 @@ HorizonEvaluation empty_horizons(std::vector<Index> horizons, Index n_y, Index s
 
 HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,
                                     std::vector<Index> horizons) {
+  if (!bank.running_noise.empty()) return drifting_horizons(bank, run, std::move(horizons));
   check_run(bank, run);
   HorizonEvaluation out = empty_horizons(std::move(horizons), bank.C.rows(), run.samples());
   with_sizes(bank.structure.dimension(), bank.C.rows(),

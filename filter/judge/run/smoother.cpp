@@ -221,6 +221,7 @@ Eigen::VectorXi viterbi(const Bank& bank, const Trajectory& run, const FilterOpt
 
 void smooth_run(const Bank& bank, const Trajectory& run, const FilterOptions& options, RunEvaluation& evaluation) {
   check_run(bank, run);
+  if (!bank.running_noise.empty()) return;  // its states are known, and it has one mode
   if (!bank.drift.empty()) {
     evaluation.viterbi_mode = drifting_mode_sequence(bank, run, options);
     return;

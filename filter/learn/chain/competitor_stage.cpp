@@ -39,14 +39,15 @@ OneModel one_model(const Recording& recording, const WindowFits& windows, const 
 
 namespace {
 
-DriftingModel drifting(const Recording& recording, const OneModel& of, const CompetitorInputs& inputs,
-                       const Progress& progress) {
+Bank drifting(const Recording& recording, const OneModel& of, const CompetitorInputs& inputs,
+              const Progress& progress) {
   const Stopwatch watch;
-  DriftingModel model = learn_likeliest_drifting(recording, of.global, of.structure, inputs.horizon);
+  Bank bank = learn_likeliest_drifting(recording, of.global, of.structure, inputs.horizon);
+  const DriftRates& rates = bank.drift.rates;
   progress.progress(fmt::format("drifting: {} with {} lags, q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s",
-                                name_of(model.wandering), model.structure.state_lags, model.rates.q, model.rates.p0,
-                                model.rates.leak, model.lam, model.nu, watch.seconds()));
-  return model;
+                                name_of(bank.drift.wandering), bank.structure.state_lags, rates.q, rates.p0, rates.leak,
+                                bank.running_noise.lam, bank.running_noise.nu, watch.seconds()));
+  return bank;
 }
 
 /// The factor on the competitors' noise; empty: none.

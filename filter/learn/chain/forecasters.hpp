@@ -14,8 +14,7 @@ namespace modebank {
 /// A filter that was learned, as it is run.
 struct Forecaster {
   std::string name;
-  Bank bank;                                ///< of drifting: its sizes
-  std::optional<DriftingModel> drifting{};  ///< the filter is it
+  Bank bank;
   FilterOptions filter;
 
   std::unique_ptr<AnyFilter> start() const;

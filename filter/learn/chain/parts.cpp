@@ -8,7 +8,7 @@ std::optional<Bank> Learning::bank_of(const std::string& filter) const {
   if (filter == "noise_only") return noise_only;
   if (filter == "one_motion") return one_motion;
   if (filter == "nonlinear") return nonlinear;
-  if (filter == "drifting" && drifting) return fixed_bank(*drifting);
+  if (filter == "drifting") return drifting;
   if (filter == combined_name && bank) return combined_frame(*bank);
   return {};
 }

@@ -8,7 +8,6 @@
 #include "filter/judge/score/scores.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/step/bank.hpp"
-#include "filter/step/drifting.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/lag/structure.hpp"
 #include "mixture/select.hpp"
@@ -29,10 +28,10 @@ struct MixturePart {
 };
 
 struct CompetitorsPart {
-  std::optional<Bank> baseline;           ///< one Kalman filter
-  std::optional<Bank> noise_only;         ///< switches noise alone
-  std::optional<DriftingModel> drifting;  ///< one linear model whose coefficients wander
-  std::optional<Bank> nonlinear = {};     ///< one motion that bends; empty where no term gains on the training runs
+  std::optional<Bank> baseline;        ///< one Kalman filter
+  std::optional<Bank> noise_only;      ///< switches noise alone
+  std::optional<Bank> drifting;        ///< one linear motion whose coefficients wander, with running noise
+  std::optional<Bank> nonlinear = {};  ///< one motion that bends; empty where no term gains on the training runs
 };
 
 struct BankPart {
@@ -49,8 +48,7 @@ struct BankPart {
 struct Learning : StructurePart, WindowsPart, MixturePart, CompetitorsPart, BankPart {
   bool terms_asked = false;  ///< for nonlinear, whether or not any gained
 
-  /// By the name of its filter, where there is one; of drifting its fixed_bank, whose states and measurements are its;
-  /// of all combined their combined_frame.
+  /// By the name of its filter, where there is one; of all combined their combined_frame.
   std::optional<Bank> bank_of(const std::string& filter) const;
 };
 

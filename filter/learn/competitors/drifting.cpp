@@ -29,28 +29,26 @@ namespace {
 
 constexpr Index factors_below = 16, factors_above = 32;  // of the grid 2^(i / 4) of a horizon's factor
 
-DriftingModel undecided_model(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
+Bank undecided_bank(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
   const Index n = structure.states;
   const Bank frame = bank_frame(recording, structure, Eigen::MatrixXd::Zero(n, n));
-  DriftingModel model;
-  model.structure = structure;
-  model.state_names = frame.state_names;
-  model.input_names = frame.input_names;
-  model.dt_s = frame.dt_s;
-  model.theta0 = global.theta;
-  model.scale = regressor_scale(recording, structure);
-  model.v0 = global.noise_variance().unaryExpr(&positive_variance);
-  model.variance_floor = model.v0;
-  model.quantum = recording.quantum;
-  return model;
+  Bank bank = one_mode_bank(structure, global.theta, global.noise_variance().unaryExpr(&positive_variance));
+  bank.model = "varx";
+  bank.state_names = frame.state_names;
+  bank.input_names = frame.input_names;
+  bank.dt_s = frame.dt_s;
+  bank.drift.scale = regressor_scale(recording, structure);
+  bank.running_noise.floor = bank.noise_variance();
+  bank.quantum = recording.quantum;
+  return bank;
 }
 
-void take_own_variance(DriftingModel& model, const Recording& recording) {
+void take_own_variance(Bank& bank, const Recording& recording) {
   const DriftingGrid grid = coarse_drifting_grid();
-  const DriftingScores scores = score_drifting_grid(model, recording, grid);
+  const DriftingScores scores = score_drifting_grid(bank, recording, grid);
   const Index drift = scores.best() / (std::ssize(grid.lam) * std::ssize(grid.nu) * std::ssize(grid.floor));
-  model.v0.array() *= scores.error_ratio.col(drift).array();
-  model.v0 = model.v0.unaryExpr(&positive_variance);
+  bank.noise_variance().array() *= scores.error_ratio.col(drift).array();
+  bank.noise_variance() = bank.noise_variance().unaryExpr(&positive_variance).eval();
 }
 
 /// Settings that may be better beyond the grid; a floor that the next one equals never mattered.
@@ -71,27 +69,27 @@ std::vector<std::string> grid_ends(const DriftingGrid& grid, const DriftingScore
   return ends;
 }
 
-void settle(DriftingModel& model, const DriftingGrid& grid, const DriftingScores& scores) {
+void settle(Bank& bank, const DriftingGrid& grid, const DriftingScores& scores) {
   const Index best = scores.best();
   const std::array<Index, 6> at = grid.point(best);
   const auto chosen = [&](const std::vector<double>& values, std::size_t i) {
     return values[static_cast<std::size_t>(at[i])];
   };
-  model.rates = {chosen(grid.q, 0), chosen(grid.p0, 1), chosen(grid.leak, 2)};
-  model.lam = chosen(grid.lam, 3);
-  model.nu = chosen(grid.nu, 4);
-  model.variance_floor = chosen(grid.floor, 5) * model.v0;
-  model.tuning = {scores.log_score(best), scores.samples, grid_ends(grid, scores, best)};
+  bank.drift.rates = {chosen(grid.q, 0), chosen(grid.p0, 1), chosen(grid.leak, 2)};
+  bank.running_noise.lam = chosen(grid.lam, 3);
+  bank.running_noise.nu = chosen(grid.nu, 4);
+  bank.running_noise.floor = chosen(grid.floor, 5) * bank.noise_variance();
+  bank.drift.tuning = {scores.log_score(best), scores.samples, grid_ends(grid, scores, best)};
 }
 
-std::vector<DriftingForecasts> training_forecasts(const DriftingModel& model, const Recording& recording,
+std::vector<DriftingForecasts> training_forecasts(const Bank& bank, const Recording& recording,
                                                   const std::vector<Index>& horizons) {
   std::vector<const Trajectory*> runs;
   for (const Trajectory& run : recording.runs)
     if (run.role == Role::train) runs.push_back(&run);
   std::vector<DriftingForecasts> forecasts(runs.size());
   tbb::parallel_for(std::size_t{0}, runs.size(),
-                    [&](std::size_t i) { forecasts[i] = forecast(model, *runs[i], horizons); });
+                    [&](std::size_t i) { forecasts[i] = drifting_forecasts(bank, *runs[i], horizons); });
   return forecasts;
 }
 
@@ -118,42 +116,43 @@ Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts
   return best;
 }
 
-void choose_horizon_factors(DriftingModel& model, const Recording& recording, const std::vector<Index>& horizons) {
-  const std::vector<DriftingForecasts> runs = training_forecasts(model, recording, horizons);
+void choose_horizon_factors(Bank& bank, const Recording& recording, const std::vector<Index>& horizons) {
+  const std::vector<DriftingForecasts> runs = training_forecasts(bank, recording, horizons);
   if (runs.empty()) return;
   const std::vector<Index>& ascending = runs.front().predictions.horizons;
-  const StudentNoise noise(model.nu);
+  const StudentNoise noise(bank.running_noise.nu);
   bool at_end = false;
   for (std::size_t h = 0; h < ascending.size(); ++h) {
     if (ascending[h] == 1) continue;
     const Index best = best_factor(noise, runs, h);
     at_end = at_end || best == -factors_below || best == factors_above;
-    model.horizon_factor.emplace_back(ascending[h], std::exp2(0.25 * static_cast<double>(best)));
+    bank.running_noise.horizon_factor.emplace_back(ascending[h], std::exp2(0.25 * static_cast<double>(best)));
   }
-  if (at_end) model.tuning.at_grid_end.emplace_back("horizon_factor");
+  if (at_end) bank.drift.tuning.at_grid_end.emplace_back("horizon_factor");
 }
 
 }  // namespace
 
-DriftingModel learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
-                             const std::vector<Index>& horizons, const DriftingGrid& grid, Wandering wandering) {
-  DriftingModel model = undecided_model(recording, global, structure);
-  model.wandering = wandering;
-  if (wandering == Wandering::gain) take_own_variance(model, recording);
-  settle(model, grid, score_drifting_grid(model, recording, grid));
-  choose_horizon_factors(model, recording, horizons);
-  return model;
+Bank learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
+                    const std::vector<Index>& horizons, const DriftingGrid& grid, Wandering wandering) {
+  Bank bank = undecided_bank(recording, global, structure);
+  bank.drift.wandering = wandering;
+  if (wandering == Wandering::gain) take_own_variance(bank, recording);
+  settle(bank, grid, score_drifting_grid(bank, recording, grid));
+  choose_horizon_factors(bank, recording, horizons);
+  return bank;
 }
 
-DriftingModel relearn_drifting(const DriftingModel& like, const Recording& recording, const GlobalModel& global) {
-  const DriftingModel own = undecided_model(recording, global, like.structure);
-  DriftingModel model = like;
-  model.theta0 = own.theta0;
-  model.scale = own.scale;
-  if (like.wandering == Wandering::gain) return model;  // whose variance is that of its own errors
-  model.variance_floor = (like.variance_floor.array() / like.v0.array() * own.v0.array()).matrix();
-  model.v0 = own.v0;
-  return model;
+Bank relearn_drifting(const Bank& like, const Recording& recording, const GlobalModel& global) {
+  const Bank own = undecided_bank(recording, global, like.structure);
+  Bank bank = like;
+  bank.modes.front().model = own.modes.front().model;
+  bank.drift.scale = own.drift.scale;
+  if (like.drift.wandering == Wandering::gain) return bank;  // whose variance is that of its own errors
+  const Eigen::ArrayXd share = like.running_noise.floor.array() / like.noise_variance().array();
+  bank.running_noise.floor = share * own.noise_variance().array();
+  bank.modes.front().Q = own.modes.front().Q;
+  return bank;
 }
 
 }  // namespace modebank

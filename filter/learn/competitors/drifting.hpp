@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "filter/step/drifting.hpp"
+#include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/model/local_model.hpp"
 
@@ -38,10 +38,11 @@ struct DriftingScores {
   Eigen::Index best() const;
 };
 
-/// `start`: a model whose theta0, scale, v0 and what wanders are those of the training runs; its other settings do not
-/// matter. One recursion of the coefficients per (q, p0, leak), from which all running variances follow, from which all
-/// densities follow. Throws std::invalid_argument for an empty grid, and DataError when nothing can be scored.
-DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& recording, const DriftingGrid& grid);
+/// The competitor `drifting` is a bank of one mode that drifts, with running noise. `start`: one whose theta, scale, Q
+/// and what wanders are those of the training runs; its other settings do not matter. One recursion of the coefficients
+/// per (q, p0, leak), from which all running variances follow, from which all densities follow. Throws
+/// std::invalid_argument for an empty grid, and DataError when nothing can be scored.
+DriftingScores score_drifting_grid(const Bank& start, const Recording& recording, const DriftingGrid& grid);
 
 /// Root mean square of every regressor over the training transitions, each counting the same; 1 for what is always
 /// zero. Throws DataError where there is none.
@@ -52,12 +53,12 @@ Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructur
 /// its variance is the one of 2^(-4), 2^(-3.75), ..., 2^8 that makes the training runs' errors most likely. Samples
 /// count the same whatever their weights. Where one factor wanders v0 is the variance of the model's own errors: those
 /// of constant coefficients hold what wanders.
-DriftingModel learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
-                             const std::vector<Eigen::Index>& horizons, const DriftingGrid& grid = {},
-                             Wandering wandering = Wandering::all);
+Bank learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
+                    const std::vector<Eigen::Index>& horizons, const DriftingGrid& grid = {},
+                    Wandering wandering = Wandering::all);
 
 /// A model with the settings of `like`, its theta0 and variances of these training runs.
-DriftingModel relearn_drifting(const DriftingModel& like, const Recording& recording, const GlobalModel& global);
+Bank relearn_drifting(const Bank& like, const Recording& recording, const GlobalModel& global);
 
 /// Fewer settings, to compare models rather than to forecast with one.
 DriftingGrid coarse_drifting_grid();
@@ -70,7 +71,7 @@ double drifting_training_score(const Recording& recording, Eigen::Index latest, 
 /// (which it has then), one factor on the coefficients of its inputs, or the same with one lag. The causal score of at
 /// most 20,000 transitions and settings of the coarse grid choose; all coefficients of `structure` stay where nothing
 /// gains 0.02 nats per sample.
-DriftingModel learn_likeliest_drifting(const Recording& recording, const GlobalModel& global,
-                                       const LinearStructure& structure, const std::vector<Eigen::Index>& horizons);
+Bank learn_likeliest_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
+                              const std::vector<Eigen::Index>& horizons);
 
 }  // namespace modebank

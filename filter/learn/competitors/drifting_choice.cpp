@@ -45,14 +45,14 @@ double drifting_training_score(const Recording& recording, Index latest, const L
                                const DriftingGrid& grid, Wandering wandering) {
   const Recording part = from_common_start(recording, latest - structure.first_transition());
   try {
-    return learn_drifting(part, fit_global(part, structure), structure, {1}, grid, wandering).tuning.log_score;
+    return learn_drifting(part, fit_global(part, structure), structure, {1}, grid, wandering).drift.tuning.log_score;
   } catch (const DataError&) {
     return -std::numeric_limits<double>::infinity();
   }
 }
 
-DriftingModel learn_likeliest_drifting(const Recording& recording, const GlobalModel& global,
-                                       const LinearStructure& structure, const std::vector<Index>& horizons) {
+Bank learn_likeliest_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
+                              const std::vector<Index>& horizons) {
   const std::optional<Recording> fewer = learning_part(recording, most_asked_transitions, 1);
   const std::vector<Wanderer> candidates = candidates_of(structure);
   const Wanderer* chosen = &candidates.front();

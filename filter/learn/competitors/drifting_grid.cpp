@@ -22,8 +22,7 @@ struct GridRun {
   RunInstants instants;
 };
 
-std::vector<GridRun> training_instants(const DriftingModel& model, const Recording& recording) {
-  const Bank bank = fixed_bank(model);
+std::vector<GridRun> training_instants(const Bank& bank, const Recording& recording) {
   std::vector<GridRun> runs;
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train) continue;
@@ -60,9 +59,11 @@ struct DriftTrace {
   }
 };
 
-DriftTrace trace_drift(const DriftingModel& model, const DriftRates& rates, const std::vector<GridRun>& runs) {
-  DriftTrace trace(static_cast<std::size_t>(model.v0.size()));
-  DriftingRecursion recursion(model.structure, model.theta0, model.scale, rates, model.direction());
+DriftTrace trace_drift(Bank bank, const DriftRates& rates, const std::vector<GridRun>& runs) {
+  bank.drift.rates = rates;
+  const Eigen::VectorXd v0 = bank.noise_variance();
+  DriftTrace trace(static_cast<std::size_t>(v0.size()));
+  DriftingRecursion recursion(bank);
   for (const GridRun& run : runs)
     for (Index t = 0; t < run.instants.count(); ++t) {
       const Instant& instant = run.instants.instants[static_cast<std::size_t>(t)];
@@ -76,7 +77,7 @@ DriftTrace trace_drift(const DriftingModel& model, const DriftRates& rates, cons
         recursion.skip();
       } else {
         recursion.update(run.trajectory.state.col(instant.sample));
-        trace.add(recursion, model.v0);
+        trace.add(recursion, v0);
       }
     }
   return trace;
@@ -111,13 +112,13 @@ Index DriftingScores::best() const {
   return best;
 }
 
-DriftingScores score_drifting_grid(const DriftingModel& start, const Recording& recording, const DriftingGrid& grid) {
+DriftingScores score_drifting_grid(const Bank& start, const Recording& recording, const DriftingGrid& grid) {
   const std::array<Index, 6> size = grid.sizes();
   for (const Index values : size)
     if (values == 0) throw std::invalid_argument("a setting of the drifting model has no value to choose from");
   const std::vector<GridRun> runs = training_instants(start, recording);
   const Index drifts = size[0] * size[1] * size[2], rest = size[3] * size[4] * size[5];
-  DriftingScores scores{Eigen::VectorXd(drifts * rest), 0, Eigen::MatrixXd(start.v0.size(), drifts)};
+  DriftingScores scores{Eigen::VectorXd(drifts * rest), 0, Eigen::MatrixXd(start.structure.states, drifts)};
   std::vector<Index> samples(static_cast<std::size_t>(drifts), 0);
   WorkCounter counter("settings of the drifting model", static_cast<std::size_t>(drifts));
   tbb::parallel_for(Index{0}, drifts, [&](Index d) {

@@ -12,11 +12,13 @@ template <int N, int NY>
 struct FilterModel;
 
 /// What a filter knows of the modes' coefficients; covariances of coefficients in units of the noise scale. Modes of
-/// one theta (DriftModel::shared) have one column and one P.
+/// one theta (DriftModel::shared) have one column and one P. Where noise runs (DriftingRecursion), theta is of scaled
+/// regressors, each output has its own P (r x r, the lower triangle counts), over its variance, and cross is empty.
 struct DriftState {
-  Eigen::MatrixXd theta;               ///< p x K
-  std::vector<Eigen::MatrixXd> P;      ///< K of p x p
-  std::vector<Eigen::MatrixXd> cross;  ///< K of p x n: of theta with the state's error; 0 where the state is known
+  Eigen::MatrixXd theta = {};               ///< p x K
+  std::vector<Eigen::MatrixXd> P = {};      ///< K of p x p
+  std::vector<Eigen::MatrixXd> cross = {};  ///< K of p x n: of theta with the state's error; 0 where it is known
+  Eigen::VectorXd variance = {};            ///< n, of the noise that runs; empty otherwise
 };
 
 /// How the bank's coefficients wander, laid out for stepping.

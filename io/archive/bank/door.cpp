@@ -3,11 +3,16 @@
 
 #include "io/archive/bank/load_bank.hpp"
 #include "modebank/archive/load_bank.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::archive {
 
 filter::Bank load_bank(const std::string& path, const std::string& which) {
-  return filter::Bank(std::make_shared<const modebank::Bank>(modebank::load_bank(path, which)));
+  try {
+    return filter::Bank(std::make_shared<const modebank::Bank>(modebank::load_bank(path, which)));
+  } catch (const ConfigurationError& error) {  // a path that a user of the program would have typed
+    throw DataError(error.what());
+  }
 }
 
 }  // namespace modebank::archive

@@ -23,8 +23,11 @@ void read_root(const OpenArchive& archive, const std::function<void(GroupReader&
 Bank load_bank(const OpenArchive& archive, const std::string& which) {
   std::optional<Bank> bank;
   read_root(archive, [&](GroupReader& root) {
-    layout::exchange_part(root, which, bank, {}, [](GroupReader& member, Bank& part) {
-      layout::exchange_bank(member, part, Units(Recording()));
+    layout::exchange_part(root, which, bank, {}, [&](GroupReader& member, Bank& part) {
+      if (which == "drifting")
+        layout::exchange_drifting(member, part, Units(Recording()));
+      else
+        layout::exchange_bank(member, part, Units(Recording()));
     });
     if (!bank && which == "nonlinear")
       throw DataError(
@@ -33,17 +36,6 @@ Bank load_bank(const OpenArchive& archive, const std::string& which) {
     if (!bank) throw DataError("holds no " + which);
   });
   return *bank;
-}
-
-DriftingModel load_drifting(const OpenArchive& archive) {
-  std::optional<DriftingModel> model;
-  read_root(archive, [&](GroupReader& root) {
-    layout::exchange_part(root, "drifting", model, {}, [](GroupReader& member, DriftingModel& part) {
-      layout::exchange_drifting(member, part, Units(Recording()));
-    });
-    if (!model) throw DataError("holds no drifting");
-  });
-  return *model;
 }
 
 std::string load_configuration(const OpenArchive& archive) {

@@ -4,17 +4,13 @@
 #include <string>
 
 #include "filter/step/bank.hpp"
-#include "filter/step/drifting.hpp"
 #include "io/archive/bank/open_archive.hpp"
 
 namespace modebank {
 
-/// One bank of an archive: "bank" or the competitor "baseline", "noise_only" or "one_motion". Nothing else of the file
-/// is decoded. Throws DataError when the archive holds no such bank.
+/// One bank of an archive: "bank" or the competitor "baseline", "noise_only", "one_motion", "drifting" or "nonlinear".
+/// Nothing else of the file is decoded. Throws DataError when the archive holds no such bank.
 Bank load_bank(const OpenArchive& archive, const std::string& which = "bank");
-
-/// Its drifting competitor. Throws as load_bank does.
-DriftingModel load_drifting(const OpenArchive& archive);
 
 class GroupReader;
 /// Runs `body` on the root of an archive; messages name its path.

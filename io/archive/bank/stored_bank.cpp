@@ -256,4 +256,39 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
   return bank;
 }
 
+StoredDrifting store_drifting(const Bank& bank) {
+  const auto& factors = bank.running_noise.horizon_factor;
+  StoredDrifting stored{bank.structure,
+                        bank.theta(0),
+                        bank.drift.scale,
+                        bank.noise_variance(),
+                        Eigen::VectorXd(factors.size()),
+                        Eigen::VectorXd(factors.size())};
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    stored.horizon(static_cast<Index>(i)) = static_cast<double>(factors[i].first);
+    stored.factor(static_cast<Index>(i)) = factors[i].second;
+  }
+  return stored;
+}
+
+Bank restore_drifting(const StoredDrifting& stored, const Bank& rest) {
+  const LinearStructure& s = stored.structure;
+  check_lags(s, s.dimension());
+  if (stored.parameters.size() != s.parameters()) parameters_do_not_fit(stored.parameters.size(), s.states);
+  if (stored.variance.size() != s.states || stored.horizon.size() != stored.factor.size())
+    throw DataError("its arrays are not of one size");
+  Bank bank = one_mode_bank(s, stored.parameters, stored.variance);
+  bank.model = "varx";
+  bank.state_names = rest.state_names;
+  bank.input_names = rest.input_names;
+  bank.dt_s = rest.dt_s;
+  bank.quantum = rest.quantum;
+  bank.drift = rest.drift;
+  bank.drift.scale = stored.scale;
+  bank.running_noise = rest.running_noise;
+  for (Index i = 0; i < stored.horizon.size(); ++i)
+    bank.running_noise.horizon_factor.emplace_back(static_cast<Index>(stored.horizon(i)), stored.factor(i));
+  return bank;
+}
+
 }  // namespace modebank

@@ -94,4 +94,16 @@ StoredBank store_bank(const Bank& bank);
 /// Fills what StoredBank holds and leaves names, dt_s and the screened modes as they are.
 Bank restore_bank(const StoredBank& stored, Bank named);
 
+/// What /drifting holds of its bank, one mode with running noise, in other arrays than banks do.
+struct StoredDrifting {
+  LinearStructure structure;
+  Eigen::VectorXd parameters;       ///< p
+  Eigen::VectorXd scale;            ///< r
+  Eigen::VectorXd variance;         ///< n_y
+  Eigen::VectorXd horizon, factor;  ///< H
+};
+StoredDrifting store_drifting(const Bank& bank);
+/// Fills what StoredDrifting holds. Throws DataError where sizes do not fit each other.
+Bank restore_drifting(const StoredDrifting& stored, const Bank& rest);
+
 }  // namespace modebank

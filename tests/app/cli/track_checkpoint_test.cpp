@@ -103,6 +103,15 @@ TEST_F(TrackCheckpoint, GoesOnFromACheckpointAsIfItHadNeverStopped) {
   EXPECT_EQ(modebank({"track", archive(), "--track.checkpoint", "/nowhere/state.json"}).status, 2);
 }
 
+TEST_F(TrackCheckpoint, GoesOnWithCoefficientsThatWander) {
+  const std::string option = "--track.filter", filter = "drifting";
+  std::vector<std::string> whole, parts;
+  feed({option, filter}, 1, 40, 0, whole);
+  feed({option, filter, "--track.checkpoint", checkpoint()}, 1, 20, 0, parts);
+  feed({option, filter, "--track.resume", checkpoint()}, 20, 40, 0, parts);
+  EXPECT_EQ(parts, whole);
+}
+
 /// Killed right after a checkpoint was due: the next one goes on from there, to the last bit.
 TEST_F(TrackCheckpoint, GoesOnAfterItWasKilledWhereSwitchesSeeStateAndInput) {
   const std::string option = "--track.filter", filter = "noise_only";

@@ -109,7 +109,7 @@ TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
       }
     }
   }
-  EXPECT_EQ(modebank({"track", archive(), "--track.filter", "drifting", "--track.checkpoint", "c.json"}).status, 2);
+  EXPECT_EQ(modebank({"track", archive(), "--track.filter", "combined", "--track.checkpoint", "c.json"}).status, 2);
 }
 
 /// All filters together say live what evaluate has scored of them one sample ahead.

@@ -17,6 +17,7 @@ namespace modebank {
 namespace {
 
 using test::example_drifting;
+using test::fixed;
 using test::near;
 using test::simulate_drifting;
 
@@ -24,12 +25,12 @@ constexpr double ahead_digits = 1e-10;
 
 TEST(DriftingHorizon, OneSampleAheadIsTheFilter) {
   for (const Index n : {1, 2}) {
-    DriftingModel model = example_drifting(n, 1, 2);
-    model.theta0(0) = 0.4;  // unstable
-    model.horizon_factor = {{2, 3.0}};
+    Bank model = example_drifting(n, 1, 2);
+    model.modes.front().model.A(0, 0) = 0.4;  // unstable
+    model.running_noise.horizon_factor = {{2, 3.0}};
     const Trajectory run = simulate_drifting(example_drifting(n, 1, 2), 150, 2);
-    const RunEvaluation one = evaluate_run(model, run);
-    const HorizonEvaluation ahead = evaluate_horizons(model, run, {1});
+    const RunEvaluation one = evaluate_run(model, run, {});
+    const HorizonEvaluation ahead = evaluate_horizons(model, run, {}, {1});
     EXPECT_TRUE(near(ahead.log_density.row(0).transpose(), one.log_density, ahead_digits));
     EXPECT_TRUE(near(ahead.error[0], one.innovation, ahead_digits));
   }
@@ -37,13 +38,13 @@ TEST(DriftingHorizon, OneSampleAheadIsTheFilter) {
 
 /// Without drift the variance is that of the ARX model: v sum of squares of its impulse response.
 TEST(DriftingHorizon, FixedCoefficientsHaveTheImpulseResponsesVariance) {
-  DriftingModel model = example_drifting(1, 1, 2);
-  model.rates = {0.0, 0.0, 1.0};
-  model.lam = 1.0;
+  Bank model = example_drifting(1, 1, 2);
+  model.drift.rates = {0.0, 0.0, 1.0};
+  model.running_noise.lam = 1.0;
   const Trajectory run = simulate_drifting(model, 60, 9);
-  const double a1 = 1.0 + model.theta0(0), a2 = model.theta0(1);
+  const double a1 = 1.0 + model.theta(0)(0), a2 = model.theta(0)(1);
   const std::vector<Index> horizons{1, 2, 3, 7, 20};
-  const DriftingForecasts forecasts = forecast(model, run, horizons);
+  const DriftingForecasts forecasts = drifting_forecasts(model, run, horizons);
   for (std::size_t h = 0; h < horizons.size(); ++h) {
     double sum = 0.0, now = 1.0, before = 0.0;
     for (Index j = 0; j < horizons[h]; ++j) {
@@ -53,36 +54,37 @@ TEST(DriftingHorizon, FixedCoefficientsHaveTheImpulseResponsesVariance) {
       now = next;
     }
     for (Index k = 1 + horizons[h]; k < run.samples(); ++k)
-      EXPECT_NEAR(std::pow(forecasts.predictions.error[h](0, k) / forecasts.whitened[h](0, k), 2) / model.v0(0), sum,
-                  ahead_digits)
+      EXPECT_NEAR(
+          std::pow(forecasts.predictions.error[h](0, k) / forecasts.whitened[h](0, k), 2) / model.noise_variance()(0),
+          sum, ahead_digits)
           << "horizon " << horizons[h];
   }
 }
 
 /// Fixed coefficients, several outputs: the same Gaussian as that of the bank of one mode.
 TEST(DriftingHorizon, FixedCoefficientsOfSeveralOutputsAreOneKalmanFilter) {
-  DriftingModel model = example_drifting(3, 2, 2);
-  model.rates = {0.0, 0.0, 1.0};
-  model.lam = 1.0;
-  model.nu = 0.0;
+  Bank model = example_drifting(3, 2, 2);
+  model.drift.rates = {0.0, 0.0, 1.0};
+  model.running_noise.lam = 1.0;
+  model.running_noise.nu = 0.0;
   const Trajectory run = simulate_drifting(model, 60, 9);
-  const HorizonEvaluation drifting = evaluate_horizons(model, run, {1, 2, 6});
-  const HorizonEvaluation bank = evaluate_horizons(fixed_bank(model), run, {FilterVariant::kf}, {1, 2, 6});
+  const HorizonEvaluation drifting = evaluate_horizons(model, run, {}, {1, 2, 6});
+  const HorizonEvaluation bank = evaluate_horizons(fixed(model), run, {FilterVariant::kf}, {1, 2, 6});
   EXPECT_TRUE(near(drifting.log_density, bank.log_density, 1e3 * ahead_digits));
   for (std::size_t h = 0; h < 3; ++h) EXPECT_TRUE(near(drifting.error[h], bank.error[h], ahead_digits));
 }
 
 /// Where the model is true and drifts slowly, errors have the stated variance.
 TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
-  DriftingModel model = example_drifting(2, 1, 2);
-  model.rates = {2e-3, 0.05, 0.98};
-  model.lam = 1.0;
-  model.nu = 0.0;
+  Bank model = example_drifting(2, 1, 2);
+  model.drift.rates = {2e-3, 0.05, 0.98};
+  model.running_noise.lam = 1.0;
+  model.running_noise.nu = 0.0;
   const std::vector<Index> horizons{2, 6};
   Eigen::Vector2d squares = Eigen::Vector2d::Zero();
   Eigen::Vector2d count = Eigen::Vector2d::Zero();
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const DriftingForecasts f = forecast(model, simulate_drifting(model, 2000, seed), horizons);
+    const DriftingForecasts f = drifting_forecasts(model, simulate_drifting(model, 2000, seed), horizons);
     for (Index h = 0; h < 2; ++h)
       for (const double u : f.whitened[static_cast<std::size_t>(h)].reshaped())
         if (!std::isnan(u)) {
@@ -96,13 +98,13 @@ TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
 }
 
 TEST(DriftingHorizon, FactorWidensEveryVariance) {
-  DriftingModel model = example_drifting(2, 1, 1);
-  model.nu = 0.0;
+  Bank model = example_drifting(2, 1, 1);
+  model.running_noise.nu = 0.0;
   const Trajectory run = simulate_drifting(model, 50, 5);
-  const HorizonEvaluation plain = evaluate_horizons(model, run, {1, 3, 5, 8});
-  const DriftingForecasts f = forecast(model, run, {1, 3, 5, 8});
-  model.horizon_factor = {{3, 4.0}, {8, 0.5}};
-  const HorizonEvaluation wide = evaluate_horizons(model, run, {1, 3, 5, 8});
+  const HorizonEvaluation plain = evaluate_horizons(model, run, {}, {1, 3, 5, 8});
+  const DriftingForecasts f = drifting_forecasts(model, run, {1, 3, 5, 8});
+  model.running_noise.horizon_factor = {{3, 4.0}, {8, 0.5}};
+  const HorizonEvaluation wide = evaluate_horizons(model, run, {}, {1, 3, 5, 8});
   const std::vector<double> factors{1.0, 4.0, 4.0, 0.5};  // 5 has that of 3
   for (Index h = 0; h < 4; ++h)
     for (Index k = 10; k < run.samples(); ++k) {

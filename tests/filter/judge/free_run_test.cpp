@@ -67,10 +67,11 @@ TEST(FreeRun, OneModeIsThePlainRecursion) {
 }
 
 TEST(FreeRun, DriftingCoefficientsThatDoNotDriftAreThePlainRecursion) {
-  DriftingModel model = test::example_drifting(2, 1, 2);
-  model.rates = {0.0, 0.0, 0.97};
+  Bank model = test::example_drifting(2, 1, 2);
+  model.drift.rates = {0.0, 0.0, 0.97};
   const Trajectory run = any_run(model.structure, 80);
-  EXPECT_TRUE(near(free_run(model, run, after(5)).mean, arx_recursion(model.structure, model.theta0, run, 5), 1e-12));
+  EXPECT_TRUE(
+      near(free_run(model, run, {}, after(5)).mean, arx_recursion(model.structure, model.theta(0), run, 5), 1e-12));
 }
 
 TEST(FreeRun, FirstPredictionIsTheFilters) {

@@ -10,10 +10,10 @@ namespace {
 
 /// Eight runs of one system, whose coefficients wander by these rates.
 Recording wandering_runs(const DriftRates& rates, std::uint64_t seed) {
-  DriftingModel model = test::example_drifting(1, 1, 1);
-  model.scale.setOnes();
-  model.rates = rates;
-  model.nu = 0.0;
+  Bank model = test::example_drifting(1, 1, 1);
+  model.drift.scale.setOnes();
+  model.drift.rates = rates;
+  model.running_noise.nu = 0.0;
   Recording recording = test::empty_recording(1, 1);
   for (std::uint64_t run = 0; run < 8; ++run) {
     const Trajectory simulated = test::simulate_drifting(model, 200, 8 * seed + run);

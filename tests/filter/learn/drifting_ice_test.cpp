@@ -52,29 +52,30 @@ TEST_P(DriftingIce, GridScoresAndHorizonsAreNumpys) {
   const nlohmann::json golden = test::read_golden("drifting").at(name);
   const Recording recording = ice();
   const GlobalModel global = fit_global(recording, structure);
-  const DriftingModel model = learn_drifting(recording, global, structure, {1, 2, 10});
-  Eigen::VectorXd full = model.theta0;
+  const Bank model = learn_drifting(recording, global, structure, {1, 2, 10});
+  Eigen::VectorXd full = model.theta(0);
   full(0) += 1.0;
   EXPECT_TRUE(test::near(full, test::golden_rows(golden.at("theta0")), exact));
-  EXPECT_TRUE(test::near(model.scale, test::golden_rows(golden.at("scale")), exact));
-  EXPECT_NEAR(model.v0(0), golden.at("v0").get<double>(), exact * model.v0(0));
-  EXPECT_EQ(model.tuning.samples, golden.at("samples").get<Index>());
+  EXPECT_TRUE(test::near(model.drift.scale, test::golden_rows(golden.at("scale")), exact));
+  EXPECT_NEAR(model.noise_variance()(0), golden.at("v0").get<double>(), exact * model.noise_variance()(0));
+  EXPECT_EQ(model.drift.tuning.samples, golden.at("samples").get<Index>());
 
   const DriftingScores scores = score_drifting_grid(model, recording, {});
   EXPECT_EQ(scores.best(), golden.at("best").get<Index>());
-  EXPECT_NEAR(model.tuning.log_score, golden.at("log_score").get<double>(), exact);
+  EXPECT_NEAR(model.drift.tuning.log_score, golden.at("log_score").get<double>(), exact);
   for (const nlohmann::json& other : golden.at("others"))
     EXPECT_NEAR(scores.log_score(other.at(0).get<Index>()), other.at(1).get<double>(), exact) << other.at(0);
   const std::vector<double> point = golden.at("point").get<std::vector<double>>();
-  EXPECT_EQ((std::vector<double>{model.rates.q, model.rates.p0, model.rates.leak, model.lam, model.nu}),
+  EXPECT_EQ((std::vector<double>{model.drift.rates.q, model.drift.rates.p0, model.drift.rates.leak,
+                                 model.running_noise.lam, model.running_noise.nu}),
             std::vector<double>(point.begin(), point.begin() + 5));
 
   Sums one_step;
   std::vector<Sums> ahead(3);
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::test) continue;
-    const RunEvaluation one = evaluate_run(model, run);
-    const HorizonEvaluation many = evaluate_horizons(model, run, {1, 2, 10});
+    const RunEvaluation one = evaluate_run(model, run, {});
+    const HorizonEvaluation many = evaluate_horizons(model, run, {}, {1, 2, 10});
     for (Index k = 0; k < run.samples(); ++k) {
       one_step.add(one.log_density(k), one.innovation(0, k));
       for (Index h = 0; h < 3; ++h)
@@ -86,7 +87,8 @@ TEST_P(DriftingIce, GridScoresAndHorizonsAreNumpys) {
   for (std::size_t h = 0; h < 3; ++h) {
     SCOPED_TRACE(h);
     const nlohmann::json& expected = held_out.at("horizons").at(h);
-    EXPECT_NEAR(model.factor_at(expected.at("horizon").get<Index>()), expected.at("factor").get<double>(), exact);
+    EXPECT_NEAR(model.running_noise.factor_at(expected.at("horizon").get<Index>()), expected.at("factor").get<double>(),
+                exact);
     ahead[h].expect(expected);
   }
 }

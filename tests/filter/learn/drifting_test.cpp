@@ -22,7 +22,7 @@ namespace {
 using test::example_drifting;
 using test::simulate_drifting;
 
-Recording drifting_recording(const DriftingModel& model, Index runs, Index samples) {
+Recording drifting_recording(const Bank& model, Index runs, Index samples) {
   Recording recording = test::empty_recording(model.structure.states, model.structure.inputs);
   for (Index i = 0; i < runs; ++i) {
     const Trajectory run = simulate_drifting(model, samples, 50 + static_cast<std::uint64_t>(i));
@@ -31,16 +31,16 @@ Recording drifting_recording(const DriftingModel& model, Index runs, Index sampl
   return recording;
 }
 
-DriftingModel learn_all(const Recording& recording, const LinearStructure& structure, const DriftingGrid& grid = {}) {
+Bank learn_all(const Recording& recording, const LinearStructure& structure, const DriftingGrid& grid = {}) {
   return learn_drifting(recording, fit_global(recording, structure), structure, {1, 2, 5}, grid);
 }
 
 /// The mean log density of the training runs' scored samples.
-double mean_training_score(const DriftingModel& model, const Recording& recording) {
+double mean_training_score(const Bank& model, const Recording& recording) {
   double sum = 0.0, samples = 0.0;
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train) continue;
-    const RunEvaluation e = evaluate_run(model, run);
+    const RunEvaluation e = evaluate_run(model, run, {});
     for (const double value : e.log_density) {
       if (std::isnan(value)) continue;
       sum += value;
@@ -55,7 +55,7 @@ bool names(const std::vector<std::string>& settings, const std::string& name) {
 }
 
 TEST(DriftingLearning, TheGridScoresWhatTheFilterScores) {
-  DriftingModel model = example_drifting(2, 1, 2);
+  Bank model = example_drifting(2, 1, 2);
   Recording recording = drifting_recording(model, 2, 90);
   recording.runs[0].state.col(20).setConstant(std::nan(""));
   recording.runs[0].state(1, 30) = std::nan("");
@@ -68,111 +68,113 @@ TEST(DriftingLearning, TheGridScoresWhatTheFilterScores) {
   const DriftingScores scores = score_drifting_grid(model, recording, grid);
   EXPECT_TRUE(scores.log_score.allFinite());
   EXPECT_EQ(scores.log_score.size(), 6 * 5 * 3 * 8 * 5 * 4);
-  EXPECT_EQ(scores.log_score(scores.best()), model.tuning.log_score);
-  EXPECT_EQ(scores.log_score.maxCoeff(), model.tuning.log_score);
-  EXPECT_NEAR(mean_training_score(model, recording), model.tuning.log_score, 1e-10);
+  EXPECT_EQ(scores.log_score(scores.best()), model.drift.tuning.log_score);
+  EXPECT_EQ(scores.log_score.maxCoeff(), model.drift.tuning.log_score);
+  EXPECT_NEAR(mean_training_score(model, recording), model.drift.tuning.log_score, 1e-10);
   for (Index i = 0; i < scores.log_score.size(); i += i < 700 ? 131 : 977) {
     const std::array<Index, 6> at = grid.point(i);
-    DriftingModel candidate = model;
-    candidate.rates = {grid.q.at(at[0]), grid.p0.at(at[1]), grid.leak.at(at[2])};
-    candidate.lam = grid.lam.at(at[3]);
-    candidate.nu = grid.nu.at(at[4]);
-    candidate.variance_floor = grid.floor.at(at[5]) * model.v0;
+    Bank candidate = model;
+    candidate.drift.rates = {grid.q.at(at[0]), grid.p0.at(at[1]), grid.leak.at(at[2])};
+    candidate.running_noise.lam = grid.lam.at(at[3]);
+    candidate.running_noise.nu = grid.nu.at(at[4]);
+    candidate.running_noise.floor = grid.floor.at(at[5]) * model.noise_variance();
     const double expected = mean_training_score(candidate, recording);
     EXPECT_NEAR(scores.log_score(i), expected, 1e-10 * std::max(1.0, std::abs(expected))) << i;
   }
 }
 
 TEST(DriftingLearning, IsTheSameForAnyNumberOfThreads) {
-  const DriftingModel truth = example_drifting(2, 1, 2);
+  const Bank truth = example_drifting(2, 1, 2);
   const Recording recording = drifting_recording(truth, 3, 80);
-  const DriftingModel many = learn_all(recording, truth.structure);
+  const Bank many = learn_all(recording, truth.structure);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const DriftingModel one = learn_all(recording, truth.structure);
-  EXPECT_EQ(many.rates, one.rates);
-  EXPECT_EQ(many.lam, one.lam);
-  EXPECT_EQ(many.nu, one.nu);
-  EXPECT_EQ(many.variance_floor, one.variance_floor);
-  EXPECT_EQ(many.horizon_factor, one.horizon_factor);
-  EXPECT_EQ(many.tuning.log_score, one.tuning.log_score);
+  const Bank one = learn_all(recording, truth.structure);
+  EXPECT_EQ(many.drift.rates, one.drift.rates);
+  EXPECT_EQ(many.running_noise.lam, one.running_noise.lam);
+  EXPECT_EQ(many.running_noise.nu, one.running_noise.nu);
+  EXPECT_EQ(many.running_noise.floor, one.running_noise.floor);
+  EXPECT_EQ(many.running_noise.horizon_factor, one.running_noise.horizon_factor);
+  EXPECT_EQ(many.drift.tuning.log_score, one.drift.tuning.log_score);
 }
 
 /// What wandering coefficients gain over constant ones on the training runs [nats/sample].
-double gain_by_drift(const DriftingModel& truth) {
+double gain_by_drift(const Bank& truth) {
   const Recording recording = drifting_recording(truth, 4, 600);
   DriftingGrid constant;
   constant.q = constant.p0 = {0.0};
-  return learn_all(recording, truth.structure).tuning.log_score -
-         learn_all(recording, truth.structure, constant).tuning.log_score;
+  return learn_all(recording, truth.structure).drift.tuning.log_score -
+         learn_all(recording, truth.structure, constant).drift.tuning.log_score;
 }
 
 TEST(DriftingLearning, FindsDriftWhereThereIsSomeAndNoneWhereThereIsNone) {
-  DriftingModel truth = example_drifting(1, 2, 1);
-  truth.nu = 0.0;
-  truth.rates = {0.03, 0.1, 0.95};
+  Bank truth = example_drifting(1, 2, 1);
+  truth.running_noise.nu = 0.0;
+  truth.drift.rates = {0.03, 0.1, 0.95};
   EXPECT_GT(gain_by_drift(truth), 0.05);
-  truth.rates = {0.0, 0.0, 1.0};
+  truth.drift.rates = {0.0, 0.0, 1.0};
   EXPECT_LT(gain_by_drift(truth), 2e-3) << "4 free coefficients fit 2400 samples by chance that well";
 }
 
 TEST(DriftingLearning, SaysWhereTheGridEnds) {
-  DriftingModel truth = example_drifting(1, 2, 1);
-  truth.rates = {0.1, 1.0, 0.9};
+  Bank truth = example_drifting(1, 2, 1);
+  truth.drift.rates = {0.1, 1.0, 0.9};
   const Recording recording = drifting_recording(truth, 3, 400);
   DriftingGrid narrow;
   narrow.q = {0.0, 1e-5};
   narrow.lam = {0.9};
-  const DriftingModel held = learn_all(recording, truth.structure, narrow);
-  EXPECT_TRUE(names(held.tuning.at_grid_end, "q"));
-  EXPECT_FALSE(names(held.tuning.at_grid_end, "lam")) << "one value is no choice";
+  const Bank held = learn_all(recording, truth.structure, narrow);
+  EXPECT_TRUE(names(held.drift.tuning.at_grid_end, "q"));
+  EXPECT_FALSE(names(held.drift.tuning.at_grid_end, "lam")) << "one value is no choice";
   DriftingGrid wide;
   wide.q.push_back(100.0);
-  EXPECT_FALSE(names(learn_all(recording, truth.structure, wide).tuning.at_grid_end, "q"));
+  EXPECT_FALSE(names(learn_all(recording, truth.structure, wide).drift.tuning.at_grid_end, "q"));
 }
 
 TEST(DriftingLearning, EqualsAreTheFirstOfTheGrid) {
-  DriftingModel truth = example_drifting(1, 1, 1);
-  truth.nu = 0.0;
-  truth.rates = {0.0, 0.0, 1.0};
+  Bank truth = example_drifting(1, 1, 1);
+  truth.running_noise.nu = 0.0;
+  truth.drift.rates = {0.0, 0.0, 1.0};
   DriftingGrid grid;
   grid.q = {0.0};
   grid.p0 = {0.0};
   grid.lam = {0.96};
-  const DriftingModel model = learn_all(drifting_recording(truth, 2, 300), truth.structure, grid);
-  EXPECT_EQ(model.rates.leak, 1.0);
-  EXPECT_EQ(model.variance_floor, 1e-6 * model.v0);
-  EXPECT_FALSE(names(model.tuning.at_grid_end, "floor")) << "no floor was ever reached";
+  const Bank model = learn_all(drifting_recording(truth, 2, 300), truth.structure, grid);
+  EXPECT_EQ(model.drift.rates.leak, 1.0);
+  EXPECT_EQ(model.running_noise.floor, 1e-6 * model.noise_variance());
+  EXPECT_FALSE(names(model.drift.tuning.at_grid_end, "floor")) << "no floor was ever reached";
 }
 
 TEST(DriftingLearning, NoOtherFactorMakesAHorizonMoreLikely) {
-  DriftingModel truth = example_drifting(2, 1, 2);
-  truth.nu = 3.0;
+  Bank truth = example_drifting(2, 1, 2);
+  truth.running_noise.nu = 3.0;
   const Recording recording = drifting_recording(truth, 2, 300);
-  const DriftingModel model = learn_all(recording, truth.structure);
-  ASSERT_EQ(model.horizon_factor.size(), 2u) << "of 2 and 5: at 1 it is the filter's own";
-  const auto score = [&](const DriftingModel& candidate, Index horizon) {
+  const Bank model = learn_all(recording, truth.structure);
+  ASSERT_EQ(model.running_noise.horizon_factor.size(), 2u) << "of 2 and 5: at 1 it is the filter's own";
+  const auto score = [&](const Bank& candidate, Index horizon) {
     double sum = 0.0;
     for (const Trajectory& run : recording.runs) {
-      const HorizonEvaluation ahead = evaluate_horizons(candidate, run, {horizon});
+      const HorizonEvaluation ahead = evaluate_horizons(candidate, run, {}, {horizon});
       for (const double value : ahead.log_density.row(0)) sum += std::isnan(value) ? 0.0 : value;
     }
     return sum;
   };
   for (std::size_t h = 0; h < 2; ++h)
     for (const double change : {std::exp2(-0.25), std::exp2(0.25), 4.0, 0.25}) {
-      DriftingModel other = model;
-      other.horizon_factor[h].second *= change;
-      EXPECT_GT(score(model, model.horizon_factor[h].first), score(other, model.horizon_factor[h].first));
+      Bank other = model;
+      other.running_noise.horizon_factor[h].second *= change;
+      EXPECT_GT(score(model, model.running_noise.horizon_factor[h].first),
+                score(other, model.running_noise.horizon_factor[h].first));
     }
 }
 
 TEST(DriftingLearning, HeldOutRunsAndWeightsDoNotMatter) {
-  const DriftingModel truth = example_drifting(1, 1, 1);
+  const Bank truth = example_drifting(1, 1, 1);
   Recording recording = drifting_recording(truth, 2, 200);
   const GlobalModel global = fit_global(recording, truth.structure);
   const auto settings = [&] {
-    const DriftingModel m = learn_drifting(recording, global, truth.structure, {3});
-    return std::make_tuple(m.rates.q, m.rates.p0, m.lam, m.nu, m.scale, m.horizon_factor, m.tuning.log_score);
+    const Bank m = learn_drifting(recording, global, truth.structure, {3});
+    return std::make_tuple(m.drift.rates.q, m.drift.rates.p0, m.running_noise.lam, m.running_noise.nu, m.drift.scale,
+                           m.running_noise.horizon_factor, m.drift.tuning.log_score);
   };
   const auto before = settings();
   test::add_run(recording, 9.0 * recording.runs[0].state, recording.runs[0].input, Role::test);
@@ -187,14 +189,14 @@ TEST(DriftingLearning, ConstantAndExactDataHaveAModel) {
     for (Index k = 0; k < 60; ++k) u(0, k) = amplitude * std::sin(static_cast<double>(k));
     for (Index k = 1; k < 60; ++k) x(0, k) = 0.5 * x(0, k - 1) + u(0, k - 1);
     test::add_run(recording, x, u);
-    const DriftingModel model = learn_all(recording, test::structure_of(recording));
+    const Bank model = learn_all(recording, test::structure_of(recording));
     EXPECT_NO_THROW(validate(model));
-    EXPECT_TRUE(std::isfinite(model.tuning.log_score));
+    EXPECT_TRUE(std::isfinite(model.drift.tuning.log_score));
   }
 }
 
 TEST(DriftingLearning, RefusesWhatCannotBeScored) {
-  const DriftingModel truth = example_drifting(1, 1, 1);
+  const Bank truth = example_drifting(1, 1, 1);
   Recording recording = drifting_recording(truth, 1, 50);
   const GlobalModel global = fit_global(recording, truth.structure);
   DriftingGrid empty;

@@ -55,11 +55,11 @@ TEST(Drift, WithoutAnyWalkItIsTheBank) {
       }
 }
 
-TEST(Drift, OneModeIsTheDriftingModelOneStepAhead) {
+TEST(Drift, WithRunningNoiseHeldItIsOneModeOneStepAhead) {
   for (const Index n : {1, 2})
     for (const Index lags : {1, 3}) {
       const OneMode one = one_mode(n, lags);
-      const RunEvaluation model = evaluate_run(one.model, one.run);
+      const RunEvaluation model = evaluate_run(one.model, one.run, {});
       const RunEvaluation bank = evaluate_run(one.bank, one.run, {FilterVariant::kf});
       EXPECT_TRUE(near(model.prediction, bank.prediction, two_routes)) << n << ", " << lags;
       EXPECT_TRUE(near(model.innovation_covariance, bank.innovation_covariance, two_routes));
@@ -68,22 +68,22 @@ TEST(Drift, OneModeIsTheDriftingModelOneStepAhead) {
     }
 }
 
-TEST(Drift, OneModeIsTheDriftingModelManyStepsAhead) {
+TEST(Drift, WithRunningNoiseHeldItIsOneModeManyStepsAhead) {
   for (const Index n : {1, 2})
     for (const Index lags : {1, 3}) {
       const OneMode one = one_mode(n, lags);
-      const HorizonEvaluation model = evaluate_horizons(one.model, one.run, {1, 2, 10});
+      const HorizonEvaluation model = evaluate_horizons(one.model, one.run, {}, {1, 2, 10});
       const HorizonEvaluation bank = evaluate_horizons(one.bank, one.run, {FilterVariant::kf}, {1, 2, 10});
       for (std::size_t h = 0; h < 3; ++h) EXPECT_TRUE(near(model.error[h], bank.error[h], two_routes)) << n;
       EXPECT_TRUE(near(model.log_density, bank.log_density, two_routes)) << n << ", " << lags;
     }
 }
 
-TEST(Drift, OneModeIsTheDriftingModelInAFreeRun) {
+TEST(Drift, WithRunningNoiseHeldItIsOneModeInAFreeRun) {
   const OneMode one = one_mode(2, 3);
   FreeRunOptions options;
   options.samples = 100;
-  const FreeRun model = free_run(one.model, one.run, options);
+  const FreeRun model = free_run(one.model, one.run, {}, options);
   const FreeRun bank = free_run(one.bank, one.run, {FilterVariant::kf}, options);
   EXPECT_TRUE(near(model.mean, bank.mean, two_routes));
   EXPECT_TRUE(near(model.deviation, bank.deviation, two_routes));

@@ -31,18 +31,18 @@ inline Trajectory with_holes(Trajectory run) {
 
 /// What a bank says of a run of one mode whose coefficients drift, its variance known.
 struct OneMode {
-  DriftingModel model;
-  Bank bank;
+  Bank model;  ///< with running noise that is held
+  Bank bank;   ///< the same by the equations of all banks
   Trajectory run;
 };
 
 inline OneMode one_mode(Index n, Index lags) {
   OneMode one{example_drifting(n, 2, lags), {}, {}};
-  one.model.lam = 1.0;
-  one.model.nu = 0.0;
-  one.model.rates.q = 1e-2;
-  one.bank = fixed_bank(one.model);
-  one.bank.drift = {one.model.rates, one.model.scale};
+  one.model.running_noise.lam = 1.0;
+  one.model.running_noise.nu = 0.0;
+  one.model.drift.rates.q = 1e-2;
+  one.bank = fixed(one.model);
+  one.bank.drift = one.model.drift;
   one.run = simulate_drifting(one.model, 200, 4);
   return one;
 }

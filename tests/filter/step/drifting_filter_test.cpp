@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "filter/judge/run/drifting.hpp"
-#include "filter/step/drifting.hpp"
+#include "filter/step/bank_filter.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 
 namespace modebank {
@@ -19,12 +19,12 @@ using test::holed;
 using test::simulate_drifting;
 
 TEST(DriftingFilter, GoesOnFromASnapshotAndStartsAnew) {
-  DriftingModel model = example_drifting(2, 1, 2);
+  Bank model = example_drifting(2, 1, 2);
   model.dt_s = 1.0;
   const Trajectory run = holed(simulate_drifting(model, 140, 8));
-  const RunEvaluation whole = evaluate_run(model, run);
-  DriftingFilter first(model), second(model);
-  const auto step = [&](DriftingFilter& filter, Index k) {
+  const RunEvaluation whole = evaluate_run(model, run, {});
+  BankFilter first(model, {}), second(model, {});
+  const auto step = [&](BankFilter& filter, Index k) {
     return filter.step(run.time_s(k), run.input.col(k), run.state.col(k)).log_density;
   };
   for (Index k = 0; k < 47; ++k) step(first, k);
@@ -43,63 +43,66 @@ TEST(DriftingFilter, GoesOnFromASnapshotAndStartsAnew) {
 }
 
 TEST(DriftingFilter, RefusesWhatIsNone) {
-  const DriftingModel good = example_drifting(2, 1, 2);
-  EXPECT_NO_THROW(DriftingFilter{good});
-  const std::vector<std::function<void(DriftingModel&)>> spoil = {
-      [](DriftingModel& m) { m.theta0(0) = std::nan(""); },
-      [](DriftingModel& m) { m.theta0.conservativeResize(3); },
-      [](DriftingModel& m) { m.scale(1) = 0.0; },
-      [](DriftingModel& m) { m.v0(0) = 0.0; },
-      [](DriftingModel& m) { m.variance_floor(1) = -1.0; },
-      [](DriftingModel& m) { m.rates.q = -1.0; },
-      [](DriftingModel& m) { m.rates.p0 = INFINITY; },
-      [](DriftingModel& m) { m.rates.leak = 1.1; },
-      [](DriftingModel& m) { m.lam = std::nan(""); },
-      [](DriftingModel& m) { m.nu = 2.0; },
-      [](DriftingModel& m) {
-        m.horizon_factor = {{1, 2.0}};
+  const Bank good = example_drifting(2, 1, 2);
+  EXPECT_NO_THROW(BankFilter(good, {}));
+  const std::vector<std::function<void(Bank&)>> spoil = {
+      [](Bank& m) { m.modes.front().model.A(0, 0) = std::nan(""); },
+      [](Bank& m) { m.modes.push_back(m.modes.front()); },
+      [](Bank& m) { m.drift = {}; },
+      [](Bank& m) { m.R(0, 0) = 1e-3; },
+      [](Bank& m) { m.drift.scale(1) = 0.0; },
+      [](Bank& m) { m.noise_variance()(0) = 0.0; },
+      [](Bank& m) { m.running_noise.floor(1) = -1.0; },
+      [](Bank& m) { m.drift.rates.q = -1.0; },
+      [](Bank& m) { m.drift.rates.p0 = INFINITY; },
+      [](Bank& m) { m.drift.rates.leak = 1.1; },
+      [](Bank& m) { m.running_noise.lam = std::nan(""); },
+      [](Bank& m) { m.running_noise.nu = 2.0; },
+      [](Bank& m) {
+        m.running_noise.horizon_factor = {{1, 2.0}};
       },
-      [](DriftingModel& m) {
-        m.horizon_factor = {{5, 0.0}};
+      [](Bank& m) {
+        m.running_noise.horizon_factor = {{5, 0.0}};
       },
   };
   for (std::size_t i = 0; i < spoil.size(); ++i) {
-    DriftingModel bad = good;
+    Bank bad = good;
     spoil[i](bad);
-    EXPECT_THROW(DriftingFilter{bad}, std::invalid_argument) << i;
+    EXPECT_THROW(BankFilter(bad, {}), std::invalid_argument) << i;
   }
-  DriftingFilter filter(good);
-  EXPECT_THROW(filter.restore(DriftingFilter(example_drifting(2, 1, 1)).snapshot()), std::invalid_argument);
-  DriftingSnapshot odd = filter.snapshot();
-  odd.coefficients.theta(0, 0) = std::nan("");
+  BankFilter filter(good, {});
+  EXPECT_THROW(filter.restore(BankFilter(example_drifting(2, 1, 1), {}).snapshot()), std::invalid_argument);
+  FilterSnapshot odd = filter.snapshot();
+  odd.drift.theta(0, 0) = std::nan("");
   EXPECT_THROW(filter.restore(odd), std::invalid_argument);
 }
 
 /// Whatever comes in, numbers come out.
 TEST(DriftingFilter, StaysFiniteOnWildSamples) {
   for (const double huge : {1e8, 1e25}) {
-    DriftingModel model = example_drifting(1, 1, 2);
-    model.theta0.setConstant(1.0);  // unstable
+    Bank model = example_drifting(1, 1, 2);
+    model.modes.front().model =
+        unpack(model.structure, Eigen::VectorXd::Ones(model.structure.parameters()));  // unstable
     Trajectory run = simulate_drifting(example_drifting(1, 1, 2), 300, 4);
     run.state.col(50).setConstant(huge);
     run.state.middleCols(100, 120).setConstant(std::nan(""));
-    const RunEvaluation e = evaluate_run(model, run);
+    const RunEvaluation e = evaluate_run(model, run, {});
     EXPECT_TRUE(e.state.rightCols(298).allFinite());
     for (Index k = 2; k < 300; ++k) ASSERT_TRUE(std::isfinite(e.log_density(k)) || (k >= 100 && k < 220)) << k;
-    const HorizonEvaluation ahead = evaluate_horizons(model, run, {40});
+    const HorizonEvaluation ahead = evaluate_horizons(model, run, {}, {40});
     for (Index k = 41; k < 300; ++k) ASSERT_TRUE(std::isfinite(ahead.log_density(0, k)) || (k >= 100 && k < 220)) << k;
   }
 }
 
 TEST(DriftingFilter, StaysFiniteWhereSamplesAreOfEverySize) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    DriftingModel model = example_drifting(2, 1, 2);
-    model.rates = {seed % 2 == 0 ? 0.0 : 0.1, 1e4, 1.0};
+    Bank model = example_drifting(2, 1, 2);
+    model.drift.rates = {seed % 2 == 0 ? 0.0 : 0.1, 1e4, 1.0};
     Trajectory run = simulate_drifting(example_drifting(2, 1, 2), 200, seed);
     std::mt19937_64 generator(seed);
     for (double& value : run.state.reshaped())
       value *= std::pow(10.0, 29.0 * boost::random::uniform_01<double>()(generator));
-    const RunEvaluation e = evaluate_run(model, run);
+    const RunEvaluation e = evaluate_run(model, run, {});
     EXPECT_TRUE(e.state.rightCols(198).allFinite());
     EXPECT_TRUE(e.log_density.tail(198).allFinite());
     EXPECT_TRUE(e.innovation_covariance.rightCols(198).allFinite());

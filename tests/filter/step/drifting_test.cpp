@@ -1,5 +1,5 @@
 // The drifting model, stepped: closed forms, what is missing, starts.
-#include "filter/step/drifting.hpp"
+#include "filter/judge/run/drifting.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "filter/judge/run/drifting.hpp"
 #include "filter/judge/score/statistics.hpp"
+#include "filter/step/bank_filter.hpp"
 #include "filter/step/student_noise.hpp"
 #include "ident/base/distributions.hpp"
 #include "tests/filter/drifting_test_support.hpp"
@@ -19,6 +19,7 @@ namespace modebank {
 namespace {
 
 using test::example_drifting;
+using test::fixed;
 using test::holed;
 using test::near;
 using test::simulate_drifting;
@@ -44,25 +45,26 @@ TEST(StudentNoise, DensityIsTheSlopeOfTheProbabilityAndHasVarianceOne) {
 /// One factor on the input's coefficient, known noise: x[k+1] = (1 + a) x[k] + g[k] b u[k] + e, g a random walk. The
 /// Kalman filter of (a, b g) written out.
 TEST(Drifting, OneFactorWandersAlongTheInputsCoefficients) {
-  DriftingModel model = example_drifting(1, 2, 1);
-  model.wandering = Wandering::gain;
-  model.rates = {0.01, 0.1, 1.0};
+  Bank model = example_drifting(1, 2, 1);
+  model.drift.wandering = Wandering::gain;
+  model.drift.rates = {0.01, 0.1, 1.0};
   const Trajectory run = simulate_drifting(model, 60, 3);
-  const Eigen::MatrixXd d = model.direction();
+  const Eigen::MatrixXd d = wandering_direction(model);
   ASSERT_EQ(d.rows(), 4);
   EXPECT_NEAR(d.norm(), 1.0, drift_digits);
   EXPECT_EQ(d(0, 0), 0.0);  // the state's coefficient
   EXPECT_EQ(d(3, 0), 0.0);  // the constant
-  EXPECT_NEAR(d(1, 0) / d(2, 0), model.theta0(1) * model.scale(1) / (model.theta0(2) * model.scale(2)), drift_digits);
-  Eigen::VectorXd theta = model.scale.asDiagonal() * model.theta0;
+  EXPECT_NEAR(d(1, 0) / d(2, 0), model.theta(0)(1) * model.drift.scale(1) / (model.theta(0)(2) * model.drift.scale(2)),
+              drift_digits);
+  Eigen::VectorXd theta = model.drift.scale.asDiagonal() * model.theta(0);
   Eigen::MatrixXd P = 0.1 * Eigen::MatrixXd::Identity(4, 4);
-  DriftingRecursion recursion(model.structure, model.theta0, model.scale, model.rates, d);
+  DriftingRecursion recursion(model);
   recursion.start(run.state.col(0));
   for (Index k = 0; k + 1 < run.samples(); ++k) {
     if (k > 0) P += 0.01 * d * d.transpose();
     Eigen::VectorXd h(4);
     h << run.state(0, k), run.input.col(k), 1.0;
-    h.array() /= model.scale.array();
+    h.array() /= model.drift.scale.array();
     const double predicted = run.state(0, k) + theta.dot(h), growth = 1.0 + h.dot(P * h);
     recursion.predict(run.input.col(k));
     EXPECT_NEAR(recursion.prediction()(0), predicted, drift_digits);
@@ -73,20 +75,20 @@ TEST(Drifting, OneFactorWandersAlongTheInputsCoefficients) {
     recursion.update(run.state.col(k + 1));
   }
   model.structure.intercept = false;
-  model.wandering = Wandering::constant;
+  model.drift.wandering = Wandering::constant;
   EXPECT_THROW(validate(model), std::invalid_argument);
 }
 
 TEST(Drifting, FixedCoefficientsAndVarianceAreOneKalmanFilter) {
   for (const Index n : {1, 2})
     for (const Index lags : {1, 3}) {
-      DriftingModel model = example_drifting(n, 2, lags);
-      model.rates = {0.0, 0.0, 1.0};
-      model.lam = 1.0;
-      model.nu = 0.0;
+      Bank model = example_drifting(n, 2, lags);
+      model.drift.rates = {0.0, 0.0, 1.0};
+      model.running_noise.lam = 1.0;
+      model.running_noise.nu = 0.0;
       const Trajectory run = simulate_drifting(model, 200, 3);
-      const RunEvaluation drifting = evaluate_run(model, run);
-      const RunEvaluation bank = evaluate_run(fixed_bank(model), run, {FilterVariant::kf});
+      const RunEvaluation drifting = evaluate_run(model, run, {});
+      const RunEvaluation bank = evaluate_run(fixed(model), run, {FilterVariant::kf});
       EXPECT_TRUE(near(drifting.prediction, bank.prediction, drift_digits));
       EXPECT_TRUE(near(drifting.innovation, bank.innovation, drift_digits));
       EXPECT_TRUE(near(drifting.innovation_covariance, bank.innovation_covariance, drift_digits));
@@ -102,23 +104,23 @@ TEST(Drifting, FixedCoefficientsAndVarianceAreOneKalmanFilter) {
 /// q = 0: theta is the regularised least squares of all samples so far, whatever the noise variances.
 TEST(Drifting, ConstantCoefficientsAreBatchLeastSquares) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    DriftingModel model = example_drifting(2, 1, 2);
+    Bank model = example_drifting(2, 1, 2);
     const Trajectory run = simulate_drifting(model, 40 + static_cast<Index>(seed), seed);
-    model.rates = {0.0, seed % 2 == 0 ? 0.5 : 1e4, 1.0};
-    DriftingFilter filter(model);
+    model.drift.rates = {0.0, seed % 2 == 0 ? 0.5 : 1e4, 1.0};
+    BankFilter filter(model, {});
     for (Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
     const Index r = model.structure.regressors(), first = model.structure.first_transition();
-    Eigen::MatrixXd G = Eigen::MatrixXd::Identity(r, r) / model.rates.p0;
-    Eigen::MatrixXd b = scaled_coefficients(model.structure, model.theta0, model.scale) / model.rates.p0;
+    Eigen::MatrixXd G = Eigen::MatrixXd::Identity(r, r) / model.drift.rates.p0;
+    Eigen::MatrixXd b = scaled_coefficients(model.structure, model.theta(0), model.drift.scale) / model.drift.rates.p0;
     Eigen::VectorXd h(r);
     for (Index k = first; k < run.transitions(); ++k) {
       h << run.state.col(k), run.state.col(k - 1), run.input.col(k), run.input.col(k - 1), 1.0;
-      h = h.cwiseQuotient(model.scale).eval();
+      h = h.cwiseQuotient(model.drift.scale).eval();
       G += h * h.transpose();
       b += h * (run.state.col(k + 1) - run.state.col(k)).transpose();
     }
-    const DriftingMemory memory = filter.snapshot().coefficients;
-    EXPECT_TRUE(near(memory.theta, G.ldlt().solve(b), 1e-7)) << seed;
+    const DriftState memory = filter.snapshot().drift;
+    EXPECT_TRUE(near(memory.theta.reshaped(r, 2), G.ldlt().solve(b), 1e-7)) << seed;
     const Eigen::MatrixXd P = memory.P[0].selfadjointView<Eigen::Lower>();
     EXPECT_TRUE(near(P, G.inverse(), 1e-7)) << seed;
   }
@@ -127,11 +129,11 @@ TEST(Drifting, ConstantCoefficientsAreBatchLeastSquares) {
 TEST(Drifting, ScoresTheSamplesThatABankScores) {
   for (const Index n : {1, 2})
     for (const Index lags : {1, 3}) {
-      DriftingModel model = example_drifting(n, 1, lags);
+      Bank model = example_drifting(n, 1, lags);
       model.dt_s = 1.0;
       const Trajectory run = holed(simulate_drifting(model, 140, 5));
-      const RunEvaluation drifting = evaluate_run(model, run);
-      const RunEvaluation bank = evaluate_run(fixed_bank(model), run, {FilterVariant::kf});
+      const RunEvaluation drifting = evaluate_run(model, run, {});
+      const RunEvaluation bank = evaluate_run(fixed(model), run, {FilterVariant::kf});
       const auto nan = [](const Eigen::MatrixXd& x) { return Eigen::MatrixXd(x.array().isNaN().cast<double>()); };
       EXPECT_EQ(nan(drifting.log_density), nan(bank.log_density));
       EXPECT_EQ(nan(drifting.innovation), nan(bank.innovation));
@@ -139,8 +141,8 @@ TEST(Drifting, ScoresTheSamplesThatABankScores) {
       EXPECT_EQ(nan(drifting.prediction), nan(bank.prediction));
       EXPECT_EQ(nan(drifting.state), nan(bank.state));
       EXPECT_EQ(nan(drifting.nis), nan(bank.nis));
-      const HorizonEvaluation ahead = evaluate_horizons(model, run, {5, 1, 2}),
-                              of_bank = evaluate_horizons(fixed_bank(model), run, {FilterVariant::kf}, {5, 1, 2});
+      const HorizonEvaluation ahead = evaluate_horizons(model, run, {}, {5, 1, 2}),
+                              of_bank = evaluate_horizons(fixed(model), run, {FilterVariant::kf}, {5, 1, 2});
       EXPECT_EQ(ahead.horizons, of_bank.horizons);
       EXPECT_EQ(nan(ahead.log_density), nan(of_bank.log_density));
       for (std::size_t h = 0; h < 3; ++h) EXPECT_EQ(nan(ahead.error[h]), nan(of_bank.error[h]));
@@ -151,25 +153,25 @@ TEST(Drifting, ScoresTheSamplesThatABankScores) {
 struct Printed {
   Eigen::VectorXd log_density, prediction;
 };
-Printed printed(const DriftingModel& m, Index output, const Eigen::MatrixXd& h, const Eigen::VectorXd& increments) {
-  const Eigen::VectorXd theta0 = scaled_coefficients(m.structure, m.theta0, m.scale).col(output);
+Printed printed(const Bank& m, Index output, const Eigen::MatrixXd& h, const Eigen::VectorXd& increments) {
+  const Eigen::VectorXd theta0 = scaled_coefficients(m.structure, m.theta(0), m.drift.scale).col(output);
   Eigen::VectorXd theta = theta0;
-  Eigen::MatrixXd P = m.rates.p0 * Eigen::MatrixXd::Identity(h.rows(), h.rows());
-  double v = m.v0(output);
+  Eigen::MatrixXd P = m.drift.rates.p0 * Eigen::MatrixXd::Identity(h.rows(), h.rows());
+  double v = m.noise_variance()(output);
   Printed out{Eigen::VectorXd(h.cols()), Eigen::VectorXd(h.cols())};
   for (Index k = 0; k < h.cols(); ++k) {
     if (k > 0) {
-      theta = theta0 + m.rates.leak * (theta - theta0);
-      P = m.rates.leak * m.rates.leak * P + m.rates.q * Eigen::MatrixXd::Identity(h.rows(), h.rows());
+      theta = theta0 + m.drift.rates.leak * (theta - theta0);
+      P = m.drift.rates.leak * m.drift.rates.leak * P + m.drift.rates.q * Eigen::MatrixXd::Identity(h.rows(), h.rows());
     }
     const double growth = 1.0 + h.col(k).dot(P * h.col(k)), e = increments(k) - theta.dot(h.col(k));
     out.prediction(k) = theta.dot(h.col(k));
-    const StudentNoise noise(m.nu);
+    const StudentNoise noise(m.running_noise.nu);
     out.log_density(k) = noise.log_density(e * e / (v * growth)) - 0.5 * std::log(v * growth);
     if (std::isnan(e)) continue;
     theta += P * h.col(k) * (e / growth);
     P -= P * h.col(k) * h.col(k).transpose() * P / growth;
-    v = std::max(m.lam * v + (1.0 - m.lam) * e * e / growth, m.variance_floor(output));
+    v = std::max(m.running_noise.lam * v + (1.0 - m.running_noise.lam) * e * e / growth, m.running_noise.floor(output));
   }
   return out;
 }
@@ -177,16 +179,16 @@ Printed printed(const DriftingModel& m, Index output, const Eigen::MatrixXd& h, 
 /// Outputs share P only as long as that makes no difference.
 TEST(Drifting, EveryOutputLearnsFromItsOwnSamples) {
   for (const double nu : {0.0, 5.0}) {
-    DriftingModel model = example_drifting(3, 1, 1);
-    model.nu = nu;
+    Bank model = example_drifting(3, 1, 1);
+    model.running_noise.nu = nu;
     Trajectory run = simulate_drifting(model, 80, 11);
     run.state(1, 20) = run.state(1, 21) = run.state(2, 21) = run.state(0, 50) = std::nan("");
     run.state.col(60).setConstant(std::nan(""));
-    const RunEvaluation result = evaluate_run(model, run);
+    const RunEvaluation result = evaluate_run(model, run, {});
     Eigen::MatrixXd h(model.structure.regressors(), run.transitions());
     for (Index k = 0; k < run.transitions(); ++k) {
       h.col(k) << result.state.col(k), run.input.col(k), 1.0;
-      h.col(k) = h.col(k).cwiseQuotient(model.scale).eval();
+      h.col(k) = h.col(k).cwiseQuotient(model.drift.scale).eval();
     }
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(run.transitions());
     for (Index i = 0; i < 3; ++i) {
@@ -202,13 +204,13 @@ TEST(Drifting, EveryOutputLearnsFromItsOwnSamples) {
 }
 
 TEST(Drifting, WhereNothingIsMeasuredThePredictionStandsIn) {
-  const DriftingModel model = example_drifting(2, 1, 2);
+  const Bank model = example_drifting(2, 1, 2);
   Trajectory run = simulate_drifting(model, 30, 6);
   run.state.middleCols(10, 2).setConstant(std::nan(""));
-  const RunEvaluation e = evaluate_run(model, run);
+  const RunEvaluation e = evaluate_run(model, run, {});
   EXPECT_TRUE(near(e.state.middleCols(10, 2), e.prediction.middleCols(10, 2), 0.0));
   EXPECT_TRUE(near(e.state.col(12).head(2), run.state.col(12), 0.0));
-  DriftingFilter filter(model);
+  BankFilter filter(model, {});
   Eigen::VectorXd state;  // with its lags
   for (Index k = 0; k <= 12; ++k) state = filter.step(run.time_s(k), run.input.col(k), run.state.col(k)).state;
   EXPECT_TRUE(near(state.tail(2), e.prediction.col(11), 0.0));
@@ -218,8 +220,8 @@ TEST(Drifting, WhereNothingIsMeasuredThePredictionStandsIn) {
 
 /// Kolmogorov's distance of N pit values from uniform, times the root of N: of a true filter above 1.95 once in a
 /// thousand times.
-double scaled_distance(const DriftingModel& filter, const DriftingModel& truth, std::uint64_t seed) {
-  const RunEvaluation e = evaluate_run(filter, simulate_drifting(truth, 3000, seed));
+double scaled_distance(const Bank& filter, const Bank& truth, std::uint64_t seed) {
+  const RunEvaluation e = evaluate_run(filter, simulate_drifting(truth, 3000, seed), {});
   std::vector<double> pit;
   for (const double value : e.pit.reshaped())
     if (!std::isnan(value)) pit.push_back(value);
@@ -227,16 +229,16 @@ double scaled_distance(const DriftingModel& filter, const DriftingModel& truth, 
 }
 
 TEST(Drifting, PitIsUniformWhereTheModelIsTrue) {
-  DriftingModel walking = example_drifting(1, 2, 2);
-  walking.lam = 1.0;  // the variance stays v0
-  walking.nu = 0.0;   // with another noise the filter of wandering coefficients is approximate
-  walking.rates = {0.05, 0.5, 0.95};
-  DriftingModel heavy = example_drifting(2, 1, 1);
-  heavy.lam = 1.0;
-  heavy.nu = 3.0;
-  heavy.rates = {0.0, 0.0, 1.0};
-  DriftingModel blind = walking;  // believes in constant coefficients: the test must be able to tell
-  blind.rates.q = 0.0;
+  Bank walking = example_drifting(1, 2, 2);
+  walking.running_noise.lam = 1.0;  // the variance stays v0
+  walking.running_noise.nu = 0.0;   // with another noise the filter of wandering coefficients is approximate
+  walking.drift.rates = {0.05, 0.5, 0.95};
+  Bank heavy = example_drifting(2, 1, 1);
+  heavy.running_noise.lam = 1.0;
+  heavy.running_noise.nu = 3.0;
+  heavy.drift.rates = {0.0, 0.0, 1.0};
+  Bank blind = walking;  // believes in constant coefficients: the test must be able to tell
+  blind.drift.rates.q = 0.0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     EXPECT_LT(scaled_distance(walking, walking, seed), 1.95) << seed;
     EXPECT_LT(scaled_distance(heavy, heavy, seed), 1.95) << seed;

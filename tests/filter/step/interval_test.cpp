@@ -116,16 +116,11 @@ TEST(Interval, MassesOfAllValuesSumToOne) {
   const Bank bank = with_quantum(test::example_bank(1, 1, 2), quantum);
   const Trajectory run = rounded(test::simulate_bank(bank, 30, 2), quantum);
   EXPECT_NEAR(total_mass(BankFilter(bank, {}), run, quantum), 1.0, 1e-10);
-  DriftingModel drifting;
-  drifting.structure = bank.structure;
-  drifting.theta0 = bank.theta(0);
-  drifting.scale = VectorXd::Ones(3);
-  drifting.rates = {1e-3, 1e-2, 0.97};
-  drifting.nu = 5.0;
-  drifting.v0 = VectorXd::Constant(1, 1e-3);
-  drifting.variance_floor = 1e-3 * drifting.v0;
+  Bank drifting = one_mode_bank(bank.structure, bank.theta(0), VectorXd::Constant(1, 1e-3));
+  drifting.drift = {{1e-3, 1e-2, 0.97}, VectorXd::Ones(3)};
+  drifting.running_noise = {0.9, 5.0, 1e-3 * drifting.noise_variance()};
   drifting.quantum = bank.quantum;
-  EXPECT_NEAR(total_mass(DriftingFilter(drifting), run, quantum), 1.0, 1e-4);  // heavy tails
+  EXPECT_NEAR(total_mass(BankFilter(drifting, {}), run, quantum), 1.0, 1e-4);  // heavy tails
 }
 
 /// Two systems that have nothing to do with each other are filtered as each by itself, one rounded and one not.

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/drifting.hpp"
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/equations/predicted_mixture.hpp"
 #include "tests/filter/drifting_test_support.hpp"
@@ -130,11 +129,11 @@ TEST(NoAllocation, ModesThatDrift) {
 
 TEST(NoAllocation, DriftingFilterStepsWithoutAny) {
   for (const Eigen::Index lags : {1, 3}) {
-    const DriftingModel model = test::example_drifting(2, 1, lags);
+    const Bank model = test::example_drifting(2, 1, lags);
     Trajectory run = test::simulate_drifting(model, 60, 1);
     run.state(0, 20) = std::nan("");
     run.state.col(25).setConstant(std::nan(""));
-    DriftingFilter filter(model);
+    BankFilter filter(model, {});
     const long before = test::allocations;
     for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
     EXPECT_EQ(test::allocations - before, 0) << lags;

@@ -107,10 +107,11 @@ TEST_P(Batch, HasTheSameLocalModelsAsCeres) {
           EXPECT_LE(batch.audit.gradient, 1.1e-10);  // Ceres alone, below, gets no nearer than some 1e-7
           EXPECT_LE(batch.audit.parameter_difference, 1e-6);
         }
+        Index others = 0;  // minima, of losses that have several
         for (Index i = 0; i < batch.count(); ++i) {
           if (!near(batch.parameters.col(i), ceres.parameters.col(i), 1e-7)) {
-            EXPECT_FALSE(convex(o.loss)) << "window " << i;
-            continue;  // another minimum
+            ++others;
+            continue;
           }
           const double scale_of_covariance = std::max(1e-300, ceres.covariance.col(i).cwiseAbs().maxCoeff());
           if (ceres.status(i) == 0) {
@@ -134,6 +135,7 @@ TEST_P(Batch, HasTheSameLocalModelsAsCeres) {
           EXPECT_NEAR(batch.noise_variance(0, i), ceres.noise_variance(0, i), 1e-6 * ceres.noise_variance(0, i));
           EXPECT_DOUBLE_EQ(batch.inlier_fraction(i), ceres.inlier_fraction(i));
         }
+        EXPECT_LE(others, convex(o.loss) ? 0 : batch.count() / 10);
       }
 }
 
@@ -147,11 +149,12 @@ TEST_P(Batch, UnitsDoNotMatter) {
     EXPECT_TRUE(fits.status == expected.status) << unit;
     EXPECT_GE(fits.audit.batch, expected.audit.batch) << unit;
     const MatrixXd back = Eigen::Vector3d(1, unit, unit).asDiagonal() * fits.parameters;
+    Index others = 0;  // minima, of losses that have several
     for (Index i = 0; i < fits.count(); ++i) {
       if (fits.status(i) == 2 && options().prior == Prior::none) continue;  // minimum norm depends on units
-      EXPECT_TRUE(near(back.col(i), expected.parameters.col(i), convex(options().loss) ? 1e-8 : 1.0))
-          << unit << " window " << i;
+      others += near(back.col(i), expected.parameters.col(i), 1e-8) ? 0 : 1;
     }
+    EXPECT_LE(others, convex(options().loss) ? 0 : fits.count() / 10) << unit;
   }
 }
 

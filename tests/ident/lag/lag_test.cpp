@@ -52,9 +52,10 @@ TEST(Lag, DriftIsFoundWithTheLagInTheMiddle) {
   EXPECT_LT(fit.drift_standard_error, 5e-4);
 }
 
-/// The stated standard error is the estimates' spread, within what 40 runs can tell.
+/// The stated standard error is the estimates' spread but for a sixth: it is a little small, z squared 1.37 +- 0.1 over
+/// these 200 runs. One that is wrong by the root of two does not pass.
 TEST(Lag, StandardErrorIsTheSpreadOverRuns) {
-  constexpr int runs = 40;
+  constexpr int runs = 200;
   DelayedSystem system;
   system.duration_s = 40.0;
   system.noise_sd = 0.05;
@@ -67,8 +68,8 @@ TEST(Lag, StandardErrorIsTheSpreadOverRuns) {
     z_squared += std::pow(error / fit.lag_standard_error_s, 2) / runs;
     bias += error / runs;
   }
-  EXPECT_GT(z_squared, 0.4);
-  EXPECT_LT(z_squared, 2.2);
+  EXPECT_GT(z_squared, 0.7);
+  EXPECT_LT(z_squared, 1.7);
   EXPECT_LT(std::abs(bias), 0.01);
 }
 

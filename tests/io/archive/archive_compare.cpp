@@ -36,23 +36,23 @@ void expect_same(const PairedGain& actual, const PairedGain& expected) {
   EXPECT_EQ(actual.rank_p, expected.rank_p);
 }
 
-void expect_same(const DriftingModel& actual, const DriftingModel& expected) {
-  EXPECT_EQ(actual.structure.states, expected.structure.states);
-  EXPECT_EQ(actual.structure.parameters(), expected.structure.parameters());
+void expect_same_drifting(const Bank& actual, const Bank& expected) {
+  EXPECT_EQ(actual.structure, expected.structure);
   EXPECT_EQ(actual.state_names, expected.state_names);
   EXPECT_EQ(actual.input_names, expected.input_names);
   EXPECT_EQ(actual.dt_s, expected.dt_s);
-  EXPECT_TRUE(same_bits(actual.theta0, expected.theta0));
-  EXPECT_TRUE(same_bits(actual.scale, expected.scale));
-  EXPECT_EQ(actual.rates, expected.rates);
-  EXPECT_EQ(actual.lam, expected.lam);
-  EXPECT_EQ(actual.nu, expected.nu);
-  EXPECT_TRUE(same_bits(actual.v0, expected.v0));
-  EXPECT_TRUE(same_bits(actual.variance_floor, expected.variance_floor));
-  EXPECT_EQ(actual.horizon_factor, expected.horizon_factor);
-  EXPECT_EQ(actual.tuning.log_score, expected.tuning.log_score);
-  EXPECT_EQ(actual.tuning.samples, expected.tuning.samples);
-  EXPECT_EQ(actual.tuning.at_grid_end, expected.tuning.at_grid_end);
+  EXPECT_TRUE(same_bits(actual.theta(0), expected.theta(0)));
+  EXPECT_TRUE(same_bits(actual.noise_variance(), expected.noise_variance()));
+  EXPECT_TRUE(same_bits(actual.drift.scale, expected.drift.scale));
+  EXPECT_EQ(actual.drift.rates, expected.drift.rates);
+  EXPECT_EQ(actual.drift.wandering, expected.drift.wandering);
+  EXPECT_EQ(actual.drift.tuning.log_score, expected.drift.tuning.log_score);
+  EXPECT_EQ(actual.drift.tuning.samples, expected.drift.tuning.samples);
+  EXPECT_EQ(actual.drift.tuning.at_grid_end, expected.drift.tuning.at_grid_end);
+  EXPECT_EQ(actual.running_noise.lam, expected.running_noise.lam);
+  EXPECT_EQ(actual.running_noise.nu, expected.running_noise.nu);
+  EXPECT_TRUE(same_bits(actual.running_noise.floor, expected.running_noise.floor));
+  EXPECT_EQ(actual.running_noise.horizon_factor, expected.running_noise.horizon_factor);
 }
 
 void expect_same(const Finding& actual, const Finding& expected) {
@@ -312,7 +312,8 @@ void expect_same(const Archive& actual, const Archive& expected) {
   expect_same_part(actual.baseline, expected.baseline, "baseline");
   expect_same_part(actual.noise_only, expected.noise_only, "noise_only");
   expect_same_part(actual.one_motion, expected.one_motion, "one_motion");
-  expect_same_part(actual.drifting, expected.drifting, "drifting");
+  EXPECT_EQ(actual.drifting.has_value(), expected.drifting.has_value());
+  if (actual.drifting && expected.drifting) expect_same_drifting(*actual.drifting, *expected.drifting);
   expect_same_part(actual.nonlinear, expected.nonlinear, "nonlinear");
   expect_same_part(actual.finding, expected.finding, "finding");
   ASSERT_EQ(actual.evaluations.size(), expected.evaluations.size());

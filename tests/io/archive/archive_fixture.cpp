@@ -191,22 +191,15 @@ Eigen::MatrixXd spread_pattern(Index side, Index count, double base) {
 
 namespace {
 
-DriftingModel make_drifting(const LinearStructure& structure) {
-  DriftingModel model;
-  model.structure = structure;
-  model.state_names.assign(static_cast<std::size_t>(structure.states), "wz");
-  model.input_names.assign(static_cast<std::size_t>(structure.inputs), "u");
-  model.dt_s = 0.125;
-  model.theta0 = pattern(structure.parameters(), 1, 95.0);
-  model.scale = pattern(structure.regressors(), 1, 96.0);
-  model.rates = {1e-3, 10.0, 0.97};
-  model.lam = 0.75;
-  model.nu = 5.0;
-  model.v0 = pattern(structure.states, 1, 97.0);
-  model.variance_floor = pattern(structure.states, 1, 98.0);
-  model.horizon_factor = {{5, 1.25}, {10, 2.5}};
-  model.tuning = {2.75, 321, {"p0"}};
-  return model;
+Bank make_drifting(const LinearStructure& structure) {
+  Bank bank = one_mode_bank(structure, pattern(structure.parameters(), 1, 95.0), pattern(structure.states, 1, 97.0));
+  bank.model = "varx";
+  bank.state_names.assign(static_cast<std::size_t>(structure.states), "wz");
+  bank.input_names.assign(static_cast<std::size_t>(structure.inputs), "u");
+  bank.dt_s = 0.125;
+  bank.drift = {{1e-3, 10.0, 0.97}, pattern(structure.regressors(), 1, 96.0), Wandering::all, {2.75, 321, {"p0"}}};
+  bank.running_noise = {0.75, 5.0, pattern(structure.states, 1, 98.0), {{5, 1.25}, {10, 2.5}}};
+  return bank;
 }
 
 }  // namespace

@@ -225,7 +225,7 @@ TEST_F(Robustness, ArraysInOtherFilesAndOtherHdf5AreRefused) {
 
 TEST_F(Robustness, D2AModelThatCannotStepIsNotLoaded) {
   patch_number_attribute(path, "/drifting", "lam", 2.0);
-  EXPECT_THAT([&] { load_drifting(path); }, ThrowsMessage<DataError>(HasSubstr("lam lies in [0, 1]")));
+  EXPECT_THAT([&] { load_bank(path, "drifting"); }, ThrowsMessage<DataError>(HasSubstr("lam in [0, 1]")));
 }
 
 TEST_F(Robustness, D11TheHashIsCheckedBeforeAnythingIsShown) {

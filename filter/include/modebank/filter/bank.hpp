@@ -39,12 +39,27 @@ struct NoiseByState {
   double offset = 0.0;          ///< of the exponent
 };
 
+/// Which coefficients wander: every one by itself, the constant, or one factor on those of all inputs.
+enum class Wandering { all, constant, gain };
+
 /// How every mode's theta wanders in a run, regressor by regressor of [z; v; (1)]. Empty: it stays.
 struct CoefficientDrift {
   std::vector<double> scale;  ///< per regressor its size, in whose units the coefficient wanders
   double rate = 0.0;          ///< variance that a step adds to each coefficient, in units of Q, >= 0
   double start = 0.0;         ///< variance of each coefficient at a start, in units of Q, >= 0
   double leak = 1.0;          ///< what a step leaves of a coefficient's difference from the mode's, in (0, 1]
+  Wandering wandering = Wandering::all;  ///< other than all only with RunningNoise
+};
+
+/// Noise of one mode that drifts, whose variance v follows each measured state by itself, from the diagonal of Q on:
+/// v <- max(forgetting v + (1 - forgetting) e^2, floor), e the error of a prediction over what the coefficients'
+/// uncertainty makes of it. Empty: Q itself. It is the noise of the competitor `drifting`.
+struct RunningNoise {
+  std::vector<double> floor;         ///< n_y, least v [state unit^2]
+  double forgetting = 0.9;           ///< in [0, 1]
+  double degrees_of_freedom = 0.0;   ///< of Student's t, above 2; 0: Gaussian
+  std::vector<double> horizon = {};  ///< ascending, from 2 samples ahead on
+  std::vector<double> factor = {};   ///< of the variance of forecasts so far ahead, up to the next horizon
 };
 
 /// How fast the noise scale of FilterNoise::adaptive follows a run.
@@ -74,6 +89,7 @@ struct BankDescription {
   NoiseMemory noise_memory;        ///< for filters whose noise is adaptive
   NoiseByState noise_by_state;     ///< empty: constant
   CoefficientDrift drift;          ///< empty: none
+  RunningNoise running_noise;      ///< empty: the noise is Q
 };
 
 /// A bank of modes, immutable and cheap to copy; its numbers live inside the library.

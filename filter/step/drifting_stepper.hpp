@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "filter/step/drifting_recursion.hpp"
+#include "filter/step/stepper.hpp"
+#include "filter/step/student_noise.hpp"
+
+namespace modebank {
+
+/// One mode that drifts, with running noise: state is z with the newest measured value (the prediction where missing),
+/// covariances of states are zero, that of the innovation diagonal, pit by Student's distribution, a log density the
+/// outputs' sum; of quantised outputs log (mass of the interval / q).
+class DriftingStepper final : public Stepper {
+ public:
+  explicit DriftingStepper(const Bank& bank);
+
+  void start(const Vector& y) override { recursion_.start(y); }
+  void predict(const Vector& v) override { recursion_.predict(v); }
+  void skip(const Vector& v) override;
+  double update(const Vector& y) override;
+
+  double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override;
+  void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) override;
+  void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override;
+  Eigen::Map<const Eigen::VectorXd> predicted_probability() const override { return mode_probability(); }
+  Eigen::Map<const Eigen::VectorXd> mode_probability() const override { return {one_.data(), one_.size()}; }
+
+  void save(FilterMemory& memory) const override;
+  void restore(const FilterMemory& memory) override;
+
+ private:
+  DriftingRecursion recursion_;
+  StudentNoise noise_;
+  Eigen::VectorXd quantum_;  ///< n; 0: continuous
+  Eigen::VectorXd one_ = Eigen::VectorXd::Ones(1);
+
+  /// Standard deviation of the prediction's error, before the update as after it.
+  double deviation(Eigen::Index i) const { return std::sqrt(recursion_.variance()(i)); }
+};
+
+}  // namespace modebank

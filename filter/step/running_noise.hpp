@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+namespace modebank {
+
+/// Noise of one motion whose variance follows each output by itself (method: section 6, `drifting`). With e the error
+/// of a prediction, Student t of variance v (1 + h'Ph), P the covariance of the coefficients over v,
+///   v <- max(lam v + (1 - lam) e^2 / (1 + h'Ph), floor), from the diagonal of Q at a start.
+/// Given the past, outputs are independent.
+struct RunningNoise {
+  double lam = 0.9;            ///< forgetting of the running variance, in [0, 1]
+  double nu = 0.0;             ///< degrees of freedom, above 2; 0: Gaussian
+  Eigen::VectorXd floor = {};  ///< n, least v; empty: the noise is Q and nothing else
+  /// What the first-order variance so many samples ahead is multiplied with: ascending horizons from 2 on. One sample
+  /// ahead it is 1, so that it is the filter's own prediction.
+  std::vector<std::pair<Eigen::Index, double>> horizon_factor = {};
+
+  bool empty() const { return floor.size() == 0; }
+  /// Of the longest horizon that is not longer than this one; 1 without.
+  double factor_at(Eigen::Index horizon) const {
+    double factor = 1.0;
+    for (const auto& [ahead, value] : horizon_factor)
+      if (ahead <= horizon) factor = value;
+    return factor;
+  }
+};
+
+}  // namespace modebank
