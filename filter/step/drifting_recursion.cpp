@@ -154,7 +154,7 @@ void DriftingRecursion::learn() {
   }
 }
 
-/// What is missing of a sample changes nothing.
+/// A missing signal leaves its variance as it was.
 void DriftingRecursion::adapt_variance() {
   for (Index i = 0; i < v_.size(); ++i) {
     const double e = innovation_(i);

@@ -74,8 +74,8 @@ class DriftingRecursion {
 /// theta as coefficients of scaled regressors, r x n.
 Eigen::MatrixXd scaled_coefficients(const LinearStructure& structure, const Eigen::VectorXd& theta,
                                     const Eigen::VectorXd& scale);
-/// Of unit length, what of an output's scaled coefficients wanders, r x n: cov(w) = q v d d'; empty: all of them,
-/// cov(w) = q v I.
+/// The direction d of unit length in which each output's scaled coefficients wander, r x n: cov(w) = q v d d'. Empty
+/// where all wander: cov(w) = q v I.
 Eigen::MatrixXd wandering_direction(const Bank& bank);
 
 }  // namespace modebank

@@ -6,7 +6,8 @@ scale.py MODEBANK FOLDER [--rows N] [--runs N] [--page N]
 One run of so many rows and three channels, cut into twenty blocks (data.split), with bank.refine = none and with the
 default, and its report; the page of one whole run, made with the limits that `modebank view` gives each page; so many
 runs of six rows in one file (data.run), run, shown, verified and reported. Data are simulated with a
-fixed seed: two motions that change every 50 samples in the mean.
+fixed seed: two motions that change every 50 samples in the mean. One lag and no search for more, so that the figures
+are those of reading, filtering and writing, and compare with those of older programs.
 """
 
 import argparse
@@ -27,10 +28,14 @@ input = velL, velR
 state_unit = rad/s
 {split}
 [window]
+model = linear
+terms = none
 length = {length}
 [mixture]
 components = 1..2
 restarts = 2
+[bank]
+noise_by_input = none
 """
 
 

@@ -39,9 +39,9 @@ std::vector<Index> checkpoints_up_to(Index limit, const RefineTuning& tuning) {
   return list;
 }
 
-std::vector<LeftOutScores> scores_of(const std::vector<ScoredFit>& fits) {
+std::vector<LeftOutScores> scores_of(const std::vector<Fit>& fits) {
   std::vector<LeftOutScores> scores;
-  for (const ScoredFit& fit : fits) scores.push_back(fit.scores);
+  for (const Fit& fit : fits) scores.push_back(fit.scores);
   return scores;
 }
 
@@ -58,18 +58,19 @@ CrossValidation::CrossValidation(const RefineInput& in)
 void CrossValidation::consider(const std::vector<RefineStart>& candidates) {
   WorkCounter counter("fits of modes", candidates.size());
   for (const RefineStart& start : candidates) {
-    fits_.push_back(possible() ? best_iterations(start)
-                               : ScoredFit{start, 0, in_.options.max_iterations, {start.model.modes(), {}}, {}});
+    fits_.push_back(possible() ? best_iterations(start) : Fit{start, start.model});
+    if (!possible()) fits_.back().iterations = in_.options.max_iterations;
     fits_.back().row = fits_.size() - 1;
     counter.add();
   }
   if (possible()) chosen_ = fewest_modes_as_good(scores_of(fits_), samples_, refine_tuning);
 }
 
-ScoredFit CrossValidation::best_iterations(const RefineStart& start) const {
+Fit CrossValidation::best_iterations(const RefineStart& start) const {
   const Index modes = start.model.modes();
   SplitFits fits(in_, splits_, start);
-  ScoredFit best{start, 0, 0, {modes, {}}, {}};
+  Fit best{start, start.model};
+  best.scores.modes = modes;
   int falls = 0;
   for (const Index checkpoint : checkpoints_up_to(in_.options.max_iterations, refine_tuning)) {
     fits.advance_to(checkpoint);
@@ -77,18 +78,22 @@ ScoredFit CrossValidation::best_iterations(const RefineStart& start) const {
     const LeftOutScores scores{modes, run_scores(banks, look_)};
     const double gain = mean_score(scores) - mean_score(best.scores);
     falls = gain < -refine_tuning.least_gain ? falls + 1 : 0;
-    if (best.iterations == 0 || gain > 0.0) best = {start, 0, checkpoint, scores, std::move(banks)};
+    if (best.iterations == 0 || gain > 0.0) {
+      best.iterations = checkpoint;
+      best.scores = scores;
+      best.of_splits = std::move(banks);
+    }
     if (falls == refine_tuning.falls) break;
     if (fits.converged()) break;
   }
   return best;
 }
 
-std::vector<RefineCandidate> CrossValidation::table() const {
+std::vector<RefineCandidate> CrossValidation::table(std::size_t selected) const {
   const std::size_t best = possible() ? best_candidate(scores_of(fits_)) : 0;
   std::vector<RefineCandidate> rows;
-  for (const ScoredFit& fit : fits_) {
-    RefineCandidate row{fit.start.name, fit.scores.modes, fit.start.noise_transitions, fit.iterations};
+  for (const Fit& fit : fits_) {
+    RefineCandidate row{fit.start.name, fit.start.model.modes(), fit.start.noise_transitions, fit.iterations};
     row.theta_transitions = fit.start.theta_transitions;
     if (possible()) {
       const PairedLoss loss = paired_loss(fits_[best].scores.log_likelihood, fit.scores.log_likelihood, samples_);
@@ -98,34 +103,34 @@ std::vector<RefineCandidate> CrossValidation::table() const {
     }
     rows.push_back(row);
   }
-  rows[chosen_].selected = true;
+  rows[selected].selected = true;
   return rows;
 }
 
-std::vector<ScoredFit> CrossValidation::best_of_starts() const {
-  std::vector<ScoredFit> fits;
+std::vector<Fit> CrossValidation::best_of_starts() const {
+  std::vector<Fit> fits;
   const auto same_start = [](const RefineStart& a, const RefineStart& b) {
     return a.name == b.name && a.model.modes() == b.model.modes();
   };
-  for (const ScoredFit& fit : fits_) {
+  for (const Fit& fit : fits_) {
     const auto known =
-        std::find_if(fits.begin(), fits.end(), [&](const ScoredFit& f) { return same_start(f.start, fit.start); });
+        std::find_if(fits.begin(), fits.end(), [&](const Fit& f) { return same_start(f.start, fit.start); });
     if (known == fits.end())
       fits.push_back(fit);
     else if (mean_score(fit.scores) > mean_score(known->scores))
       *known = fit;
   }
-  std::sort(fits.begin(), fits.end(), [&](const ScoredFit& a, const ScoredFit& b) {
+  std::sort(fits.begin(), fits.end(), [&](const Fit& a, const Fit& b) {
     const double better = mean_score(a.scores) - mean_score(b.scores);
     return better > 0.0 || (!(better < 0.0) && a.row < b.row);
   });
   return fits;
 }
 
-std::vector<ScoredFit> CrossValidation::best_of_each_size() const {
-  std::vector<ScoredFit> fits;
-  for (ScoredFit& fit : best_of_starts()) {
-    const auto as_many = [&](const ScoredFit& f) { return f.start.model.modes() == fit.start.model.modes(); };
+std::vector<Fit> CrossValidation::best_of_each_size() const {
+  std::vector<Fit> fits;
+  for (Fit& fit : best_of_starts()) {
+    const auto as_many = [&](const Fit& f) { return f.start.model.modes() == fit.start.model.modes(); };
     if (std::none_of(fits.begin(), fits.end(), as_many)) fits.push_back(std::move(fit));
   }
   return fits;

@@ -6,6 +6,7 @@
 #include "filter/judge/run/look_ahead.hpp"
 #include "filter/learn/left_out/folds.hpp"
 #include "filter/learn/left_out/rule.hpp"
+#include "filter/learn/refine/fit.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "filter/learn/refine/split_fits.hpp"
 #include "filter/learn/refine/training_fit.hpp"
@@ -13,17 +14,8 @@
 
 namespace modebank {
 
-/// One start's fit after the number of iterations that scored best, how it scored, and what it was on each split.
-struct ScoredFit {
-  RefineStart start;
-  std::size_t row = 0;  ///< in the table
-  Index iterations = 0;
-  LeftOutScores scores;
-  std::vector<Bank> banks;
-};
-
-/// Scores of training runs left out, for every start, number of iterations and way to adapt. Keeps the input's
-/// references.
+/// Scores of training runs left out, for every start, number of iterations and way to adapt: of each start the fit
+/// after the number of iterations that scored best. Keeps the input's references.
 class CrossValidation {
  public:
   explicit CrossValidation(const RefineInput& in);
@@ -36,16 +28,16 @@ class CrossValidation {
   /// Whether there is anything to leave out.
   bool possible() const { return !splits_.empty(); }
   const std::vector<SplitData>& splits() const { return splits_; }
-  const ScoredFit& chosen() const { return fits_[chosen_]; }
-  const ScoredFit& of_start(std::size_t row) const { return fits_[row]; }
+  const Fit& chosen() const { return fits_[chosen_]; }
   /// Of each run left out.
   const Eigen::VectorXd& samples() const { return samples_; }
-  std::vector<RefineCandidate> table() const;
+  /// A row of each start; that of `selected` is marked.
+  std::vector<RefineCandidate> table(std::size_t selected) const;
 
   /// The best fit from every start, the best first.
-  std::vector<ScoredFit> best_of_starts() const;
+  std::vector<Fit> best_of_starts() const;
   /// The best fit of every number of modes, the best first.
-  std::vector<ScoredFit> best_of_each_size() const;
+  std::vector<Fit> best_of_each_size() const;
 
   /// Log-likelihoods of the runs left out; `banks`: one per split.
   LeftOutScores scores(const std::vector<Bank>& banks) const { return scores(banks, look_); }
@@ -63,13 +55,13 @@ class CrossValidation {
  private:
   /// Of each run left out.
   Eigen::VectorXd run_scores(const std::vector<Bank>& banks, const LookAhead& look) const;
-  ScoredFit best_iterations(const RefineStart& start) const;
+  Fit best_iterations(const RefineStart& start) const;
 
   RefineInput in_;
   LookAhead look_;  ///< at which densities
   std::vector<SplitData> splits_;
   Eigen::VectorXd samples_;  ///< of each run left out
-  std::vector<ScoredFit> fits_;
+  std::vector<Fit> fits_;
   std::size_t chosen_ = 0;
 };
 

@@ -13,19 +13,14 @@
 namespace modebank {
 namespace {
 
-/// Settings on their grids, and how the runs left out like them.
-struct DriftTrial {
-  DriftChoice choice;
-  LeftOutScores scores;
-
-  double total() const { return scores.log_likelihood.sum(); }
-};
-
-DriftTrial tried(const CrossValidation& validation, const DriftChoice& choice) {
-  std::vector<Bank> banks;
-  for (const Bank& bank : choice.fit.banks) banks.push_back(with_drift(bank, choice));
-  return {choice, validation.scores(banks)};
+/// The fit with modes that drift and a noise scale that moves as it says, scored on the runs left out.
+Fit tried(const CrossValidation& validation, Fit fit) {
+  for (Bank& bank : fit.of_splits) bank = with_drift(bank, fit);
+  fit.scores = validation.scores(fit.of_splits);
+  return fit;
 }
+
+double total(const Fit& fit) { return fit.scores.log_likelihood.sum(); }
 
 /// One setting: its grid, and where it stands.
 struct Coordinate {
@@ -34,10 +29,10 @@ struct Coordinate {
 };
 
 /// Goes to better neighbours on every grid in turn until there are none. A score that is no number is never better.
-DriftTrial climbed(const RefineInput& in, const CrossValidation& validation, const DriftChoice& start) {
+Fit climbed(const RefineInput& in, const CrossValidation& validation, const Fit& start) {
   const RefineTuning& tuning = refine_tuning;
-  DriftTrial best = tried(validation, start);
-  DriftChoice at = start;
+  Fit best = tried(validation, start);
+  Fit at = start;
   std::vector<Coordinate> coordinates{{tuning.drift_rates, at.drift.rates.q},
                                       {tuning.drift_starts, at.drift.rates.p0},
                                       {tuning.drift_leaks, at.drift.rates.leak}};
@@ -50,12 +45,12 @@ DriftTrial climbed(const RefineInput& in, const CrossValidation& validation, con
     for (const Coordinate& c : coordinates)
       for (const std::ptrdiff_t way : {-1, 1})
         for (;;) {
-          at = best.choice;
+          at = best;
           const std::ptrdiff_t next = std::find(c.grid.begin(), c.grid.end(), c.value) - c.grid.begin() + way;
           if (next < 0 || next >= std::ssize(c.grid)) break;
           c.value = c.grid[static_cast<std::size_t>(next)];
-          DriftTrial trial = tried(validation, at);
-          if (!(trial.total() > best.total())) break;
+          Fit trial = tried(validation, at);
+          if (!(total(trial) > total(best))) break;
           best = std::move(trial);
           moved = true;
         }
@@ -64,25 +59,25 @@ DriftTrial climbed(const RefineInput& in, const CrossValidation& validation, con
 }
 
 /// The chosen fit, and the best one of every other number of modes.
-std::vector<ScoredFit> fits_to_try(const CrossValidation& validation, const ScoredFit& steady, bool other_sizes) {
-  std::vector<ScoredFit> fits{steady};
+std::vector<Fit> fits_to_try(const CrossValidation& validation, const Fit& steady, bool other_sizes) {
+  std::vector<Fit> fits{steady};
   if (!other_sizes) return fits;
-  for (ScoredFit& fit : validation.best_of_each_size())
-    if (fit.start.model.modes() != steady.start.model.modes()) fits.push_back(std::move(fit));
+  for (Fit& fit : validation.best_of_each_size())
+    if (fit.model.modes() != steady.model.modes()) fits.push_back(std::move(fit));
   return fits;
 }
 
 /// From the middle of the grids.
-DriftChoice start_of(const ScoredFit& fit, const Eigen::VectorXd& scale) {
+Fit start_of(Fit fit, const Eigen::VectorXd& scale) {
   const RefineTuning& tuning = refine_tuning;
-  return {fit,
-          {{tuning.drift_rates[2], tuning.drift_starts[3], tuning.drift_leaks[0]}, scale},
-          {tuning.drift_forgettings[4], tuning.drift_noise_prior_samples[3]}};
+  fit.drift = {{tuning.drift_rates[2], tuning.drift_starts[3], tuning.drift_leaks[0]}, scale};
+  fit.adaptation = {tuning.drift_forgettings[4], tuning.drift_noise_prior_samples[3]};
+  return fit;
 }
 
 /// The runs' scores without drift, the noise scale moving as is best for that.
-Eigen::VectorXd scores_without(const CrossValidation& validation, const ScoredFit& steady) {
-  std::vector<Bank> banks = steady.banks;
+Eigen::VectorXd scores_without(const CrossValidation& validation, const Fit& steady) {
+  std::vector<Bank> banks = steady.of_splits;
   const NoiseAdaptation adaptation = validation.adaptation(banks);
   for (Bank& bank : banks) bank.noise_adaptation = adaptation;
   return validation.scores(banks).log_likelihood;
@@ -90,20 +85,20 @@ Eigen::VectorXd scores_without(const CrossValidation& validation, const ScoredFi
 
 }  // namespace
 
-std::optional<DriftChoice> choose_drift(const RefineInput& in, const CrossValidation& validation,
-                                        const ScoredFit& steady, bool other_sizes, DriftStage& stage) {
+std::optional<Fit> choose_drift(const RefineInput& in, const CrossValidation& validation, const Fit& steady,
+                                bool other_sizes, DriftStage& stage) {
   if (!validation.possible()) return std::nullopt;
   const Eigen::VectorXd scale = regressor_scale(in.recording, in.frame.structure);
-  std::vector<DriftTrial> sizes;
+  std::vector<Fit> sizes;
   std::vector<LeftOutScores> scores;
-  for (const ScoredFit& fit : fits_to_try(validation, steady, other_sizes)) {
+  for (const Fit& fit : fits_to_try(validation, steady, other_sizes)) {
     sizes.push_back(climbed(in, validation, start_of(fit, scale)));
     scores.push_back(sizes.back().scores);
   }
-  const DriftTrial& best = sizes[fewest_modes_as_good(scores, validation.samples(), refine_tuning)];
+  const Fit& best = sizes[fewest_modes_as_good(scores, validation.samples(), refine_tuning)];
   const Eigen::VectorXd without = scores_without(validation, steady);
   const PairedLoss gain = paired_loss(best.scores.log_likelihood, without, validation.samples());
-  const DriftRates& rates = best.choice.drift.rates;
+  const DriftRates& rates = best.drift.rates;
   stage.taken = is_worth_it(gain, validation.samples());
   stage.modes = best.scores.modes;
   stage.rate = rates.q;
@@ -112,13 +107,13 @@ std::optional<DriftChoice> choose_drift(const RefineInput& in, const CrossValida
   stage.score_before = without.sum() / validation.samples().sum();
   stage.gain = gain.mean;
   stage.gain_standard_error = gain.standard_error;
-  return stage.taken ? std::optional(best.choice) : std::nullopt;
+  return stage.taken ? std::optional(best) : std::nullopt;
 }
 
-Bank with_drift(Bank bank, const DriftChoice& choice) {
+Bank with_drift(Bank bank, const Fit& fit) {
   bank.R.setZero();
-  bank.drift = choice.drift;
-  bank.noise_adaptation = choice.adaptation;
+  bank.drift = fit.drift;
+  bank.noise_adaptation = fit.adaptation;
   return bank;
 }
 

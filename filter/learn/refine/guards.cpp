@@ -17,12 +17,12 @@ namespace {
 
 /// A model with guards, fitted to all training runs.
 struct GuardStart {
-  const ScoredFit* constant;  ///< the fit with a constant T that it goes on from, whose priors it keeps
+  const Fit* constant;  ///< the fit with a constant T that it goes on from, whose priors it keeps
   SwitchingRegression model;
   double log_likelihood;
 };
 
-GuardStart gone_on(const RefineInput& in, const ScoredFit& constant, SwitchingRegression model) {
+GuardStart gone_on(const RefineInput& in, const Fit& constant, SwitchingRegression model) {
   const SwitchingPrior prior = with_guard(in.prior(constant.start), in.transitions, {refine_tuning.weight_width});
   ExpectationMaximisation em(in.transitions, prior, em_options(in.options), std::move(model));
   for (Index i = 0; i < in.options.max_iterations && !em.converged(); ++i) em.step();
@@ -30,11 +30,10 @@ GuardStart gone_on(const RefineInput& in, const ScoredFit& constant, SwitchingRe
 }
 
 /// Every start's fit with a constant T taken on as a logit; empty for one mode, where nothing switches.
-std::vector<GuardStart> from_constant_fits(const RefineInput& in, const std::vector<ScoredFit>& fits) {
+std::vector<GuardStart> from_constant_fits(const RefineInput& in, const std::vector<Fit>& fits) {
   std::vector<std::optional<GuardStart>> all(fits.size());
   tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t f) {
-    const RefineStart& start = fits[f].start;
-    SwitchingRegression model = fit_training_runs(in, start, in.prior(start), fits[f].iterations).model;
+    SwitchingRegression model = fit_training_runs(in, fits[f].model, in.prior(fits[f].start), fits[f].iterations).model;
     if (model.modes() == 1) return;
     model.logit = no_effect(in.transitions, model.modes());
     all[f] = gone_on(in, fits[f], std::move(model));
@@ -49,7 +48,7 @@ bool likelier(const GuardStart& a, const GuardStart& b) { return a.log_likelihoo
 
 /// The likeliest of each number of modes, the most modes first: of the constant fits that were taken on, and of the
 /// likeliest of these with one pair of its modes after another merged.
-std::vector<GuardStart> guard_starts(const RefineInput& in, const std::vector<ScoredFit>& fits) {
+std::vector<GuardStart> guard_starts(const RefineInput& in, const std::vector<Fit>& fits) {
   std::vector<GuardStart> all = from_constant_fits(in, fits);
   if (all.empty()) return all;
   GuardStart last = *std::min_element(all.begin(), all.end(), likelier);
@@ -67,70 +66,63 @@ std::vector<GuardStart> guard_starts(const RefineInput& in, const std::vector<Sc
 }
 
 /// Goes on from a start on every split; the best number of iterations.
-Guards scored(const RefineInput& in, const CrossValidation& validation, const GuardStart& start,
-              const GuardPrior& prior) {
+Fit scored(const RefineInput& in, const CrossValidation& validation, const GuardStart& start, const GuardPrior& prior) {
   const std::vector<SplitData>& splits = validation.splits();
   std::vector<SwitchingPrior> priors;
   for (const SplitData& split : splits)
     priors.push_back(with_guard(prior_of_split(in, split, start.constant->start), split.transitions, prior));
   SplitFits fits(in, splits, std::move(priors), std::vector<SwitchingRegression>(splits.size(), start.model));
-  Guards best{*start.constant, prior, 0};
-  best.fit.start.model = start.model;
+  Fit best = *start.constant;
+  best.model = start.model;
+  best.guard = prior;
+  best.iterations = 0;
   for (const Index checkpoint : refine_tuning.checkpoints) {
     if (checkpoint > in.options.max_iterations) break;
     fits.advance_to(checkpoint);
     std::vector<Bank> banks = fits.banks();
     LeftOutScores scores = validation.scores(banks);
-    if (best.iterations == 0 || scores.log_likelihood.sum() > best.fit.scores.log_likelihood.sum()) {
+    if (best.iterations == 0 || scores.log_likelihood.sum() > best.scores.log_likelihood.sum()) {
       best.iterations = checkpoint;
-      best.fit.scores = std::move(scores);
-      best.fit.banks = std::move(banks);
+      best.scores = std::move(scores);
+      best.of_splits = std::move(banks);
     }
     if (fits.converged()) break;
   }
   return best;
 }
 
-bool higher(const Guards& a, const Guards& b) {
-  return a.fit.scores.log_likelihood.sum() > b.fit.scores.log_likelihood.sum();
-}
+bool higher(const Fit& a, const Fit& b) { return a.scores.log_likelihood.sum() > b.scores.log_likelihood.sum(); }
 
 }  // namespace
 
-std::optional<Guards> choose_guards(const RefineInput& in, const CrossValidation& validation, SwitchingStage& stage) {
+std::optional<Fit> choose_guards(const RefineInput& in, const CrossValidation& validation, SwitchingStage& stage) {
   if (!validation.possible()) return std::nullopt;
   const RefineTuning& tuning = refine_tuning;
-  std::vector<Guards> sizes;
+  std::vector<Fit> sizes;
   std::vector<LeftOutScores> scores;
-  const std::vector<ScoredFit> constant = validation.best_of_starts();
+  const std::vector<Fit> constant = validation.best_of_starts();
   const std::vector<GuardStart> starts = guard_starts(in, constant);
   for (const GuardStart& start : starts) {
     sizes.push_back(scored(in, validation, start, {tuning.weight_width}));
-    scores.push_back(sizes.back().fit.scores);
+    scores.push_back(sizes.back().scores);
   }
   if (sizes.empty()) return std::nullopt;
   const std::size_t size = fewest_modes_as_good(scores, validation.samples(), tuning);
-  Guards best = sizes[size];
+  Fit best = sizes[size];
   for (const double width : tuning.other_weight_widths)
-    if (Guards other = scored(in, validation, starts[size], {width}); higher(other, best)) best = std::move(other);
-  Guards memoryless = scored(in, validation, starts[size], {best.prior.width, tuning.little_memory_sd});
-  if (as_good(memoryless.fit.scores, best.fit.scores, validation.samples(), tuning)) best = std::move(memoryless);
+    if (Fit other = scored(in, validation, starts[size], {width}); higher(other, best)) best = std::move(other);
+  Fit memoryless = scored(in, validation, starts[size], {best.guard.width, tuning.little_memory_sd});
+  if (as_good(memoryless.scores, best.scores, validation.samples(), tuning)) best = std::move(memoryless);
 
   const LeftOutScores& without = validation.chosen().scores;
-  const PairedLoss gain = paired_loss(best.fit.scores.log_likelihood, without.log_likelihood, validation.samples());
+  const PairedLoss gain = paired_loss(best.scores.log_likelihood, without.log_likelihood, validation.samples());
   stage.score_before = without.log_likelihood.sum() / validation.samples().sum();
   stage.gain = gain.mean;
   stage.gain_standard_error = gain.standard_error;
   if (!is_worth_it(gain, validation.samples())) return std::nullopt;
-  stage.width = best.prior.width;
-  stage.memory_sd = best.prior.memory_sd;
+  stage.width = best.guard.width;
+  stage.memory_sd = best.guard.memory_sd;
   return best;
-}
-
-TrainingFit fit_guards(const RefineInput& in, const Guards& guards, const SwitchingPrior& prior) {
-  TrainingFit fit = fit_training_runs(in, guards.fit.start, prior, guards.iterations);
-  fit.model.logit.weights.rowwise() -= fit.model.logit.weights.colwise().mean().eval();  // changes no probability
-  return fit;
 }
 
 }  // namespace modebank

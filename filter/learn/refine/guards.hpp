@@ -4,18 +4,9 @@
 #include <vector>
 
 #include "filter/learn/refine/cross_validation.hpp"
-#include "filter/learn/refine/training_fit.hpp"
-#include "filter/learn/switching/transition_regression.hpp"
 #include "modebank/learn/results.hpp"
 
 namespace modebank {
-
-/// A number of modes whose switches see state and input, as cross-validation chose it.
-struct Guards {
-  ScoredFit fit;  ///< start: fitted to all training runs, as banks with the logit; row: of the fit with a constant T
-  GuardPrior prior;
-  Index iterations = 0;
-};
 
 /// Whether switches see state and input (transition_logit.hpp), and how clearly. Every start's fit with a constant T
 /// goes on as a logit on all training runs, and the likeliest of these with one pair of modes after another merged, so
@@ -25,9 +16,6 @@ struct Guards {
 /// that are as good are chosen (fewest_modes_as_good), and for these the width. Empty where it is not worth it
 /// (is_worth_it) against the chosen fit with a constant T, which is the case of no weights, and where nothing can be
 /// left out. `stage` says what was found.
-std::optional<Guards> choose_guards(const RefineInput& in, const CrossValidation& validation, SwitchingStage& stage);
-
-/// The same fit to all training runs.
-TrainingFit fit_guards(const RefineInput& in, const Guards& guards, const SwitchingPrior& prior);
+std::optional<Fit> choose_guards(const RefineInput& in, const CrossValidation& validation, SwitchingStage& stage);
 
 }  // namespace modebank

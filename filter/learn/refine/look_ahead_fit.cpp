@@ -95,43 +95,43 @@ Bank without_errors(Bank bank) {
 }
 
 /// Whether the runs left out, each scored by a fit that has not seen it, gain enough (left_out/rule.hpp).
-bool gains(const LookAheadFit& fit, const CrossValidation& validation, const ChosenFit& chosen, const Bank& bank,
-           LookAheadStage& stage, std::vector<Bank>& of_splits) {
-  std::vector<Bank> banks = chosen.of_splits;
-  for (Bank& of_split : banks) of_split.noise_adaptation = bank.noise_adaptation;
-  const LeftOutScores before = validation.scores(banks, fit.look);
+bool gains(const LookAheadFit& search, const CrossValidation& validation, LookAheadStage& stage, Fit& fit) {
+  std::vector<Bank> banks = fit.of_splits;
+  const LeftOutScores before = validation.scores(banks, search.look);
   tbb::parallel_for(std::size_t{0}, banks.size(), [&](std::size_t s) {
     const SplitData& split = validation.splits()[s];
     SwitchingPrior of_split = prior_of_split(
-        fit.in, split, {"", switching_model(banks[s]), chosen.noise_transitions, chosen.theta_transitions});
-    of_split = with_guard(std::move(of_split), split.transitions, chosen.guard);
-    banks[s] = fit.taken_on(split.runs.training, of_split, banks[s]);
+        search.in, split, {"", switching_model(banks[s]), fit.start.noise_transitions, fit.start.theta_transitions});
+    of_split = with_guard(std::move(of_split), split.transitions, fit.guard);
+    banks[s] = search.taken_on(split.runs.training, of_split, banks[s]);
   });
-  const LeftOutScores after = validation.scores(banks, fit.look);
+  const LeftOutScores after = validation.scores(banks, search.look);
   stage.score_before = validation.mean_score(before);
   stage.score = validation.mean_score(after);
   const PairedLoss gain = paired_loss(after.log_likelihood, before.log_likelihood, validation.samples());
   stage.gain_standard_error = gain.standard_error;
   if (!is_worth_it(gain, validation.samples())) return false;
-  of_splits = std::move(banks);
+  fit.of_splits = std::move(banks);
   return true;
 }
 
 }  // namespace
 
-std::optional<Bank> fit_looking_ahead(const RefineInput& in, const CrossValidation& validation, const ChosenFit& chosen,
-                                      const SwitchingPrior& prior, bool R_estimated, const Bank& bank,
-                                      LookAheadStage& stage, std::vector<Bank>& of_splits) {
+std::optional<Fit> fit_looking_ahead(const RefineInput& in, const CrossValidation& validation, const Fit& fit,
+                                     LookAheadStage& stage) {
   if (!validation.possible() && in.options.folds > 1) return std::nullopt;
-  const std::optional<LookAhead> look = look_of(in, bank);
+  const std::optional<LookAhead> look = look_of(in, fit.bank);
   if (!look ||
-      BankCoordinates(bank, free_parameters(in, in.recording, prior, R_estimated, bank)).size() > most_coordinates)
+      BankCoordinates(fit.bank, free_parameters(in, in.recording, fit.prior, fit.R_estimated, fit.bank)).size() >
+          most_coordinates)
     return std::nullopt;
-  const LookAheadFit fit{in, *look, R_estimated};
+  const LookAheadFit search{in, *look, fit.R_estimated};
+  Fit ahead = fit;
   stage.of_errors = look->counts_errors();
-  stage.taken = !validation.possible() || gains(fit, validation, chosen, bank, stage, of_splits);
+  stage.taken = !validation.possible() || gains(search, validation, stage, ahead);
   if (!stage.taken) return std::nullopt;
-  return without_errors(fit.taken_on(in.recording, prior, bank));
+  ahead.bank = without_errors(search.taken_on(in.recording, fit.prior, fit.bank));
+  return ahead;
 }
 
 }  // namespace modebank

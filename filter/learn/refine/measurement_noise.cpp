@@ -138,10 +138,9 @@ MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, c
 /// scored on: not theta and T, nor R or the prior.
 class MeasuredSplits {
  public:
-  MeasuredSplits(const RefineInput& in, const CrossValidation& validation, const ChosenFit& chosen,
-                 const NoiseAdaptation& adaptation)
-      : in_(in), validation_(validation), chosen_(chosen), banks_(chosen.of_splits) {
-    for (Bank& bank : banks_) bank.noise_adaptation = adaptation;
+  MeasuredSplits(const RefineInput& in, const CrossValidation& validation, const Fit& exact)
+      : in_(in), validation_(validation), exact_(exact), banks_(exact.of_splits) {
+    for (Bank& bank : banks_) bank.noise_adaptation = exact.bank.noise_adaptation;
   }
 
   const std::vector<Bank>& banks() const { return banks_; }
@@ -153,17 +152,17 @@ class MeasuredSplits {
     for_each([&](const SplitData& split, Bank& bank) {
       const LikelihoodTarget target{split.runs.training, in_.filter, std::nullopt};
       MeasurementNoise noise = find_R(target, in_, split.transitions, split.global,
-                                      prior_of_split(in_, split, chosen_.noise_transitions), bank);
+                                      prior_of_split(in_, split, exact_.start.noise_transitions), bank);
       if (noise.bank) bank = std::move(*noise.bank);
     });
   }
 
   void maximise(bool with_R) {
     for_each([&](const SplitData& split, Bank& bank) {
-      SwitchingPrior exact = prior_of_split(in_, split, chosen_.noise_transitions);
-      exact = towards_one_motion(std::move(exact), split.transitions, switching_model(bank), chosen_.theta_transitions,
-                                 refine_tuning);
-      exact = with_guard(std::move(exact), split.transitions, chosen_.guard);
+      SwitchingPrior exact = prior_of_split(in_, split, exact_.start.noise_transitions);
+      exact = towards_one_motion(std::move(exact), split.transitions, switching_model(bank),
+                                 exact_.start.theta_transitions, refine_tuning);
+      exact = with_guard(std::move(exact), split.transitions, exact_.guard);
       const LikelihoodTarget target{split.runs.training, learning_filter(in_.filter),
                                     prior_with_states_unknown(exact, bank, refine_tuning), in_.options.one_theta};
       bank = maximise_everything(target, in_, split.transitions, bank, with_R).bank;
@@ -179,7 +178,7 @@ class MeasuredSplits {
 
   const RefineInput& in_;
   const CrossValidation& validation_;
-  const ChosenFit& chosen_;
+  const Fit& exact_;
   std::vector<Bank> banks_;
 };
 
@@ -230,13 +229,13 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 namespace {
 
 /// R where the data ask for some and the runs left out do not lose by it: of the bank and of the splits.
-bool take_R(const RefineInput& in, const SwitchingPrior& prior, std::optional<MeasuredSplits>& splits,
-            MeasuredBank& fit) {
+bool take_R(const RefineInput& in, const SwitchingPrior& exact, std::optional<MeasuredSplits>& splits, Fit& fit,
+            MeasurementStage& stage) {
   const RefineTuning& tuning = refine_tuning;
   const LikelihoodTarget target{in.recording, in.filter, std::nullopt};
-  MeasurementNoise noise = find_R(target, in, in.transitions, in.fits.global, prior, fit.bank);
-  fit.stage.starts = noise.starts;
-  fit.stage.failed_starts = noise.failed_starts;
+  MeasurementNoise noise = find_R(target, in, in.transitions, in.fits.global, exact, fit.bank);
+  stage.starts = noise.starts;
+  stage.failed_starts = noise.failed_starts;
   if (!noise.bank) return false;
   if (splits) {
     MeasuredSplits with_R(*splits);
@@ -250,10 +249,9 @@ bool take_R(const RefineInput& in, const SwitchingPrior& prior, std::optional<Me
 }
 
 /// On to the maximum, bank and splits, unless the runs left out lose by it.
-void go_on(const RefineInput& in, const SwitchingPrior& prior, std::optional<MeasuredSplits>& splits,
-           MeasuredBank& fit) {
-  MeasurementStage& stage = fit.stage;
-  fit.prior = prior_with_states_unknown(prior, fit.bank, refine_tuning);
+void go_on(const RefineInput& in, const SwitchingPrior& exact, std::optional<MeasuredSplits>& splits, Fit& fit,
+           MeasurementStage& stage) {
+  fit.prior = prior_with_states_unknown(exact, fit.bank, refine_tuning);
   if (splits) {
     MeasuredSplits further(*splits);
     further.maximise(fit.R_estimated);
@@ -270,33 +268,32 @@ void go_on(const RefineInput& in, const SwitchingPrior& prior, std::optional<Mea
   fit.bank = std::move(maximum.bank);
 }
 
-MeasuredBank fit_untimed(const RefineInput& in, const CrossValidation& validation, const ChosenFit& chosen,
-                         const SwitchingPrior& prior, const Bank& bank) {
-  MeasuredBank fit{bank, {}, prior};
+Fit fit_untimed(const RefineInput& in, const CrossValidation& validation, const Fit& exact, MeasurementStage& stage) {
+  Fit fit = exact;
   std::optional<MeasuredSplits> splits;
-  if (validation.possible()) splits.emplace(in, validation, chosen, bank.noise_adaptation);
+  if (validation.possible()) splits.emplace(in, validation, exact);
   // The search for R needs gradients, which leave out how a noise factor changes with the state.
-  const bool with_R =
-      in.options.measurement_noise && bank.structure.state_lags <= most_lags_beside_R && bank.noise_factor.empty();
-  const bool quantised = bank.is_quantised();
-  const bool asks_for_R = !with_R || quantised || take_R(in, prior, splits, fit);
+  const bool with_R = in.options.measurement_noise && fit.bank.structure.state_lags <= most_lags_beside_R &&
+                      fit.bank.noise_factor.empty();
+  const bool quantised = fit.bank.is_quantised();
+  const bool asks_for_R = !with_R || quantised || take_R(in, exact.prior, splits, fit, stage);
   if (asks_for_R && (with_R || quantised ||
-                     (bank.R.diagonal().array() > least_measurement_noise(in.fits, refine_tuning).array()).any()))
-    go_on(in, prior, splits, fit);
+                     (fit.bank.R.diagonal().array() > least_measurement_noise(in.fits, refine_tuning).array()).any()))
+    go_on(in, exact.prior, splits, fit, stage);
   // Rounding stands in the Q of states taken as exact: only beside a fit by intervals is R told from it.
-  if (with_R && quantised && take_R(in, prior, splits, fit)) go_on(in, prior, splits, fit);
+  if (with_R && quantised && take_R(in, exact.prior, splits, fit, stage)) go_on(in, exact.prior, splits, fit, stage);
   if (splits) fit.of_splits = splits->banks();
   return fit;
 }
 
 }  // namespace
 
-MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
-                                        const ChosenFit& chosen, const SwitchingPrior& prior, const Bank& bank) {
+Fit fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation, const Fit& exact,
+                               MeasurementStage& stage) {
   const auto start = std::chrono::steady_clock::now();
-  MeasuredBank result = fit_untimed(in, validation, chosen, prior, bank);
-  result.stage.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  Fit fit = fit_untimed(in, validation, exact, stage);
+  stage.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return fit;
 }
 
 }  // namespace modebank

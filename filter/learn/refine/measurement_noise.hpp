@@ -5,6 +5,7 @@
 
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/refine/cross_validation.hpp"
+#include "filter/learn/refine/fit.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 #include "filter/learn/tuning.hpp"
@@ -31,30 +32,14 @@ MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, cons
 /// times the least Q, so no mode is drawn up by more than about its share of one transition.
 SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank& start, const RefineTuning& tuning);
 
-/// A fit that took measurement noise into account.
-struct MeasuredBank {
-  Bank bank;
-  MeasurementStage stage;
-  SwitchingPrior prior;
-  bool R_estimated = false;
-  std::vector<Bank> of_splits = {};  ///< the same on every split; empty where nothing was left out
-};
-
-/// The fit that goes on, on every split of the cross-validation.
-struct ChosenFit {
-  const std::vector<Bank>& of_splits;
-  double noise_transitions = 0.0;  ///< of the prior
-  GuardPrior guard = {};           ///< of the prior
-  double theta_transitions = 0.0;  ///< of the pull towards one motion
-};
-
 /// Where R is more than nothing (by estimate_measurement_noise in the filter that will run the bank, unless it costs
 /// the runs left out more than least_gain, or as given), the fit goes on with the states unknown, theta, Q, R and T
 /// together, to the maximum of the filter's likelihood; that is kept if it pays on the runs left out, each scored by a
 /// fit that has not seen it: its R, its prior and all else are those of the other runs. Rounded states are unknown
 /// whatever R is: their fit goes on so in any case, and R is looked for afterwards, what rounding alone explains being
 /// in the likelihood by then. R is not looked for beside more than eight lags of the state.
-MeasuredBank fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation,
-                                        const ChosenFit& chosen, const SwitchingPrior& prior, const Bank& bank);
+/// `exact`: with its bank of exact states and that bank's prior. `stage` says what was found.
+Fit fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation, const Fit& exact,
+                               MeasurementStage& stage);
 
 }  // namespace modebank

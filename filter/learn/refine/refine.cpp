@@ -82,19 +82,12 @@ CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& b
   return validation;
 }
 
-/// The chosen fit with modes that drift; standard errors are those of the likelihood that it maximises, without.
-Refinement drifting_refinement(const RefineInput& in, const CrossValidation& validation, const DriftChoice& drift,
-                               const SwitchingPrior& prior, const TrainingFit& fit, const Bank& start,
-                               const SwitchingStage& switching, const DriftStage& stage) {
-  const Bank steady =
-      with_errors(in, fit, prior, false, exact_filter(in.filter), bank_of_fit(in, fit, drift.adaptation));
-  Refinement result{with_drift(steady, drift), start, validation.table(), fit.objective, {}};
-  result.switching = switching;
-  result.drift = stage;
-  for (std::size_t row = 0; row < result.candidates.size(); ++row)
-    result.candidates[row].selected = row == drift.fit.row;
-  for (const Bank& bank : drift.fit.banks) result.of_splits.push_back(with_drift(bank, drift));
-  return result;
+/// The fit on all training runs, its states measured exactly; `chosen`: by the runs left out.
+TrainingFit fit_exactly(const RefineInput& in, const Fit& chosen, const SwitchingPrior& prior) {
+  TrainingFit fit = fit_training_runs(in, chosen.model, prior, chosen.iterations);
+  if (Eigen::MatrixXd& weights = fit.model.logit.weights; weights.size() > 0)
+    weights.rowwise() -= weights.colwise().mean().eval();  // changes no probability
+  return fit;
 }
 
 }  // namespace
@@ -110,33 +103,30 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   const RefineInput in{recording, fits, frame, transitions, options, filter};
 
   const CrossValidation validation = cross_validate(in, banks);
-  SwitchingStage switching;
-  std::optional<Guards> guards;
-  if (options.guards) guards = choose_guards(in, validation, switching);
-  const ScoredFit& steady = guards ? guards->fit : validation.chosen();
-  DriftStage drift_stage;
-  std::optional<DriftChoice> drift;
-  if (options.drift != Drift::none) drift = choose_drift(in, validation, steady, !guards, drift_stage);
-  const ScoredFit& chosen = validation.of_start(drift ? drift->fit.row : steady.row);
-  SwitchingPrior prior = in.prior(chosen.start);
-  if (guards) prior = with_guard(std::move(prior), transitions, guards->prior);
-  const TrainingFit fit =
-      guards ? fit_guards(in, *guards, prior) : fit_training_runs(in, chosen.start, prior, chosen.iterations);
-  if (drift) return drifting_refinement(in, validation, *drift, prior, fit, banks.front(), switching, drift_stage);
-  const ChosenFit on_splits{guards ? guards->fit.banks : chosen.banks, chosen.start.noise_transitions,
-                            guards ? guards->prior : GuardPrior{}, chosen.start.theta_transitions};
-  const Bank exact = bank_of_fit(in, fit, validation.adaptation(on_splits.of_splits));
-  const MeasuredBank measured = fit_with_measurement_noise(in, validation, on_splits, prior, exact);
-
-  const FilterOptions maximised = measured.stage.iterations > 0 ? learning_filter(filter) : exact_filter(filter);
-  Refinement result{with_errors(in, fit, measured.prior, measured.R_estimated, maximised, measured.bank), banks.front(),
-                    validation.table(), fit.objective, measured.stage};
-  result.switching = switching;
-  result.drift = drift_stage;
-  result.of_splits = measured.of_splits;
-  if (std::optional<Bank> ahead = fit_looking_ahead(in, validation, on_splits, measured.prior, measured.R_estimated,
-                                                    result.bank, result.look_ahead, result.of_splits))
-    result.bank = std::move(*ahead);
+  Refinement result;
+  result.start = banks.front();
+  Fit chosen = validation.chosen();
+  if (options.guards)
+    if (std::optional<Fit> guarded = choose_guards(in, validation, result.switching)) chosen = std::move(*guarded);
+  if (options.drift != Drift::none)
+    if (std::optional<Fit> drifts = choose_drift(in, validation, chosen, chosen.guard.width == 0.0, result.drift))
+      chosen = std::move(*drifts);
+  chosen.prior = with_guard(in.prior(chosen.start), transitions, chosen.guard);
+  const TrainingFit fit = fit_exactly(in, chosen, chosen.prior);
+  result.candidates = validation.table(chosen.row);
+  result.objective = fit.objective;
+  const bool drifts = !chosen.drift.empty();
+  chosen.bank = bank_of_fit(in, fit, drifts ? chosen.adaptation : validation.adaptation(chosen.of_splits));
+  if (!drifts) chosen = fit_with_measurement_noise(in, validation, chosen, result.measurement);
+  // Where modes drift standard errors are those of the likelihood that the fit maximises, without.
+  const FilterOptions maximised = result.measurement.iterations > 0 ? learning_filter(filter) : exact_filter(filter);
+  chosen.bank = with_errors(in, fit, chosen.prior, chosen.R_estimated, maximised, chosen.bank);
+  if (drifts)
+    chosen.bank = with_drift(chosen.bank, chosen);
+  else if (std::optional<Fit> ahead = fit_looking_ahead(in, validation, chosen, result.look_ahead))
+    chosen = std::move(*ahead);
+  result.bank = std::move(chosen.bank);
+  result.of_splits = std::move(chosen.of_splits);
   return result;
 }
 

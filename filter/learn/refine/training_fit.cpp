@@ -25,9 +25,9 @@ SwitchingPrior RefineInput::prior(const RefineStart& start) const {
                             refine_tuning);
 }
 
-TrainingFit fit_training_runs(const RefineInput& in, const RefineStart& start, const SwitchingPrior& prior,
+TrainingFit fit_training_runs(const RefineInput& in, const SwitchingRegression& model, const SwitchingPrior& prior,
                               Index iterations) {
-  ExpectationMaximisation em(in.transitions, prior, em_options(in.options), start.model);
+  ExpectationMaximisation em(in.transitions, prior, em_options(in.options), model);
   for (Index i = 0; i < iterations && !em.converged(); ++i) em.step();
   TrainingFit fit{em.model(), em.posterior(), in.frame.screened, em.objective()};
   while (in.options.screen) {

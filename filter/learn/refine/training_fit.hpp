@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
+#include "filter/learn/refine/fit.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
@@ -13,14 +14,6 @@
 #include "modebank/filter/options.hpp"
 
 namespace modebank {
-
-/// What is refined from where.
-struct RefineStart {
-  std::string name;
-  SwitchingRegression model;
-  double noise_transitions = 0.0;
-  double theta_transitions = 0.0;  ///< that draw theta towards one motion (switching/shrinkage.hpp)
-};
 
 /// What a bank is refined from, and how. Keeps references.
 struct RefineInput {
@@ -47,9 +40,9 @@ struct TrainingFit {
   Shrinking shrinking = {};            ///< of the model as it stands
 };
 
-/// Expectation-maximisation from `start` for a number of iterations, or fewer if the objective stands still; then
+/// Expectation-maximisation from `model` for a number of iterations, or fewer if the objective stands still; then
 /// starved, unstable and duplicate modes are taken out one by one, each time with some more iterations for the others.
-TrainingFit fit_training_runs(const RefineInput& in, const RefineStart& start, const SwitchingPrior& prior,
+TrainingFit fit_training_runs(const RefineInput& in, const SwitchingRegression& model, const SwitchingPrior& prior,
                               Index iterations);
 
 /// The fit as a bank, its modes weighted by their shares of the transitions. Standard errors are not known yet.

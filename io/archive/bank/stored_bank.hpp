@@ -94,7 +94,7 @@ StoredBank store_bank(const Bank& bank);
 /// Fills what StoredBank holds and leaves names, dt_s and the screened modes as they are.
 Bank restore_bank(const StoredBank& stored, Bank named);
 
-/// What /drifting holds of its bank, one mode with running noise, in other arrays than banks do.
+/// The arrays of /drifting, a bank of one mode with running noise; other banks have other arrays.
 struct StoredDrifting {
   LinearStructure structure;
   Eigen::VectorXd parameters;       ///< p

@@ -73,8 +73,8 @@ TEST(Finding, EvidenceIsAGainOverEveryCompetitor) {
 
 TEST(Finding, AGainWithinItsErrorTellsNothing) {
   Case noisy;
-  noisy.bank_gain = 0.25;
-  for (Densities& competitor : noisy.competitors) competitor = scores_of(competitor.filter, 0.1, 3.0);
+  noisy.bank_gain = 0.19;
+  for (Densities& competitor : noisy.competitors) competitor = scores_of(competitor.filter, 0.1, 1.0);
   const Finding finding = noisy.judged();
   EXPECT_EQ(finding.answer, Answer::cannot_tell);
   EXPECT_EQ(doubt_of(finding), Doubt::within_chance);

@@ -49,13 +49,16 @@ struct LeastSquares {
     bank.modes = {make_mode(structure, fits.global.theta, fits.global.residual_covariance, {}, {}, 1.0)};
     set_mode_sequence(bank, TransitionMatrix());
   }
-  MeasuredBank measured() const {
+  Fit measured() const {
     RefineOptions options;
     options.folds = 1;
     const FilterOptions filter;
     const RefineInput in{recording, fits, bank, transitions, options, filter};
-    const std::vector<Bank> none;
-    return fit_with_measurement_noise(in, CrossValidation(in), {none, 4.0, 0.0}, in.prior(4.0), bank);
+    Fit given{{"", switching_model(bank), 4.0}, switching_model(bank)};
+    given.bank = bank;
+    given.prior = in.prior(4.0);
+    MeasurementStage stage;
+    return fit_with_measurement_noise(in, CrossValidation(in), given, stage);
   }
 
   const Recording& recording;
@@ -72,7 +75,7 @@ TEST(DominatingNoise, IsFoundWithTheCoefficientsThatItHid) {
     const Recording recording = constant_velocity(0.0225, seed);
     const LeastSquares least_squares(recording);
     ASSERT_LT(least_squares.fits.global.theta(0), 0.0) << "least squares takes the noise for motion";
-    const MeasuredBank found = least_squares.measured();
+    const Fit found = least_squares.measured();
     EXPECT_TRUE(found.R_estimated);
     EXPECT_NEAR(found.bank.R(0, 0), 0.0225, 0.1 * 0.0225);
     EXPECT_NEAR(found.bank.theta(0)(0), 1.0, 0.05);

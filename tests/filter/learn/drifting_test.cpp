@@ -124,7 +124,7 @@ TEST(DriftingLearning, SaysWhereTheGridEnds) {
   narrow.lam = {0.9};
   const Bank held = learn_all(recording, truth.structure, narrow);
   EXPECT_TRUE(names(held.drift.tuning.at_grid_end, "q"));
-  EXPECT_FALSE(names(held.drift.tuning.at_grid_end, "lam")) << "one value is no choice";
+  EXPECT_FALSE(names(held.drift.tuning.at_grid_end, "lam")) << "the grid has one value";
   DriftingGrid wide;
   wide.q.push_back(100.0);
   EXPECT_FALSE(names(learn_all(recording, truth.structure, wide).drift.tuning.at_grid_end, "q"));

@@ -228,8 +228,11 @@ TEST(RefineMeasured, FindsRThatThetaHides) {
   const FilterOptions filter;
   const RefineInput in{recording, fits, drawn, transitions, options, filter};
   const CrossValidation validation(in);
-  const std::vector<Bank> none;
-  const MeasuredBank measured = fit_with_measurement_noise(in, validation, {none, 4.0, 0.0}, in.prior(4.0), drawn);
+  Fit given{{"", switching_model(drawn), 4.0}, switching_model(drawn)};
+  given.bank = drawn;
+  given.prior = in.prior(4.0);
+  MeasurementStage stage;
+  const Fit measured = fit_with_measurement_noise(in, validation, given, stage);
   EXPECT_TRUE(measured.R_estimated);
   EXPECT_NEAR(measured.bank.R(0, 0), truth.R, 0.2 * truth.R);
   EXPECT_NEAR(measured.bank.theta(0)(0), truth.theta(0, 0), 0.05);
@@ -255,14 +258,16 @@ TEST(RefineMeasured, ScoresAreOfFitsThatLeaveTheRunOut) {
   CrossValidation validation(in);
   const RefineStart start{"mixture", switching_model(frame), 4.0};
   validation.consider({start});
-  const MeasurementStage stage = fit_with_measurement_noise(in, validation, {validation.chosen().banks, 4.0, 0.0},
-                                                            in.prior(4.0), validation.chosen().banks.front())
-                                     .stage;
+  Fit given = validation.chosen();
+  given.bank = given.of_splits.front();
+  given.prior = in.prior(4.0);
+  MeasurementStage stage;
+  fit_with_measurement_noise(in, validation, given, stage);
   double expected = 0.0, samples = 0.0;
   std::vector<double> R;
   for (std::size_t s = 0; s < validation.splits().size(); ++s) {
     const ValidationSplit& split = validation.splits()[s].runs;
-    const Bank bank = with_R(split.training, validation.chosen().banks[s]).value();
+    const Bank bank = with_R(split.training, validation.chosen().of_splits[s]).value();
     R.push_back(bank.R(0, 0));
     for (const Trajectory& run : split.left_out.runs) {
       expected += log_likelihood(bank, run, filter);
