@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "filter/step/drifting_recursion.hpp"
 #include "filter/step/stepper.hpp"

@@ -10,6 +10,9 @@
 #include "filter/judge/run/forecast.hpp"
 #include "filter/judge/run/sample_paths.hpp"
 #include "filter/step/drifting_forecast.hpp"
+#include "filter/step/drifting_recursion.hpp"
+#include "filter/step/forecast.hpp"
+#include "filter/step/student_noise.hpp"
 #include "ident/base/distributions.hpp"
 
 /// What each kind of model says of samples in a free run.

@@ -8,6 +8,7 @@
 
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/competitors/drifting_lanes.hpp"
+#include "filter/step/drifting_recursion.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/work_counter.hpp"
