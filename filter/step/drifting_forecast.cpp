@@ -41,12 +41,12 @@ DriftingForecast::DriftingForecast(const Bank& bank)
       cross_(static_cast<std::size_t>(structure_.states)),
       next_cross_(cross_) {}
 
-void DriftingForecast::start(const Eigen::Ref<const Eigen::VectorXd>& z, const DriftState& origin) {
+void DriftingForecast::start(const Eigen::Ref<const Eigen::VectorXd>& z, DriftState origin) {
   const LinearStructure& s = structure_;
-  origin_ = origin;
+  origin_ = std::move(origin);
   z_ = z;
   towards_ = theta0_;
-  deviation_ = origin.theta.reshaped(s.regressors(), s.states) - theta0_;
+  deviation_ = origin_.theta.reshaped(s.regressors(), s.states) - theta0_;
   of_origin_ = 1.0;
   of_drift_ = 0.0;
   Z_.setZero(s.dimension(), s.dimension());

@@ -23,7 +23,7 @@ class DriftingForecast {
   explicit DriftingForecast(const Bank& bank);
 
   /// z and coefficients: the filter's after a sample (DriftingRecursion).
-  void start(const Eigen::Ref<const Eigen::VectorXd>& z, const DriftState& origin);
+  void start(const Eigen::Ref<const Eigen::VectorXd>& z, DriftState origin);
   void step(const Eigen::Ref<const Eigen::VectorXd>& inputs);
 
   const Eigen::VectorXd& prediction() const { return prediction_; }  ///< n

@@ -14,12 +14,12 @@ struct RunningNoise {
   double lam = 0.9;            ///< forgetting of the running variance, in [0, 1]
   double nu = 0.0;             ///< degrees of freedom, above 2; 0: Gaussian
   Eigen::VectorXd floor = {};  ///< n, least v; empty: the noise is Q and nothing else
-  /// What the first-order variance so many samples ahead is multiplied with: ascending horizons from 2 on. One sample
-  /// ahead it is 1, so that it is the filter's own prediction.
+  /// Horizons, ascending from 2 samples ahead on, and the factor of the first-order variance at each. One sample ahead
+  /// the factor is 1: the prediction is the filter's own.
   std::vector<std::pair<Eigen::Index, double>> horizon_factor = {};
 
   bool empty() const { return floor.size() == 0; }
-  /// Of the longest horizon that is not longer than this one; 1 without.
+  /// The factor of the longest horizon up to this one; 1 where there is none.
   double factor_at(Eigen::Index horizon) const {
     double factor = 1.0;
     for (const auto& [ahead, value] : horizon_factor)
