@@ -152,7 +152,7 @@ shared-fs: packages-build packages-test packages-nightly build/build.ninja
 	CI=true MODEBANK_SHARED_FS_ROUNDS=40 build/test_shared_fs
 
 # Everything that CI runs beside `make test`; .ci/run times these one by one.
-CHECKS := format lint shellcheck docs tidy-changed seeds sanitize-short
+CHECKS := format lint shellcheck docs tidy-changed sanitize-short
 .PHONY: list-checks
 check: $(CHECKS)
 list-checks:
@@ -214,7 +214,7 @@ lint: packages-check
 shellcheck: packages-check
 	git ls-files '*.sh' .ci | xargs grep -lE '^#!.*\b(ba)?sh$$' | xargs shellcheck
 
-# clang-tidy on every source, and on those that changed with what includes them; .ci/tidy says which these are.
+# clang-tidy on every source, and on what changed; .ci/tidy says which these are.
 tidy: packages-build packages-check
 	.ci/tidy --all
 
