@@ -7,15 +7,16 @@
 
 #include "app/chain/stage_inputs.hpp"
 #include "app/check/left_out.hpp"
-#include "filter/learn/tuning.hpp"
+#include "filter/learn/left_out/rule.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
 
-/// By more than what bounds each choice inside refinement: less would not survive on other runs.
-bool exceeds_its_error(const PairedGain& gain) {
-  return gain.gain > refine_tuning.least_gain && gain.gain > gain.standard_error;
+/// By the rule of whatever a model may add: less would not survive on other runs.
+bool is_taken(const PairedGain& gain) {
+  return is_worth_it(PairedLoss{gain.gain, gain.standard_error},
+                     Eigen::VectorXd::Constant(1, static_cast<double>(gain.samples)));
 }
 
 CheckOptions check_options(const ChainOptions& options) {
@@ -108,7 +109,7 @@ class Search {
   static void judge(const LeftOut& said, const LeftOut& before, Trial& trial) {
     trial.unscored = said.problem.empty() ? before.problem : said.problem;
     trial.gain = trial.unscored.empty() ? compare_left_out(said, before) : PairedGain{};
-    trial.accepted = trial.unscored.empty() && exceeds_its_error(trial.gain);
+    trial.accepted = trial.unscored.empty() && is_taken(trial.gain);
     if (trial.unscored.empty() && (!std::isfinite(trial.gain.gain) || std::isnan(trial.gain.standard_error)))
       trial.unscored = "too few predictions of the same samples to compare";
   }
@@ -168,7 +169,7 @@ class Search {
     for (auto last = found_.trials.rbegin(); last != found_.trials.rend(); ++last) {
       if (!last->accepted) continue;
       found_.together = compare_left_out(whole_.back(), whole_.front());
-      if (exceeds_its_error(found_.together)) return;
+      if (is_taken(found_.together)) return;
       last->accepted = false;
       held() = last->from;
       whole_.pop_back();

@@ -37,17 +37,6 @@ LinearStructure structure_of(const BankDescription& d) {
   return {d.modes.front().A.rows / d.state_lags, d.inputs, d.intercept, d.state_lags, d.input_lags, d.input_delay};
 }
 
-modebank::Wandering inside(filter::Wandering wandering) {
-  return wandering == Wandering::all        ? modebank::Wandering::all
-         : wandering == Wandering::constant ? modebank::Wandering::constant
-                                            : modebank::Wandering::gain;
-}
-Wandering outside(modebank::Wandering wandering) {
-  return wandering == modebank::Wandering::all        ? Wandering::all
-         : wandering == modebank::Wandering::constant ? Wandering::constant
-                                                      : Wandering::gain;
-}
-
 modebank::RunningNoise inside(const RunningNoise& noise) {
   modebank::RunningNoise result{noise.forgetting, noise.degrees_of_freedom, view(noise.floor)};
   if (noise.horizon.size() != noise.factor.size())
@@ -84,7 +73,7 @@ std::shared_ptr<const modebank::Bank> inside(const BankDescription& d) {
   bank.noise_adaptation = {d.noise_memory.forgetting, d.noise_memory.prior_samples};
   if (const NoiseByState& noise = d.noise_by_state; !noise.weights.empty())
     bank.noise_factor = {view(noise.directions), view(noise.weights), noise.offset};
-  bank.drift = {{d.drift.rate, d.drift.start, d.drift.leak}, view(d.drift.scale), inside(d.drift.wandering)};
+  bank.drift = {{d.drift.rate, d.drift.start, d.drift.leak}, view(d.drift.scale), d.drift.wandering};
   bank.running_noise = inside(d.running_noise);
   validate(bank);
   return std::make_shared<const modebank::Bank>(std::move(bank));
@@ -152,7 +141,7 @@ BankDescription Bank::description() const {
   d.noise_by_state = {to_matrix(bank_->noise_factor.directions), to_vector(bank_->noise_factor.weights),
                       bank_->noise_factor.offset};
   d.drift = {to_vector(bank_->drift.scale), bank_->drift.rates.q, bank_->drift.rates.p0, bank_->drift.rates.leak,
-             outside(bank_->drift.wandering)};
+             bank_->drift.wandering};
   d.running_noise = outside(bank_->running_noise);
   return d;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "modebank/base/names.hpp"
+#include "modebank/filter/wandering.hpp"
 
 namespace modebank {
 
@@ -15,15 +15,6 @@ struct DriftRates {
   double leak = 1.0;  ///< what a step leaves of their difference from theta0, in (0, 1]
 
   bool operator==(const DriftRates&) const = default;
-};
-
-/// Coefficients that wander. all: every coefficient by itself. constant: the constant. gain: one factor on all
-/// coefficients of inputs, each keeping its share. The others of the last two are learned in a run, from p0 on.
-enum class Wandering { all, constant, gain };
-
-template <>
-struct EnumNames<Wandering> {
-  static constexpr Names<3> values{"all", "constant", "gain"};
 };
 
 /// How well settings that were chosen on a grid do on the training runs, and whether the grid was wide enough.

@@ -33,18 +33,6 @@ Eigen::MatrixXd wandering_direction(const Bank& bank) {
   return d;
 }
 
-namespace {
-
-/// A covariance that rounding made indefinite (samples of very different sizes) keeps its variances and loses its
-/// correlations; so variances never grow but by q, and nothing overflows.
-void make_usable(Eigen::MatrixXd& P) {
-  if (P.diagonal().minCoeff() >= 0.0) return;
-  const Eigen::VectorXd variances = P.diagonal().cwiseMax(0.0);
-  P = variances.asDiagonal();
-}
-
-}  // namespace
-
 DriftingRecursion::DriftingRecursion(const Bank& bank)
     : structure_(bank.structure),
       rates_(bank.drift.rates),
@@ -150,7 +138,7 @@ void DriftingRecursion::learn() {
     Eigen::MatrixXd& P = P_[static_cast<std::size_t>(g)];
     for (Index j = 0; j < P.cols(); ++j)
       P.col(j).tail(P.rows() - j) -= Ph_(j, g) / growth_(g) * Ph_.col(g).tail(P.rows() - j);
-    make_usable(P);
+    drift::make_usable(P);
   }
 }
 
@@ -188,6 +176,7 @@ void DriftingRecursion::push(const Eigen::VectorXd& sample) {
 DriftState DriftingRecursion::save() const {
   DriftState state;
   state.theta = theta_.reshaped(theta_.size(), 1);
+  state.P.reserve(P_.size());
   for (Index i = 0; i < structure_.states; ++i) state.P.push_back(P_[static_cast<std::size_t>(of(i))]);
   state.variance = v_;
   return state;

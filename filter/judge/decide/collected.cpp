@@ -1,10 +1,9 @@
 #include "filter/judge/decide/collected.hpp"
 
-#include <array>
 #include <cmath>
 #include <iterator>
 
-#include "ident/base/distributions.hpp"
+#include "filter/judge/score/coverage.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {
@@ -13,17 +12,12 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double outer_probability = 0.025;
-
 /// Collects over runs for the whole filter (mode -1) or one mode.
 class Collector {
  public:
   /// `nees_states`: the states that the NEES is about.
   Collector(const Bank& bank, Index mode, bool chi_square_nis, const std::vector<Index>& nees_states)
-      : mode_(mode),
-        nees_states_(nees_states),
-        lower_(chi_square_quantile(outer_probability, 1.0)),
-        upper_(chi_square_quantile(1.0 - outer_probability, 1.0)) {
+      : mode_(mode), nees_states_(nees_states) {
     sums.squared_state_error.setZero(bank.C.rows());
     sums.counts.nis_degrees = static_cast<double>(bank.C.rows());
     sums.counts.chi_square_nis = chi_square_nis;
@@ -65,8 +59,7 @@ class Collector {
 
   Index mode_;
   const std::vector<Index>& nees_states_;
-  double lower_, upper_;
-  std::array<double, coverage_levels.size()> band_edges_ = coverage_band_edges();  ///< of |z|
+  ScoreBands bands_;
 
   void add_probabilities(const RunEvaluation& e, Index k) {
     const auto mu = e.mode_probability.col(k);
@@ -84,10 +77,11 @@ class Collector {
     for (Index i = 0; i < e.pit.rows(); ++i) {
       if (std::isnan(e.pit(i, k))) continue;
       const double score = scores.z(i, k);
-      for (std::size_t b = 0; b < band_edges_.size(); ++b)
-        sums.counts.outside[b].back().push_back(std::abs(score) > band_edges_[b] ? 1 : 0);
-      sums.counts.far.back().push_back(score * score > upper_ ? 1 : 0);
-      sums.counts.close.back().push_back(score * score < lower_ ? 1 : 0);
+      const ScoreBands::Hits hits = bands_.of(score);
+      for (std::size_t b = 0; b < hits.outside.size(); ++b)
+        sums.counts.outside[b].back().push_back(hits.outside[b] ? 1 : 0);
+      sums.counts.far.back().push_back(hits.far ? 1 : 0);
+      sums.counts.close.back().push_back(hits.close ? 1 : 0);
       sums.counts.sizes.back().push_back(std::abs(score));
       z[static_cast<std::size_t>(i)].push_back(score);
     }

@@ -68,10 +68,9 @@ class ScoreSums {
   SquaredDistances nis_;
   Eigen::ArrayXd squared_error_, errors_;
   std::vector<double> pit_, whiteness_;
-  std::vector<ChiSquareRegion> nis_regions_;  ///< of one signal, two, ...
-  ChiSquareRegion z_region_{1.0};
+  std::vector<ChiSquareRegion> nis_regions_;            ///< of one signal, two, ...
   std::array<Index, coverage_levels.size()> inside_{};  ///< signals inside each central band
-  std::array<double, coverage_levels.size()> band_edges_ = coverage_band_edges();
+  ScoreBands bands_;
 
   void add_sample(const RunEvaluation& run, Index k, const RunScores& scores) {
     ++samples_;
@@ -88,10 +87,10 @@ class ScoreSums {
     }
     for (Index i = 0; i < run.pit.rows(); ++i) {
       if (!there(i)) continue;
-      const double score = scores.z(i, k);
-      too_far_ += score * score > z_region_.upper;
-      too_close_ += score * score < z_region_.lower;
-      for (std::size_t b = 0; b < inside_.size(); ++b) inside_[b] += std::abs(score) <= band_edges_[b];
+      const ScoreBands::Hits hits = bands_.of(scores.z(i, k));
+      too_far_ += hits.far;
+      too_close_ += hits.close;
+      for (std::size_t b = 0; b < inside_.size(); ++b) inside_[b] += !hits.outside[b];
       pit_.push_back(run.pit(i, k));
     }
   }

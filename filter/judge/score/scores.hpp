@@ -30,9 +30,6 @@ struct SummaryRow {
   double whiteness_p = 0.0;   ///< Ljung & Box (1978) p of z, min(20, N/5) lags, pooled over runs by Fisher's method
 };
 
-/// Of a true filter, what lies beyond each of the two quantiles that fractions are counted by.
-inline constexpr double true_tail = 0.025;
-
 /// Rows of one filter: each run of the role in order, then the pooled "*" row, train first. A role without runs has no
 /// rows. `scores`: of the evaluations (score_runs).
 std::vector<SummaryRow> summarize(const std::string& filter, const std::vector<Trajectory>& runs,

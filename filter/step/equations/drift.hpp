@@ -117,13 +117,6 @@ void keep_prediction(const FilterModel<N, NY>& model, const FilterStep<N, NY>& s
   pass_time(model.drift, state.drift);
 }
 
-/// A covariance that rounding made indefinite keeps its variances and loses its correlations.
-inline void make_usable(Eigen::MatrixXd& P) {
-  if (P.diagonal().minCoeff() >= 0.0) return;
-  for (Eigen::Index j = 0; j < P.cols(); ++j)
-    for (Eigen::Index i = 0; i < P.rows(); ++i) P(i, j) = i == j ? std::max(0.0, P(i, i)) : 0.0;
-}
-
 /// step.drift.gain and .move: what mode j's theta learns of the measurement had the mode made it.
 template <int N, int NY, class Sensor>
 void match(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step) {

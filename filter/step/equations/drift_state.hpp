@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "filter/step/bank.hpp"
@@ -108,4 +109,15 @@ struct DriftWorkspace {
   }
 };
 
+namespace drift {
+
+/// A covariance that rounding made indefinite (samples of very different sizes) keeps its variances and loses its
+/// correlations; so variances never grow but by what a step adds, and nothing overflows.
+inline void make_usable(Eigen::MatrixXd& P) {
+  if (P.diagonal().minCoeff() >= 0.0) return;
+  for (Eigen::Index j = 0; j < P.cols(); ++j)
+    for (Eigen::Index i = 0; i < P.rows(); ++i) P(i, j) = i == j ? std::max(0.0, P(i, i)) : 0.0;
+}
+
+}  // namespace drift
 }  // namespace modebank

@@ -17,6 +17,7 @@
 #include "modebank/filter/forecast_weights.hpp"
 #include "modebank/filter/options.hpp"
 #include "modebank/filter/screened_mode.hpp"
+#include "modebank/filter/wandering.hpp"
 #include "modebank/ident/auto_diff_motion_model.hpp"
 #include "modebank/ident/motion_model.hpp"
 #include "modebank/ident/options.hpp"

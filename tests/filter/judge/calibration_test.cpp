@@ -109,18 +109,18 @@ std::vector<double> related_scores(int samples, double rho, bool sizes_alone, st
 
 /// What a filter shows that states 1 for a standard deviation of `scale`.
 BandCounts counts_of(const std::vector<double>& scores, double scale, bool with_nis) {
-  const double upper = chi_square_quantile(0.975, 1.0), lower = chi_square_quantile(0.025, 1.0);
   BandCounts counts;
   for (HitsByRun* hits : {&counts.far, &counts.close}) hits->emplace_back();
   counts.sizes.emplace_back();
   counts.nis.begin_run();
   for (HitsByRun& hits : counts.outside) hits.emplace_back();
-  const auto edges = coverage_band_edges();
+  const ScoreBands bands;
   for (const double score : scores) {
     const double square = score * score * scale * scale;
-    for (std::size_t b = 0; b < edges.size(); ++b) counts.outside[b][0].push_back(square > edges[b] * edges[b] ? 1 : 0);
-    counts.far[0].push_back(square > upper ? 1 : 0);
-    counts.close[0].push_back(square < lower ? 1 : 0);
+    const ScoreBands::Hits hits = bands.of(score * scale);
+    for (std::size_t b = 0; b < hits.outside.size(); ++b) counts.outside[b][0].push_back(hits.outside[b] ? 1 : 0);
+    counts.far[0].push_back(hits.far ? 1 : 0);
+    counts.close[0].push_back(hits.close ? 1 : 0);
     counts.sizes[0].push_back(square);
     counts.nis.add(square, 1);
   }
@@ -180,12 +180,20 @@ TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
 
 /// Inside the central bands of a true filter lie as many as they say.
 TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
-  const auto edges = coverage_band_edges();
-  EXPECT_NEAR(edges[0], 0.6744897501960817, 1e-12);
-  EXPECT_NEAR(edges[2], 1.959963984540054, 1e-12);
+  const ScoreBands bands;
+  for (const double side : {-1.0, 1.0}) {
+    EXPECT_FALSE(bands.of(side * 0.674489750196).outside[0]);
+    EXPECT_TRUE(bands.of(side * 0.674489750197).outside[0]);
+    EXPECT_FALSE(bands.of(side * 1.959963984540).outside[2]);
+    EXPECT_TRUE(bands.of(side * 1.959963984541).outside[2]);
+    EXPECT_TRUE(bands.of(side * 0.031337).close);  // the square root of chi-square(1)'s 2.5 % quantile: 0.0313380
+    EXPECT_FALSE(bands.of(side * 0.031339).close);
+    EXPECT_FALSE(bands.of(side * 2.241402).far);  // 97.5 %: 2.2414027
+    EXPECT_TRUE(bands.of(side * 2.241403).far);
+  }
   std::mt19937_64 generator(6);
   const BandCounts counts = counts_of(related_scores(200000, 0.0, false, generator), 1.0, false);
-  for (std::size_t b = 0; b < edges.size(); ++b)
+  for (std::size_t b = 0; b < coverage_levels.size(); ++b)
     EXPECT_NEAR(mean_of(as_numbers(counts.outside[b])), 1.0 - coverage_levels[b], 4e-3) << b;
 }
 

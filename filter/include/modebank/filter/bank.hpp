@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "modebank/base/matrix.hpp"
+#include "modebank/filter/wandering.hpp"
 
 namespace modebank {
 struct Bank;
@@ -38,9 +39,6 @@ struct NoiseByState {
   std::vector<double> weights;  ///< d
   double offset = 0.0;          ///< of the exponent
 };
-
-/// Which coefficients wander: every one by itself, the constant, or one factor on those of all inputs.
-enum class Wandering { all, constant, gain };
 
 /// How every mode's theta wanders in a run, regressor by regressor of [z; v; (1)]. Empty: it stays.
 struct CoefficientDrift {
