@@ -69,7 +69,7 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
   else if (archive_.windows)
     put(test_global(*archive_.recording, *archive_.windows, inputs_.windows.window));
   archive_.mode_names = mode_names_of(archive_, options.mode_names, listener_);
-  describe(execution, mixture_files_);
+  describe(execution, {});
   return archive_;
 }
 
@@ -110,9 +110,6 @@ void Chain::learn(const ChainOptions& options, Stage last) {
     wanted_[index_of(Stage::data)] = data_key;
     provide_learned(stage, compute);
   };
-  hooks.start = [&](const FeatureCloud& cloud) {
-    return stored_start(inputs_.start.file, cloud, inputs_.mixture.mixture.selection.components, listener_);
-  };
   // Steps of many lengths make modes of one motion, and least squares alone keeps its time constant.
   const bool one_model = archive_.step_scatter > most_step_scatter;
   learn_all(*archive_.recording, options, last, one_model, hooks, listener_, archive_);
@@ -125,7 +122,11 @@ void Chain::provide_learned(Stage stage, const std::function<void()>& compute) {
     case Stage::windows:
       return provide_windows(compute);
     case Stage::mixture:
-      return provide_mixture(compute);
+      return provide<MixturePart>(stage, [&] {
+        tell_if_long(listener_, "mixture", expected_mixture_s(*archive_.windows, inputs_.mixture.mixture),
+                     "--mixture.components 4 tries one number of components");
+        compute();
+      });
     case Stage::competitors:
       return provide<CompetitorsPart>(stage, compute);
     default:
@@ -135,7 +136,7 @@ void Chain::provide_learned(Stage stage, const std::function<void()>& compute) {
           tell_if_long(listener_, inputs.one_motion ? "bank and one_motion" : "bank",
                        (inputs.one_motion ? 2.0 : 1.0) *
                            expected_learning_s(*archive_.recording, archive_.windows->structure, inputs.bank.em),
-                       "--bank.refine none, or --bank.refine_transitions 10000, shortens this");
+                       "--bank.refine none shortens this");
         compute();
       });
   }
@@ -158,26 +159,6 @@ void Chain::provide_windows(const std::function<void()>& compute) {
       static_cast<double>(archive_.recording->transitions(Role::train)) / static_cast<double>(inputs.window.step);
   provide(Stage::windows, {in_time, copy, [&](Archive&& part) { take_part<WindowsPart>(std::move(part), archive_); },
                            windows / written_per_s});
-}
-
-void Chain::provide_mixture(const std::function<void()>& compute) {
-  const auto from_start = [&] {
-    tell_if_long(listener_, "mixture", expected_mixture_s(*archive_.windows, inputs_.mixture.mixture),
-                 "--mixture.components 4 tries one number of components");
-    compute();
-    mixture_files_.clear();
-    if (!inputs_.start.file.empty()) mixture_files_.push_back(describe_file(inputs_.start.file));
-  };
-  const auto copy = [&] {
-    Archive part = part_of<MixturePart>(archive_);
-    part.provenance.inputs = mixture_files_;
-    return part;
-  };
-  const auto take = [&](Archive&& part) {
-    mixture_files_ = std::move(part.provenance.inputs);
-    take_part<MixturePart>(std::move(part), archive_);
-  };
-  provide(Stage::mixture, {from_start, copy, take});
 }
 
 void Chain::describe(const Execution& execution, const std::vector<InputFile>& more_files) {

@@ -82,7 +82,6 @@ class Chain {
   void learn(const ChainOptions& options, Stage last);
   void provide_learned(Stage stage, const std::function<void()>& compute);
   void provide_windows(const std::function<void()>& compute);
-  void provide_mixture(const std::function<void()>& compute);
   void judge(const ChainInputs& inputs);
   void score(const std::string& filter, const FilterOptions& options, const ScoringOptions& scoring);
   void conclude(const FilterOptions& filter, const ScoringOptions& scoring);
@@ -99,8 +98,7 @@ class Chain {
   const Listener& listener_;
   const MemoryTables* memory_;
   Archive archive_;
-  ImportedData data_;                     ///< what is said of the recording: files and hash
-  std::vector<InputFile> mixture_files_;  ///< that the mixture started from
+  ImportedData data_;  ///< what is said of the recording: files and hash
   ChainInputs inputs_;
   StageKeys wanted_, held_;
   std::array<double, stage_count> seconds_{};

@@ -45,7 +45,9 @@ void Chain::put(FilterScores scores) {
 
 void Chain::put(ResidualTestSet tests) {
   const std::string model = tests.model;
-  put_rows(model, {std::move(tests)}, archive_.residual_tests);
+  std::vector<ResidualTestSet> set;
+  set.push_back(std::move(tests));
+  put_rows(model, std::move(set), archive_.residual_tests);
 }
 
 void Chain::put_scores(Archive&& part) {

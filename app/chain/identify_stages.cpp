@@ -29,19 +29,4 @@ WindowFits identify_into_file(const std::filesystem::path& path, const Archive& 
   return write_archive(path, before, count_windows(recording, inputs.window), produce);
 }
 
-std::optional<GaussianMixture> stored_start(const std::string& file, const FeatureCloud& cloud,
-                                            const std::vector<Index>& components, const Listener& listener) {
-  if (file.empty()) return std::nullopt;
-  Archive stored = read_archive(file);
-  if (!stored.mixture) throw DataError(fmt::format("{} holds no mixture to start from", file));
-  if (stored.mixture->feature_names != cloud.names)
-    throw DataError(fmt::format("the mixture of {} to start from is over {}, this one over {}", file,
-                                fmt::join(stored.mixture->feature_names, ", "), fmt::join(cloud.names, ", ")));
-  const Index of_start = stored.mixture->mixture.components();
-  if (std::find(components.begin(), components.end(), of_start) == components.end())
-    listener.warning(fmt::format("the mixture of {} to start from has {} components, which is not among the candidates",
-                                 file, of_start));
-  return std::move(stored.mixture->mixture);
-}
-
 }  // namespace modebank

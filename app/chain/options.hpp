@@ -11,7 +11,6 @@ namespace modebank {
 /// Everything that decides the numbers of a chain beside its data.
 struct ChainOptions : LearningOptions {
   DataOptions data = {};
-  std::string mixture_start = {};            ///< archive whose mixture is a start; empty: mixture.selection.em alone
   std::vector<std::string> mode_names = {};  ///< of the bank; they change no number
 };
 

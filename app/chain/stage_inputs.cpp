@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "io/files/input_file.hpp"
-
 namespace modebank {
 
 ScoringOptions scoring_inputs(const ChainOptions& options) {
@@ -22,11 +20,9 @@ ScoringOptions scoring_inputs(const ChainOptions& options) {
 
 ChainInputs chain_inputs(const ChainOptions& options, LearningInputs learning) {
   const ScoringOptions scoring = scoring_inputs(options);
-  const std::string& start = options.mixture_start;
   const FitOptions window = learning.windows.window;
   return {std::move(learning),
           {options.data},
-          {start, start.empty() ? "" : describe_file(start).sha256},
           {window, competitor_filter("one_motion", options.filter), scoring},
           {options.filter, scoring}};
 }

@@ -12,12 +12,6 @@ struct DataInputs {
   DataOptions data;
 };
 
-/// The archive whose mixture is a start; empty without one.
-struct MixtureStartInputs {
-  std::string file;
-  std::string sha256;  ///< of its content
-};
-
 struct CompetitorScoreInputs {
   FitOptions window;
   FilterOptions filter;
@@ -32,7 +26,6 @@ struct BankScoreInputs {
 /// Of a whole chain.
 struct ChainInputs : LearningInputs {
   DataInputs data;
-  MixtureStartInputs start;
   CompetitorScoreInputs competitor_scores;
   BankScoreInputs bank_scores;
 };
@@ -40,8 +33,7 @@ struct ChainInputs : LearningInputs {
 /// What is found out about filters, with the chain's seed where something is drawn.
 ScoringOptions scoring_inputs(const ChainOptions& options);
 
-/// Parts the options into what each stage needs. Reads mixture_start, if there is one, for its hash: throws
-/// ConfigurationError when it cannot be read.
+/// Parts the options into what each stage needs.
 ChainInputs chain_inputs(const ChainOptions& options);
 /// With the inputs of learning that are given.
 ChainInputs chain_inputs(const ChainOptions& options, LearningInputs learning);

@@ -81,7 +81,6 @@ MODEBANK_KEY_FIELDS(SearchedLags, state, input, delay, most_samples)
 MODEBANK_KEY_FIELDS(DataInputs, data)
 MODEBANK_KEY_FIELDS(WindowInputs, window)
 MODEBANK_KEY_FIELDS(MixtureInputs, window, mixture, seed)
-MODEBANK_KEY_FIELDS(MixtureStartInputs, file, sha256)
 MODEBANK_KEY_FIELDS(CompetitorInputs, window, filter, horizon, transitions, seed, terms, em, linear, drifting,
                     noise_by_input, all)
 MODEBANK_KEY_FIELDS(OneMotionInputs, bank, filter, horizon, lags)
@@ -112,7 +111,7 @@ StageKeys stage_keys(const ChainInputs& inputs, const std::string& data_hash) {
   key(data) = key_of(data, inputs.data, data_hash);
   key(structure) = key_of(structure, inputs.structure, key(data));
   key(windows) = key_of(windows, inputs.windows, key(data));
-  key(mixture) = key_of(mixture, inputs.mixture, inputs.start, key(windows));
+  key(mixture) = key_of(mixture, inputs.mixture, key(windows));
   key(competitors) = key_of(competitors, inputs.competitors, key(mixture));
   key(bank) = key_of(bank, inputs.bank, key(mixture), key(competitors));
   key(competitor_scores) = key_of(competitor_scores, inputs.competitor_scores, key(bank));

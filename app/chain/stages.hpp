@@ -23,11 +23,6 @@ bool streams_windows(const Recording& recording, const WindowInputs& inputs);
 WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const WindowInputs& inputs,
                               const std::function<void(const WindowFits&)>& hears);
 
-/// The mixture of another archive, which must be over the features of the cloud; none where no file is given.
-/// `components`: numbers that are tried.
-std::optional<GaussianMixture> stored_start(const std::string& file, const FeatureCloud& cloud,
-                                            const std::vector<Index>& components, const Listener& listener);
-
 /// What a filter said about every run, and how good that was.
 struct FilterScores {
   FilterEvaluation evaluation;

@@ -166,7 +166,7 @@ std::vector<Command> commands_to_use() {
        "for the next sample, an alarm.",
        "modebank track robot.h5 < log.csv",
        {"data", "filter.variant", "filter.noise", "track"},
-       {},
+       {{"json", "", "lines out are JSON objects, as they are where lines in are"}},
        run_track,
        {"data.truth", "data.weight", "data.label"}},
       {"Use",

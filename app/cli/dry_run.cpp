@@ -11,7 +11,7 @@ Result dry_run(const Config& config, const std::vector<std::filesystem::path>& w
   // An archive that supplies earlier stages supplies the data, too.
   if (config.archive.input.empty() && !config.data.inputs.empty())
     for (const DataFile& file : data_files(config.data)) read.push_back(file.path);
-  for (const std::string& archive : {config.archive.input, config.archive.bank, config.mixture_start})
+  for (const std::string& archive : {config.archive.input, config.archive.bank})
     if (!archive.empty()) read.emplace_back(archive);
   Result result;
   nlohmann::json reads = nlohmann::json::array(), writes = nlohmann::json::array();

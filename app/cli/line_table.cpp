@@ -72,12 +72,11 @@ void add_operands(const DerivedChannels& derived, const std::string& channel, st
 
 }  // namespace
 
-LineTable::LineTable(const DataOptions& data, LineFormat format) : data_(of_a_stream(data)), format_(format) {}
+LineTable::LineTable(const DataOptions& data) : data_(of_a_stream(data)) {}
 
 bool LineTable::open(const std::string& line) {
-  if (format_ == LineFormat::automatic)
-    format_ = without_blanks(line).starts_with('{') ? LineFormat::ndjson : LineFormat::csv;
-  if (format_ == LineFormat::ndjson) {
+  if (format_ == Format::unknown) format_ = without_blanks(line).starts_with('{') ? Format::objects : Format::csv;
+  if (format_ == Format::objects) {
     open_json(line);
     return true;
   }
@@ -157,7 +156,7 @@ Table LineTable::rows_of(const std::vector<std::string>& lines, TimeUnit unit) c
   const SourcePlan& source = plan_->sources.front();
   TableRequest request = columns_to_read(source.request, source.derived);
   request.time.unit = unit;
-  if (format_ == LineFormat::ndjson) return json_rows(lines, request);
+  if (format_ == Format::objects) return json_rows(lines, request);
   std::string text = head_;
   for (const std::string& line : lines) {
     text += line;
@@ -197,7 +196,7 @@ bool LineTable::take_units(const std::string& line) {
 }
 
 Table LineTable::read(const std::vector<std::string>& lines) {
-  const bool begun = has_rows(), context = begun && format_ == LineFormat::csv;
+  const bool begun = has_rows(), context = begun && format_ == Format::csv;
   std::vector<std::string> all;
   if (context) all.push_back(first_row_);
   all.insert(all.end(), lines.begin(), lines.end());
@@ -210,7 +209,7 @@ Table LineTable::read(const std::vector<std::string>& lines) {
     throw;
   }
   after_header_ = false;
-  if (format_ == LineFormat::ndjson && !std::all_of(lines.begin(), lines.end(), is_utf8))
+  if (format_ == Format::objects && !std::all_of(lines.begin(), lines.end(), is_utf8))
     notes_.emplace_back(read_as_windows_1252);
   if (!begun) begin(lines.front(), table);
   if (begun && !unit_known_) learn_unit(lines, table);
@@ -233,8 +232,7 @@ void LineTable::begin(const std::string& line, const Table& table) {
   first_row_ = line;
   first_s_ = time_s(table, 0);
   unit_known_ = !has_times() || data_.time_unit != TimeUnit::automatic;
-  if (format_ == LineFormat::csv)
-    data_.format.separator = find_dialect(head_ + line + "\n", true, data_.format).separator;
+  if (format_ == Format::csv) data_.format.separator = find_dialect(head_ + line + "\n", true, data_.format).separator;
 }
 
 /// Two rows show what times count; the reader's finding holds for all that follow.
@@ -293,7 +291,7 @@ void LineTable::derive(Table& table) {
 }
 
 bool LineTable::is_whole(const std::string& line) const {
-  if (format_ == LineFormat::ndjson) return parse_json_line(line).is_object();
+  if (format_ == Format::objects) return parse_json_line(line).is_object();
   return fields_in(line).size() == columns_.size();
 }
 

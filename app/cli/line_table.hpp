@@ -16,14 +16,15 @@ namespace modebank::app {
 /// line.
 class LineTable {
  public:
-  /// `data`: channels, times and formats of the archive. The line that comes first decides on `automatic`.
-  LineTable(const DataOptions& data, LineFormat format);
+  /// `data`: channels, times and formats of the archive.
+  explicit LineTable(const DataOptions& data);
 
   /// Takes a line that comes before the columns are known; is_open() afterwards unless it is a comment. True: it is a
   /// row, which read() has yet to take. Throws ConfigurationError without a needed column, listing those there are.
   bool open(const std::string& line);
   bool is_open() const { return plan_.has_value(); }
-  LineFormat format() const { return format_; }
+  /// Whether lines are JSON objects, each with its names; else they are CSV.
+  bool has_objects() const { return format_ == Format::objects; }
   /// A row per line, with derived channels in place; none of the line after the header where that has the columns'
   /// units. Throws std::runtime_error, naming no line, unless every line is a row. One line at a time until the first
   /// row is there.
@@ -46,7 +47,8 @@ class LineTable {
 
  private:
   DataOptions data_;
-  LineFormat format_;
+  enum class Format { unknown, csv, objects };
+  Format format_ = Format::unknown;   ///< by the first line
   std::string head_;                  ///< of CSV: the lines before the first row, each with its line break
   std::vector<std::string> columns_;  ///< of CSV all, of NDJSON the members that are read
   std::optional<FilePlan> plan_;

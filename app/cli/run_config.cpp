@@ -7,6 +7,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
+#include "app/config/ini_lines.hpp"
 #include "app/config/option_table.hpp"
 #include "app/config/path_text.hpp"
 #include "modebank/base/error.hpp"

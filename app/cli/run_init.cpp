@@ -11,6 +11,7 @@
 #include "app/cli/init_trial.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
+#include "app/config/ini_lines.hpp"
 #include "app/config/configuration_output.hpp"
 #include "app/config/option_table.hpp"
 #include "app/config/path_text.hpp"

@@ -3,6 +3,7 @@
 
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
+#include "app/cli/simulated_system.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "io/simulation/simulation_writer.hpp"
@@ -16,7 +17,7 @@ void check_keys_apply(const Config& config) {
   const Config defaults{};
   for (const Option& option : option_table())
     if (option.only_for && *option.only_for != config.simulate.kind && option.get(config) != option.get(defaults))
-      throw ConfigurationError(fmt::format("{} = {} belongs to simulate.system = {}, but the system is {}", option.key,
+      throw ConfigurationError(fmt::format("{} = {} belongs to systems of kind {}, but this one is {}", option.key,
                                            option.get(config), name_of(*option.only_for),
                                            name_of(config.simulate.kind)));
 }
@@ -28,7 +29,8 @@ SimulationOptions system_of(const Config& config) {
   system.inputs = static_cast<Index>(config.data.input.size());
   system.dt_s = 1.0 / config.simulate.rate_hz;
   if (system.states == 0) throw ConfigurationError("data.state is empty: simulate takes the states' names from it");
-  if (system.modes.empty()) throw ConfigurationError("simulate.modes is empty: give the parameters of each mode");
+  if (system.modes.empty())
+    throw ConfigurationError(config.simulate.name + ": system.modes is empty: give the parameters of each mode");
   const Index p = system.modes.front().size();
   system.intercept = p == system.states * (system.states + system.inputs + 1);
   return system;
@@ -38,7 +40,7 @@ VehicleSimulationOptions vehicle_of(const Config& config) {
   const DataOptions& data = config.data;
   if (data.state.empty() || data.state.size() > 3 || data.input.size() != 2)
     throw ConfigurationError(
-        "simulate.system = vehicle needs data.state, the columns of yaw rate and, if they are to be measured, forward "
+        "a vehicle needs data.state, the columns of yaw rate and, if they are to be measured, forward "
         "and sideways speed, and data.input, those of left and right wheel speed");
   VehicleSimulationOptions vehicle = config.simulate.vehicle;
   const SimulationOptions& shared = config.simulate.system;
@@ -56,9 +58,8 @@ VehicleSimulationOptions vehicle_of(const Config& config) {
 const std::vector<std::string>& grounds_of(const SimulateConfig& options) {
   const std::size_t kinds = options.vehicle.friction.size();
   if (!options.ground_names.empty() && options.ground_names.size() != kinds)
-    throw ConfigurationError(
-        fmt::format("simulate.ground_names has {} names for {} kinds of ground (simulate.friction)",
-                    options.ground_names.size(), kinds));
+    throw ConfigurationError(fmt::format("system.ground_names has {} names for {} kinds of ground (system.friction)",
+                                         options.ground_names.size(), kinds));
   return options.ground_names;
 }
 
@@ -78,7 +79,8 @@ void simulate_system(const Config& config) {
 Result do_simulate(const CommandLine& line) {
   if (line.files.size() != 1)
     throw ConfigurationError("simulate needs one configuration file: modebank simulate CONFIG");
-  const Config config = load_config(line.files.front(), line.overrides);
+  Config config = load_config(line.files.front(), line.overrides);
+  read_system(std::filesystem::absolute(line.files.front()).parent_path(), config);
   check_keys_apply(config);
   if (line.dry_run) return dry_run({}, {config.simulate.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());

@@ -44,6 +44,7 @@ int run_track(const CommandLine& line) {
         "track needs one archive: modebank track ARCHIVE < LOG, or modebank track ARCHIVE --data.inputs LOG");
   const OpenArchive archive(line.files.front());
   Config config = stored_config(load_configuration(archive), line.overrides);
+  config.track.json = line.json;
   const bool files = given(line, "data.inputs");
   if (files) turn_to_new_files(line, config.data);
   check_checkpoint(line.files.front(), config, files);

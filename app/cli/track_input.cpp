@@ -28,7 +28,7 @@ std::string without_place(std::string message) {
 
 }  // namespace
 
-SampleReader::SampleReader(const DataOptions& data, LineFormat format) : data_(data), table_(data, format) {
+SampleReader::SampleReader(const DataOptions& data) : data_(data), table_(data) {
   sample_.input.setZero(std::ssize(data.input));
   sample_.measurement.setConstant(std::ssize(data.state), not_a_number);
   next_ = sample_;
@@ -48,7 +48,7 @@ void SampleReader::read(const std::vector<std::string>& lines, const Take& take)
   Rows rows;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const bool blank = without_blanks(lines[i]).empty();
-    if (blank || (table_.has_rows() && table_.format() == LineFormat::csv && is_comment(lines[i]))) {
+    if (blank || (table_.has_rows() && !table_.has_objects() && is_comment(lines[i]))) {
       read_rows(std::exchange(rows, {}), take);
       take(i, Line::blank);
     } else if (table_.has_rows()) {

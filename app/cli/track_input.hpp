@@ -14,7 +14,7 @@ namespace modebank::app {
 /// Reads samples from lines as they come: the rows of a LineTable with what acts where an input is missing.
 class SampleReader {
  public:
-  SampleReader(const DataOptions& data, LineFormat format);
+  explicit SampleReader(const DataOptions& data);
 
   enum class Line { sample, header, blank, left_out, malformed };
   /// Takes lines in and calls `take` for each in order, with its position. While it runs sample() is that of a

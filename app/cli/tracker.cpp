@@ -36,9 +36,9 @@ double stamp_s(const Trajectory& run, Eigen::Index k) {
 Tracker::Tracker(const OpenArchive& archive, const Config& config, OpenedFilter opened, const Alignment& alignment)
     : config_(config),
       opened_(std::move(opened)),
-      judge_(bank_, config.track.level, config.track.alarm),
+      judge_(bank_),
       forecast_judge_(judge_),
-      reader_(config.data, config.track.format),
+      reader_(config.data),
       identity_(identity_of(archive, config, opened_.options)),
       samples_(alignment),
       alignment_(alignment),
@@ -127,7 +127,7 @@ void Tracker::take(SampleReader::Line kind) {
   for (const std::string& note : reader_.table().notes()) messages_.say_note("standard input", note);
   if (kind == SampleReader::Line::blank) return;
   if (kind == SampleReader::Line::malformed) return complain(reader_.reason());
-  if (!writer_) open_writer({reader_.table().format() == LineFormat::ndjson, false, config_.track.forecast});
+  if (!writer_) open_writer({config_.track.json || reader_.table().has_objects(), false, config_.track.forecast});
   if (kind == SampleReader::Line::left_out) return complain("data.where is false");
   if (kind != SampleReader::Line::sample) return;
   if (const auto first_s = reader_.table().corrected_first_s()) correct_first(*first_s);
@@ -141,7 +141,7 @@ void Tracker::take(SampleReader::Line kind) {
 void Tracker::follow_runs(const std::vector<Trajectory>& runs, bool named) {
   constexpr Eigen::Index flushed_after = 1000;
   std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away ends the stream
-  open_writer({config_.track.format == LineFormat::ndjson, named, config_.track.forecast});
+  open_writer({config_.track.json, named, config_.track.forecast});
   bool goes_on = resumed_s_.has_value();
   for (const Trajectory& run : runs) {
     if (!std::exchange(goes_on, false)) {

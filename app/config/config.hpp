@@ -16,19 +16,14 @@ namespace modebank::app {
 /// Which filter of an archive `track` runs.
 enum class TrackedFilter { bank, baseline, noise_only, one_motion, drifting, combined, nonlinear };
 
-/// Of the lines that `track` reads and writes.
-enum class LineFormat { automatic, csv, ndjson };
-
 struct TrackConfig {
   TrackedFilter filter = TrackedFilter::bank;
-  LineFormat format = LineFormat::automatic;
-  double level = 0.95;
-  double alarm = 0.999;
   std::string checkpoint;
   Index checkpoint_interval = 0;
   std::string resume;
   bool forecast = false;
   double watchdog_s = 0.0;  ///< period of lines that say how it fares; 0: none
+  bool json = false;        ///< lines out are objects whatever comes in: --json
 };
 
 /// The [report] section: what a page may hold, and figures for papers.
@@ -59,11 +54,12 @@ struct JobConfig {
 enum class SimulatedSystem { linear, vehicle };
 
 struct SimulateConfig {
+  std::string name = "husky_ice";  ///< of a system or of its file, which decides on all down to ground_names
   SimulatedSystem kind = SimulatedSystem::linear;
-  SimulationOptions system;          ///< the linear system; commands, runs and outliers also of the vehicle
-  VehicleSimulationOptions vehicle;  ///< what only a vehicle has
-  std::string output = "simulated";
+  SimulationOptions system;               ///< the linear system; commands, runs and outliers also of the vehicle
+  VehicleSimulationOptions vehicle;       ///< what only a vehicle has
   std::vector<std::string> ground_names;  ///< of a vehicle's kinds of ground
+  std::string output = "simulated";
   double rate_hz = 6.5;
   double state_rate_hz = 65.0;
 };
@@ -91,7 +87,6 @@ struct Config {
   StructureConfig structure;
   std::string terms = "auto";
   NoiseByInput noise_by_input = NoiseByInput::automatic;
-  std::string mixture_start;  ///< an archive as mixture.start; empty: none
   BankOptions bank;
   std::vector<std::string> mode_names;
   FilterOptions filter;
@@ -125,11 +120,6 @@ void validate(const Config& config);
 template <>
 struct modebank::EnumNames<modebank::app::TrackedFilter> {
   static constexpr Names<7> values{"bank", "baseline", "noise_only", "one_motion", "drifting", "combined", "nonlinear"};
-};
-
-template <>
-struct modebank::EnumNames<modebank::app::LineFormat> {
-  static constexpr Names<3> values{"auto", "csv", "ndjson"};
 };
 
 template <>

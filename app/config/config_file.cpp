@@ -5,15 +5,12 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
-#include <boost/program_options.hpp>
-#include <charconv>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <optional>
-#include <sstream>
 
+#include "app/config/ini_lines.hpp"
 #include "app/config/option_table.hpp"
 #include "app/config/options/gone_keys.hpp"
 #include "app/config/path_text.hpp"
@@ -23,92 +20,8 @@
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
-namespace po = boost::program_options;
-
 namespace modebank::app {
 namespace {
-
-/// A key as it stands in the file.
-struct FileEntry {
-  std::string key, value;
-  int line = 0;
-  bool has_comment = false, comment_touches_value = false;
-};
-
-/// Keys of one path each, which may hold any character.
-bool is_path(const std::string& key) {
-  return key == "data.root" || key == "archive.output" || key == "archive.input" || key == "archive.bank" ||
-         key == "study.output" || key == "simulate.output" || key == "mixture.start";
-}
-
-/// What stands in quotes from `begin` on, if nothing but a comment follows.
-std::optional<std::string> unquoted(std::string_view text) {
-  std::string value;
-  std::size_t i = 1;
-  for (; i < text.size() && text[i] != '"'; ++i) {
-    if (text[i] != '\\') {
-      value += text[i];
-      continue;
-    }
-    if (++i == text.size()) return std::nullopt;
-    unsigned code = 0;
-    if (text[i] == 'x' && i + 2 < text.size() &&
-        std::from_chars(text.data() + i + 1, text.data() + i + 3, code, 16).ptr == text.data() + i + 3) {
-      value += static_cast<char>(code);
-      i += 2;
-    } else {
-      value += text[i] == 'n' ? '\n' : text[i];
-    }
-  }
-  if (i >= text.size()) return std::nullopt;
-  const std::string rest = boost::trim_copy(std::string(text.substr(i + 1)));
-  return rest.empty() || rest.front() == '#' ? std::optional(value) : std::nullopt;
-}
-
-/// A line of such a key whose value is in quotes; `section` as it stands in the file, "[data]".
-std::optional<FileEntry> quoted_entry(const std::string& section, const std::string& line, int number) {
-  const std::size_t equal = line.find('='), quote = equal == std::string::npos ? equal : line.find('"', equal);
-  if (quote == std::string::npos || !boost::trim_copy(line.substr(equal + 1, quote - equal - 1)).empty())
-    return std::nullopt;
-  const std::string name = boost::trim_copy(line.substr(0, equal));
-  const std::string key = section.empty() ? name : section.substr(1, section.size() - 2) + "." + name;
-  if (!takes_quotes(key)) return std::nullopt;
-  const std::optional<std::string> value = unquoted(std::string_view(line).substr(quote));
-  return value ? std::optional(FileEntry{key, *value, number}) : std::nullopt;
-}
-
-/// One line at a time through Boost's parser: its grammar, and a line number for every message.
-std::vector<FileEntry> parse_lines(std::string_view text, const std::string& path) {
-  std::string storage;
-  std::istringstream stream{std::string(utf8_or_windows_1252(text, storage))};
-  static const po::options_description no_options;
-  std::vector<FileEntry> entries;
-  std::string section, line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    if (number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
-    const std::size_t hash = line.find('#');
-    const bool touches = hash != std::string::npos && hash > 0 && line[hash - 1] != ' ' && line[hash - 1] != '\t';
-    std::string content = boost::trim_copy(line.substr(0, hash));
-    if (content.empty()) continue;
-    if (content.front() == '[' && content.back() == ']') {
-      section = content;
-      continue;
-    }
-    if (auto entry = quoted_entry(section, line, number)) {
-      entries.push_back(*std::move(entry));
-      continue;
-    }
-    std::istringstream one(section + "\n" + line + "\n");
-    try {
-      const po::parsed_options parsed = po::parse_config_file(one, no_options, true);
-      for (const po::option& option : parsed.options)
-        entries.push_back({option.string_key, option.value.at(0), number, hash != std::string::npos, touches});
-    } catch (const po::error&) {
-      throw ConfigurationError(fmt::format("{}:{}: '{}' is neither [section] nor key = value", path, number, content));
-    }
-  }
-  return entries;
-}
 
 std::string section_list() {
   std::vector<std::string> sections;
@@ -125,9 +38,11 @@ const Option& known_option(const std::string& where, const std::string& key) {
   throw ConfigurationError(fmt::format("{}: unknown key {}{}{}", where, key, nearest_key_hint(key), section_hint));
 }
 
-void apply(Config& config, const std::string& where, const std::string& key, const std::string& value,
-           bool has_comment) {
-  const Option& option = known_option(where, key);
+}  // namespace
+
+void set_option(Config& config, const Option& option, const std::string& where, const std::string& value,
+                bool has_comment) {
+  const std::string& key = option.key;
   if (holds_controls(value) && !is_path(key))
     throw ConfigurationError(fmt::format("{}: {} = '{}' holds control characters", where, key, printable(value)));
   try {
@@ -138,6 +53,13 @@ void apply(Config& config, const std::string& where, const std::string& key, con
     throw ConfigurationError(fmt::format("{}: {} = '{}' {}{}; allowed: {}{}{}", where, key, value, error.what(),
                                          instead_of_gone(key, value), option.range, unit, hint));
   }
+}
+
+namespace {
+
+void apply(Config& config, const std::string& where, const std::string& key, const std::string& value,
+           bool has_comment) {
+  set_option(config, known_option(where, key), where, value, has_comment);
 }
 
 /// The command line's values of a repeatable key take the place of all of the file's.
@@ -187,13 +109,6 @@ void apply_defaults_of_file(Config& config, const std::filesystem::path& path, O
 }
 
 }  // namespace
-
-bool takes_quotes(const std::string& key) {
-  if (is_path(key)) return true;
-  for (const char* of_names : {"derive", "where", "state", "input", "truth", "time", "run", "label", "weight"})
-    if (key == std::string("data.") + of_names) return true;
-  return false;
-}
 
 std::string nearest_key_hint(const std::string& key) {
   const std::string name = boost::trim_left_copy_if(key, boost::is_any_of("-"));

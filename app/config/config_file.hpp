@@ -10,6 +10,8 @@
 
 namespace modebank::app {
 
+struct Option;
+
 using KeyValues = std::vector<std::pair<std::string, std::string>>;
 
 /// Where each value comes from: "robot.ini:12", "--window.length" (lines for those of a repeatable key); else default.
@@ -33,15 +35,16 @@ std::string resolved_text(const Config& config);
 /// Key and value of every line of a resolved configuration.
 std::map<std::string, std::string> resolved_values(const std::string& resolved);
 
-/// Whether a key's value may stand in double quotes, with \\" \\\\ \\n and \\x1b inside: paths, and names of columns,
-/// which may hold a #. Elsewhere quotes are part of the value.
-bool takes_quotes(const std::string& key);
-
 /// Whether a key can change a number of the result: not where data lie, archives go or how many threads work.
 bool decides_numbers(const std::string& key);
 
 /// SHA-256 over the resolved keys that decide numbers, in name order.
 std::string config_hash(const Config& config);
+
+/// Throws ConfigurationError, which begins with `where`, for a text that is not in the option's range. `has_comment`:
+/// that one followed in its line.
+void set_option(Config& config, const Option& option, const std::string& where, const std::string& value,
+                bool has_comment);
 
 /// ", did you mean window.length?", or of a key that went what takes its place; nothing when no known key is close.
 std::string nearest_key_hint(const std::string& key);

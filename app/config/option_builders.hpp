@@ -122,6 +122,16 @@ Option text(std::string key, std::string what, std::string help, Field<T> field)
   return option(std::move(key), std::move(what), "", std::move(help), field);
 }
 
+/// A key whose value decides several members: `set` and `get` are to be given.
+inline Option of_several(std::string key, std::string range, std::string unit, std::string help) {
+  Option result;
+  result.key = std::move(key);
+  result.range = std::move(range);
+  result.unit = std::move(unit);
+  result.help = std::move(help);
+  return result;
+}
+
 /// A key that may stand in several lines. Its text has one line per value; setting it adds lines, the empty text
 /// clears.
 inline Option lines(const std::string& key, const std::string& what, const std::string& help,

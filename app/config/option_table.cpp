@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <boost/algorithm/string.hpp>
+#include <cmath>
 
 #include "app/config/options/sections.hpp"
-#include "app/config/options/when_to_touch.hpp"
 
 namespace modebank::app {
 
@@ -37,10 +37,12 @@ AutomaticWindows automatic_windows_of(const Config& c) {
 }
 
 ChainOptions chain_options(const Config& c) {
-  const LearningOptions learning{
+  LearningOptions learning{
       window_options_of(c),    c.mixture, c.bank,          c.filter, c.scoring, c.job.seed, searched_lags_of(c),
       automatic_windows_of(c), c.terms,   c.noise_by_input};
-  return {learning, data_options_of(c), c.mixture_start, c.mode_names};
+  learning.bank.screen = learning.bank.theta != ThetaSource::mean;
+  learning.bank.em.restarts = std::lround(0.3 * c.mixture.selection.em.restarts);
+  return {learning, data_options_of(c), c.mode_names};
 }
 
 namespace {
@@ -77,7 +79,6 @@ const std::vector<Option>& option_table() {
                          study_options, track_options, report_options, simulate_options})
       for (Option& entry : section()) {
         entry.basic = is_basic(entry.key);
-        entry.when = when_to_touch(entry.key);
         all.push_back(std::move(entry));
       }
     return all;

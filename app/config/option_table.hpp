@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/config/config.hpp"
@@ -25,6 +26,12 @@ struct Option {
 
   /// The words to choose from, of a range such as "auto | point | comma"; empty where other values are allowed.
   std::vector<std::string> choices() const;
+
+  /// When to touch it.
+  Option touch(std::string sentence) && {
+    when = std::move(sentence);
+    return std::move(*this);
+  }
 
   std::string section() const { return key.substr(0, key.find('.')); }
   std::string name() const { return key.substr(key.find('.') + 1); }

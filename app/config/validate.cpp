@@ -17,7 +17,7 @@ void require(bool condition, const std::string& message) {
 void check_prior(const FitOptions& window, Index parameters) {
   const Index sds = std::ssize(window.prior_sd);
   require(sds <= 1 || sds == parameters,
-          fmt::format("window.prior_sd has {} values: give one, or one per parameter ({}), or none", sds, parameters));
+          fmt::format("window.prior has {} standard deviations: give one, or one per parameter ({}), or none", sds, parameters));
 }
 
 /// bank.transition = logit has no meaning where no bank is refined, and none in filters that know a constant T alone.
@@ -41,7 +41,7 @@ void check_searched(const Config& config) {
                       "auto, not of {}",
                       config.window.model));
   require(config.window.prior_sd.size() <= 1,
-          "window.prior_sd: where lags are found the number of parameters is not known beforehand; give one value for "
+          "window.prior: where lags are found the number of parameters is not known beforehand; give one value for "
           "all, or none");
   const bool of_inputs = structure.input == LagChoice::automatic || structure.delay == LagChoice::automatic;
   require(!of_inputs || !config.data.input.empty(),
@@ -85,8 +85,6 @@ void validate(const Config& config) {
   in_section("window", [&] { check_model(window, states, inputs); });
   check_free_run(linear_structure(states, inputs, window), config.scoring.free_run);
   check_prior(window, parameter_count(window, states, inputs));
-  require(config.window.scale != ScaleSource::fixed || config.window.sigma > 0.0,
-          "window.scale = fixed needs window.sigma, the residual standard deviation, above 0");
   require(
       !config.mixture.error_aware || config.window.covariance != CovarianceKind::sandwich,
       "mixture.error_aware = true needs window.covariance = model: a sandwich covariance does not say how much of a "

@@ -23,7 +23,7 @@ void check_usage(const std::string& command, const Config& config) {
     throw ConfigurationError("archive.bank: only evaluate runs a stored bank");
   if (!config.archive.bank.empty() && !config.archive.input.empty())
     throw ConfigurationError("archive.bank and archive.input: give one of them");
-  for (const std::string& file : {config.archive.input, config.archive.bank, config.mixture_start})
+  for (const std::string& file : {config.archive.input, config.archive.bank})
     if (!file.empty() && !std::filesystem::exists(file))
       throw ConfigurationError(fmt::format("{}: no such file", file));
 }
@@ -33,8 +33,7 @@ std::vector<std::filesystem::path> sources_of(const Config& config, const std::f
                                               const MemoryTables* memory) {
   std::vector<std::filesystem::path> sources;
   for (const std::filesystem::path& file :
-       {configuration, std::filesystem::path(config.archive.input), std::filesystem::path(config.archive.bank),
-        std::filesystem::path(config.mixture_start)})
+       {configuration, std::filesystem::path(config.archive.input), std::filesystem::path(config.archive.bank)})
     if (!file.empty()) sources.push_back(file);
   if (config.archive.input.empty() && memory == nullptr)
     for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);

@@ -182,14 +182,6 @@ const Rule rules[] = {
        return fmt::format("look for a better mixture: repeat with --mixture.restarts {}", many_restarts);
      }},
     {[](const Situation& s) {
-       return warns(s, WarningKind::iteration_limit) &&
-              std::atoi(s.setting("bank.max_iterations").c_str()) < many_iterations;
-     },
-     [](const Situation&) {
-       return fmt::format("let the fit with measurement noise end: repeat with --bank.max_iterations {}",
-                          many_iterations);
-     }},
-    {[](const Situation& s) {
        return s.setting("bank.measurement_variance").empty() &&
               (warns(s, WarningKind::stalled) || warns(s, WarningKind::iteration_limit));
      },
@@ -206,8 +198,6 @@ const Rule rules[] = {
        return "score more of the samples: `modebank check CONFIG` shows which are missing; fewer --window.state_lags "
               "lose fewer";
      }},
-    {[](const Situation& s) { return warns(s, WarningKind::replaced_windows); },
-     [](const Situation&) -> std::string { return "solve every window by Ceres: repeat with --window.solver ceres"; }},
     {[](const Situation& s) { return warns(s, WarningKind::mixture); },
      [](const Situation&) -> std::string {
        return "see to the mixture first (`modebank show ARCHIVE` has its warning): widen --mixture.components";

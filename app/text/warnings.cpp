@@ -22,7 +22,7 @@ std::vector<Warning> window_warnings(const WindowFits& fits, const WindowCounts&
         {WarningKind::replaced_windows,
          fmt::format("the batch solver's cost was above Ceres' by more than {:.0e} relative, or its gradient above "
                      "{:.0e}, in {} of {} "
-                     "audited windows, which have been solved by {}; window.solver = ceres solves all of them so",
+                     "audited windows, which have been solved by {}",
                      WindowAudit::tolerance, WindowAudit::gradient_tolerance, fits.audit.replaced, fits.audit.checked,
                      fits.audit.ceres_method)});
   if (const Index failed = counts.of(FitStatus::failed); failed > 0)
@@ -36,7 +36,7 @@ std::vector<Warning> window_warnings(const WindowFits& fits, const WindowCounts&
 
 std::string refinement_warning(MeasuredFit fit) {
   if (fit == MeasuredFit::iteration_limit)
-    return "the fit with measurement noise was stopped by bank.max_iterations before it had converged";
+    return "the fit with measurement noise was stopped after 100 iterations before it had converged";
   if (fit == MeasuredFit::stalled) return "the fit with measurement noise stalled before it had converged";
   return "";
 }

@@ -6,10 +6,15 @@
 
 namespace modebank {
 
-LiveJudge::LiveJudge(const Bank& bank, double level, double alarm)
+namespace {
+
+constexpr double alarm_tail = 0.0005;  // to either side: one in 1000 samples of a true filter
+
+}  // namespace
+
+LiveJudge::LiveJudge(const Bank& bank)
     : C_(bank.C),
-      interval_quantile_(normal_quantile(0.5 + 0.5 * level)),
-      alarm_tail_(0.5 * (1.0 - alarm)),
+      interval_quantile_(normal_quantile(0.975)),  // of intervals that hold 95 %
       verdict_{Eigen::VectorXd(C_.rows()), Eigen::VectorXd(C_.rows()), Eigen::VectorXd(C_.rows())} {}
 
 const LiveVerdict& LiveJudge::judge(const FilterEstimate& estimate) {
@@ -20,7 +25,7 @@ const LiveVerdict& LiveJudge::judge(const FilterEstimate& estimate) {
     verdict_.lower(i) = verdict_.predicted(i) - half;
     verdict_.upper(i) = verdict_.predicted(i) + half;
     const double pit = estimate.pit(i);
-    if (pit < alarm_tail_ || pit > 1.0 - alarm_tail_) verdict_.alarm = true;  // NaN, a missing signal: never
+    if (pit < alarm_tail || pit > 1.0 - alarm_tail) verdict_.alarm = true;  // NaN, a missing signal: never
   }
   return verdict_;
 }

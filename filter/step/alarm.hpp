@@ -17,15 +17,13 @@ struct LiveVerdict {
 /// the same meaning for every mixture: it is false on 1 - `alarm` of the samples of a true filter of one signal.
 class LiveJudge {
  public:
-  /// `level` of the interval and `alarm`: probabilities above 0 and below 1.
-  LiveJudge(const Bank& bank, double level, double alarm);
+  explicit LiveJudge(const Bank& bank);
   /// Allocates nothing.
   const LiveVerdict& judge(const FilterEstimate& estimate);
 
  private:
   Eigen::MatrixXd C_;
   double interval_quantile_;
-  double alarm_tail_;  ///< to either side
   LiveVerdict verdict_;
 };
 

@@ -5,7 +5,7 @@
 
 One state without measurement noise, one mode or two that differ in A, B and noise, twelve runs of 400 samples of which six train; outputs
 are multiples of a quantum of so many innovation standard deviations. Each seed's files are learned from with data.quantum = the quantum
-(interval), with none (Gaussian), and, if asked for, with none and R fixed at next to nothing (exact); mixture.components is the number of modes, and bank.folds = 1 leaves out the cross-validation. Bias: mean over seeds of theta less the truth in the bank's stated
+(interval), with none (Gaussian), and, if asked for, with none and R fixed at next to nothing (exact); mixture.components is the number of modes. Bias: mean over seeds of theta less the truth in the bank's stated
 errors, of the parameter where it is largest, with the standard error of that mean (seeds whose bank has the true number of modes).
 Tails: of the held-out runs. Prints a Markdown table.
 """
@@ -36,7 +36,7 @@ def settings(likelihood, quantum):
 
 def learned(program, runs, folder, modes, options):
     start = time.monotonic()
-    done = run_program(program, runs, folder, options + ["--mixture.components", str(modes), "--bank.folds", "1", "--filter.smooth", "false"])
+    done = run_program(program, runs, folder, options + ["--mixture.components", str(modes), "--filter.smooth", "false"])
     if done.returncode != 0:
         return {"failed": done.stderr.strip().splitlines()[-1:]}
     with h5py.File(folder / "out.h5") as file:

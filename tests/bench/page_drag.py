@@ -34,7 +34,6 @@ components = 2
 restarts = 1
 [bank]
 refine = none
-refine_transitions = 2000
 [report]
 size_mb = 200
 """

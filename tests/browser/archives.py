@@ -7,7 +7,7 @@ import subprocess
 import numpy
 
 # What takes long and adds no kind of number to a page.
-QUICK = ("--bank.refine", "none", "--bank.refine_transitions", "600")
+QUICK = ("--bank.refine", "none")
 HOSTILE_STATE = "<script>window.hostile=1</script>"
 HOSTILE_MODE = "<img src=x onerror='window.hostile=5'> %{y} &lt;"
 HOSTILE_INPUT = "\"><img src=x onerror='window.hostile=2'>&amp;"

@@ -19,8 +19,8 @@ sys.path.insert(0, str(ROOT / "docs/_ext"))
 import archive_layout  # noqa: E402  its folder is added above
 import program  # noqa: E402
 
-SMALL_DEMO = ["--data.label=mode", "--simulate.runs=4", "--simulate.samples=80", "--mixture.components=1..2", "--mixture.restarts=1", "--bank.restarts=0",
-              "--bank.max_iterations=5", "--filter.horizon=1,2", "--filter.simulate=5", "--filter.smooth=true"]
+SMALL_DEMO = ["--data.label=mode", "--simulate.runs=4", "--simulate.samples=80", "--mixture.components=1..2", "--mixture.restarts=1",
+              "--filter.horizon=1,2", "--filter.simulate=5", "--filter.smooth=true"]
 README_LINES = 150
 problems = []
 

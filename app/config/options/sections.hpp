@@ -18,4 +18,7 @@ std::vector<Option> track_options();
 std::vector<Option> report_options();
 std::vector<Option> simulate_options();
 
+/// The lines of a system file, keys of its section [system]; no keys of a configuration.
+const std::vector<Option>& system_parameters();
+
 }  // namespace modebank::app

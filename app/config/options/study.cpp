@@ -36,47 +36,65 @@ std::vector<Option> space_options() {
       lines("study.vary", "KEY = v1 | v2 | ...",
             "values of a key; {3..12}, {2..20 step 2}, {0..1 lin 5} and {0.001..1 log 7} expand; with sample also the "
             "ranges {0..1} and {0.001..1 log}",
-            parse_vary, MODEBANK_FIELD(study.vary)),
+            parse_vary, MODEBANK_FIELD(study.vary))
+          .touch("for every study: it is what a study varies"),
       lines("study.together", "KEY, KEY, ...", "varied keys whose values go in step: first with first, and so on",
-            parse_together, MODEBANK_FIELD(study.together)),
+            parse_together, MODEBANK_FIELD(study.together))
+          .touch("when two varied keys belong together (rate and window length)"),
       lines("study.when", "KEY if OTHER = v1 | v2",
             "the key is varied only where another one has such a value; elsewhere it stays as configured", parse_when,
-            MODEBANK_FIELD(study.when)),
+            MODEBANK_FIELD(study.when))
+          .touch("when a varied key means nothing beside some values of another"),
       numeric("study.sample", between(0, 1e6), "", "so many points instead of the full grid; 0: the grid",
-              MODEBANK_FIELD(study.sample)),
-      words("study.sampling", "how sample lays them, from job.seed", MODEBANK_FIELD(study.sampling)),
+              MODEBANK_FIELD(study.sample))
+          .touch("when the full grid has more runs than there is time for"),
+      words("study.sampling", "how sample lays them, from job.seed", MODEBANK_FIELD(study.sampling))
+          .touch("sobol, when a study is extended later: its points fill what those before left"),
       numeric("study.repeats", between(1, 100'000), "",
               "runs of each point: the first with its own job.seed, the others with seeds derived from it",
-              MODEBANK_FIELD(study.repeats)),
+              MODEBANK_FIELD(study.repeats))
+          .touch("3 or more, when differences between settings may be luck of the seed"),
   };
 }
 
 std::vector<Option> work_options() {
   return {
       text("study.output", "a folder", "the study's; empty: this file's name with .study, in the current folder",
-           MODEBANK_FIELD(study.output)),
-      numeric("study.jobs", between(0, 1024), "", "runs at a time; 0: one per core", MODEBANK_FIELD(study.jobs)),
+           MODEBANK_FIELD(study.output))
+          .touch("when the study's folder shall have another name or place"),
+      numeric("study.jobs", between(0, 1024), "", "runs at a time; 0: one per core", MODEBANK_FIELD(study.jobs))
+          .touch("fewer than cores, when runs need much memory"),
       numeric("study.timeout_s", at_least(0), "s", "a run that takes longer is stopped and has failed; 0: no limit",
-              MODEBANK_FIELD(study.timeout_s)),
+              MODEBANK_FIELD(study.timeout_s))
+          .touch("when some settings take forever and shall count as failed"),
       words("study.on_failure", "a failed run is recorded and the study goes on, or stops",
-            MODEBANK_FIELD(study.on_failure)),
-      flag("study.retry", "try runs again that failed in an earlier execution", MODEBANK_FIELD(study.retry)),
+            MODEBANK_FIELD(study.on_failure))
+          .touch("stop, while you try out a study's configuration"),
+      flag("study.retry", "try runs again that failed in an earlier execution", MODEBANK_FIELD(study.retry))
+          .touch("false, when failures are known to come again"),
       numeric("study.cache_mb", at_least(0), "MB", "limit of the folder's cache of stages that runs share",
-              MODEBANK_FIELD(study.cache_mb)),
-      words("study.stage", "one step alone; all: plan, run and merge on this machine", MODEBANK_FIELD(study.stage)),
+              MODEBANK_FIELD(study.cache_mb))
+          .touch("more, when many runs share a long import; less, on a small disk"),
+      words("study.stage", "one step alone; all: plan, run and merge on this machine", MODEBANK_FIELD(study.stage))
+          .touch("on a cluster: submit, then merge at the end; on one machine never"),
       flag("study.estimate", "plan, submit: make some runs on this machine, to tell how long the others will take",
-           MODEBANK_FIELD(study.estimate)),
-      shard_option(),
+           MODEBANK_FIELD(study.estimate))
+          .touch("before a long study, to know how long it will take"),
+      shard_option().touch("never on a cluster, whose job script sets it; by hand to share a study among machines"),
       flag("study.flat", "merge: copy the archives into study.h5 instead of linking to them",
-           MODEBANK_FIELD(study.flat)),
+           MODEBANK_FIELD(study.flat))
+          .touch("when study.h5 must be one file that can be copied alone"),
       flag("study.page", "study.html in the folder: written anew every few seconds while the study runs",
-           MODEBANK_FIELD(study.page)),
+           MODEBANK_FIELD(study.page))
+          .touch("when you want to watch a long study"),
       numeric("study.slurm_tasks", between(0, 1'000'000), "",
               "submit: tasks of the job array, each a share of the runs; 0: one per ten runs, at most 100",
-              MODEBANK_FIELD(study.slurm_tasks)),
+              MODEBANK_FIELD(study.slurm_tasks))
+          .touch("when your cluster limits the size of job arrays, or tasks are too short"),
       text("study.slurm_options", "options of sbatch",
            "submit: separated by spaces, such as --partition=main --time=60 --cpus-per-task=4",
-           MODEBANK_FIELD(study.slurm_options)),
+           MODEBANK_FIELD(study.slurm_options))
+          .touch("always with submit: your cluster's partition, time and memory"),
   };
 }
 

@@ -53,6 +53,45 @@ Option lag_option(std::string key, const Range& range, const std::string& help, 
                         count, choice);
 }
 
+/// Of a window, or of its run.
+Option scale_option() {
+  Option result =
+      words("window.scale", "residual scale sigma: of each window, or of its run", MODEBANK_FIELD(window.scale));
+  result.range = "window | run";
+  result.set = [set = result.set](Config& config, const std::string& text) {
+    if (text != "window" && text != "run") throw std::invalid_argument("is none of its words");
+    set(config, text);
+  };
+  return result;
+}
+
+/// A word, or the standard deviations of the global prior in its place.
+Option prior_option() {
+  const Range range = each(above(0));
+  Option result =
+      of_several("window.prior", "none | global | each > 0", "parameter unit",
+                 "Gaussian prior on a window's parameters; global: about the fit of all training runs, 3 times "
+                 "the spread of full-rank windows wide; numbers: about that fit, with these standard deviations, "
+                 "one per parameter or one for all");
+  result.set = [range](Config& config, const std::string& text) {
+    std::vector<double> widths;
+    Prior kind = Prior::global;
+    if (text == "none" || text == "global")
+      parse_value(text, kind);
+    else
+      parse_value(text, widths);
+    if (!in_range(range, widths)) throw std::invalid_argument("is out of range");
+    config.window.prior = kind;
+    config.window.prior_sd = std::move(widths);
+  };
+  result.get = [](const Config& config) {
+    const FitOptions& window = config.window;
+    return window.prior == Prior::global && std::ssize(window.prior_sd) > 0 ? format_value(window.prior_sd)
+                                                                                : format_value(window.prior);
+  };
+  return result;
+}
+
 Option terms_option() {
   Option result =
       text("window.terms", "auto | none | TERM, TERM, ...",
@@ -70,47 +109,44 @@ Option terms_option() {
 
 std::vector<Option> window_options() {
   return {
-      model_option(),
+      model_option().touch("auto, when the screen's last lines say that errors follow a pattern, or the plant answers "
+                           "late; a motion model, when its parameters (a track, a radius) are what you are after"),
       lag_option("window.state_lags", between(1, 100), "varx: states x[k], x[k-1], ... that predict x[k+1]",
-                 MODEBANK_FIELD(window.state_lags), MODEBANK_FIELD(structure.state)),
+                 MODEBANK_FIELD(window.state_lags), MODEBANK_FIELD(structure.state))
+          .touch("with varx, or to keep auto from searching: when the order of the motion is known"),
       lag_option("window.input_lags", between(1, 100), "varx: input samples that act on one transition",
-                 MODEBANK_FIELD(window.input_lags), MODEBANK_FIELD(structure.input)),
+                 MODEBANK_FIELD(window.input_lags), MODEBANK_FIELD(structure.input))
+          .touch("with varx, or to keep auto from searching: when the length of the input's effect is known"),
       lag_option("window.input_delay", between(0, 1000),
                  "varx: from an input to its first effect; 0: u[k+1] acts on x[k+1]",
-                 MODEBANK_FIELD(window.input_delay), MODEBANK_FIELD(structure.delay)),
-      numeric("window.wheel_radius_m", above(0), "m",
-              "icr and slip: turns wheel speeds in rad/s into m/s; 1 for inputs that are m/s",
-              MODEBANK_FIELD(window.wheel_radius_m)),
+                 MODEBANK_FIELD(window.input_delay), MODEBANK_FIELD(structure.delay))
+          .touch("with varx, or to keep auto from searching: when a dead time of whole samples is known; for lags of "
+                 "clocks data.lag_s"),
       number_or_auto(
           numeric("window.length", between(1, 1e6), "transitions", "length of a window", MODEBANK_FIELD(window.length)),
           "25, or 1.5 to 3 times the model's regressors where that is more, the less the more often motion changes",
-          shortest_automatic_length, MODEBANK_FIELD(window.length), MODEBANK_FIELD(structure.length)),
+          shortest_automatic_length, MODEBANK_FIELD(window.length), MODEBANK_FIELD(structure.length))
+          .touch("when `modebank check` suggests another: longer where windows are rank deficient, shorter where modes "
+                 "last less than a window; auto, when the model has many lags"),
       number_or_auto(numeric("window.step", between(1, 1e6), "transitions", "from one window's start to the next",
                              MODEBANK_FIELD(window.step)),
                      "1, or as many as leave 100,000 windows", 1, MODEBANK_FIELD(window.step),
-                     MODEBANK_FIELD(structure.step)),
-      words("window.loss", "robust loss of a sample's residual", MODEBANK_FIELD(window.loss)),
-      numeric("window.loss_scale", at_least(0), "sigma", "where the loss bends; 0: 95 % efficiency under normal noise",
-              MODEBANK_FIELD(window.loss_scale)),
-      words("window.scale", "residual scale sigma: of each window, of its run, or window.sigma",
-            MODEBANK_FIELD(window.scale)),
-      numeric("window.sigma", at_least(0), "state unit", "residual standard deviation for scale = fixed",
-              MODEBANK_FIELD(window.sigma)),
-      words("window.prior", "Gaussian prior on a window's parameters", MODEBANK_FIELD(window.prior)),
-      numeric("window.prior_sd", each(above(0)), "parameter unit",
-              "the prior's standard deviations, one per parameter or one for all; empty: 3 x the spread of full-rank "
-              "windows",
-              MODEBANK_FIELD(window.prior_sd)),
-      terms_option(),
-      flag("window.intercept", "estimate a constant term c", MODEBANK_FIELD(window.intercept)),
+                     MODEBANK_FIELD(structure.step))
+          .touch("larger, when windows are too many to wait for: neighbours share most of their samples; beyond "
+                 "100,000 windows auto does it"),
+      words("window.loss", "robust loss of a sample's residual", MODEBANK_FIELD(window.loss))
+          .touch("when `modebank check` suggests it: tukey for gross errors, trivial for clean data"),
+      scale_option().touch("run, when windows are so short that their own scale is noise"),
+      prior_option().touch(
+          "none, when windows excite everything and you want each one's own fit, as the published recipe; standard "
+          "deviations, when the prior pulls windows of a rare ground towards the common one"),
+      terms_option().touch(
+          "a list, when physics says how the motion bends, such as vx * wz; none, to leave nonlinear and its time out"),
+      flag("window.intercept", "estimate a constant term c", MODEBANK_FIELD(window.intercept))
+          .touch("when the motion has a constant part: a slope, a leak, a sensor's offset"),
       words("window.covariance", "covariance of a window's parameters: M-estimator or HC3 sandwich",
-            MODEBANK_FIELD(window.covariance)),
-      words(
-          "window.solver",
-          "who minimises: Ceres window by window, the batch solver for linear models of one state, or by their number",
-          MODEBANK_FIELD(window.solver)),
-      numeric("window.max_iterations", between(1, 1e5), "", "limit of the minimiser",
-              MODEBANK_FIELD(window.max_iterations)),
+            MODEBANK_FIELD(window.covariance))
+          .touch("sandwich, when noise differs within a window and you use the windows' standard errors"),
   };
 }
 

@@ -35,4 +35,8 @@ std::string_view figure_pareto();
 std::string_view simulate_ice_ini();
 std::string_view demo_ini();
 
+// Systems to simulate.
+std::string_view husky_ice_system();
+std::string_view three_grips_system();
+
 }  // namespace modebank::app::assets

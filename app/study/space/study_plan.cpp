@@ -130,8 +130,7 @@ std::string file_differences(const std::vector<InputFile>& before, const std::ve
 }  // namespace
 
 std::string trial_key(const Config& trial, const std::string& data_hash, const std::string& version) {
-  const std::string& start = trial.mixture_start;
-  return sha256_hex(config_hash(trial) + data_hash + (start.empty() ? "" : describe_file(start).sha256) + version);
+  return sha256_hex(config_hash(trial) + data_hash + version);
 }
 
 Config trial_config(const Config& study, const std::vector<std::string>& varied_keys, const TrialRow& row) {

@@ -18,7 +18,7 @@ struct StudyPlan {
   std::size_t repeated_points = 0;  ///< left out because they say the same as an earlier one; not stored
 };
 
-/// Names a trial: SHA-256 of its configuration's hash, its data's (with that of mixture.start's archive, if any) and
+/// Names a trial: SHA-256 of its configuration's hash, its data's and
 /// modebank's version.
 std::string trial_key(const Config& trial, const std::string& data_hash, const std::string& version);
 

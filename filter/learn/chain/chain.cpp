@@ -34,9 +34,8 @@ class Run {
   }
 
   void cluster(const LearningInputs& inputs) {
-    provide(Stage::mixture, inputs, [&] {
-      learned_.mixture = modebank::cluster(recording_, *learned_.windows, inputs.mixture, progress_, hooks_.start);
-    });
+    provide(Stage::mixture, inputs,
+            [&] { learned_.mixture = modebank::cluster(recording_, *learned_.windows, inputs.mixture, progress_); });
   }
 
   void learn_competitors(const LearningInputs& inputs) {

@@ -12,7 +12,6 @@ struct LearningHooks {
   /// Called for each stage, in their order, with the inputs that it is given: calls `compute`, or puts what an earlier
   /// call with equal inputs computed in place. Empty: computes.
   std::function<void(Stage, const LearningInputs& inputs, const std::function<void()>& compute)> provide = {};
-  MixtureStart start = {};              ///< empty: random starts alone
   const MotionModel* motion = nullptr;  ///< of the caller's own; null: that of window.model, if it is one
   std::function<void(const Refinement& bank)> refined = {};  ///< hears how the bank was refined
 };

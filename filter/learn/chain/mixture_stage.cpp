@@ -6,11 +6,9 @@
 namespace modebank {
 
 MixtureResult cluster(const Recording& recording, const WindowFits& windows, const MixtureInputs& inputs,
-                      const Progress& progress, const MixtureStart& start) {
+                      const Progress& progress) {
   const Stopwatch watch;
-  const MixtureStart none = [](const FeatureCloud&) { return std::nullopt; };
-  MixtureResult result =
-      cluster_windows(recording, windows, inputs.window, inputs.mixture, inputs.seed, start ? start : none);
+  MixtureResult result = cluster_windows(recording, windows, inputs.window, inputs.mixture, inputs.seed);
   const std::string part =
       result.compared > 0 ? ", candidates compared on " + of_all(result.compared, result.clustered) + "," : "";
   progress.progress(fmt::format("mixture: {} components from {} windows{} in {:.2f} s", result.mixture.components(),

@@ -22,11 +22,8 @@ FoundStructure search_structure(const Recording& recording, const StructureInput
 /// The options with that structure, which stays one that is searched for.
 LearningOptions with_structure(const LearningOptions& of, const FoundStructure& found);
 
-/// A mixture to start from beside random ones, over the features of the cloud; none without.
-using MixtureStart = std::function<std::optional<GaussianMixture>(const FeatureCloud& cloud)>;
-
 MixtureResult cluster(const Recording& recording, const WindowFits& windows, const MixtureInputs& inputs,
-                      const Progress& progress, const MixtureStart& start = {});
+                      const Progress& progress);
 
 /// The global model of the windows in linear terms, whatever they were fitted with.
 GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);

@@ -30,14 +30,12 @@ Eigen::MatrixXd features_of_all(const WindowFits& fits, const std::vector<Channe
 }  // namespace
 
 MixtureResult cluster_windows(const Recording& recording, const WindowFits& fits, const FitOptions& window,
-                              const ClusterOptions& options, std::uint64_t seed,
-                              const std::function<std::optional<GaussianMixture>(const FeatureCloud&)>& start) {
+                              const ClusterOptions& options, std::uint64_t seed) {
   std::optional<WindowFits> one_lag;
   if (clusters_one_lag(fits, options.features)) one_lag = fit_one_lag(recording, fits, window);
   const WindowFits& seen = one_lag ? *one_lag : fits;
   const FeatureCloud cloud = make_features(seen, recording.states, options);
-  const std::optional<GaussianMixture> first = start ? start(cloud) : std::nullopt;
-  MixtureResult result = select_mixture(seen, cloud, options.selection, seed, first ? &*first : nullptr,
+  MixtureResult result = select_mixture(seen, cloud, options.selection, seed, nullptr,
                                         assigned_features(seen, recording.states, options, cloud.names));
   if (one_lag || !begin_with(cloud.names, seen.parameter_names()))
     result.features = features_of_all(seen, recording.states, cloud);

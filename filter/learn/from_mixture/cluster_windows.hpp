@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,10 +11,8 @@
 namespace modebank {
 
 /// Clusters windows by the features that the options ask for (FeatureSet), which may be those of one-lag fits of the
-/// same windows: `window` has the options that `fits` were made with. `start`: is given the cloud and returns where the
-/// first restart of the candidate of its size begins; may be empty.
+/// same windows: `window` has the options that `fits` were made with.
 MixtureResult cluster_windows(const Recording& recording, const WindowFits& fits, const FitOptions& window,
-                              const ClusterOptions& options, std::uint64_t seed,
-                              const std::function<std::optional<GaussianMixture>(const FeatureCloud&)>& start = {});
+                              const ClusterOptions& options, std::uint64_t seed);
 
 }  // namespace modebank

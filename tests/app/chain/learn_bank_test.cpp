@@ -54,32 +54,14 @@ TEST_F(LearnBank, IsThatOfRunWithEveryStageAskedOtherwise) {
   options.window.loss = Loss::cauchy;
   options.mixture.selection.components = {1, 2, 3};
   options.mixture.selection.em.covariance = CovarianceType::diagonal;
-  options.bank.em.max_iterations = 20;
   options.filter.noise = FilterNoise::adaptive;
   options.seed = 9;
-  expect_the_bank_of_run({"--window.model",
-                          "linear",
-                          "--window.length",
-                          "20",
-                          "--window.step",
-                          "1",
-                          "--bank.noise_by_input",
-                          "none",
-                          "--window.loss",
-                          "cauchy",
-                          "--mixture.components",
-                          "1..3",
-                          "--mixture.covariance",
-                          "diagonal",
-                          "--bank.max_iterations",
-                          "20",
-                          "--filter.noise",
-                          "adaptive",
-                          "--job.seed",
-                          "9",
-                          "--bank.refine",
-                          "auto"},
-                         options);
+  expect_the_bank_of_run(
+      {"--window.model",        "linear",   "--window.length", "20",       "--window.step",        "1",
+       "--bank.noise_by_input", "none",     "--window.loss",   "cauchy",   "--mixture.components", "1..3",
+       "--mixture.covariance",  "diagonal", "--filter.noise",  "adaptive", "--job.seed",           "9",
+       "--bank.refine",         "auto"},
+      options);
 }
 
 TEST_F(LearnBank, IsThatOfRunWithoutRefinement) {

@@ -1,5 +1,6 @@
 // Stages and banks taken from archives, and archives made again: the same numbers every time.
 #include <gmock/gmock.h>
+#include <tbb/global_control.h>
 
 #include <nlohmann/json.hpp>
 
@@ -41,20 +42,30 @@ TEST_F(StoredStages, NumbersAreTheSameForAnyThreadCount) {
   EXPECT_EQ(all_stages(archive()), one);
 }
 
+/// The chain of `run` in a part of the training transitions; 0: in all.
+Archive learned_from(const std::string& config, Index transitions, std::size_t threads) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  ChainOptions options = chain_options(app::load_config(config, {}));
+  options.bank.em.transitions = transitions;
+  StageSource none;
+  const Listener silent;
+  return Chain(none, silent).run(options, Stage::bank_scores, {});
+}
+
 TEST_F(StoredStages, LearningFromAPartIsTheSameForAnyThreadCountAndSaysSo) {
-  ASSERT_EQ(run({"--bank.refine_transitions", "60", "--job.threads", "1"}).status, 0);
-  const std::string one = all_stages(archive());
-  EXPECT_EQ(read_archive(archive()).learned_transitions, 60);
-  EXPECT_THAT(modebank({"show", archive()}).out, ::testing::HasSubstr("learned   from 60 of 79 training transitions"));
-  ASSERT_EQ(run({"--bank.refine_transitions", "60", "--job.threads", "2"}).status, 0);
-  EXPECT_EQ(all_stages(archive()), one);
+  const std::string one = file("one.h5").string(), two = file("two.h5").string();
+  write_archive(one, learned_from(config(), 60, 1));
+  EXPECT_EQ(read_archive(one).learned_transitions, 60);
+  EXPECT_THAT(modebank({"show", one}).out, ::testing::HasSubstr("learned   from 60 of 79 training transitions"));
+  write_archive(two, learned_from(config(), 60, 2));
+  EXPECT_EQ(all_stages(two), all_stages(one));
 }
 
 TEST_F(StoredStages, ALimitOfAllTransitionsChangesNothing) {
-  ASSERT_EQ(run({"--bank.refine_transitions", "0"}).status, 0);
-  const std::string all = all_stages(archive());
-  ASSERT_EQ(run({"--bank.refine_transitions", "79"}).status, 0);
-  EXPECT_EQ(all_stages(archive()), all);
+  const std::string all = file("all.h5").string(), limit = file("limit.h5").string();
+  write_archive(all, learned_from(config(), 0, 2));
+  write_archive(limit, learned_from(config(), 79, 2));
+  EXPECT_EQ(all_stages(limit), all_stages(all));
 }
 
 /// As recordings of more samples are written than memory holds evaluations of.

@@ -89,7 +89,7 @@ TEST_F(StructureOfRuns, IsRefusedWhereThereAreNoLags) {
     EXPECT_EQ(result.status, 2);
     EXPECT_THAT(result.err, HasSubstr(std::string("auto are those of model = varx or auto, not of ") + model));
   }
-  EXPECT_THAT(run_automatic({"--window.prior_sd", "1, 2"}).err, HasSubstr("give one value for all"));
+  EXPECT_THAT(run_automatic({"--window.prior", "1, 2"}).err, HasSubstr("give one value for all"));
   EXPECT_THAT(run({"--window.model", "varx", "--window.state_lags", "automatic"}).err, HasSubstr("1 to 100 or auto"));
   EXPECT_EQ(run({"--window.model", "varx", "--window.input_lags", "0"}).status, 2);
 }

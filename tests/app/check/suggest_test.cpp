@@ -46,8 +46,7 @@ class Suggest : public Check {
     write("test.ini",
           "[data]\n# the robot's\ninputs = run_*.csv\nstate = wz\ninput = left, right  # wheels\n[mixture]\ncomponents "
           "= 1\n"
-          "[bank]\ntheta = mean\nnoise = fixed\nprocess_variance = 1e-4\nmeasurement_variance = 0.05\nmax_iterations = "
-          "5\n" +
+          "[bank]\ntheta = mean\nnoise = fixed\nprocess_variance = 1e-4\nmeasurement_variance = 0.05\n" +
               more);
   }
   static std::string content(const std::filesystem::path& path) {

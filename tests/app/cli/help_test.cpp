@@ -54,7 +54,7 @@ TEST_F(Help, OptionsThatACommandDoesNotReadAreRefused) {
                                                     {"run", config(), "--repair"},
                                                     {"run", config(), "--study.vary", "window.length = 3"},
                                                     {"verify", archive(), "--window.length", "30"},
-                                                    {"identify", config(), "--track.level", "0.9"},
+                                                    {"identify", config(), "--track.filter", "kf"},
                                                     {"simulate", config(), "--samples", "3"}};
   for (const std::vector<std::string>& line : lines) {
     const ProgramResult result = modebank(line);

@@ -341,7 +341,7 @@ TEST_F(Robustness, P8WhatACommandDoesNotReadIsRefused) {
   refuses({"identify", config(), "--bank.stay", "0.9"}, "--bank.stay", "--data.*, --window.*, --archive.*, --job.*");
   refuses({"simulate", config(), "--window.length", "9"}, "--window.length", "--simulate.*");
   refuses({"show", "none.h5", "--filter.variant", "imm"}, "--filter.variant", "--json, --run, --form");
-  refuses({"verify", "none.h5", "--track.level", "0.9"}, "--track.level", "--repair");
+  refuses({"verify", "none.h5", "--track.filter", "bank"}, "--track.filter", "--repair");
   refuses({"run", config(), "-o", "x.h5"}, "--output", "--force");
   refuses({"run", config(), "--repair"}, "--repair", "--force");
   refuses({"track", "none.h5", "--json"}, "--json", "--track.*");

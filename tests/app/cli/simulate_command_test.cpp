@@ -1,7 +1,9 @@
 // `modebank simulate`, and that `run` reads what it writes.
 #include <gmock/gmock.h>
 
+#include "app/config/options/sections.hpp"
 #include "io/archive/archive.hpp"
+#include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -10,11 +12,10 @@ namespace {
 class SimulateCommand : public CliTest {};
 
 TEST_F(SimulateCommand, SimulateWritesRunsThatRunReads) {
-  const std::string options =
-      std::string("[data]\nstate = wz\ninput = left, right\n[simulate]\n") +
-      "modes = -0.6, -0.7, 0.7 | -0.2, -0.1, 0.1\nprocess_sd = 0.01\nruns = 4\nsamples = 120\n" +
-      "output = " + file("sim").string() + "\n";
-  write("sim.ini", options);
+  write("two.ini", "[system]\nkind = linear\nmodes = -0.6, -0.7, 0.7 | -0.2, -0.1, 0.1\nprocess_sd = 0.01\n");
+  write("sim.ini",
+        "[data]\nstate = wz\ninput = left, right\n[simulate]\nsystem = two.ini\nruns = 4\nsamples = 120\noutput = " +
+            file("sim").string() + "\n");
   const ProgramResult simulated = modebank({"simulate", file("sim.ini").string()});
   ASSERT_EQ(simulated.status, 0) << simulated.err;
   const ProgramResult result = run({"--data.root", file("sim").string(), "--data.inputs", "pro_*.csv", "--data.states",
@@ -42,8 +43,9 @@ TEST_F(SimulateCommand, ShippedSimulationsAreReadByTheirOwnConfiguration) {
 
 TEST_F(SimulateCommand, SimulatedVehicleRunsWithItsLagUndone) {
   const std::string folder = file("vehicle").string();
+  write("ice.ini", "[system]\nkind = vehicle\nfriction = 0.06\n");
   write("vehicle.ini",
-        "[data]\nstate = wz, vx\ninput = left, right\n[simulate]\nsystem = vehicle\nfriction = 0.06\nruns = 4\n"
+        "[data]\nstate = wz, vx\ninput = left, right\n[simulate]\nsystem = ice.ini\nruns = 4\n"
         "samples = 120\nlag_s = 0.4\noutput = " +
             folder + "\n");
   const ProgramResult simulated = modebank({"simulate", file("vehicle.ini").string()});
@@ -63,26 +65,58 @@ TEST_F(SimulateCommand, SimulatedVehicleRunsWithItsLagUndone) {
   EXPECT_LT(undone, 0.8 * score("-0.4"));
 }
 
-TEST_F(SimulateCommand, SimulateRefusesKeysOfTheOtherSystem) {
-  const auto refusal = [&](const char* system, const char* key, const char* value) {
-    write("sim.ini", "[data]\nstate = wz\ninput = left, right\n[simulate]\nsamples = 5\nsystem = " +
-                         std::string(system) + "\noutput = " + file("sim").string() + "\n");
-    const ProgramResult result = modebank({"simulate", file("sim.ini").string(), key, value});
-    EXPECT_EQ(result.status, 2) << key;
-    EXPECT_THAT(result.err, ::testing::HasSubstr(key + 2));
+TEST_F(SimulateCommand, RefusesWhatASystemDoesNotHave) {
+  const auto refusal = [&](const std::string& lines, const std::string& input = "left, right",
+                           const std::string& system = "own.ini") {
+    write("own.ini", "[system]\n" + lines);
+    write("sim.ini", "[data]\nstate = wz\ninput = " + input + "\n[simulate]\nsamples = 5\nsystem = " + system +
+                         "\noutput = " + file("sim").string() + "\n");
+    const ProgramResult result = modebank({"simulate", file("sim.ini").string()});
+    EXPECT_EQ(result.status, 2) << lines;
     EXPECT_FALSE(std::filesystem::exists(file("sim"))) << "nothing is written";
     return result.err;
   };
-  EXPECT_THAT(refusal("vehicle", "--simulate.dwell_samples", "20"),
-              ::testing::HasSubstr("belongs to simulate.system = linear"));
-  refusal("linear", "--simulate.friction", "0.1, 0.5");
-  refusal("vehicle", "--simulate.friction", "0");
-  refusal("vehicle", "--simulate.drift", "0.9");
-  refusal("vehicle", "--simulate.system", "car");
-  write("three.ini", "[data]\nstate = wz\ninput = a, b, c\n[simulate]\nsystem = vehicle\n");
-  const ProgramResult three = modebank({"simulate", file("three.ini").string()});
-  EXPECT_EQ(three.status, 2);
-  EXPECT_THAT(three.err, ::testing::HasSubstr("left and right wheel speed"));
+  using ::testing::AllOf;
+  using ::testing::HasSubstr;
+  EXPECT_THAT(refusal("kind = vehicle\ndwell_samples = 20\n"),
+              AllOf(HasSubstr("own.ini:3"), HasSubstr("system.dwell_samples belongs to system.kind = linear")));
+  EXPECT_THAT(refusal("kind = linear\nmodes = -0.3, -0.1, 0.1\nfriction = 0.1\n"), HasSubstr("system.friction"));
+  EXPECT_THAT(refusal("kind = vehicle\nfriction = 0\n"), HasSubstr("> 0"));
+  EXPECT_THAT(refusal("kind = vehicle\nmas = 5\n"), HasSubstr("did you mean system.mass"));
+  EXPECT_THAT(refusal("kind = vehicle\nmass = 5\nmass = 6\n"), HasSubstr("own.ini:4: system.mass is set twice"));
+  EXPECT_THAT(refusal("mass = 5\n"), HasSubstr("system.kind is not set"));
+  EXPECT_THAT(refusal("kind = linear\n"), HasSubstr("system.modes is empty"));
+  EXPECT_THAT(refusal("kind = car\n"), HasSubstr("linear | vehicle"));
+  EXPECT_THAT(refusal("", "left, right", "car"), HasSubstr("neither husky_ice nor three_grips"));
+  EXPECT_THAT(refusal("kind = vehicle\n", "a, b, c"), HasSubstr("left and right wheel speed"));
+  EXPECT_THAT(modebank({"simulate", file("sim.ini").string(), "--simulate.friction", "0.1"}).err,
+              HasSubstr("a line of the file that simulate.system names"));
+  write("lag.ini", "[data]\nstate = wz\ninput = a, b\n[simulate]\nsystem = three_grips\nlag_s = 0.1\n");
+  EXPECT_THAT(modebank({"simulate", file("lag.ini").string()}).err, HasSubstr("belongs to systems of kind vehicle"));
+}
+
+/// The shipped systems are those of the program, and state every parameter of their kind.
+TEST_F(SimulateCommand, ShippedSystemsStateEveryParameter) {
+  for (const char* name : {"husky_ice", "three_grips"}) {
+    const std::string system = (project_dir() / "configs/systems" / (std::string(name) + ".ini")).string();
+    const auto made_by = [&](const std::string& which) {
+      const std::string folder = file(which == name ? "own" : "of_file").string();
+      write("sim.ini", "[data]\nstate = wz\ninput = left, right\n[simulate]\nruns = 2\nsamples = 30\nsystem = " +
+                           which + "\noutput = " + folder + "\n");
+      EXPECT_EQ(modebank({"simulate", file("sim.ini").string()}).status, 0);
+      return read_file(std::filesystem::path(folder) / "imu_00.csv");
+    };
+    EXPECT_EQ(made_by(name), made_by(system));
+    std::filesystem::remove_all(file("own"));
+    std::filesystem::remove_all(file("of_file"));
+    const std::string text = read_file(system);
+    const bool vehicle = text.find("kind = vehicle") != std::string::npos;
+    for (const app::Option& option : app::system_parameters()) {
+      const bool of_it = !option.only_for || (*option.only_for == app::SimulatedSystem::vehicle) == vehicle;
+      if (!of_it) continue;
+      EXPECT_THAT(text, ::testing::ContainsRegex("\n" + option.name() + " *=")) << name;
+    }
+  }
 }
 
 }  // namespace

@@ -263,7 +263,7 @@ TEST_F(TrackLogs, ReadsFilesAsRunDoes) {
   EXPECT_THAT(both.out, HasSubstr("\n01,0,0,"));
   EXPECT_EQ(track("", "--data.inputs run_01.csv").out, track("run_01.csv").out);
   EXPECT_EQ(track("", "--data.inputs none.csv").status, 2);
-  const ProgramResult ndjson = track("", "--data.inputs run_01.csv --track.format ndjson");
+  const ProgramResult ndjson = track("", "--data.inputs run_01.csv --json");
   EXPECT_EQ(nlohmann::json::parse(ndjson.out.substr(0, ndjson.out.find('\n'))).at("time"), 0.0);
 }
 

@@ -95,7 +95,7 @@ TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
   const Archive stored = read_archive(archive());
   const std::vector<std::string> samples = lines("run_01.csv");
   for (const FilterEvaluation& evaluation : stored.evaluations) {
-    PipedProgram program(command({"--track.filter", evaluation.filter, "--track.format", "csv"}));
+    PipedProgram program(command({"--track.filter", evaluation.filter}));
     program.write(samples[0] + "\n");
     const std::vector<std::string> header = header_of(program.read_line().value());
     const auto at = static_cast<std::size_t>(std::find(header.begin(), header.end(), "log_density") - header.begin());
@@ -116,7 +116,7 @@ TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
 TEST_F(Track, CombinedFiltersAreThoseThatWereScored) {
   const Archive stored = read_archive(archive());
   const std::vector<std::string> samples = lines("run_01.csv");
-  PipedProgram program(command({"--track.filter", "combined", "--track.format", "csv"}));
+  PipedProgram program(command({"--track.filter", "combined"}));
   program.write(samples[0] + "\n");
   const std::vector<std::string> header = header_of(program.read_line().value());
   const auto column = [&](const char* name) {
@@ -157,7 +157,7 @@ TEST_F(Track, CombinedFiltersStartEquallyWhereTrainingScoredNothing) {
   const std::vector<std::string> samples = lines("run_01.csv");
   std::vector<double> densities;  // of the first sample that is scored
   for (const std::string& filter : filters) {
-    PipedProgram program(command({"--track.filter", filter, "--track.format", "csv"}));
+    PipedProgram program(command({"--track.filter", filter}));
     program.write(samples[0] + "\n");
     const std::vector<std::string> header = header_of(program.read_line().value());
     const auto at = static_cast<std::size_t>(std::find(header.begin(), header.end(), "log_density") - header.begin());
@@ -271,7 +271,8 @@ TEST_F(Track, RefusesWhatDoesNotFitBeforeAnySample) {
   EXPECT_EQ(modebank({"track"}).status, 2);
   EXPECT_EQ(modebank({"track", file("none.h5").string()}).status, 2);
   EXPECT_EQ(modebank({"track", archive(), "--data.input", "left"}).status, 2);
-  EXPECT_EQ(modebank({"track", archive(), "--track.level", "1.5"}).status, 2);
+  EXPECT_EQ(modebank({"track", archive(), "--track.watchdog_s", "-1"}).status, 2);
+  EXPECT_THAT(modebank({"track", archive(), "--track.level", "0.9"}).err, HasSubstr("instead: intervals hold 95 %"));
 }
 
 }  // namespace

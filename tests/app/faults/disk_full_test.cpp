@@ -74,8 +74,8 @@ class DiskFull : public CliTest {
     for (unsigned r = 0; r < 4; ++r) write("whole/run_0" + std::to_string(r) + ".csv", csv_run(80, r + 1));
     write("whole/test.ini", config_text());
     write("whole/sim.ini",
-          "[data]\nstate = wz\ninput = left, right\n[simulate]\noutput = sim\nmodes = -0.60, -0.72, 0.72\n"
-          "process_sd = 0.010\nruns = 4\nsamples = 80\nrate_hz = 6.5\nstate_rate_hz = 6.5\n");
+          "[data]\nstate = wz\ninput = left, right\n[simulate]\nsystem = three_grips\noutput = sim\n"
+          "runs = 4\nsamples = 80\nrate_hz = 6.5\nstate_rate_hz = 6.5\n");
   }
 
   /// Makes an archive of the runs, to be reported, tracked or exported.

@@ -418,9 +418,6 @@ TEST_F(NextStep, WarningsComeBeforeUse) {
   archive.mixture->candidates[0].floor_active = true;
   EXPECT_THAT(advice(), AllOf(HasSubstr("--mixture.components"), Not(HasSubstr("ready"))));
   archive.measured_fit = MeasuredFit::iteration_limit;
-  settings["bank.max_iterations"] = "100";
-  EXPECT_THAT(advice(), HasSubstr("--bank.max_iterations 400"));
-  settings["bank.max_iterations"] = "400";
   EXPECT_THAT(advice(), HasSubstr("--bank.measurement_variance VARIANCE"));
 }
 

@@ -25,7 +25,7 @@ import sys
 CONFIG = pathlib.Path(__file__).resolve().parents[3] / "configs" / "cascaded_tanks.ini"
 TRAINING, QUARTERS = 700, 4  # samples that the protocol learns from; parts of the cross-validation
 Choice = collections.namedtuple("Choice", "knee, lags, modes, ahead, score")
-# Fits to errors ask nobody (bank.folds = 1): the quarters do. Of several modes they have free runs without bounds, see the results' page.
+# Of several modes fits to errors have free runs without bounds, see the results' page.
 CHOICES = [Choice(None, *rest, "density") for rest in itertools.product((2, 3), (1, 2, 3), (1, 10, 30)) if rest[1] > 1 or rest[2] == 1]
 CHOICES += [Choice(knee, lags, 1, ahead, "error") for knee, lags, ahead in itertools.product((None, 3, 3.5, 4, 4.5), (2, 3), (60, 120))]
 FILTERS = ("bank", "one_motion")
@@ -47,8 +47,7 @@ def scored(program, folder, choice, train, test):
     derived = ["--data.derive", f"pump_over=max(pump - {choice.knee}, 0)", "--data.input", "pump,pump_over"] if choice.knee else []
     done = subprocess.run([program, "run", CONFIG, "--data.root", folder, "--data.inputs", "tanks_*.csv", "--data.train", ",".join(train), "--data.test", test,
                            "--window.state_lags", str(choice.lags), "--window.input_lags", str(choice.lags), *derived,
-                           "--mixture.components", str(choice.modes), "--bank.look_ahead", str(choice.ahead),
-                           "--bank.look_ahead_score", choice.score, "--bank.folds", "1" if choice.score == "error" else "6",
+                           "--mixture.components", str(choice.modes), "--bank.look_ahead", f"{choice.ahead} error" if choice.score == "error" else str(choice.ahead),
                            "--archive.output", archive], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(done.stderr)
