@@ -14,7 +14,6 @@
 #include "ident/base/seed.hpp"
 #include "io/archive/study_file.hpp"
 #include "io/files/input_file.hpp"
-#include "io/files/look_twice.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
@@ -212,7 +211,7 @@ void write_plan(const std::filesystem::path& folder, const StudyPlan& plan) {
 }
 
 StudyPlan read_plan(const std::filesystem::path& folder) {
-  const StudyFile file = look_twice([&] { return read_study_file(plan_file(folder), "plan"); });
+  const StudyFile file = read_study_file(plan_file(folder), "plan");
   try {
     return plan_of(file);
   } catch (const DataError& error) {
