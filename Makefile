@@ -143,7 +143,7 @@ export-recovery: packages-build packages-test build/build.ninja
 slurm: packages-build packages-test packages-nightly build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target test_study_survival
-	CI=true build/test_study_survival --gtest_filter='StudySlurm*'
+	CI=true MODEBANK_STUDY_REPEATS=42 build/test_study_survival --gtest_filter='StudySlurm*:*TwentyKilledWorkers*'
 
 # Studies of several machines on a file system without locks, with caches and other clocks; 40 machines are lost. Root, for mounts.
 shared-fs: packages-build packages-test packages-nightly build/build.ninja

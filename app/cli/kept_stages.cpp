@@ -10,16 +10,13 @@
 #include <csignal>
 #include <cstring>
 
-#include "app/chain/stage_file.hpp"
 #include "ident/base/printable.hpp"
-#include "io/archive/archive.hpp"
 
 namespace modebank::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double worth_a_file_s = 1.0;
 constexpr std::array signals{SIGINT, SIGTERM};
 
 /// What a signal handler may print: made beforehand, since it may not allocate.
@@ -48,7 +45,8 @@ void tell_kept(const fs::path& folder) {
 }  // namespace
 
 KeptStages::KeptStages(const fs::path& output)
-    : folder_(output.parent_path() / fmt::format(".{}.stages", output.filename().string())) {
+    : folder_(output.parent_path() / fmt::format(".{}.stages", output.filename().string())),
+      store_(folder_, {.kept = [this] { tell_kept(folder_); }}) {
   set_message("\nmodebank: stopped; no stage that took long was finished, so nothing is kept\n");
   for (std::size_t i = 0; i < signals.size(); ++i) {
     before_[i] = std::signal(signals[i], say_what_is_kept);
@@ -60,37 +58,8 @@ KeptStages::KeptStages(const fs::path& output)
 }
 
 void KeptStages::provide(Stage stage, const std::string& key, const StagePart& part) {
-  // The data stage is not kept: it would be the log once more.
-  if (stage == Stage::data || folder_is_link()) return part.compute();
-  const fs::path file = folder_ / stage_file_name(stage, key);
-  if (load(file, part)) return;
-  const Stopwatch watch;
-  part.compute();
-  if (watch.seconds() > std::max(worth_a_file_s, part.writing_s)) store(file, part);
-}
-
-bool KeptStages::load(const fs::path& file, const StagePart& part) const {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return false;
-  try {
-    part.take(read_archive(file));
-    tell_kept(folder_);
-    spdlog::info("{}: taken from a run that was stopped", file.string());
-    return true;
-  } catch (const std::exception& damage) {
-    spdlog::warn("{}: computed again", damage.what());
-    return false;
-  }
-}
-
-void KeptStages::store(const fs::path& file, const StagePart& part) const {
-  try {
-    fs::create_directory(folder_);
-    write_archive(file, part.copy());
-    tell_kept(folder_);
-  } catch (const std::exception& obstacle) {  // it would have saved time, nothing else
-    spdlog::debug("{}", obstacle.what());
-  }
+  if (folder_is_link()) return part.compute();
+  store_.provide(stage, key, part);
 }
 
 bool KeptStages::folder_is_link() const {
@@ -100,11 +69,7 @@ bool KeptStages::folder_is_link() const {
 
 KeptStages::~KeptStages() {
   for (std::size_t i = 0; i < signals.size(); ++i) std::signal(signals[i], before_[i]);
-  if (folder_is_link()) return;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error))
-    if (is_stage_file_name(entry.path().filename().string())) fs::remove(entry.path(), error);
-  fs::remove(folder_, error);  // stays where it holds something else
+  if (!folder_is_link()) store_.clear();
 }
 
 }  // namespace modebank::app

@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/log.hpp"
 #include "app/cli/result.hpp"
+#include "app/study/run/study_worker.hpp"
 #include "ident/base/printable.hpp"
 #include "io/files/standard_error.hpp"
 #include "modebank/base/error.hpp"
@@ -45,6 +47,8 @@ int fail_as_asked(int argc, char** argv, int status, const char* what) {
 
 int main(int argc, char** argv) {
   modebank::occupy_standard_streams();
+  if (argc > 1 && std::string_view(argv[1]) == modebank::app::worker_word)
+    return modebank::app::run_study_worker(argc, argv);
   try {
     const int status = modebank::app::run_command(modebank::app::parse_command_line(argc, argv));
     // A full disk or a closed pipe must not pass for success.

@@ -50,9 +50,11 @@ void report_files(const CommandLine& line, const std::filesystem::path& page, co
     return;
   }
   const std::string& name = line.files.front();
-  const OpenArchive file(report::study_file(name));
-  if (std::filesystem::is_directory(name) || report::is_study(file))
-    report::report_study(name, file, page, options, written);
+  if (std::filesystem::is_directory(name))
+    return report::report_study(report::find_study(name, written), page, options, written);
+  const OpenArchive file(name);
+  if (report::is_study(file))
+    report::report_study({name, name, read_study_file(file, "study")}, page, options, written);
   else
     report_run(file, page, options, written);
 }

@@ -1,7 +1,6 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
 #include "app/config/config_file.hpp"
-#include "app/report/page/write_page.hpp"
 #include "app/study/answers/study_json.hpp"
 #include "app/study/study.hpp"
 #include "modebank/base/error.hpp"
@@ -14,9 +13,7 @@ int run_study(const CommandLine& line) {
   const Config config = load_config(file, line.overrides);
   if (line.dry_run) return print_result(line, dry_run(config, {config.study.output}));
   const auto say = [&](const std::string& text) { print_text(line, text); };
-  report::Written written{say, {}};
-  const auto write_page = [&](const auto&... of_study) { report::write_running_study(of_study..., written); };
-  const int status = do_study({config, file, line.overrides, line.typed, say, write_page});
+  const int status = do_study({config, file, line.overrides, line.typed, say});
   if (line.json) print_json(line, study_json(config.study.output), status);
   return status;
 }

@@ -32,10 +32,8 @@ struct StudyConfig {
   bool retry = true;
   double cache_mb = 1000.0;
   StudyStage stage = StudyStage::all;
-  bool estimate = false;  ///< plan, submit: make some runs to estimate time and disk from
   std::int64_t shard_index = 0, shard_count = 1;
   bool flat = false;
-  bool page = false;             ///< all: a page that is written anew while the study runs; all and merge: at the end
   std::int64_t slurm_tasks = 0;  ///< 0: by the number of runs
   std::string slurm_options;     ///< of sbatch, separated by spaces
 };

@@ -10,13 +10,13 @@
 #include "app/study/answers/study_text.hpp"
 #include "app/study/launch/slurm.hpp"
 #include "app/study/launch/submit_study.hpp"
+#include "app/study/run/claim.hpp"
 #include "app/study/run/run_trials.hpp"
 #include "app/study/run/study_progress.hpp"
 #include "app/text/duration_text.hpp"
 #include "io/archive/archive_form.hpp"
 #include "io/files/output_file.hpp"
 #include "io/files/read_file.hpp"
-#include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -27,8 +27,6 @@ struct StudyCommand {
   const StudyCall& call;
   const Config& config;
   TrialStore store;
-  std::string execution;                                  ///< this one
-  std::map<std::string, FailureRecord> earlier_failures;  ///< by key
 };
 
 bool has_plan(const std::filesystem::path& folder) {
@@ -46,7 +44,6 @@ std::vector<OutputFile> files_in_place(const std::filesystem::path& folder) {
   std::vector<OutputFile> files{
       at("study.csv", form_by_front("a table of a study", "repeat,seed,status,message,", line_bytes)),
       at("log.csv", form_by_front("a log of a study", "Z,", sizeof "2026-01-01T00:00:00Z")),
-      at("study.html", form_by_front("a page", "<!DOCTYPE html>", line_bytes)),
       at("study.best.ini", form_by_front("a configuration of a study", "# Best of a study by ", line_bytes)),
       at("study.h5", {"a table of a study", is_table_of_runs})};
   std::erase_if(files, [](const OutputFile& file) { return std::filesystem::is_symlink(file.path); });
@@ -70,8 +67,7 @@ StudyPlan settle_plan(const StudyCommand& command) {
   StudyPlan plan = make_plan(command.config, make_provenance(config_hash(command.config), command.call.typed));
   check_folder(command, plan);
   command.store.create();
-  const FileLocks locks(command.store.lock_file());
-  const FileLocks::Hold alone = locks.lock(plan_lock);
+  const Claim alone = Claim::wait_for(command.store.plan_claim());
   if (has_plan(command.store.folder())) {
     const StudyPlan before = read_plan(command.store.folder());
     check_plan_goes_on(before, plan, command.store.folder());
@@ -81,32 +77,8 @@ StudyPlan settle_plan(const StudyCommand& command) {
   return plan;
 }
 
-WorkerSettings worker_settings(const StudyCommand& command, const StudyPlan& plan) {
-  return {command.config,
-          command.call.typed,
-          command.store,
-          plan.table.varied_keys,
-          plan.provenance.modebank_version,
-          command.execution,
-          command.earlier_failures};
-}
-
-void print_plan(const StudyCommand& command, const StudyPlan& plan, Sampling sampling) {
-  const WorkerSettings settings = worker_settings(command, plan);
-  const auto& say = command.call.say;
-  say(plan_text(plan, count_stages(command.config, plan), command.config.study.repeats));
-  say(estimate_text(estimate_study(settings, plan, sampling), command.store, job_count(command.config.study)));
-}
-
-/// Where a plan is made, often the machine that users log in to, nothing else is computed unless asked.
-Sampling if_asked(const StudyConfig& study) {
-  return study.estimate ? Sampling::make_some_runs : Sampling::what_is_there;
-}
-
-/// A share of a study knows its own runs alone: only the whole study has a page while it runs.
-bool shows_page(const StudyCommand& command) {
-  const StudyConfig& study = command.config.study;
-  return study.page && study.stage == StudyStage::all && study.shard_count == 1 && command.call.write_page;
+void print_plan(const StudyCommand& command, const StudyPlan& plan) {
+  command.call.say(plan_text(plan, count_stages(command.config, plan), command.config.study.repeats));
 }
 
 /// Throws DataError when the study had to stop.
@@ -115,13 +87,10 @@ RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
   command.store.remove_leftovers();
   const TrialGroups share = shard_of(group_trials(command.config, plan), study.shard_index, study.shard_count);
   StudyProgress progress(plan.table.varied_keys);
-  std::optional<LivePage> page;
-  if (shows_page(command)) page.emplace(plan, command.store, command.call.write_page);
   const RunResult result =
-      run_trials(worker_settings(command, plan), plan, share,
+      run_trials({command.config, command.call.typed, plan.provenance.modebank_version}, plan, share,
                  [&](const TrialRow& row, const TrialReport& report, std::size_t finished, std::size_t all) {
                    progress.tell(row, report, finished, all);
-                   if (page) page->tell(row, report, finished, all);
                  });
   const std::string counts = fmt::format("{} runs made, {} were there, {} failed, in {}", result.computed,
                                          result.present, result.failed.size(), duration_text(result.seconds));
@@ -151,8 +120,7 @@ void require_plan(const StudyCommand& command) {
 int merge(const StudyCommand& command, const std::set<std::string>& whole) {
   command.store.look_again();
   require_plan(command);
-  const FileLocks locks(command.store.lock_file());
-  const FileLocks::Hold alone = locks.lock(plan_lock);
+  const Claim alone = Claim::wait_for(command.store.plan_claim());
   const StudyPlan plan = read_plan(command.store.folder());  // another process may have added values
   check_plan_is_of(plan, command.config, command.store.folder());
   const StudyTable table = collect_table(command.store, plan, whole);
@@ -163,15 +131,12 @@ int merge(const StudyCommand& command, const std::set<std::string>& whole) {
   command.call.say(fmt::format("\n{}\ntable     {}, {}\n", answers_text(table, answers),
                                (command.store.folder() / "study.h5").string(),
                                (command.store.folder() / "study.csv").string()));
-  if (command.config.study.page && command.call.write_page)
-    command.call.write_page(command.store.folder(), study_file_of(plan, table, answers), table,
-                            {table.rows.size(), table.rows.size(), 0.0});
   return is_complete(table) ? 0 : 1;
 }
 
 int run_all(const StudyCommand& command) {
   const StudyPlan plan = settle_plan(command);
-  print_plan(command, plan, Sampling::make_some_runs);
+  print_plan(command, plan);
   const RunResult result = run_share(command, plan);
   return merge(command, {result.whole.begin(), result.whole.end()});
 }
@@ -185,14 +150,14 @@ int show_status(const StudyCommand& command) {
 }
 
 int plan_alone(const StudyCommand& command) {
-  print_plan(command, settle_plan(command), if_asked(command.config.study));
+  print_plan(command, settle_plan(command));
   return 0;
 }
 
 int submit(const StudyCommand& command) {
   check_submission(command.call);
   const StudyPlan plan = settle_plan(command);
-  print_plan(command, plan, if_asked(command.config.study));
+  print_plan(command, plan);
   command.call.say(submit_study(command.call, plan, collect_table(command.store, plan)));
   return 0;
 }
@@ -202,7 +167,7 @@ int submit(const StudyCommand& command) {
 int do_study(const StudyCall& call) {
   const TrialStore store(call.config.study.output);
   store.look_again();
-  const StudyCommand command{call, call.config, store, random_word(), store.failures()};
+  const StudyCommand command{call, call.config, store};
   switch (call.config.study.stage) {
     case StudyStage::all:
       return run_all(command);

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "app/config/config_file.hpp"
-#include "app/study/run/live_page.hpp"
 
 namespace modebank::app {
 
@@ -16,7 +15,6 @@ struct StudyCall {
   KeyValues overrides;                                                      ///< and these from the command line
   std::string typed;                                                        ///< the whole command line, for provenance
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< takes what it says of its progress
-  StudyPageWriter write_page = {};                                          ///< for study.page
 };
 
 /// Does what study.stage says and says what it did. Returns 0 when every run is done, else 1.

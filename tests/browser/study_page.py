@@ -170,33 +170,3 @@ class StudyPage(PageTest):
         session.browser.run("document.querySelector('#study-table tbody tr').click()")
         self.assertIn(best["key"].decode(), session.browser.run("return document.getElementById('run-detail').textContent"))  # the best stands first
         self.assert_quiet()
-
-    def test_a_running_studys_page_reloads_and_keeps_its_place(self):
-        page = session.work / "live.html"
-        text = self.page().read_text(encoding="utf-8")
-        head = '"study":{'
-        self.assertIn(head, text)
-        page.write_text(text.replace(head, head + '"live": {"finished": 2, "all": 12, "seconds": 5},', 1), encoding="utf-8")
-        self.open(page)
-        self.assertIn("2 of 12 runs are finished", session.browser.run("return document.getElementById('live').textContent"))
-        # A slow machine takes longer to draw than the page waits to reload, so the box is off until all is drawn and after one reload.
-        box = "document.querySelector('#live + .controls input[type=checkbox]')"
-        switched = session.browser.wait(f"return {box}?.checked === true && ({box}.click(), dispatchEvent(new Event('wheel')), true)")
-        self.assertTrue(switched)
-        session.browser.draw_all()
-        session.browser.run("document.getElementById('heatmap').scrollIntoView(); scrollBy(0, 30)")
-        session.browser.wait_still("document.getElementById('heatmap').getBoundingClientRect().top")
-        before, began = session.browser.run(f"{box}.click(); return [document.getElementById('heatmap').getBoundingClientRect().top, performance.timeOrigin]")
-        session.browser.wait(f"""
-            if (!(performance.timeOrigin > arguments[0] && document.documentElement.dataset.ready === 'true')) return false;
-            if ({box}.checked) {box}.click();
-            return true;""", began, what="the page to reload")
-        session.browser.wait("return Math.abs(document.getElementById('heatmap')?.getBoundingClientRect().top - arguments[0]) < 3", before,
-                             what="the section that was read to be where it was")
-        session.browser.run(f"{box}.click()")
-        self.filter("mixture.components", "3")  # somebody reads: it stays
-        stays = session.browser.run("return performance.timeOrigin")
-        session.browser.driver.execute_async_script("setTimeout(arguments[0], 6000)")
-        self.assertEqual(session.browser.run("return performance.timeOrigin"), stays)
-        self.filter("mixture.components", "")
-        session.browser.driver.get("about:blank")

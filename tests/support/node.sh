@@ -1,5 +1,5 @@
 #!/bin/sh
-# node.sh NAME MOUNT_PROGRAM BACKING MOUNT LOCKS CACHE_S SKEW_S COMMAND...: runs a command as on a machine of that name
+# node.sh NAME MOUNT_PROGRAM BACKING MOUNT CACHE_S SKEW_S COMMAND...: runs a command as on a machine of that name
 # that sees BACKING at MOUNT over a network: with host name, processes and mounts of its own (root only).
 set -eu
 if [ "${MODEBANK_NODE:-}" != inside ]; then
@@ -7,9 +7,9 @@ if [ "${MODEBANK_NODE:-}" != inside ]; then
 fi
 unset MODEBANK_NODE
 hostname "$1"
-program=$2 backing=$3 mount=$4 locks=$5 cache_s=$6 skew_s=$7
-shift 7
-"$program" "$backing" "$mount" "$locks" "$cache_s" "$skew_s" &
+program=$2 backing=$3 mount=$4 cache_s=$5 skew_s=$6
+shift 6
+"$program" "$backing" "$mount" "$cache_s" "$skew_s" &
 tries=0
 until mountpoint -q "$mount"; do
   tries=$((tries + 1))

@@ -1,7 +1,6 @@
-// shared_mount BACKING MOUNT LOCKS CACHE_S SKEW_S: shows a folder in another place as a machine sees one that it shares
+// shared_mount BACKING MOUNT CACHE_S SKEW_S: shows a folder in another place as a machine sees one that it shares
 // over a network (libfuse3), until it is unmounted. What NFS does to programs, at its worst:
-// - LOCKS: ENOLCK or ENOSYS (every lock is refused so), local (this mount knows its own alone), shared (all mounts see
-//   all, as with a lock server);
+// - every lock is refused (ENOLCK);
 // - what a name says (size, times, that there is nothing) is remembered for CACHE_S seconds, until the file is opened
 //   here, or for absent names until their folder is listed; what is read is fresh when the file was opened
 //   (close-to-open);
@@ -22,8 +21,6 @@
 #include <map>
 #include <mutex>
 #include <string>
-#include <thread>
-#include <utility>
 
 namespace {
 
@@ -36,12 +33,11 @@ struct Known {
 };
 
 struct Mount {
-  std::string backing, locks;
+  std::string backing;
   std::chrono::duration<double> cache{0.0};
   std::int64_t skew_s = 0;
   std::mutex mutex;
-  std::map<std::string, Known> known;                               ///< by path below the mount
-  std::map<std::pair<std::uint64_t, std::string>, int> lock_files;  ///< by owner and path
+  std::map<std::string, Known> known;  ///< by path below the mount
 } mount;
 
 std::string real(const char* path) { return mount.backing + path; }
@@ -156,6 +152,11 @@ int rename_file(const char* from, const char* to, unsigned flags) {
   forget_below(to);
   return result(::rename(real(from).c_str(), real(to).c_str()));
 }
+int make_hard_link(const char* from, const char* to) {
+  forget(from);
+  forget(to);
+  return result(::link(real(from).c_str(), real(to).c_str()));
+}
 int make_link(const char* target, const char* path) {
   forget(path);
   return result(::symlink(target, real(path).c_str()));
@@ -179,40 +180,8 @@ int change_times(const char* path, const timespec times[2], fuse_file_info*) {
 }
 int space(const char* path, struct statvfs* about) { return result(::statvfs(real(path).c_str(), about)); }
 
-int refusal() { return mount.locks == "ENOLCK" ? -ENOLCK : -ENOSYS; }
-
-/// The file through which an owner (a process of this mount) holds its locks: open file descriptions own them.
-int lock_file_of(const char* path, std::uint64_t owner) {
-  const std::lock_guard lock(mount.mutex);
-  const auto [at, fresh] = mount.lock_files.try_emplace({owner, path}, -1);
-  if (fresh) at->second = ::open(real(path).c_str(), O_RDWR | O_CLOEXEC);
-  return at->second;
-}
-
-void close_lock_file(const char* path, std::uint64_t owner) {
-  const std::lock_guard lock(mount.mutex);
-  const auto at = mount.lock_files.find({owner, path});
-  if (at == mount.lock_files.end()) return;
-  ::close(at->second);
-  mount.lock_files.erase(at);
-}
-
-int lock_range(const char* path, fuse_file_info* file, int command, struct flock* range) {
-  if (mount.locks != "shared") return refusal();
-  if (range->l_type == F_UNLCK && range->l_start == 0 && range->l_len == 0)  // a close, too
-    return close_lock_file(path, file->lock_owner), 0;
-  const int descriptor = lock_file_of(path, file->lock_owner);
-  range->l_pid = 0;
-  if (command == F_GETLK) return result(::fcntl(descriptor, F_OFD_GETLK, range));
-  while (::fcntl(descriptor, F_OFD_SETLK, range) != 0) {
-    if (command != F_SETLKW || (errno != EAGAIN && errno != EACCES)) return -errno;
-    if (fuse_interrupted() != 0) return -EINTR;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return 0;
-}
-
-int lock_whole(const char*, fuse_file_info*, int) { return refusal(); }
+int lock_range(const char*, fuse_file_info*, int, struct flock*) { return -ENOLCK; }
+int lock_whole(const char*, fuse_file_info*, int) { return -ENOLCK; }
 
 void* start(fuse_conn_info*, fuse_config* config) {
   // Nothing is remembered by the kernel; what is remembered here is under control.
@@ -239,23 +208,23 @@ fuse_operations operations() {
   all.rmdir = remove_folder;
   all.rename = rename_file;
   all.symlink = make_link;
+  all.link = make_hard_link;
   all.readlink = read_link;
   all.chmod = change_mode;
   all.utimens = change_times;
   all.statfs = space;
-  if (mount.locks != "local") all.lock = lock_range;
-  if (mount.locks.rfind("ENO", 0) == 0) all.flock = lock_whole;
+  all.lock = lock_range;
+  all.flock = lock_whole;
   return all;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 6) return 2;
+  if (argc != 5) return 2;
   mount.backing = argv[1];
-  mount.locks = argv[3];
-  mount.cache = std::chrono::duration<double>(std::atof(argv[4]));
-  mount.skew_s = std::atoll(argv[5]);
+  mount.cache = std::chrono::duration<double>(std::atof(argv[3]));
+  mount.skew_s = std::atoll(argv[4]);
   const fuse_operations all = operations();
   char foreground[] = "-f", option[] = "-o", threads[] = "max_threads=64";
   char* arguments[]{argv[0], argv[2], foreground, option, threads, nullptr};

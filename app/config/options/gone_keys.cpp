@@ -29,6 +29,8 @@ constexpr std::array gone{
     Gone{"mixture.criterion", "aic", "bic"},
     Gone{"mixture.heldout", "", "mixture.criterion = heldout scores candidates of any number of windows"},
     Gone{"mixture.bootstrap", "", "banks state standard errors of their coefficients"},
+    Gone{"study.estimate", "", "a running study prints how long the rest takes, at its rate so far"},
+    Gone{"study.page", "", "modebank report STUDY makes the page, also while the study runs"},
     Gone{"filter.parameter_noise", "", "refinement learns what it added to Q"},
     Gone{"filter.time_steps", "", "a longer time between samples is as many prediction steps as fit"},
     Gone{"window.wheel_radius_m", "", "data.derive: vl = 0.165 * wl"},

@@ -77,16 +77,10 @@ std::vector<Option> work_options() {
           .touch("more, when many runs share a long import; less, on a small disk"),
       words("study.stage", "one step alone; all: plan, run and merge on this machine", MODEBANK_FIELD(study.stage))
           .touch("on a cluster: submit, then merge at the end; on one machine never"),
-      flag("study.estimate", "plan, submit: make some runs on this machine, to tell how long the others will take",
-           MODEBANK_FIELD(study.estimate))
-          .touch("before a long study, to know how long it will take"),
       shard_option().touch("never on a cluster, whose job script sets it; by hand to share a study among machines"),
       flag("study.flat", "merge: copy the archives into study.h5 instead of linking to them",
            MODEBANK_FIELD(study.flat))
           .touch("when study.h5 must be one file that can be copied alone"),
-      flag("study.page", "study.html in the folder: written anew every few seconds while the study runs",
-           MODEBANK_FIELD(study.page))
-          .touch("when you want to watch a long study"),
       numeric("study.slurm_tasks", between(0, 1'000'000), "",
               "submit: tasks of the job array, each a share of the runs; 0: one per ten runs, at most 100",
               MODEBANK_FIELD(study.slurm_tasks))

@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
 
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/study_page.hpp"
 #include "app/report/page/write_page.hpp"
 #include "app/study/answers/answers.hpp"
+#include "app/study/answers/merge_study.hpp"
+#include "app/study/answers/study_text.hpp"
 #include "app/study/space/study_plan.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/inspect.hpp"
-#include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app::report {
@@ -62,54 +65,54 @@ void write_run_pages(const StudyTable& table, const fs::path& page, const Report
   }
 }
 
-void write_study_page(const fs::path& study, const fs::path& path, const StudyFile& file, const StudyTable& table,
-                      const fs::path& page, const ReportConfig& options, Written& written) {
-  std::vector<TrialPlace> places = archives_of(table, path.parent_path());
+/// Whether study.h5 holds what became of every run of the plan.
+bool is_merged(const StudyFile& merged, const StudyPlan& plan) {
+  const StudyTable table = study_table_of(merged);
+  std::set<std::string> settled;
+  for (const TrialRow& row : table.rows)
+    if (row.status != TrialStatus::missing) settled.insert(row.key);
+  return std::all_of(plan.table.rows.begin(), plan.table.rows.end(),
+                     [&](const TrialRow& row) { return settled.count(row.key) > 0; });
+}
+
+void write_study_page(const FoundStudy& study, const StudyTable& table, const fs::path& page,
+                      const ReportConfig& options, Written& written) {
+  std::vector<TrialPlace> places = archives_of(table, study.file.parent_path());
   write_run_pages(table, page, options, places, written);
-  const fs::path name = fs::absolute(fs::is_directory(study) ? study : path).lexically_normal();
-  write_page(page,
-             study_page(file, table, places, (name.has_filename() ? name : name.parent_path()).filename().string()),
-             written);
+  const fs::path name = fs::absolute(study.name).lexically_normal();
+  write_page(
+      page,
+      study_page(study.content, table, places, (name.has_filename() ? name : name.parent_path()).filename().string()),
+      written);
 }
 
 }  // namespace
 
-void write_running_study(const fs::path& folder, const StudyFile& file, const StudyTable& table,
-                         const StudyState& state, Written& written) {
-  const bool ended = state.seconds == 0.0;
-  const fs::path path = folder / "study.html", name = fs::absolute(folder).lexically_normal();
-  // While it runs, archives are left to those who write them.
-  const std::vector<TrialPlace> places =
-      ended ? archives_of(table, folder) : std::vector<TrialPlace>(table.rows.size());
-  Page page = study_page(file, table, places, (name.has_filename() ? name : name.parent_path()).filename().string());
-  if (ended) return write_page(path, page, written);
-  page.data["study"]["live"] = {{"finished", state.finished}, {"all", state.all}, {"seconds", state.seconds}};
-  replace_file(path, {html_of(page)});
-}
-
-fs::path study_file(const fs::path& study) {
-  if (!fs::is_directory(study)) return study;
-  const fs::path file = study / "study.h5";
-  if (fs::exists(file)) return file;
-  if (fs::exists(plan_file(study)))
-    throw DataError(
-        fmt::format("{}: the study is not merged yet: modebank study CONFIG --study.stage merge makes "
-                    "study.h5 of the runs that are done",
-                    study.string()));
-  throw ConfigurationError(fmt::format("{}: no study's folder: it holds neither study.h5 nor plan.h5", study.string()));
+FoundStudy find_study(const fs::path& folder, Written& written) {
+  const fs::path file = folder / "study.h5";
+  const bool has_plan = fs::exists(plan_file(folder));
+  if (!fs::exists(file) && !has_plan)
+    throw ConfigurationError(
+        fmt::format("{}: no study's folder: it holds neither study.h5 nor plan.h5", folder.string()));
+  std::optional<StudyFile> merged;
+  if (fs::exists(file)) merged = read_study_file(file, "study");
+  if (merged && !has_plan) return {folder, file, *merged};
+  const StudyPlan plan = read_plan(folder);
+  if (merged && is_merged(*merged, plan)) return {folder, file, *merged};
+  const TrialStore store(folder);
+  const StudyTable table = collect_table(store, plan);
+  written.say(table_text(table, store));
+  return {folder, file, study_file_of(plan, table, answer(table))};
 }
 
 bool is_study(const OpenArchive& file) { return inspect(file, "/").at("members").contains("study"); }
 
-void report_study(const fs::path& study, const OpenArchive& opened, const fs::path& page, const ReportConfig& options,
-                  Written& written) {
-  const fs::path& path = opened.path();
-  if (!page.empty()) check_page_path(page, {path});
-  const StudyFile file = read_study_file(opened, "study");
-  const StudyTable table = study_table_of(file);
+void report_study(const FoundStudy& study, const fs::path& page, const ReportConfig& options, Written& written) {
+  if (!page.empty()) check_page_path(page, {study.file});
+  const StudyTable table = study_table_of(study.content);
   const FigureSet figures = options.figures.empty() ? FigureSet() : study_figures(table);
-  if (!options.figures.empty()) check_figures(figures, options, {path});
-  if (!page.empty()) write_study_page(study, path, file, table, page, options, written);
+  if (!options.figures.empty()) check_figures(figures, options, {study.file});
+  if (!page.empty()) write_study_page(study, table, page, options, written);
   // Last: a figure that cannot be drawn must not cost the page.
   if (!options.figures.empty()) write_figures(figures, options, written);
 }

@@ -8,7 +8,8 @@
 #include "app/config/config.hpp"
 #include "app/report/figures/run_figures.hpp"
 #include "app/report/page/html_page.hpp"
-#include "app/study/run/live_page.hpp"
+#include "app/study/answers/study_table.hpp"
+#include "io/archive/study_file.hpp"
 
 namespace modebank::app::report {
 
@@ -32,21 +33,25 @@ void check_figures(const FigureSet& set, const ReportConfig& options,
 /// be drawn, after the others.
 void write_figures(const FigureSet& set, const ReportConfig& options, Written& written);
 
-/// A study's figures, where report.figures asks for them, and its page, unless `page` is empty. `file`: its study.h5,
-/// which `study` or this file in its folder names.
-void report_study(const std::filesystem::path& study, const OpenArchive& file, const std::filesystem::path& page,
-                  const ReportConfig& options, Written& written);
-/// Writes study.html into a study's folder, by renaming, and says where it is when the study has ended; see
-/// StudyPageWriter.
-void write_running_study(const std::filesystem::path& folder, const StudyFile& file, const StudyTable& table,
-                         const StudyState& state, Written& written);
+/// A study, and where its archives lie.
+struct FoundStudy {
+  std::filesystem::path name;  ///< as the command line has it: its folder, or study.h5
+  std::filesystem::path file;  ///< study.h5, which need not be there
+  StudyFile content;
+};
+
+/// The study of a folder: what study.h5 holds, or, where the study still runs or was not merged since, the runs that
+/// are done; then their number is printed.
+FoundStudy find_study(const std::filesystem::path& folder, Written& written);
+
+/// A study's figures, where report.figures asks for them, and its page, unless `page` is empty.
+void report_study(const FoundStudy& study, const std::filesystem::path& page, const ReportConfig& options,
+                  Written& written);
 
 /// The page of two or more archives.
 void report_comparison(const std::vector<std::filesystem::path>& files, const std::filesystem::path& page,
                        const ReportConfig& options, Written& written);
 
-/// The file that a name of the command line stands for: study.h5 of a folder.
-std::filesystem::path study_file(const std::filesystem::path& study);
 /// Whether an open file is a study's table.
 bool is_study(const OpenArchive& file);
 

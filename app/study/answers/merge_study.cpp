@@ -12,7 +12,6 @@
 #include "app/config/option_text.hpp"
 #include "app/study/answers/answer_tables.hpp"
 #include "io/files/csv_field.hpp"
-#include "io/files/look_twice.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -30,13 +29,13 @@ std::optional<TrialScores> settle(const TrialStore& store, const std::set<std::s
         whole.count(row.key) ? std::vector<std::string>() : store.problems(row.key);
     if (problems.empty()) {
       row.status = TrialStatus::done;
-      return look_twice([&] { return read_trial_scores(store.archive(row.key)); });
+      return read_trial_scores(store.archive(row.key));
     }
     row.message = problems.front();
   }
   if (const auto failure = store.failure(row.key)) {
     row.status = TrialStatus::failed;
-    row.message = failure->message;
+    row.message = *failure;
   }
   return std::nullopt;
 }
@@ -163,7 +162,7 @@ void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTabl
   write_study_file(store.folder() / "study.h5", file, use);
   const std::string csv = table_csv(table);
   replace_file(store.folder() / "study.csv", {csv});
-  // Only over the plan that this table is of: where locks are not seen another process may have added values meanwhile.
+  // Only over the plan that this table is of: after a long pause another process may have added values meanwhile.
   const StudyPlan there = read_plan(store.folder());
   if (there.config != plan.config || there.table.rows.size() != plan.table.rows.size()) return;
   StudyPlan current = plan;

@@ -5,17 +5,11 @@
 #include <map>
 
 #include "app/study/run/study_progress.hpp"
-#include "app/text/duration_text.hpp"
 
 namespace modebank::app {
 namespace {
 
 constexpr std::size_t most_listed = 20;
-
-std::string bytes_text(double bytes) {
-  if (bytes < 1e9) return fmt::format("{:.3g} MB", bytes / 1e6);
-  return fmt::format("{:.3g} GB", bytes / 1e9);
-}
 
 std::string list_of(const StudyTable& table, TrialStatus status) {
   std::string text;
@@ -45,19 +39,6 @@ std::string plan_text(const StudyPlan& plan, const DistinctStages& distinct, std
     text += fmt::format("          {} points say the same as an earlier one and were left out\n", plan.repeated_points);
   if (dropped > 0) text += fmt::format("          {} points are no valid configuration and were dropped:\n", dropped);
   return text + list_of(plan.table, TrialStatus::dropped);
-}
-
-std::string estimate_text(const StudyEstimate& estimate, const TrialStore& store, std::size_t jobs) {
-  if (estimate.left == 0) return "estimate  nothing is left to run\n";
-  if (!estimate.known) return fmt::format("estimate  {} runs left: {}\n", estimate.left, estimate.basis);
-  std::string text = fmt::format("estimate  {} runs left: {} with {} at a time, {} ({})\n", estimate.left,
-                                 duration_text(estimate.seconds), jobs, bytes_text(estimate.bytes), estimate.basis);
-  std::error_code unknown;
-  const auto space = std::filesystem::space(store.folder(), unknown);
-  if (!unknown && static_cast<double>(space.available) < estimate.bytes)
-    text += fmt::format("warning   only {} are free in {}\n", bytes_text(static_cast<double>(space.available)),
-                        store.folder().string());
-  return text;
 }
 
 std::string table_text(const StudyTable& table, const TrialStore& store) {

@@ -77,7 +77,7 @@ void check_trials(const TrialStore& store, const StudyPlan& plan, StudyVerificat
     const fs::path file = store.archive(rows[i].key);
     const std::string redo = describe_trial(plan.table.varied_keys, rows[i]);
     if (const auto failure = store.failure(rows[i].key); failure && !store.has_archive(rows[i].key))
-      result.problems.push_back({file, "failed: " + failure->message, redo, false});
+      result.problems.push_back({file, "failed: " + *failure, redo, false});
     else if (!store.has_archive(rows[i].key))
       result.problems.push_back({file, "missing", redo, false});
     else if (!found[i].empty())

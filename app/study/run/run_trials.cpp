@@ -3,87 +3,43 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <poll.h>
 #include <spdlog/spdlog.h>
-#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <ctime>
-#include <deque>
+#include <map>
 #include <memory>
+#include <random>
 #include <thread>
 
-#include "app/study/run/worker_pool.hpp"
+#include "app/study/run/claim.hpp"
+#include "app/study/run/worker_process.hpp"
+#include "io/archive/study_file.hpp"
 #include "io/files/csv_field.hpp"
 #include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
 
-using Rows = std::deque<std::size_t>;
+using Clock = std::chrono::steady_clock;
 
-/// Which trial a worker takes next.
-class TrialQueue {
- public:
-  TrialQueue(const TrialGroups& groups, std::size_t workers) : own_(workers) {
-    for (const auto& group : groups) groups_.emplace_back(group.begin(), group.end());
-  }
-
-  std::optional<std::size_t> next(std::size_t worker) {
-    Rows& own = own_[worker];
-    if (own.empty() && !groups_.empty()) {
-      own = std::move(groups_.front());
-      groups_.pop_front();
-    } else if (own.empty()) {
-      split_largest(own);
-    }
-    if (own.empty()) return std::nullopt;
-    const std::size_t row = own.front();
-    own.pop_front();
-    return row;
-  }
-
-  /// Another process is at this group: its rest comes after all the others.
-  void put_off(std::size_t worker, std::size_t row) {
-    held_.push_back(row);
-    if (!own_[worker].empty()) groups_.push_back(std::exchange(own_[worker], {}));
-  }
-
-  /// Rows that other processes held, to be tried again.
-  bool retry_held() {
-    if (held_.empty()) return false;
-    groups_.push_back(std::exchange(held_, {}));
-    return true;
-  }
-
- private:
-  /// Half of what the busiest worker still has.
-  void split_largest(Rows& own) {
-    Rows& largest =
-        *std::max_element(own_.begin(), own_.end(), [](const Rows& a, const Rows& b) { return a.size() < b.size(); });
-    if (largest.empty()) return;
-    const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
-    own.assign(middle, largest.end());
-    largest.erase(middle, largest.end());
-  }
-
-  std::deque<Rows> groups_;
-  std::vector<Rows> own_;
-  Rows held_;
-};
+double seconds_since(Clock::time_point time) { return std::chrono::duration<double>(Clock::now() - time).count(); }
 
 /// One line per trial and execution: when, host, process, key, outcome, seconds, those of each stage (0: there
-/// already), message. The estimates of time are made from it (study_estimate.cpp). Losing a line loses nothing else.
-void log_trial(const TrialStore& store, const FileLocks& locks, const TrialRow& row, const TrialReport& report) {
-  static constexpr std::array<const char*, 5> words{"held", "present", "done", "failed", "stopped"};
+/// already), message. Losing a line, as where two machines append at a time, loses nothing else.
+void log_trial(const TrialStore& store, pid_t process, const TrialRow& row, const TrialReport& report) {
+  static constexpr std::array<const char*, 5> words{"begun", "present", "done", "failed", "stopped"};
   char host[256] = "";
   ::gethostname(host, sizeof host - 1);
-  const FileLocks::Hold alone = locks.lock("log");  // appending from two machines is no one step everywhere
   const std::string line =
       fmt::format("{:%Y-%m-%dT%H:%M:%SZ},{},{},{},{},{:.6g},{:.6g},{}\n", fmt::gmtime(std::time(nullptr)),
-                  csv_field(host), ::getpid(), row.key, words[static_cast<std::size_t>(report.outcome)], report.seconds,
+                  csv_field(host), process, row.key, words[static_cast<std::size_t>(report.outcome)], report.seconds,
                   fmt::join(report.stage_seconds, ","), csv_field(report.message));
   try {
     append_to_file(store.log(), line);
@@ -92,114 +48,225 @@ void log_trial(const TrialStore& store, const FileLocks& locks, const TrialRow& 
   }
 }
 
+std::size_t job_count(const StudyConfig& study) {
+  return study.jobs > 0 ? static_cast<std::size_t>(study.jobs) : std::max(1U, std::thread::hardware_concurrency());
+}
+
 /// The threads of one trial, when several run at a time.
 std::size_t threads_per_trial(const Config& study) {
   if (study.job.threads > 0) return study.job.thread_count();
   return std::max<std::size_t>(1, study.job.thread_count() / job_count(study.study));
 }
 
-WorkerPool::Work make_work(const WorkerSettings& settings, const std::vector<TrialRow>& rows,
-                           const WorkerPool::TellWaiting& tell_waiting) {
-  spdlog::set_level(spdlog::level::off);  // a thousand trials would each say the same
-  const auto limit = std::make_shared<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                           threads_per_trial(settings.config));
-  const auto worker = std::make_shared<TrialWorker>(settings, tell_waiting);
-  return [limit, worker, &rows](std::size_t row) { return worker->take(rows[row]); };
+/// The report on a trial that an earlier execution has settled; empty when the trial is to be run. An archive that is
+/// not whole is removed, and so is a record of failure that is to be tried again.
+std::optional<TrialReport> left_before(const TrialStore& store, const TrialStore::Listing& there, const TrialRow& row,
+                                       std::size_t place, bool retry) {
+  if (there.archives.count(row.key) > 0) {
+    const std::vector<std::string> problems = store.problems(row.key);
+    // A process that was killed when it had just made the archive has left its claim.
+    if (problems.empty() && there.claims.count(row.key) > 0) static_cast<void>(Claim::take(store.claim(row.key)));
+    if (problems.empty())
+      return TrialReport{.row = place,
+                         .outcome = TrialOutcome::present,
+                         .log_score = headline_score(read_trial_scores(store.archive(row.key)).pooled)};
+    spdlog::warn("{}: {}; computed again", store.archive(row.key).string(), problems.front());
+    const std::optional<Claim> mine = Claim::take(store.claim(row.key));
+    if (mine) std::filesystem::remove(store.archive(row.key));
+  }
+  if (there.failures.count(row.key) == 0) return std::nullopt;
+  if (!retry)
+    return TrialReport{.row = place, .outcome = TrialOutcome::failed, .message = store.failure(row.key).value_or("")};
+  store.forget_failure(row.key);
+  return std::nullopt;
 }
 
 /// Runs one share to its end.
 class StudyRun {
  public:
-  StudyRun(const WorkerSettings& settings, const StudyPlan& plan, const TrialGroups& groups,
+  StudyRun(const TrialSettings& settings, const StudyPlan& plan, const TrialGroups& groups,
            const TrialListener& listener)
-      : settings_(settings),
-        rows_(plan.table.rows),
-        listener_(listener),
-        locks_(settings.store.lock_file()),
-        all_(count(groups)),
-        pool_(std::min(job_count(settings.config.study), std::max<std::size_t>(all_, 1)),
-              settings.config.study.timeout_s,
-              [this](const auto& tell_waiting) { return make_work(settings_, rows_, tell_waiting); }),
-        queue_(groups, pool_.size()) {}
+      : settings_(settings), store_(settings.config.study.output), rows_(plan.table.rows), listener_(listener) {
+    sort_out(plan, groups);
+  }
 
   RunResult run() {
-    const auto start = std::chrono::steady_clock::now();
-    while (finished_ < all_ || pool_.is_working()) {
-      if (!stopping_) hand_out();
-      if (stopping_ && !pool_.is_working()) break;
-      if (!pool_.is_working()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));  // others hold what is left
-        queue_.retry_held();
-        continue;
-      }
-      constexpr double patience_s = 1.0;
-      if (const auto done = pool_.wait(patience_s)) take(*done);
+    const Clock::time_point start = Clock::now();
+    const TaskFile file(pack_task(task_));
+    const std::size_t count = std::min(job_count(settings_.config.study), task_.rows.size());
+    // Processes on other machines begin elsewhere, too.
+    const std::size_t any = std::random_device()();
+    for (std::size_t i = 0; i < count && !stopping_; ++i)
+      start_worker(file, (any + i * starts_.size() / count) % starts_.size());
+    while (!workers_.empty() && !stopping_) {
+      wait();
+      for (Worker& worker : workers_)
+        if (!stopping_) hear(file, worker);
+      std::erase_if(workers_, [](const Worker& worker) { return !worker.process; });
     }
-    result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    for (const Worker& worker : workers_) stop(worker);
+    workers_.clear();
+    for (const auto& [place, report] : finished_) sort_in(place, report);
+    result_.seconds = seconds_since(start);
     return std::move(result_);
   }
 
  private:
-  static std::size_t count(const TrialGroups& groups) {
-    std::size_t trials = 0;
-    for (const auto& group : groups) trials += group.size();
-    return trials;
-  }
+  struct Worker {
+    std::unique_ptr<WorkerProcess> process = nullptr;
+    std::size_t group = 0;                  ///< it began with
+    std::optional<std::size_t> trial = {};  ///< place of the row that it is at
+    std::optional<std::size_t> last = {};   ///< place of the row that it began last
+    Clock::time_point since = {};           ///< of its trial
+    bool overdue = false;
+  };
 
-  void hand_out() {
-    for (std::size_t worker = 0; worker < pool_.size(); ++worker)
-      if (pool_.is_idle(worker))
-        if (const auto row = queue_.next(worker)) pool_.give(worker, *row);
-  }
-
-  void take(const WorkerPool::Finished& done) {
-    const TrialRow& row = rows_[done.trial];
-    if (done.report.outcome == TrialOutcome::held) return queue_.put_off(done.worker, done.trial);
-    ++finished_;
-    sort_in(row, done);
-    if (done.report.outcome != TrialOutcome::present) log_trial(settings_.store, locks_, row, done.report);
-    listener_(row, done.report, finished_, all_);
-  }
-
-  void sort_in(const TrialRow& row, const WorkerPool::Finished& done) {
-    switch (done.report.outcome) {
-      case TrialOutcome::present:
-        ++result_.present;
-        result_.whole.push_back(row.key);
-        break;
-      case TrialOutcome::computed:
-        ++result_.computed;
-        result_.whole.push_back(row.key);
-        break;
-      case TrialOutcome::failed:
-        if (done.crashed) settings_.store.record_failure(row.key, {done.report.message, settings_.execution});
-        result_.failed.push_back(done.trial);
-        stopping_ = stopping_ || settings_.config.study.on_failure == OnFailure::stop;
-        break;
-      default:
-        result_.broken = done.report.message;
-        stopping_ = true;
+  /// Rows that are left go to the workers, the others are finished.
+  void sort_out(const StudyPlan& plan, const TrialGroups& groups) {
+    const TrialStore::Listing there = store_.list();
+    std::vector<std::size_t> places;
+    for (const auto& group : groups) places.insert(places.end(), group.begin(), group.end());
+    std::vector<std::optional<TrialReport>> before(rows_.size());
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+      before[places[i]] = left_before(store_, there, rows_[places[i]], places[i], settings_.config.study.retry);
+    });
+    all_ = places.size();
+    task_ = {.config = settings_.config,
+             .typed = settings_.typed,
+             .version = settings_.version,
+             .varied_keys = plan.table.varied_keys,
+             .rows = {},
+             .places = {},
+             .threads = threads_per_trial(settings_.config)};
+    for (const auto& group : groups) {
+      const std::size_t first = task_.rows.size();
+      for (const std::size_t place : group)
+        if (before[place]) {
+          if (before[place]->outcome == TrialOutcome::present) result_.whole.push_back(rows_[place].key);
+          finish(0, *before[place]);
+        } else {
+          task_.rows.push_back(rows_[place]);
+          task_.places.push_back(place);
+        }
+      if (task_.rows.size() > first) starts_.push_back(first);
     }
   }
 
-  const WorkerSettings& settings_;
+  void start_worker(const TaskFile& file, std::size_t group) {
+    workers_.push_back({.process = std::make_unique<WorkerProcess>(file, starts_[group]), .group = group});
+  }
+
+  /// Until a worker reports or has ended, or one's time is up.
+  void wait() const {
+    constexpr double patience_s = 1.0, ms_per_s = 1000.0;
+    double left_s = patience_s;
+    std::vector<pollfd> channels;
+    for (const Worker& worker : workers_) {
+      channels.push_back({worker.process->channel(), POLLIN, 0});
+      if (timeout_s() > 0.0 && worker.trial)
+        left_s = std::clamp(timeout_s() - seconds_since(worker.since), 0.0, left_s);
+    }
+    ::poll(channels.data(), channels.size(), static_cast<int>(ms_per_s * left_s) + 1);
+  }
+
+  double timeout_s() const { return settings_.config.study.timeout_s; }
+
+  void hear(const TaskFile& file, Worker& worker) {
+    const auto lines = worker.process->read_lines();
+    if (!lines) return replace(file, worker);
+    for (const std::string& line : *lines) take(worker, unpack_report(line));
+    // On a busy machine a report may have arrived before the time was up: it counts.
+    if (!lines->empty() || !worker.trial || timeout_s() <= 0.0 || seconds_since(worker.since) <= timeout_s()) return;
+    worker.overdue = true;
+    worker.process->kill();
+  }
+
+  void take(Worker& worker, const TrialReport& report) {
+    vain_ = 0;
+    if (report.outcome == TrialOutcome::begun) {
+      worker.trial = worker.last = report.row;
+      worker.since = Clock::now();
+      return;
+    }
+    worker.trial.reset();
+    if (report.outcome == TrialOutcome::broken) {
+      result_.broken = report.message;
+      stopping_ = true;
+    } else {
+      finish(worker.process->process(), report);
+    }
+  }
+
+  /// A worker has ended. One that crashed takes its trial along, and another one takes its place.
+  void replace(const TaskFile& file, Worker& worker) {
+    const std::string why = worker.process->end();
+    if (worker.trial) {
+      const std::string& key = rows_[*worker.trial].key;
+      TrialReport crash{
+          .row = *worker.trial,
+          .outcome = TrialOutcome::failed,
+          .message = worker.overdue ? fmt::format("it took longer than study.timeout_s = {}", timeout_s()) : why,
+          .seconds = seconds_since(worker.since)};
+      if (store_.has_archive(key))
+        crash = {.row = crash.row, .outcome = TrialOutcome::present};  // it was about to report
+      else
+        store_.record_failure(key, crash.message);
+      finish(worker.process->process(), crash);
+    }
+    stop(worker);
+    constexpr int most_in_vain = 10;
+    if (!why.empty() && ++vain_ > most_in_vain) {
+      result_.broken = "workers end before they begin: " + why;
+      stopping_ = true;
+    }
+    worker = {.process = nullptr, .group = worker.group};
+    if (!why.empty() && !stopping_) worker.process = std::make_unique<WorkerProcess>(file, starts_[worker.group]);
+  }
+
+  /// Its claim goes before it is reaped.
+  void stop(const Worker& worker) const {
+    worker.process->kill();
+    static_cast<void>(worker.process->end());
+    if (worker.last) Claim::end_of(worker.process->process(), store_.claim(rows_[*worker.last].key));
+  }
+
+  /// Several workers may report that a trial is there; the one that made it counts.
+  void finish(pid_t process, const TrialReport& report) {
+    const auto [place, fresh] = finished_.try_emplace(report.row, report);
+    if (!fresh && report.outcome != TrialOutcome::computed) return;
+    place->second = report;
+    const TrialRow& row = rows_[report.row];
+    if (process != 0 && report.outcome != TrialOutcome::present) log_trial(store_, process, row, report);
+    listener_(row, report, finished_.size(), all_);
+    stopping_ =
+        stopping_ || (report.outcome == TrialOutcome::failed && settings_.config.study.on_failure == OnFailure::stop);
+  }
+
+  void sort_in(std::size_t place, const TrialReport& report) {
+    if (report.outcome == TrialOutcome::present) ++result_.present;
+    if (report.outcome == TrialOutcome::failed) result_.failed.push_back(place);
+    if (report.outcome != TrialOutcome::computed) return;
+    ++result_.computed;
+    result_.whole.push_back(rows_[place].key);
+  }
+
+  const TrialSettings& settings_;
+  const TrialStore store_;
   const std::vector<TrialRow>& rows_;
   const TrialListener& listener_;
-  const FileLocks locks_;
-  std::size_t all_, finished_ = 0;
+  WorkerTask task_;
+  std::vector<std::size_t> starts_;  ///< of each group that is left, its first row in the task
+  std::vector<Worker> workers_;
+  std::map<std::size_t, TrialReport> finished_;  ///< by place
+  std::size_t all_ = 0;
+  int vain_ = 0;  ///< workers that ended one after another without a report
   bool stopping_ = false;
   RunResult result_;
-  WorkerPool pool_;
-  TrialQueue queue_;
 };
 
 }  // namespace
 
-std::size_t job_count(const StudyConfig& study) {
-  return study.jobs > 0 ? static_cast<std::size_t>(study.jobs) : std::max(1u, std::thread::hardware_concurrency());
-}
-
-RunResult run_trials(const WorkerSettings& settings, const StudyPlan& plan, const TrialGroups& groups,
+RunResult run_trials(const TrialSettings& settings, const StudyPlan& plan, const TrialGroups& groups,
                      const TrialListener& listener) {
   return StudyRun(settings, plan, groups, listener).run();
 }

@@ -2,12 +2,11 @@
 
 #include <functional>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "app/study/run/study_worker.hpp"
 #include "app/study/run/trial_order.hpp"
-#include "app/study/run/trial_worker.hpp"
 
 namespace modebank::app {
 
@@ -20,15 +19,21 @@ struct RunResult {
   double seconds = 0.0;
 };
 
+/// Settings of all trials of an execution.
+struct TrialSettings {
+  Config config;      ///< the study's
+  std::string typed;  ///< the command line, for provenance
+  std::string version;
+};
+
 /// Told of every finished trial: the row and its report, and how many of how many are finished.
 using TrialListener = std::function<void(const TrialRow&, const TrialReport&, std::size_t finished, std::size_t all)>;
 
-/// Takes the groups' trials with study.jobs processes, each staying with a group as long as it can. Trials that another
-/// process holds come last, and are waited for.
-RunResult run_trials(const WorkerSettings& settings, const StudyPlan& plan, const TrialGroups& groups,
+/// Runs the groups' trials in study.jobs processes of this program. Trials whose archives are there and whole are not
+/// run again; those that failed are if study.retry. Each process begins at another group and passes over trials that
+/// others have claimed; it waits for those at its end. A trial whose process crashes or takes longer than
+/// study.timeout_s has failed, and another process takes that one's place.
+RunResult run_trials(const TrialSettings& settings, const StudyPlan& plan, const TrialGroups& groups,
                      const TrialListener& listener);
-
-/// Number of processes that study.jobs asks for.
-std::size_t job_count(const StudyConfig& study);
 
 }  // namespace modebank::app

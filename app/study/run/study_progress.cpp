@@ -62,7 +62,7 @@ std::string describe_trial(const std::vector<std::string>& varied_keys, const Tr
   std::string text;
   for (std::size_t i = 0; i < varied_keys.size(); ++i)
     text += fmt::format("{}{} = {}", i == 0 ? "" : ", ", varied_keys[i], row.varied[i]);
-  if (row.repeat > 0) text += fmt::format(", repeat {}", row.repeat);
+  if (row.repeat > 0 || text.empty()) text += fmt::format("{}repeat {}", text.empty() ? "" : ", ", row.repeat);
   return text;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/study/run/trial_worker.hpp"
+#include "app/study/run/study_worker.hpp"
 
 namespace modebank::app {
 

@@ -1,31 +1,22 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <string>
 
 #include "app/chain/chain.hpp"
+#include "app/chain/stage_store.hpp"
 #include "app/config/config.hpp"
-#include "app/study/run/stage_cache.hpp"
 
 namespace modebank::app {
 
-/// Windows, and mixtures and banks that took long, come from the cache if it has them, and go there if not.
-class CachedStages : public StageSource {
- public:
-  /// `cache` may be null.
-  explicit CachedStages(const StageCache* cache) : cache_(cache) {}
-  void provide(Stage stage, const std::string& key, const StagePart& part) override;
-
- private:
-  const StageCache* cache_;
-};
-
 /// Runs trials one after another through one chain, so that trials that share stages should follow one another; other
-/// processes share through the cache. The archives hold the numbers that `modebank run` writes.
+/// processes share stages through a folder. The archives hold the numbers that `modebank run` writes.
 class TrialRunner {
  public:
-  /// `cache` may be null.
-  explicit TrialRunner(const StageCache* cache) : source_(cache), chain_(source_, silent_) {}
+  /// Stages that took long go to `cache`, up to `limit_mb`; 0: none does.
+  explicit TrialRunner(const std::filesystem::path& cache = {}, double limit_mb = 0.0, double worth_a_file_s = 0.2)
+      : source_(cache, {worth_a_file_s, Stage::competitor_scores, limit_mb}), chain_(source_, silent_) {}
 
   /// The trial's archive; `typed` is the command line. Throws what the stages throw.
   const Archive& run(const Config& config, const std::string& typed);
@@ -34,7 +25,7 @@ class TrialRunner {
   const std::array<double, stage_count>& seconds() const { return chain_.seconds(); }
 
  private:
-  CachedStages source_;
+  StageStore source_;
   Listener silent_;  // a thousand trials would each say the same
   Chain chain_;
 };

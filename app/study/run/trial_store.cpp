@@ -9,7 +9,6 @@
 #include "app/study/space/study_plan.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/open_archive.hpp"
-#include "io/files/look_twice.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/files/temporary_file.hpp"
@@ -21,23 +20,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* failure_extension = ".failed";
-/// Between a message and the execution that it is of.
-constexpr std::string_view execution_mark = "\nrecorded by ";
-
-std::optional<FailureRecord> read_failure(const fs::path& path) try {
+constexpr const char *failure_extension = ".failed", *claim_extension = ".claim";
+std::optional<std::string> read_failure(const fs::path& path) try {
   refuse_special_file(path);
   std::ifstream file(path);
   if (!file) return std::nullopt;
-  FailureRecord record{{std::istreambuf_iterator<char>(file), {}}, {}};
-  while (!record.message.empty() && record.message.back() == '\n') record.message.pop_back();
-  const auto mark = record.message.rfind(execution_mark);
-  if (mark == std::string::npos) return record;
-  record.execution = record.message.substr(mark + execution_mark.size());
-  record.message.resize(mark);
-  return record;
+  std::string message{std::istreambuf_iterator<char>(file), {}};
+  while (!message.empty() && message.back() == '\n') message.pop_back();
+  return message;
 } catch (const DataError& error) {
-  return FailureRecord{error.what(), {}};
+  return error.what();
 }
 
 }  // namespace
@@ -56,6 +48,8 @@ void TrialStore::create() const {
 
 fs::path TrialStore::archive(const std::string& key) const { return trial_archive(folder_, key); }
 
+fs::path TrialStore::claim(const std::string& key) const { return folder_ / "trials" / (key + claim_extension); }
+
 fs::path TrialStore::failure_file(const std::string& key) const {
   return folder_ / "trials" / (key + failure_extension);
 }
@@ -67,28 +61,28 @@ bool TrialStore::has_archive(const std::string& key) const {
 
 std::vector<std::string> TrialStore::problems(const std::string& key) const try {
   refuse_special_file(archive(key));
-  // Where another process put it anew meanwhile, the old content may be gone (ESTALE): the second look counts.
-  look_twice([&] { return OpenArchive(archive(key)); });
+  const OpenArchive whole(archive(key));
   return {};
 } catch (const std::exception& error) {
   return {error.what()};
 }
 
-std::optional<FailureRecord> TrialStore::failure(const std::string& key) const {
-  return read_failure(failure_file(key));
+std::optional<std::string> TrialStore::failure(const std::string& key) const { return read_failure(failure_file(key)); }
+
+void TrialStore::record_failure(const std::string& key, const std::string& message) const {
+  replace_file(failure_file(key), {message, "\n"});
 }
 
-std::map<std::string, FailureRecord> TrialStore::failures() const {
-  std::map<std::string, FailureRecord> all;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "trials", error))
-    if (entry.path().extension() == failure_extension)
-      if (auto record = read_failure(entry.path())) all[entry.path().stem().string()] = std::move(*record);
-  return all;
-}
-
-void TrialStore::record_failure(const std::string& key, const FailureRecord& failure) const {
-  replace_file(failure_file(key), {failure.message, execution_mark, failure.execution, "\n"});
+TrialStore::Listing TrialStore::list() const {
+  Listing found;
+  std::error_code absent;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "trials", absent)) {
+    const fs::path name = entry.path().filename();
+    if (name.extension() == ".h5") found.archives.insert(name.stem());
+    if (name.extension() == failure_extension) found.failures.insert(name.stem());
+    if (name.extension() == claim_extension) found.claims.insert(name.stem());
+  }
+  return found;
 }
 
 void TrialStore::look_again() const {

@@ -9,9 +9,7 @@
 
 namespace modebank::app {
 
-/// Tells apart the data of trials, read once for all trials that read the same. A process of its own reads them:
-/// workers are forked from this one, which must have no other thread by then, and reading packed recordings starts
-/// some.
+/// Tells apart the data of trials, read once for all trials that read the same.
 class DataHashes {
  public:
   /// Adds the files that such a [data] section reads.

@@ -14,7 +14,6 @@
 #include "ident/base/seed.hpp"
 #include "io/archive/study_file.hpp"
 #include "io/files/input_file.hpp"
-#include "io/files/look_twice.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
@@ -27,13 +26,32 @@ std::uint64_t repeat_seed(std::uint64_t seed, std::int64_t repeat) {
   return repeat == 0 ? seed : derive_seed(seed, "study.repeat", static_cast<std::uint64_t>(repeat)) >> (64 - bits);
 }
 
-/// A point's job.seed, which may itself be varied.
-std::uint64_t own_seed(const Config& config, const std::vector<std::string>& keys, const StudyPoint& point) {
-  const auto varied = std::find(keys.begin(), keys.end(), "job.seed");
-  if (varied == keys.end()) return config.job.seed;
-  std::uint64_t seed = 0;
-  parse_value(point[static_cast<std::size_t>(varied - keys.begin())], seed);
-  return seed;
+/// A point and the seeds that it is run with.
+struct Setting {
+  StudyPoint point;
+  std::vector<std::uint64_t> seeds;
+};
+
+/// The settings of a space. Points that differ in job.seed alone are repeats of one setting, so that job.seed leaves
+/// the space's keys.
+std::vector<Setting> settings_of(const Config& config, StudySpace& space) {
+  const auto varied = std::find(space.keys.begin(), space.keys.end(), "job.seed");
+  const auto column = varied - space.keys.begin();
+  const bool is_varied = varied != space.keys.end();
+  if (is_varied) space.keys.erase(varied);
+  std::vector<Setting> settings;
+  std::map<StudyPoint, std::size_t> places;
+  for (StudyPoint& point : space.points) {
+    std::uint64_t seed = config.job.seed;
+    if (is_varied) {
+      parse_value(point[static_cast<std::size_t>(column)], seed);
+      point.erase(point.begin() + column);
+    }
+    const auto [place, fresh] = places.try_emplace(point, settings.size());
+    if (fresh) settings.push_back({point, {}});
+    settings[place->second].seeds.push_back(seed);
+  }
+  return settings;
 }
 
 /// Why `modebank run` would not take it; empty when it would.
@@ -46,20 +64,20 @@ std::string objection(const Config& config) {
   }
 }
 
-void add_point(const Config& config, const StudySpace& space, const StudyPoint& point, DataHashes& data,
-               StudyPlan& plan) {
+void add_setting(const Config& config, const std::vector<std::string>& keys, const Setting& setting, DataHashes& data,
+                 StudyPlan& plan) {
   TrialRow row;
-  row.varied = point;
-  const std::uint64_t seed = own_seed(config, space.keys, point);
-  for (row.repeat = 0; row.repeat < config.study.repeats; ++row.repeat) {
-    row.seed = repeat_seed(seed, row.repeat);
-    const Config trial = trial_config(config, space.keys, row);
-    row.message = objection(trial);
-    row.status = row.message.empty() ? TrialStatus::planned : TrialStatus::dropped;
-    if (row.message.empty()) data.add(trial);
-    plan.table.rows.push_back(row);
-    if (row.status == TrialStatus::dropped) return;
-  }
+  row.varied = setting.point;
+  for (const std::uint64_t seed : setting.seeds)
+    for (std::int64_t repeat = 0; repeat < config.study.repeats; ++repeat, ++row.repeat) {
+      row.seed = repeat_seed(seed, repeat);
+      const Config trial = trial_config(config, keys, row);
+      row.message = objection(trial);
+      row.status = row.message.empty() ? TrialStatus::planned : TrialStatus::dropped;
+      if (row.message.empty()) data.add(trial);
+      plan.table.rows.push_back(row);
+      if (row.status == TrialStatus::dropped) return;
+    }
 }
 
 NamedColumn text_column(const std::string& name, const std::vector<TrialRow>& rows,
@@ -147,11 +165,12 @@ StudyPlan make_plan(const Config& config, Provenance provenance) {
   StudyPlan plan;
   plan.config = resolved_text(config);
   plan.provenance = std::move(provenance);
-  const StudySpace space = lay_out(config);
+  StudySpace space = lay_out(config);
+  const std::vector<Setting> settings = settings_of(config, space);
   plan.table.varied_keys = space.keys;
   plan.repeated_points = space.repeated;
   DataHashes data;
-  for (const StudyPoint& point : space.points) add_point(config, space, point, data, plan);
+  for (const Setting& setting : settings) add_setting(config, space.keys, setting, data, plan);
   data.read();
   for (TrialRow& row : plan.table.rows) {
     if (row.status == TrialStatus::dropped) continue;
@@ -191,7 +210,7 @@ void write_plan(const std::filesystem::path& folder, const StudyPlan& plan) {
 }
 
 StudyPlan read_plan(const std::filesystem::path& folder) {
-  const StudyFile file = look_twice([&] { return read_study_file(plan_file(folder), "plan"); });
+  const StudyFile file = read_study_file(plan_file(folder), "plan");
   try {
     return plan_of(file);
   } catch (const DataError& error) {

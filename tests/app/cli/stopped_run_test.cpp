@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-#include "app/chain/stage_file.hpp"
+#include "app/chain/stage_store.hpp"
 #include "app/cli/kept_stages.hpp"
 #include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"

@@ -1,19 +1,12 @@
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <thread>
 
-#include "app/study/answers/merge_study.hpp"
-#include "app/study/run/live_page.hpp"
-#include "app/study/space/study_plan.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/study_file.hpp"
 #include "tests/app/cli_fixture.hpp"
@@ -134,47 +127,6 @@ TEST_F(StudyCommands, ProcessesOnOneStudyShareTheWork) {
   EXPECT_EQ(text("s/study.csv"), text("one/study.csv"));
 }
 
-TEST_F(StudyCommands, HaveAPageAtTheEnd) {
-  ASSERT_EQ(study_six({"--study.page", "true"}).status, 0);
-  const std::string page = text("s/study.html");
-  EXPECT_NE(page.find("\"kind\":\"study\""), std::string::npos);
-  EXPECT_EQ(page.find("\"live\":{"), std::string::npos);  // it says nothing of a study that runs
-}
-
-/// After each run that is told the page holds those that are finished, with the scores that the table will have.
-TEST_F(StudyCommands, ThePageOfARunningStudyHoldsWhatIsFinished) {
-  ASSERT_EQ(study_six().status, 0);
-  const app::StudyPlan plan = app::read_plan(file("s"));
-  std::vector<app::StudyTable> written;
-  std::vector<app::StudyState> states;
-  app::LivePage page(
-      plan, app::TrialStore(file("s")),
-      [&](const auto& folder, const StudyFile& study, const app::StudyTable& table, const app::StudyState& state) {
-        EXPECT_EQ(folder, file("s"));
-        EXPECT_EQ(study.columns.size(), app::table_columns(table).size());
-        written.push_back(table);
-        states.push_back(state);
-      });
-  app::TrialReport report;
-  report.outcome = app::TrialOutcome::computed;
-  page.tell(plan.table.rows[4], report, 1, 6);
-  page.tell(plan.table.rows[2], report, 2, 6);  // too soon to write again
-  ASSERT_EQ(written.size(), 1u);
-  EXPECT_EQ(states[0].finished, 1u);
-  EXPECT_GT(states[0].seconds, 0.0);
-  const app::StudyTable whole = app::collect_table(app::TrialStore(file("s")), plan);
-  for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_EQ(written[0].rows[i].status, i == 4 ? app::TrialStatus::done : app::TrialStatus::planned);
-    EXPECT_TRUE(i == 4 || std::isnan(written[0].rows[i].scores.at(0)));
-  }
-  const auto place = [](const app::StudyTable& table, const char* name) {
-    return std::find(table.score_names.begin(), table.score_names.end(), name) - table.score_names.begin();
-  };
-  const char* score = "bank_test_log_score";
-  EXPECT_EQ(written[0].rows[4].scores.at(static_cast<std::size_t>(place(written[0], score))),
-            whole.rows[4].scores.at(static_cast<std::size_t>(place(whole, score))));
-}
-
 TEST_F(StudyCommands, FlatTablesHoldTheArchives) {
   ASSERT_EQ(study_six({"--study.flat", "true"}).status, 0);
   const std::string key = trials().front().stem();
@@ -242,12 +194,6 @@ TEST_F(StudyCommands, AnArchiveThatLacksAMemberIsFoundThoughItsHashIsRight) {
   EXPECT_NE(found.out.find("to redo: mixture.components = 2"), std::string::npos) << found.out;
 }
 
-TEST_F(StudyCommands, WithoutARunThatSucceedsNoTimeIsPromised) {
-  const ProgramResult result = study({"--study.vary", "window.length = 500 | 600"});
-  EXPECT_EQ(result.status, 1);
-  EXPECT_NE(result.out.find("estimate  2 runs left: how long is unknown"), std::string::npos) << result.out;
-}
-
 TEST_F(StudyCommands, AnArchiveUnderAnothersNameIsFound) {
   ASSERT_EQ(study_six().status, 0);
   std::filesystem::copy_file(trials()[0], trials()[1], std::filesystem::copy_options::overwrite_existing);
@@ -256,14 +202,36 @@ TEST_F(StudyCommands, AnArchiveUnderAnothersNameIsFound) {
   EXPECT_NE(found.out.find("not that of its name"), std::string::npos) << found.out;
 }
 
-TEST_F(StudyCommands, PlansComputeNothingUnlessAsked) {
+TEST_F(StudyCommands, PlansComputeNothing) {
   const ProgramResult planned = study_six({"--study.stage", "plan"});
   EXPECT_EQ(planned.status, 0) << planned.err;
-  EXPECT_NE(planned.out.find("6 runs left: how long is unknown: none was made yet"), std::string::npos) << planned.out;
+  EXPECT_NE(planned.out.find("plan      6 runs"), std::string::npos) << planned.out;
   EXPECT_TRUE(trials().empty());
-  const ProgramResult asked = study_six({"--study.stage", "plan", "--study.estimate", "true", "--study.jobs", "1"});
-  EXPECT_NE(asked.out.find("estimate  5 runs left: "), std::string::npos) << asked.out;
-  EXPECT_EQ(trials().size(), 1u);
+}
+
+/// The page of a study that still runs, or is not merged, holds the runs that are done, with their scores.
+TEST_F(StudyCommands, AReportOfARunningStudyShowsWhatIsDone) {
+  ASSERT_EQ(study_six({"--study.stage", "run", "--study.shard", "0/2"}).status, 0);
+  const std::size_t done = trials().size();
+  ASSERT_GT(done, 0U);
+  ASSERT_LT(done, 6U);
+  const std::string page = file("page.html").string();
+  const auto report = [&] { return modebank({"report", file("s").string(), "-o", page}); };
+  const ProgramResult running = report();
+  ASSERT_EQ(running.status, 0) << running.err;
+  EXPECT_NE(running.out.find(std::to_string(done) + " done"), std::string::npos) << running.out;
+  EXPECT_EQ(count(text("page.html"), "\"status\":\"done\""), done);
+  EXPECT_FALSE(std::filesystem::exists(file("s/study.h5"))) << "a report changes nothing";
+  ASSERT_EQ(study_six().status, 0);
+  ASSERT_EQ(report().status, 0);
+  EXPECT_EQ(count(text("page.html"), "\"status\":\"done\""), 6U);
+  // More values are planned after the table was made.
+  ASSERT_EQ(study({"--study.vary", "mixture.components = 1 | 2 | 3 | 4", "--study.vary",
+                   "filter.variant = imm | salvi2025", "--study.stage", "plan"})
+                .status,
+            0);
+  const ProgramResult more = report();
+  EXPECT_NE(more.out.find("6 done, 2 missing"), std::string::npos) << more.out;
 }
 
 /// D3 of the review: values that look like options, or hold equal signs. A fake sbatch takes them.
@@ -338,11 +306,10 @@ TEST_F(StudyCommands, DevicesAndPipesAreRefusedByName) {
 /// A study's folder is sent from one to another, links and all.
 TEST_F(StudyCommands, FilesOfOthersAreNotWrittenThroughLinks) {
   namespace fs = std::filesystem;
-  const std::vector<std::string> page{"--study.page", "true"};
-  ASSERT_EQ(study_six(page).status, 0);
+  ASSERT_EQ(study_six().status, 0);
   fs::create_directory(file("home"));
-  std::vector<std::string> names{
-      "study.csv", "study.best.ini", "study.h5", "study.html", "log.csv", "locks", "best/bank_train_log_score.ini"};
+  std::vector<std::string> names{"study.csv", "study.best.ini", "study.h5",
+                                 "log.csv",   "plan.claim",     "best/bank_train_log_score.ini"};
   const std::string plan = text("s/plan.h5"), trial = trials()[0].filename().string(),
                     failed = "trials/" + trials()[1].stem().string() + ".failed";
   names.push_back("trials/" + trial);
@@ -364,16 +331,14 @@ TEST_F(StudyCommands, FilesOfOthersAreNotWrittenThroughLinks) {
   };
   const auto before = in_home();
   for (const char* stage : {"merge", "all"}) {
-    std::vector<std::string> options = page;
-    options.insert(options.end(), {"--study.stage", stage});
-    study_six(options);
+    study_six({"--study.stage", stage});
     for (std::size_t i = 0; i < theirs.size(); ++i)
       EXPECT_EQ(text("home/" + theirs[i].filename().string()), "precious") << names[i] << " after " << stage;
     EXPECT_EQ(text("home/plan.h5"), plan) << stage;
     EXPECT_EQ(in_home(), before) << stage;
   }
-  EXPECT_EQ(study_six(page).status, 0);
-  for (const char* name : {"study.csv", "study.best.ini", "study.h5", "study.html", "log.csv", "locks", "best"})
+  EXPECT_EQ(study_six().status, 0);
+  for (const char* name : {"study.csv", "study.best.ini", "study.h5", "log.csv", "plan.claim", "best"})
     EXPECT_FALSE(fs::is_symlink(fs::symlink_status(file("s") / name))) << name;
   EXPECT_EQ(modebank({"verify", file("s").string()}).status, 0);
 }
@@ -437,41 +402,6 @@ TEST_F(StudyCommands, OfARecordingGoFromStartToItsBestConfiguration) {
     const ProgramResult best = modebank({"run", folder + "/study.best.ini", "--archive.output", folder + ".h5"});
     EXPECT_EQ(best.status, 0) << best.err;
   }
-}
-
-std::string first_line(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  std::string line;
-  std::getline(stream, line);
-  return line;
-}
-
-/// While workers are there, the program that forked them has one thread, also where it has read packed chunks.
-TEST_F(StudyCommands, WorkersAreForkedFromAProgramOfOneThread) {
-  const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
-  ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);
-  write("drive.ini",
-        "[data]\ninputs = drive.bag\nstate = /speed.data\ninput = /cmd.data\nrate_hz = 10\n"
-        "[window]\nlength = 10\n[mixture]\nrestarts = 2\n");
-  const pid_t program = ::fork();
-  if (program == 0) {
-    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(::open("/dev/null", O_WRONLY), stream);
-    ::execl(MODEBANK_PROGRAM, MODEBANK_PROGRAM, "study", file("drive.ini").c_str(), "--study.vary",
-            "mixture.components = 1 | 2 | 3", "--study.output", file("s").c_str(), "--study.jobs", "2", nullptr);
-    ::_exit(127);
-  }
-  const std::filesystem::path tasks = "/proc/" + std::to_string(program) + "/task";
-  const std::filesystem::path children = tasks / std::to_string(program) / "children";
-  std::ptrdiff_t most_threads = 0;
-  int status = 0;
-  while (::waitpid(program, &status, WNOHANG) == 0) {
-    std::error_code gone;
-    const bool before = !first_line(children).empty();
-    const auto threads = std::distance(std::filesystem::directory_iterator(tasks, gone), {});
-    if (before && !first_line(children).empty()) most_threads = std::max(most_threads, threads);
-  }
-  EXPECT_EQ(status, 0);
-  EXPECT_EQ(most_threads, 1);
 }
 
 TEST_F(StudyCommands, UsageErrorsLeaveNothing) {

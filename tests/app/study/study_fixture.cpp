@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -48,6 +49,20 @@ std::vector<std::filesystem::path> StudyTest::archives(const std::string& folder
     if (entry.path().extension() == ".h5") paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   return paths;
+}
+
+bool StudyTest::kill_a_worker(const std::string& folder, std::mt19937_64& generator) const {
+  std::vector<std::filesystem::path> claims;
+  std::error_code absent;
+  for (const auto& entry : std::filesystem::directory_iterator(file(folder) / "trials", absent))
+    if (entry.path().extension() == ".claim") claims.push_back(entry.path());
+  std::shuffle(claims.begin(), claims.end(), generator);
+  for (const auto& claim : claims) {
+    std::ifstream stream(claim);
+    const auto holder = nlohmann::json::parse(stream, nullptr, false);  // it may go meanwhile
+    if (holder.is_object() && kill(holder.at("process").get<pid_t>(), SIGKILL) == 0) return true;
+  }
+  return false;
 }
 
 void StudyTest::run_undisturbed() const {

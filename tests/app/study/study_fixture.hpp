@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,8 @@ class StudyTest : public CliTest {
   std::string numbers(const std::string& folder) const;
   /// Archives of a study under their final names, in byte order.
   std::vector<std::filesystem::path> archives(const std::string& folder) const;
-  /// Files in a study's folder and its trials that are neither archives nor known by name: what a killed process left.
-  std::vector<std::string> temporaries(const std::string& folder) const;
+  /// Kills a worker that is at a trial, as its claim names it; false where none is.
+  bool kill_a_worker(const std::string& folder, std::mt19937_64& generator) const;
 
   /// The study done without any trouble, in a folder of its own.
   static constexpr const char* undisturbed = "undisturbed";

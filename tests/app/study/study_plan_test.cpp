@@ -90,8 +90,27 @@ TEST_F(StudyPlans, RepeatsBeginWithTheOwnSeedAndDoNotDependOnTheRest) {
     EXPECT_EQ(few.table.rows[3 + r].key, many.table.rows[r].key);
   }
   EXPECT_EQ(seeds.size(), 3u);
-  const StudyPlan seeded = plan({{"study.vary", "job.seed = 7 | 8"}});
-  EXPECT_EQ(seeded.table.rows[1].seed, 8u);
+}
+
+/// Runs that differ in job.seed alone are repeats of one setting, as those of study.repeats are.
+TEST_F(StudyPlans, AVariedSeedCountsAsRepeats) {
+  const StudyPlan seeded = plan({{"study.vary", "job.seed = 7 | 8 | 9"}, {"study.vary", "mixture.components = 1 | 2"}});
+  EXPECT_EQ(seeded.table.varied_keys, std::vector<std::string>{"mixture.components"});
+  ASSERT_EQ(seeded.table.rows.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(seeded.table.rows[i].varied, std::vector<std::string>{i < 3 ? "1" : "2"});
+    EXPECT_EQ(seeded.table.rows[i].repeat, static_cast<std::int64_t>(i % 3));
+    EXPECT_EQ(seeded.table.rows[i].seed, 7 + i % 3);
+  }
+  // The key is that of the same run without a varied seed.
+  EXPECT_EQ(seeded.table.rows[4].key,
+            plan({{"study.vary", "mixture.components = 2"}, {"job.seed", "8"}}).table.rows[0].key);
+  const StudyPlan alone = plan({{"study.vary", "job.seed = 7 | 8"}, {"study.repeats", "2"}});
+  EXPECT_TRUE(alone.table.varied_keys.empty());
+  ASSERT_EQ(alone.table.rows.size(), 4u);
+  EXPECT_EQ(alone.table.rows[2].seed, 8u);
+  EXPECT_EQ(alone.table.rows[3].repeat, 3);
+  EXPECT_NE(alone.table.rows[3].seed, alone.table.rows[1].seed);
 }
 
 TEST_F(StudyPlans, TrialsAreConfigurationsOfTheirOwn) {

@@ -5,13 +5,17 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <fstream>
-#include <thread>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
 
+#include "app/chain/stage_store.hpp"
 #include "app/config/config_file.hpp"
+#include "app/study/run/claim.hpp"
+#include "app/study/run/study_worker.hpp"
 #include "app/study/run/trial_runner.hpp"
-#include "app/study/run/worker_pool.hpp"
-#include "modebank/base/error.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -79,84 +83,46 @@ const std::vector<KeyValues> trials{
 };
 
 TEST_F(StudySharing, TrialsAreWhatRunWritesToTheBit) {
-  std::filesystem::create_directory(file("cache"));
-  const FileLocks locks(file("locks"));
-  const StageCache cache(file("cache"), 100.0, locks);
-  TrialRunner runner(&cache);
+  TrialRunner runner(file("cache"), 100.0, 0.0);
   std::vector<std::string> alone;
   for (const KeyValues& keys : trials) alone.push_back(run_alone(keys));
   for (std::size_t i = 0; i < trials.size(); ++i)
     EXPECT_TRUE(content(runner.run(configured(trials[i]), "")) == alone[i]) << "trial " << i;
-  // Another process finds the windows in the cache.
-  TrialRunner other(&cache);
+  // Another process finds the stages in the store.
+  TrialRunner other(file("cache"), 100.0, 0.0);
   for (std::size_t i = trials.size(); i-- > 0;)
-    EXPECT_TRUE(content(other.run(configured(trials[i]), "")) == alone[i]) << "trial " << i << " from the cache";
+    EXPECT_TRUE(content(other.run(configured(trials[i]), "")) == alone[i]) << "trial " << i << " from the store";
 }
 
-TEST_F(StudySharing, EveryStageReadsBackFromTheCacheToTheBit) {
-  std::filesystem::create_directory(file("cache"));
-  const FileLocks locks(file("locks"));
-  const StageCache cache(file("cache"), 100.0, locks);
+/// The store of `run` and of studies keeps each stage but the data, up to the last one that it is told.
+TEST_F(StudySharing, TheStoreKeepsTheStagesThatAreLaterUsed) {
   const Config trial = configured({{"bank.refine", "em"}, {"bank.max_iterations", "2"}, {"bank.folds", "1"}});
-  const Archive made = TrialRunner(nullptr).run(trial, "");
-  Archive taken = made;
-  const auto pass = [&](Stage stage, const std::function<Archive()>& part, const auto& take) {
-    const auto never = [] { return ADD_FAILURE() << "computed", false; };
-    cache.provide(
-        stage, "inputs", [](Archive&&) { FAIL(); }, [] { return true; }, part);
-    cache.provide(stage, "inputs", take, never, part);
-  };
-  pass(
-      Stage::windows,
-      [&] {
-        Archive part;
-        part.recording = made.recording;
-        part.windows = made.windows;
-        return part;
-      },
-      [&](Archive&& part) { taken.windows = std::move(part.windows); });
-  pass(
-      Stage::mixture,
-      [&] {
-        Archive part;
-        part.mixture = made.mixture;
-        return part;
-      },
-      [&](Archive&& part) { taken.mixture = std::move(part.mixture); });
-  pass(
-      Stage::bank,
-      [&] {
-        Archive part;
-        part.bank = made.bank;
-        part.unrefined = made.unrefined;
-        return part;
-      },
-      [&](Archive&& part) {
-        taken.bank = std::move(part.bank);
-        taken.unrefined = std::move(part.unrefined);
-      });
-  EXPECT_TRUE(content(taken) == content(made));
+  TrialRunner(file("cache"), 100.0, 0.0).run(trial, "");
+  std::set<std::string> stages;
+  for (const auto& entry : std::filesystem::directory_iterator(file("cache"))) {
+    const std::string name = entry.path().filename();
+    stages.insert(name.substr(0, name.find('-')));
+  }
+  EXPECT_EQ(stages,
+            (std::set<std::string>{"structure", "windows", "mixture", "competitors", "bank", "competitor_scores"}));
 }
 
-TEST_F(StudySharing, TheCacheIsBounded) {
-  std::filesystem::create_directory(file("cache"));
-  const FileLocks locks(file("locks"));
-  const auto bytes = [&] {
-    double sum = 0.0;
-    for (const auto& entry : std::filesystem::directory_iterator(file("cache")))
-      sum += static_cast<double>(entry.file_size());
-    return sum;
-  };
-  const StageCache cache(file("cache"), 0.3, locks);
-  TrialRunner runner(&cache);
+double bytes_in(const std::filesystem::path& folder) {
+  double sum = 0.0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) sum += static_cast<double>(entry.file_size());
+  return sum;
+}
+
+TEST_F(StudySharing, TheStoreIsBounded) {
+  TrialRunner runner(file("cache"), 0.3, 0.0);
   for (const char* length : {"10", "11", "12", "13", "14", "15"})
     runner.run(configured({{"window.length", length}, {"filter.smooth", "false"}}), "");
-  EXPECT_LE(bytes(), 0.3e6);
-  EXPECT_GT(bytes(), 0.0);
+  EXPECT_LE(bytes_in(file("cache")), 0.3e6);
+  EXPECT_GT(bytes_in(file("cache")), 0.0);
 }
 
-/// A cache may be a folder on another disk that holds more; nothing of it is the cache's but files of stages.
-TEST_F(StudySharing, TheCacheRemovesAndFollowsNothingOfOthers) {
+/// The folder may be on another disk that holds more; nothing of it is the store's but files of stages.
+TEST_F(StudySharing, TheStoreRemovesAndFollowsNothingOfOthers) {
   std::filesystem::create_directories(file("elsewhere/cache"));
   std::filesystem::create_directory_symlink("elsewhere/cache", file("cache"));
   const std::string theirs(400000, 'x'), key(64, '0');
@@ -165,11 +131,9 @@ TEST_F(StudySharing, TheCacheRemovesAndFollowsNothingOfOthers) {
   write("elsewhere/linked.h5", "precious");
   std::filesystem::create_symlink("../linked.h5", file("cache") / ("bank-" + key + ".h5"));
   const auto before = std::filesystem::last_write_time(file("elsewhere/linked.h5"));
-  const FileLocks locks(file("locks"));
-  const StageCache cache(file("cache"), 0.3, locks);
-  cache.provide(
-      Stage::bank, key, [](Archive&&) { FAIL(); }, [] { return true; }, [] { return Archive{}; });
-  TrialRunner runner(&cache);
+  StageStore store(file("cache"), {.worth_a_file_s = 0.0, .limit_mb = 0.3});
+  store.provide(Stage::bank, key, {[] {}, [] { return Archive{}; }, [](Archive&&) { FAIL(); }});
+  TrialRunner runner(file("cache"), 0.3, 0.0);
   for (const char* length : {"10", "11", "12", "13", "14", "15"})
     runner.run(configured({{"window.length", length}, {"filter.smooth", "false"}}), "");
   EXPECT_EQ(bytes_of(file("elsewhere/cache/mine.h5")), theirs);
@@ -179,180 +143,159 @@ TEST_F(StudySharing, TheCacheRemovesAndFollowsNothingOfOthers) {
 }
 
 TEST_F(StudySharing, AFailedTrialLeavesNothingForTheNext) {
-  TrialRunner runner(nullptr);
+  TrialRunner runner;
   EXPECT_THROW(runner.run(configured({{"window.length", "500"}}), ""), std::exception);
   EXPECT_TRUE(content(runner.run(configured({}), "")) == run_alone({}));
 }
 
-TEST_F(StudySharing, LocksHoldAmongProcessesAndEndWithThem) {
-  int ready[2];
-  ASSERT_EQ(::pipe(ready), 0);
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const FileLocks locks(file("locks"));
-    const FileLocks::Hold hold = locks.lock("a");
-    static_cast<void>(::write(ready[1], "x", 1));
-    for (;;) ::pause();
-  }
-  char signal = 0;
-  ASSERT_EQ(::read(ready[0], &signal, 1), 1);
-  const FileLocks locks(file("locks"));
-  EXPECT_FALSE(locks.try_lock("a"));
-  EXPECT_TRUE(locks.is_held_elsewhere("a"));
-  EXPECT_TRUE(locks.try_lock("b"));
-  ::kill(child, SIGKILL);
-  ::waitpid(child, nullptr, 0);
-  EXPECT_TRUE(locks.try_lock("a"));
-}
-
-constexpr double patience_s = 600.0;
-
-TrialReport computed(std::string message = {}) {
-  TrialReport report;
-  report.outcome = TrialOutcome::computed;
-  report.message = std::move(message);
-  return report;
-}
-
-TEST(WorkerPools, ACrashEndsItsTrialOnly) {
-  WorkerPool pool(2, 0.0, [](const WorkerPool::TellWaiting&) {
-    return [](std::size_t trial) {
-      if (trial == 1) ::raise(SIGKILL);
-      return computed(std::string(trial, 'x'));
-    };
-  });
-  std::size_t given = 0, finished = 0;
-  std::string messages[6];
-  while (finished < 6) {
-    for (std::size_t worker = 0; worker < pool.size(); ++worker)
-      if (pool.is_idle(worker) && given < 6) pool.give(worker, given++);
-    if (const auto done = pool.wait(patience_s)) {
-      ++finished;
-      EXPECT_EQ(done->crashed, done->trial == 1);
-      EXPECT_EQ(done->report.outcome == TrialOutcome::computed, !done->crashed);
-      messages[done->trial] = done->report.message;
+/// Claims on one file, by this process and by others.
+class Claims : public StudySharing {
+ protected:
+  /// A process that takes the claim and ends when it is killed.
+  pid_t holder() const {
+    int ready[2];
+    EXPECT_EQ(::pipe(ready), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const auto claim = Claim::take(path());
+      static_cast<void>(::write(ready[1], claim ? "y" : "n", 1));
+      for (;;) ::pause();
     }
+    char taken = 0;
+    EXPECT_EQ(::read(ready[0], &taken, 1), 1);
+    EXPECT_EQ(taken, 'y');
+    for (const int end : ready) ::close(end);
+    return child;
   }
-  EXPECT_NE(messages[1].find("signal 9"), std::string::npos) << messages[1];
-  EXPECT_EQ(messages[5], "xxxxx");
-}
-
-/// One byte for each process that passes a point.
-class Gate {
- public:
-  Gate() { EXPECT_EQ(::pipe(ends_), 0); }
-  ~Gate() { ::close(ends_[0]), ::close(ends_[1]); }
-  Gate(const Gate&) = delete;
-  Gate& operator=(const Gate&) = delete;
-  void open() const { EXPECT_EQ(::write(ends_[1], "x", 1), 1); }
-  void pass() const {
-    char byte = 0;
-    EXPECT_EQ(::read(ends_[0], &byte, 1), 1);
+  static void end(pid_t process) {
+    ::kill(process, SIGKILL);
+    ::waitpid(process, nullptr, 0);
   }
-
- private:
-  int ends_[2];
+  /// As if it had not been renewed for so long, by the clock of its folder.
+  void age(double seconds) const {
+    namespace chrono = std::chrono;
+    write_file(file("now"), "");
+    const auto back =
+        chrono::duration_cast<std::filesystem::file_time_type::duration>(chrono::duration<double>(seconds));
+    std::filesystem::last_write_time(path(), std::filesystem::last_write_time(file("now")) - back);
+  }
+  /// The claim there, in other words.
+  void rewrite(const std::string& key, const nlohmann::json& value) const {
+    auto claim = nlohmann::json::parse(bytes_of(path()));
+    claim[key] = value;
+    write_file(path(), claim.dump());
+  }
+  std::filesystem::path path() const { return file("a.claim"); }
 };
 
-TEST(WorkerPools, AnOverrunEndsItsTrialOnly) {
-  const Gate begun, leave;
-  WorkerPool pool(2, 0.2, [&](const WorkerPool::TellWaiting& tell_waiting) {
-    return [&, tell_waiting](std::size_t trial) {
-      if (trial == 1) ::pause();
-      tell_waiting(true);  // until its end, so that it has no limit
-      begun.open();
-      leave.pass();
-      return computed();
-    };
-  });
-  pool.give(0, 0);
-  begun.pass();
-  pool.give(1, 1);
-  const auto overrun = pool.wait(patience_s);
-  ASSERT_TRUE(overrun);
-  EXPECT_EQ(overrun->trial, 1U);
-  EXPECT_TRUE(overrun->crashed);
-  EXPECT_NE(overrun->report.message.find("study.timeout_s = 0.2"), std::string::npos) << overrun->report.message;
-  leave.open();
-  const auto other = pool.wait(patience_s);
-  ASSERT_TRUE(other);
-  EXPECT_EQ(other->trial, 0U);
-  EXPECT_EQ(other->report.outcome, TrialOutcome::computed);
+TEST_F(Claims, HoldAmongProcessesAndEndWithThem) {
+  const pid_t other = holder();
+  EXPECT_FALSE(Claim::take(path()));
+  EXPECT_TRUE(Claim::take(file("b.claim")));
+  EXPECT_FALSE(std::filesystem::exists(file("b.claim"))) << "given up";
+  end(other);
+  EXPECT_TRUE(Claim::take(path()));
+  EXPECT_EQ(left_behind(), std::vector<std::string>{});
 }
 
-/// An answer that arrives in time counts, however late the parent looks at it.
-TEST(WorkerPools, ABusyParentTakesNoAnswerForAnOverrun) {
-  const Gate answered;
-  WorkerPool pool(1, 0.01, [&](const WorkerPool::TellWaiting&) {
-    return [&](std::size_t trial) {
-      if (trial == 1) ::pause();
-      answered.open();
-      return computed();
-    };
-  });
-  pool.give(0, 0);
-  answered.pass();
-  std::this_thread::sleep_for(std::chrono::milliseconds(1000));  // the parent's other work
-  const auto done = pool.wait(patience_s);
-  ASSERT_TRUE(done);
-  EXPECT_EQ(done->report.outcome, TrialOutcome::computed) << done->report.message;
+TEST_F(Claims, StateHostProcessAndTime) {
+  const auto claim = Claim::take(path());
+  const auto text = nlohmann::json::parse(bytes_of(path()));
+  EXPECT_EQ(text.at("process"), ::getpid());
+  EXPECT_GT(text.at("start").get<long long>(), 0);
+  char host[256] = "";
+  ::gethostname(host, sizeof host - 1);
+  EXPECT_EQ(text.at("host").get<std::string>().rfind(host, 0), 0U) << text;
+  EXPECT_EQ(text.at("time").get<std::string>().size(), std::string("2026-01-01T00:00:00Z").size());
 }
 
-/// The limit is a second, so that a loaded machine does not stop a process for so long between two calls.
-TEST(WorkerPools, WaitingForAnotherProcessIsNoTimeOfTheTrial) {
-  constexpr double timeout_s = 1.0;
-  const Gate begun, go_on;
-  WorkerPool pool(2, timeout_s, [&](const WorkerPool::TellWaiting& tell_waiting) {
-    return [&, tell_waiting](std::size_t trial) {
-      tell_waiting(true);
-      begun.open();
-      go_on.pass();
-      tell_waiting(false);
-      if (trial == 1) ::pause();  // from here its own time runs
-      return computed();
-    };
-  });
-  for (const std::size_t trial : {0, 1}) pool.give(trial, trial);
-  for (int i = 0; i < 2; ++i) begun.pass();
-  EXPECT_FALSE(pool.wait(2.0 * timeout_s)) << "time that is waited for counts";
-  for (int i = 0; i < 2; ++i) go_on.open();
-  for (int i = 0; i < 2; ++i) {
-    const auto done = pool.wait(patience_s);
-    ASSERT_TRUE(done);
-    EXPECT_EQ(done->report.outcome, done->trial == 0 ? TrialOutcome::computed : TrialOutcome::failed)
-        << done->report.message;
+/// The same number, started at another time: the process that had the claim is gone.
+TEST_F(Claims, AReusedProcessNumberIsNotTakenForTheHolder) {
+  const pid_t other = holder();
+  rewrite("start", 1);
+  EXPECT_TRUE(Claim::take(path()));
+  end(other);
+}
+
+/// Only renewals show whether a process of another machine is alive.
+TEST_F(Claims, OfOtherMachinesLastTenMinutesByTheFoldersClock) {
+  end(holder());
+  rewrite("host", "another machine");
+  age(Claim::lasts_s - 30.0);
+  EXPECT_FALSE(Claim::take(path()));
+  age(Claim::lasts_s + 1.0);
+  EXPECT_TRUE(Claim::take(path()));
+}
+
+TEST_F(Claims, OfALivingProcessThatDoesNotRenewEndToo) {
+  const pid_t other = holder();
+  age(Claim::lasts_s + 1.0);
+  {
+    const auto mine = Claim::take(path());
+    ASSERT_TRUE(mine);
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(path())).at("process"), ::getpid());
   }
+  EXPECT_FALSE(std::filesystem::exists(path()));
+  end(other);
 }
 
-TEST_F(StudySharing, TheCacheTellsOfWaitingForAnotherProcess) {
-  std::filesystem::create_directory(file("cache"));
-  const std::string stem = "bank-inputs";
-  int ready[2];
-  ASSERT_EQ(::pipe(ready), 0);
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const FileLocks locks(file("locks"));
-    const FileLocks::Hold hold = locks.lock(stem);
-    static_cast<void>(::write(ready[1], "x", 1));
-    for (;;) ::pause();
+/// A process whose claim was taken over leaves the new claim alone.
+TEST_F(Claims, AreRemovedByTheirHolderAlone) {
+  {
+    const auto mine = Claim::take(path());
+    ASSERT_TRUE(mine);
+    rewrite("process", 1);
   }
-  char signal = 0;
-  ASSERT_EQ(::read(ready[0], &signal, 1), 1);
-  const FileLocks locks(file("locks"));
-  std::vector<bool> told;
-  const StageCache cache(file("cache"), 1.0, locks, [&](bool waiting) {
-    told.push_back(waiting);
-    if (waiting) ::kill(child, SIGKILL);
-  });
-  const auto provide = [&] {
-    cache.provide(
-        Stage::bank, "inputs", [](Archive&&) {}, [] { return false; }, [] { return Archive{}; });
-  };
-  provide();
-  EXPECT_EQ(told, (std::vector<bool>{true, false}));
-  ::waitpid(child, nullptr, 0);
-  provide();  // nobody is at it now
-  EXPECT_EQ(told.size(), 2u);
+  EXPECT_TRUE(std::filesystem::exists(path()));
+  Claim::end_of(::getpid(), path());
+  EXPECT_TRUE(std::filesystem::exists(path()));
+  Claim::end_of(1, path());
+  EXPECT_FALSE(std::filesystem::exists(path()));
+}
+
+/// A file without a claim of this version counts by its time, and the target of a link stays.
+TEST_F(Claims, OtherFilesOfTheNameDoNotStopAStudyForGood) {
+  for (const char* text : {"", "half a li", "[1, 2]", R"({"host": 1, "process": "x", "start": []})"}) {
+    write_file(path(), text);
+    EXPECT_FALSE(Claim::take(path())) << text;
+    age(Claim::lasts_s + 1.0);
+    EXPECT_TRUE(Claim::take(path())) << text;
+  }
+  write_file(file("theirs"), "precious");
+  std::filesystem::create_symlink(file("theirs"), path());
+  EXPECT_TRUE(Claim::take(path()));
+  EXPECT_EQ(bytes_of(file("theirs")), "precious");
+}
+
+TEST(WorkerTasks, AndReportsReachTheOtherProcessWhole) {
+  WorkerTask task{.config = {},
+                  .typed = "modebank study \xff",
+                  .version = "1",
+                  .varied_keys = {"mixture.components"},
+                  .rows = std::vector<TrialRow>(2),
+                  .places = {3, 7},
+                  .threads = 5};
+  task.rows[1].key = "key";
+  task.rows[1].varied = {"2"};
+  task.rows[1].repeat = 4;
+  task.rows[1].seed = std::numeric_limits<std::uint64_t>::max();
+  const WorkerTask read = unpack_task(pack_task(task));
+  EXPECT_EQ(read.typed, task.typed);
+  EXPECT_EQ(read.places, task.places);
+  EXPECT_EQ(read.threads, task.threads);
+  EXPECT_EQ(read.rows[1].varied, task.rows[1].varied);
+  EXPECT_EQ(read.rows[1].repeat, task.rows[1].repeat);
+  EXPECT_EQ(read.rows[1].seed, task.rows[1].seed);
+  TrialReport made{.row = 7, .outcome = TrialOutcome::failed, .message = "two\nlines \xff", .seconds = 1.5};
+  made.stage_seconds[2] = 0.25;
+  const std::string line = pack_report(made);
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  const TrialReport back = unpack_report(line);
+  EXPECT_EQ(back.row, 7U);
+  EXPECT_EQ(back.outcome, TrialOutcome::failed);
+  EXPECT_EQ(back.message.rfind("two\nlines ", 0), 0U);
+  EXPECT_EQ(back.stage_seconds, made.stage_seconds);
+  EXPECT_TRUE(std::isnan(back.log_score));
 }
 
 }  // namespace

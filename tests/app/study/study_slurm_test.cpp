@@ -1,5 +1,7 @@
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
+#include <random>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -76,6 +78,33 @@ TEST_F(StudySlurm, TableEqualsTheLocalOne) {
   const ProgramResult again = study("slurm", {"--study.stage", "submit"});
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(again.out.find("sbatch"), std::string::npos) << "nothing is left to submit: " << again.out;
+}
+
+/// Workers on two nodes are killed; what they left undone is submitted again.
+TEST_F(StudySlurm, KilledWorkersChangeNoNumber) {
+  MODEBANK_NEEDS_SLURM();
+  const char* asked = std::getenv("MODEBANK_STUDY_REPEATS");
+  const std::vector<std::string> many{"--study.repeats", asked ? asked : "4"};
+  ASSERT_EQ(study(undisturbed, many).status, 0);
+  const SlurmCluster cluster(2, 2);
+  std::vector<std::string> options{"--study.stage", "submit", "--study.slurm_tasks", "4"};
+  options.insert(options.end(), many.begin(), many.end());
+  ASSERT_EQ(study("slurm", options).status, 0);
+  std::mt19937_64 generator(20261127);
+  auto last = std::chrono::steady_clock::now();
+  for (int kills = 0; kills < 20 && std::chrono::steady_clock::now() - last < std::chrono::seconds(30);) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(generator() % 500));
+    if (!kill_a_worker("slurm", generator)) continue;
+    ++kills;
+    last = std::chrono::steady_clock::now();
+  }
+  ASSERT_TRUE(settled(cluster)) << cluster.queue();
+  const ProgramResult status = study("slurm", {"--study.stage", "status"});
+  EXPECT_NE(status.out.find(" failed"), std::string::npos) << "none was killed: " << status.out;
+  const ProgramResult again = study("slurm", options);
+  ASSERT_EQ(again.status, 0) << again.out << again.err;
+  ASSERT_TRUE(settled(cluster)) << cluster.queue();
+  EXPECT_EQ(numbers("slurm"), numbers(undisturbed));
 }
 
 /// The lines of the first block of code below a heading of a page of the documentation.

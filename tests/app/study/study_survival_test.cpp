@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -55,6 +56,73 @@ TEST_P(StudySurvivalPart, ThirtyKillsChangeNoNumber) {
     EXPECT_EQ(numbers(folder), expected) << "round " << round;
     std::filesystem::remove_all(file(folder));
   }
+}
+
+/// How often each of the 24 settings is run: 42 of `make nightly` are 1,008 trials.
+std::string repeats() {
+  const char* asked = std::getenv("MODEBANK_STUDY_REPEATS");
+  return asked ? asked : "4";
+}
+
+/// Workers of a study that goes on are killed twenty times, whenever it is. What they were at is on record as failed or
+/// done by another worker, and the next study completes it. In the middle the study moves to another folder.
+TEST_F(StudySurvival, TwentyKilledWorkersAndAMoveChangeNoNumber) {
+  const std::vector<std::string> many{"--study.repeats", repeats(), "--study.jobs", "2"};
+  const Clock::time_point start = Clock::now();
+  ASSERT_EQ(study(undisturbed, many).status, 0);
+  const double duration_s = seconds_since(start);
+  std::mt19937_64 generator(20261127);
+  constexpr int kills = 20;
+  std::uniform_real_distribution<double> pause(0.0, 1.5 * duration_s / kills);
+  int killed = 0;
+  std::size_t before_the_move = 0;
+  const auto kill_some = [&](const std::string& folder, int until) {
+    Process process(study_line(folder, many));
+    std::atomic<bool> over = false;
+    std::thread waiter([&] { process.wait(), over = true; });
+    while (killed < until && !over) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(pause(generator)));
+      while (!over && !kill_a_worker(folder, generator)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      killed += !over;
+    }
+    if (!over) process.kill_alone();
+    waiter.join();
+  };
+  // Where all trials are done one goes, so that there is one more to be killed at.
+  while (killed < kills / 2) {
+    kill_some("killed", kills / 2);
+    if (killed < kills / 2) std::filesystem::remove(archives("killed").front());
+  }
+  before_the_move = archives("killed").size();
+  std::filesystem::rename(file("killed"), file("moved"));
+  while (killed < kills) {
+    kill_some("moved", kills);
+    if (killed < kills) std::filesystem::remove(archives("moved").front());
+  }
+  const ProgramResult resumed = study("moved", many);
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_GT(before_the_move, 0U);
+  EXPECT_EQ(archives("moved").size(), archives(undisturbed).size());
+  EXPECT_EQ(numbers("moved"), numbers(undisturbed));
+  EXPECT_FALSE(std::filesystem::exists(file("killed")));
+  for (const auto& entry : std::filesystem::directory_iterator(file("moved") / "trials"))
+    EXPECT_NE(entry.path().extension(), ".claim") << entry.path();
+}
+
+/// A worker that is killed takes one trial along; the study goes on and has it on record.
+TEST_F(StudySurvival, AKilledWorkerEndsItsTrialOnly) {
+  const std::vector<std::string> slow{"--mixture.restarts", "60", "--study.jobs", "2"};
+  std::mt19937_64 generator(1);
+  ProgramResult result;
+  std::thread runner([&] { result = study("one", slow); });
+  while (!kill_a_worker("one", generator)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  runner.join();
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.out.find("23 done, 1 failed"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("its process was ended by signal 9"), std::string::npos) << result.out;
+  const ProgramResult resumed = study("one", slow);
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_NE(resumed.out.find("1 runs made, 23 were there"), std::string::npos) << resumed.out;
 }
 
 ino_t identity(const std::filesystem::path& path) {

@@ -7,7 +7,6 @@ import {drawBetter} from './study_better.js';
 import {drawCoverage} from './study_coverage.js';
 import {drawEffects} from './study_effects.js';
 import {drawHeatMap} from './study_heat_map.js';
-import {keepLive} from './study_live.js';
 import {drawParallel} from './study_parallel.js';
 import {drawPareto} from './study_pareto.js';
 import {drawStudyTable} from './study_table.js';
@@ -94,7 +93,6 @@ draw(async () => {
   document.title = `Study ${data.file}`;
   head(`Study ${data.file}`, `${study.rows.length} runs, made ${data.origin.created}`);
   drawVerdict(study, showRun);
-  if (study.live) keepLive(study.live);
   drawBetter(study, showRun);
   const runs = section('runs', 'Runs');
   const {restrict} = drawStudyTable(runs, study, {filter, showRun, chosen: () => chosen});
