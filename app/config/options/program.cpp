@@ -55,14 +55,6 @@ std::vector<Option> report_options() {
       numeric("report.runs", between(0, 10000), "",
               "a study's best runs that get pages of their own, in a folder beside the study's page",
               MODEBANK_FIELD(report.runs)),
-      text("report.figures", "a folder",
-           "figures for papers are written there as SVG and PDF, each with a LaTeX snippet (needs gnuplot)",
-           MODEBANK_FIELD(report.figures)),
-      flag("report.png", "figures as PNG of 600 dots per inch, too", MODEBANK_FIELD(report.png)),
-      flag("report.sources", "the figures' gnuplot scripts and data beside them, to restyle",
-           MODEBANK_FIELD(report.sources)),
-      text("report.run", "a run's name", "whose time series the figures draw; empty: the first that was held out",
-           MODEBANK_FIELD(report.run)),
   };
 }
 

@@ -167,10 +167,6 @@ const std::unordered_map<std::string_view, std::string_view>& using_keys() {
       {"track.watchdog_s", "when the filter runs unattended and someone reads its log"},
       {"report.size_mb", "when the page of long runs must show more samples, or must be sent by mail"},
       {"report.runs", "0, when a study's page alone is enough; more, when you look into many runs"},
-      {"report.figures", "when you write a paper"},
-      {"report.png", "when a program takes neither SVG nor PDF"},
-      {"report.sources", "when figures need another size, font or label than they have"},
-      {"report.run", "when the first held-out run is not the one to show"},
   };
   return sentences;
 }

@@ -104,14 +104,10 @@ bool is_study(const OpenArchive& file) { return inspect(file, "/").at("members")
 void report_study(const fs::path& study, const OpenArchive& opened, const fs::path& page, const ReportConfig& options,
                   Written& written) {
   const fs::path& path = opened.path();
-  if (!page.empty()) check_page_path(page, {path});
+  check_page_path(page, {path});
   const StudyFile file = read_study_file(opened, "study");
   const StudyTable table = study_table_of(file);
-  const FigureSet figures = options.figures.empty() ? FigureSet() : study_figures(table);
-  if (!options.figures.empty()) check_figures(figures, options, {path});
-  if (!page.empty()) write_study_page(study, path, file, table, page, options, written);
-  // Last: a figure that cannot be drawn must not cost the page.
-  if (!options.figures.empty()) write_figures(figures, options, written);
+  write_study_page(study, path, file, table, page, options, written);
 }
 
 }  // namespace modebank::app::report

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "app/config/config.hpp"
-#include "app/report/figures/run_figures.hpp"
 #include "app/report/page/html_page.hpp"
 #include "app/study/run/live_page.hpp"
 
@@ -24,16 +23,7 @@ struct Written {
 /// Writes the page under a temporary name and renames it; says how large it is.
 void write_page(const std::filesystem::path& path, const Page& page, Written& written);
 
-/// Throws ConfigurationError where a figure would replace a file that is not of one, or is among `sources`.
-void check_figures(const FigureSet& set, const ReportConfig& options,
-                   const std::vector<std::filesystem::path>& sources);
-
-/// Draws the figures into report.figures and says what was written; throws DataError that names those which could not
-/// be drawn, after the others.
-void write_figures(const FigureSet& set, const ReportConfig& options, Written& written);
-
-/// A study's figures, where report.figures asks for them, and its page, unless `page` is empty. `file`: its study.h5,
-/// which `study` or this file in its folder names.
+/// The page of a study. `file`: its study.h5, which `study` or this file in its folder names.
 void report_study(const std::filesystem::path& study, const OpenArchive& file, const std::filesystem::path& page,
                   const ReportConfig& options, Written& written);
 /// Writes study.html into a study's folder, by renaming, and says where it is when the study has ended; see
