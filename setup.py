@@ -13,6 +13,7 @@ skbuild.setup(
     description=project[2],
     python_requires=">=3.11",
     install_requires=["numpy", "pandas", "h5py"],
+    extras_require={"figures": ["matplotlib", "scipy"]},
     packages=["modebank"],
     package_dir={"": "python"},
     cmake_install_dir="python",

@@ -93,7 +93,7 @@ it never saw. Every number has its uncertainty.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME modebank)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox, libmodebank-dev")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libmodebank-dev")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "identifies motion with changing character from logged runs
 ${what}
 .
@@ -122,7 +122,7 @@ if(TARGET modebank_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
       "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy, python3-pandas, python3-h5py")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS modebank)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "modebank, python3-matplotlib, python3-scipy")
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION "motion with changing character: modebank for Python 3
 ${what}
 .

@@ -12,6 +12,12 @@ const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filte
   return nullptr;
 }
 
+const FilterEvaluation* evaluation_of(const Archive& archive, const std::string& filter) {
+  for (const FilterEvaluation& evaluation : archive.evaluations)
+    if (evaluation.filter == filter) return &evaluation;
+  return nullptr;
+}
+
 Role judged_role(const Archive& archive) { return modebank::judged_role(archive.summary); }
 
 std::vector<std::size_t> positions_of(const Recording& recording, Role role) {

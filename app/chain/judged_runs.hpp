@@ -13,6 +13,9 @@ const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, 
 /// The row of a filter's mode over all runs of a role; null without. mode -1: the whole filter.
 const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role, Eigen::Index mode = -1);
 
+/// The evaluation of a filter over all runs; null without.
+const FilterEvaluation* evaluation_of(const Archive& archive, const std::string& filter);
+
 /// The runs that filters are judged on: those held out, or, where nothing was, those they learned from.
 Role judged_role(const Archive& archive);
 

@@ -4,7 +4,6 @@
 
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
-#include "app/report/figures/run_figures.hpp"
 #include "app/report/page/compare_page.hpp"
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/write_page.hpp"
@@ -23,29 +22,18 @@ std::filesystem::path page_path(const CommandLine& line) {
   return named.stem().string() + ".html";
 }
 
-/// Empty where figures alone are asked for.
-std::filesystem::path page_if_asked(const CommandLine& line, const ReportConfig& options) {
-  return options.figures.empty() || !line.output.empty() ? page_path(line) : "";
-}
-
 void report_run(const OpenArchive& opened, const std::filesystem::path& page, const ReportConfig& options,
                 report::Written& written) {
   const std::filesystem::path& file = opened.path();
-  if (!page.empty()) report::check_page_path(page, {file});
+  report::check_page_path(page, {file});
   const Archive archive = read_archive(opened, Evaluations::in_file);
-  const report::FigureSet figures =
-      options.figures.empty() ? report::FigureSet() : report::run_figures(archive, options.run);
-  if (!options.figures.empty()) report::check_figures(figures, options, {file});
-  if (!page.empty()) report::write_page(page, report::run_page(archive, file.filename().string(), options), written);
-  // Last: a figure that cannot be drawn must not cost the page.
-  if (!options.figures.empty()) report::write_figures(figures, options, written);
+  report::write_page(page, report::run_page(archive, file.filename().string(), options), written);
 }
 
-/// The page or pages, and figures, of what was named.
+/// The page or pages of what was named.
 void report_files(const CommandLine& line, const std::filesystem::path& page, const ReportConfig& options,
                   report::Written& written) {
   if (line.files.size() > 1) {
-    if (!options.figures.empty()) throw ConfigurationError("report.figures are drawn of one archive or study");
     report::report_comparison({line.files.begin(), line.files.end()}, page, options, written);
     return;
   }
@@ -68,15 +56,9 @@ int run_report(const CommandLine& line) {
         "[ARCHIVE...] [-o page.html]",
         report::most_compared));
   const ReportConfig options = stored_config("", line.overrides).report;
-  const std::filesystem::path page = final_target(page_if_asked(line, options));
+  const std::filesystem::path page = final_target(page_path(line));
   report::Written written{[&](const std::string& text) { print_text(line, text); }, {}};
-  try {
-    report_files(line, page, options, written);
-  } catch (const DataError& error) {
-    // One figure that cannot be drawn takes nothing from the others.
-    if (!written.files.empty()) print_json(line, {{"written", written.files}, {"error", error.what()}}, 1);
-    throw;
-  }
+  report_files(line, page, options, written);
   print_json(line, {{"written", written.files}});
   return 0;
 }

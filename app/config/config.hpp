@@ -26,14 +26,10 @@ struct TrackConfig {
   bool json = false;        ///< lines out are objects whatever comes in: --json
 };
 
-/// The [report] section: what a page may hold, and figures for papers.
+/// The [report] section: what a page may hold.
 struct ReportConfig {
   double size_mb = 64.0;  ///< largest page [1e6 bytes]
   Index runs = 10;        ///< of a study, with pages of their own
-  std::string figures;    ///< folder for figures; empty: none
-  bool png = false;
-  bool sources = false;
-  std::string run;  ///< of the figures; empty: the first judged one
 };
 
 struct ArchiveConfig {

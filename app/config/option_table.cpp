@@ -49,12 +49,12 @@ namespace {
 
 /// What a first configuration is made of; help shows these before all others.
 constexpr std::array basic_keys{
-    "data.inputs",      "data.states",        "data.state",   "data.input",     "data.time",       "data.derive",
-    "data.rate_hz",     "data.lag_s",         "data.test",    "data.split",     "data.label",      "window.model",
-    "window.length",    "mixture.components", "bank.modes",   "bank.refine",    "filter.horizon",  "filter.simulate",
-    "archive.output",   "archive.input",      "job.threads",  "job.seed",       "study.vary",      "study.output",
-    "track.checkpoint", "track.resume",       "track.filter", "report.figures", "simulate.system", "simulate.output",
-    "simulate.runs",    "simulate.samples"};
+    "data.inputs",      "data.states",        "data.state",   "data.input",      "data.time",       "data.derive",
+    "data.rate_hz",     "data.lag_s",         "data.test",    "data.split",      "data.label",      "window.model",
+    "window.length",    "mixture.components", "bank.modes",   "bank.refine",     "filter.horizon",  "filter.simulate",
+    "archive.output",   "archive.input",      "job.threads",  "job.seed",        "study.vary",      "study.output",
+    "track.checkpoint", "track.resume",       "track.filter", "simulate.system", "simulate.output", "simulate.runs",
+    "simulate.samples"};
 
 bool is_basic(const std::string& key) {
   return std::find(basic_keys.begin(), basic_keys.end(), key) != basic_keys.end();

@@ -25,7 +25,7 @@ SECTIONS = {
     "job": "Threads and seed.",
     "study": "What a parameter study varies, and how its runs are made: [](../tutorials/first_study.md).",
     "track": "The live filter: [](../howto/live_filter.md).",
-    "report": "Pages and figures: [](../howto/figures.md).",
+    "report": "Pages: [](../howto/report.md).",
     "simulate": "Runs with known truth: [](../explanation/vehicle.md).",
 }
 

@@ -5,7 +5,7 @@
 
 namespace modebank {
 
-/// A file in memory for those who write by name and do not say when a disk is full (libmatio, gnuplot): what it holds
+/// A file in memory for those who write by name and do not say when a disk is full (libmatio): what it holds
 /// is whole, and goes to a disk by replace_file.
 class MemoryFile {
  public:

@@ -125,18 +125,3 @@ class Printed(PageTest):
             session.browser.size(1200, 900)
         for number, sheet in enumerate(sheets):
             self.assertGreater((sheet.min(2) < 128).mean(), 0.0002, f"sheet {number + 1} of {len(sheets)} is empty")
-
-    def test_figures_carry_their_fonts(self):
-        self.needs(shutil.which("gnuplot"), "gnuplot is absent: apt-get install gnuplot-nox")
-        for name, options in (("demo", ()), ("study", ("--report.runs", "0"))):
-            folder = session.work / f"fonts_{name}"
-            session.modebank("report", session.made[name], "-o", session.work / "with_fonts.html", "--report.figures", folder, *options)
-            figures = sorted(folder.glob("*.pdf"))
-            self.assertGreaterEqual(len(figures), 3)
-            for figure in figures:
-                with self.subTest(figure.name):
-                    lines = subprocess.run(["pdffonts", figure], capture_output=True, text=True, check=True).stdout.splitlines()
-                    embedded = lines[0].index("emb")
-                    self.assertGreater(len(lines), 2, "a figure without words")
-                    for line in lines[2:]:
-                        self.assertEqual(line[embedded:].split()[0], "yes", line)

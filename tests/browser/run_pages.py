@@ -155,18 +155,6 @@ class RunPages(PageTest):
         self.assertTrue(shown[0] <= begin and end <= shown[1])
         self.assert_quiet()
 
-    def test_figures_say_whose_colour_is_whose(self):
-        self.needs(shutil.which("gnuplot"), "gnuplot is absent: apt-get install gnuplot-nox")
-        folder = session.work / "figures"
-        session.modebank("report", session.made["demo"], "-o", session.work / "with_figures.html", "--report.figures", folder)
-        with h5py.File(session.made["demo"]) as file:
-            modes = len(file["bank/weight"])
-        self.assertGreater(modes, 1)
-        for name in ("estimates", "nis"):
-            texts = re.findall(r">\s*(?:<!\[CDATA\[)?([^<>\]]+?)(?:\]\]>)?\s*</", (folder / f"{name}.svg").read_text(encoding="utf-8"))
-            self.assertIn("mode", texts)
-            self.assertIn(str(modes - 1), texts)
-
     def test_light_dark_print_and_phone(self):
         page = session.modebank.page("demo", session.made["demo"])
         for scheme in ("dark", "light"):

@@ -61,18 +61,6 @@ std::vector<Option> report_options() {
               "a study's best runs that get pages of their own, in a folder beside the study's page",
               MODEBANK_FIELD(report.runs))
           .touch("0, when a study's page alone is enough; more, when you look into many runs"),
-      text("report.figures", "a folder",
-           "figures for papers are written there as SVG and PDF, each with a LaTeX snippet (needs gnuplot)",
-           MODEBANK_FIELD(report.figures))
-          .touch("when you write a paper"),
-      flag("report.png", "figures as PNG of 600 dots per inch, too", MODEBANK_FIELD(report.png))
-          .touch("when a program takes neither SVG nor PDF"),
-      flag("report.sources", "the figures' gnuplot scripts and data beside them, to restyle",
-           MODEBANK_FIELD(report.sources))
-          .touch("when figures need another size, font or label than they have"),
-      text("report.run", "a run's name", "whose time series the figures draw; empty: the first that was held out",
-           MODEBANK_FIELD(report.run))
-          .touch("when the first held-out run is not the one to show"),
   };
 }
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "app/report/figures/run_figures.hpp"
+#include "app/chain/judged_runs.hpp"
 #include "app/report/page/guard_map.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"

@@ -6,7 +6,6 @@
 
 #include "app/chain/judged_runs.hpp"
 #include "app/chain/mode_names.hpp"
-#include "app/report/figures/run_figures.hpp"
 #include "app/report/page/bucket_extremes.hpp"
 #include "app/report/page/run_sections.hpp"
 

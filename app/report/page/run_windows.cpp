@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "app/report/figures/run_figures.hpp"
+#include "app/chain/judged_runs.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "app/report/figures/run_figures.hpp"
 #include "app/report/page/html_page.hpp"
 #include "app/study/answers/study_table.hpp"
 #include "io/archive/study_file.hpp"
@@ -39,10 +38,5 @@ nlohmann::json better_section(const StudyTable& table, const std::vector<TrialPl
 /// The page of a study: `places` holds one entry per row of `table`.
 Page study_page(const StudyFile& file, const StudyTable& table, const std::vector<TrialPlace>& places,
                 const std::string& name);
-
-/// coverage: the paper's figure 5 over K, shares of samples outside the interval of the baseline, of noise only and of
-/// the banks with each number of components; effects: the best that each value of each key reaches; pareto: log score
-/// over the number of modes.
-FigureSet study_figures(const StudyTable& table);
 
 }  // namespace modebank::app::report

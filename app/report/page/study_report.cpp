@@ -108,13 +108,8 @@ FoundStudy find_study(const fs::path& folder, Written& written) {
 bool is_study(const OpenArchive& file) { return inspect(file, "/").at("members").contains("study"); }
 
 void report_study(const FoundStudy& study, const fs::path& page, const ReportConfig& options, Written& written) {
-  if (!page.empty()) check_page_path(page, {study.file});
-  const StudyTable table = study_table_of(study.content);
-  const FigureSet figures = options.figures.empty() ? FigureSet() : study_figures(table);
-  if (!options.figures.empty()) check_figures(figures, options, {study.file});
-  if (!page.empty()) write_study_page(study, table, page, options, written);
-  // Last: a figure that cannot be drawn must not cost the page.
-  if (!options.figures.empty()) write_figures(figures, options, written);
+  check_page_path(page, {study.file});
+  write_study_page(study, study_table_of(study.content), page, options, written);
 }
 
 }  // namespace modebank::app::report

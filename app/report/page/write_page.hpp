@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "app/config/config.hpp"
-#include "app/report/figures/run_figures.hpp"
 #include "app/report/page/html_page.hpp"
 #include "app/study/answers/study_table.hpp"
 #include "io/archive/study_file.hpp"
@@ -25,14 +24,6 @@ struct Written {
 /// Writes the page under a temporary name and renames it; says how large it is.
 void write_page(const std::filesystem::path& path, const Page& page, Written& written);
 
-/// Throws ConfigurationError where a figure would replace a file that is not of one, or is among `sources`.
-void check_figures(const FigureSet& set, const ReportConfig& options,
-                   const std::vector<std::filesystem::path>& sources);
-
-/// Draws the figures into report.figures and says what was written; throws DataError that names those which could not
-/// be drawn, after the others.
-void write_figures(const FigureSet& set, const ReportConfig& options, Written& written);
-
 /// A study, and where its archives lie.
 struct FoundStudy {
   std::filesystem::path name;  ///< as the command line has it: its folder, or study.h5
@@ -44,7 +35,7 @@ struct FoundStudy {
 /// are done; then their number is printed.
 FoundStudy find_study(const std::filesystem::path& folder, Written& written);
 
-/// A study's figures, where report.figures asks for them, and its page, unless `page` is empty.
+/// The page of a study.
 void report_study(const FoundStudy& study, const std::filesystem::path& page, const ReportConfig& options,
                   Written& written);
 

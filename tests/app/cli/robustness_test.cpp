@@ -8,7 +8,6 @@
 
 #include "app/cli/track_output.hpp"
 #include "app/config/config_file.hpp"
-#include "app/report/figures/figure.hpp"
 #include "app/study/space/study_plan.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/terminal.hpp"

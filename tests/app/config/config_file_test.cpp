@@ -164,7 +164,10 @@ TEST_F(ConfigFile, KeysThatWentAreAnsweredWithWhatTakesTheirPlace) {
         Case{"[mixture]\nstart = kmeans++\n", "instead: random"},
         Case{"[mixture]\nstart_runs = 2\n", "mixture.restarts"}, Case{"[mixture]\ncriterion = aic\n", "instead: bic"},
         Case{"[mixture]\nheldout = never\n", "mixture.criterion = heldout"},
-        Case{"[mixture]\nbootstrap = 200\n", "standard errors of their coefficients"}})
+        Case{"[mixture]\nbootstrap = 200\n", "standard errors of their coefficients"},
+        Case{"[report]\nfigures = folder\n", "python3 -m modebank.figures ARCHIVE -o FOLDER"},
+        Case{"[report]\npng = true\n", "-o FOLDER --png"}, Case{"[report]\nrun = 01\n", "-o FOLDER --run NAME"},
+        Case{"[report]\nsources = true\n", "copy modebank/figures.py"}})
     try {
       load(text);
       ADD_FAILURE() << text << " is accepted";

@@ -193,12 +193,6 @@ TEST_F(DiskFull, OfReport) {
   every_call({"report", "two.h5", "-o", "page.html"});
 }
 
-TEST_F(DiskFull, OfFigures) {
-  MODEBANK_NEEDS(has_program("gnuplot"), "gnuplot is absent: apt-get install gnuplot-nox");
-  make_archive();
-  every_call({"report", "two.h5", "-o", "page.html", "--report.figures", "figures"}, 4);
-}
-
 TEST_F(DiskFull, OfSimulate) { every_call({"simulate", "sim.ini"}); }
 
 TEST_F(DiskFull, OfTrack) {

@@ -86,28 +86,6 @@ TEST(StudyPage, HoldsEveryRunAndTheBestOne) {
   EXPECT_EQ(study.at("rows")[3].at("page"), "study_runs/key3.html");
 }
 
-TEST(StudyPage, CoverageOverTheNumberOfComponentsIsTheMeanOfItsRuns) {
-  const app::report::FigureSet set = app::report::study_figures(example_table());
-  ASSERT_EQ(set.figures.size(), 3u);
-  const std::string& data = set.figures[0].data();  // K = 2: runs 2 and 3, of 2 and 3 %
-  EXPECT_NE(data.find("\n2 NaN NaN 2.5 NaN\n"), std::string::npos) << data << "\nno competitor was scored";
-  StudyTable other = example_table();
-  other.varied_keys[0] = "window.length";
-  ASSERT_EQ(app::report::study_figures(other).figures.size(), 2u);
-  EXPECT_NE(app::report::study_figures(other).left_out.at(0).find("coverage"), std::string::npos);
-}
-
-/// Of the second key, diagonal has runs 0 and 2 of scores 0 and 1, full 1, 3 and 5 of 0.5, 7.5 and 2.5.
-TEST(StudyPage, EffectsShowTheBestOverTheOtherKeysAndTheMean) {
-  const app::report::FigureSet set = app::report::study_figures(example_table());
-  ASSERT_EQ(set.figures[1].name(), "effects");
-  const std::string& data = set.figures[1].data();
-  EXPECT_NE(data.find("\n1 1 0.5\n2 7.5 3.5\n"), std::string::npos) << data;
-  ASSERT_EQ(set.figures[2].name(), "pareto");
-  EXPECT_NE(set.figures[2].data().find("# front\n# modes | score\n1 0.5\n2 7.5\n"), std::string::npos)
-      << set.figures[2].data();
-}
-
 class ReportKinds : public CliTest {};
 
 TEST_F(ReportKinds, TwoArchivesMakeOnePage) {
