@@ -41,7 +41,6 @@ po::options_description describe_options(CommandLine& line) {
   add_switch("apply", line.apply);
   add_switch("force", line.force);
   add_switch("yes", line.yes);
-  add_switch("float", line.exported.single_precision);
   add_switch("open", line.open);
   add("port", po::value(&line.port));
   add("form", po::value(&line.form));

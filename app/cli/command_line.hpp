@@ -8,9 +8,8 @@ namespace modebank::app {
 
 /// Options of `export`.
 struct ExportLine {
-  std::string to;     ///< form
-  std::string table;  ///< of form csv: its path in the archive
-  bool single_precision = false;
+  std::string to;                                         ///< form
+  std::string table;                                      ///< of form csv: its path in the archive
   double wheel_separation_m = 0.0, wheel_radius_m = 0.0;  ///< of form ros2; 0: not given
 };
 

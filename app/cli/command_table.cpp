@@ -199,7 +199,6 @@ std::vector<Command> commands_to_use() {
         force("also where the verdict speaks against it"),
         {"table", "PATH", "csv: which table of the archive"},
         {"run", "NAME", "csv: the rows of this run; of /data or /evaluation/FILTER, a column per signal"},
-        {"float", "", "c: single precision"},
         {"wheel_separation_m", "W", "ros2: as the controller has it"},
         {"wheel_radius_m", "R", "ros2: as the controller has it"}},
        run_export},

@@ -137,7 +137,7 @@ json export_c(const CommandLine& line) {
     throw ConfigurationError(fmt::format("-o {}: of letters, digits, '_' and '-' alone", source.string()));
   const path header = path(source).replace_extension(".h");
   for (const path& file : {source, header}) check_export(line, file, bank_form());
-  const CFiles files = to_c(read_bank(line), stem, line.exported.single_precision);
+  const CFiles files = to_c(read_bank(line), stem);
   replace_file(final_target(header), {files.header});
   replace_file(final_target(source), {files.source});
   print_text(
@@ -180,7 +180,7 @@ const std::map<std::string, json (*)(const CommandLine&)> forms{{"c", export_c},
 /// Options that belong to one form.
 void check_form_options(const CommandLine& line) {
   const std::map<std::string, std::string> belongs{
-      {"table", "csv"}, {"run", "csv"}, {"float", "c"}, {"wheel_separation_m", "ros2"}, {"wheel_radius_m", "ros2"}};
+      {"table", "csv"}, {"run", "csv"}, {"wheel_separation_m", "ros2"}, {"wheel_radius_m", "ros2"}};
   for (const std::string& option : line.given)
     if (const auto only = belongs.find(option); only != belongs.end() && only->second != line.exported.to)
       throw ConfigurationError(

@@ -8,6 +8,9 @@
 
 #include "app/config/config.hpp"
 #include "app/config/config_file.hpp"
+#include "app/config/ini_lines.hpp"
+#include "app/config/option_table.hpp"
+#include "app/config/path_text.hpp"
 #include "filter/learn/chain/training_check.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "io/files/replace_file.hpp"
@@ -96,6 +99,12 @@ std::string refusal(const Proposal& proposal, const fs::path& target) {
     return error.what();
   }
   return {};
+}
+
+void state_values(Proposal& proposal) {
+  std::erase_if(proposal.keys, [](const ProposedKey& key) { return find_option("data." + key.key) == nullptr; });
+  for (ProposedKey& key : proposal.keys)
+    if (takes_quotes("data." + key.key) && key.value != " ") key.value = path_text(key.value);
 }
 
 void make_it_run(Proposal& proposal, const fs::path& target) {

@@ -11,10 +11,7 @@
 #include "app/cli/init_trial.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
-#include "app/config/ini_lines.hpp"
 #include "app/config/configuration_output.hpp"
-#include "app/config/option_table.hpp"
-#include "app/config/path_text.hpp"
 #include "app/init/confirm.hpp"
 #include "app/init/init_json.hpp"
 #include "app/init/proposal.hpp"
@@ -72,9 +69,7 @@ int run_init(const CommandLine& line) {
   Guess guess = guess_roles(surveyed);
   if (is_asked(line)) confirm_roles(surveyed, guess, std::cin, std::cout);
   Proposal proposal = propose(sets, surveyed, guess, folder.string());
-  std::erase_if(proposal.keys, [](const ProposedKey& key) { return find_option("data." + key.key) == nullptr; });
-  for (ProposedKey& key : proposal.keys)
-    if (takes_quotes("data." + key.key) && key.value != " ") key.value = path_text(key.value);
+  state_values(proposal);
   make_it_run(proposal, target);
   const std::string text = configuration_text(proposal, line.typed);
   replace_file(final_target(target), {text});

@@ -44,7 +44,8 @@ void set_option(Config& config, const Option& option, const std::string& where, 
                 bool has_comment) {
   const std::string& key = option.key;
   if (holds_controls(value) && !is_path(key))
-    throw ConfigurationError(fmt::format("{}: {} = '{}' holds control characters", where, key, printable(value)));
+    throw ConfigurationError(fmt::format("{}: {} = '{}' holds control characters{}", where, key, printable(value),
+                                         takes_quotes(key) ? "; rename the column that is called so" : ""));
   try {
     option.set(config, value);
   } catch (const std::invalid_argument& error) {

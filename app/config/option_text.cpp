@@ -134,12 +134,7 @@ std::string format_value(std::uint64_t value) { return std::to_string(value); }
 std::string format_value(Eigen::Index value) { return std::to_string(value); }
 std::string format_value(double value) { return fmt::format("{}", value); }
 std::string format_value(const std::optional<double>& value) { return value ? format_value(*value) : ""; }
-std::string format_value(const std::vector<std::string>& value) {
-  std::vector<std::string> names;
-  for (const std::string& name : value)
-    names.push_back(name.find(',') == std::string::npos && !name.starts_with('\'') ? name : quoted_channel_name(name));
-  return boost::join(names, ", ");
-}
+std::string format_value(const std::vector<std::string>& value) { return listed_channel_names(value); }
 std::string format_value(const std::vector<double>& value) { return fmt::format("{}", fmt::join(value, ", ")); }
 
 std::string format_value(const std::vector<Eigen::Index>& value) {

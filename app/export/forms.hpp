@@ -24,7 +24,7 @@ struct CFiles {
   std::string header, source;
 };
 /// Throws DataError naming what of the filter C does not have.
-CFiles to_c(const ExportedBank& bank, const std::string& stem, bool single_precision);
+CFiles to_c(const ExportedBank& bank, const std::string& stem);
 
 /// A module of Python that needs casadi alone.
 std::string to_casadi(const ExportedBank& bank);

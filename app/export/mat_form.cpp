@@ -6,6 +6,7 @@
 
 #include "app/export/forms.hpp"
 #include "app/export/names.hpp"
+#include "ident/base/utf8.hpp"
 #include "io/files/memory_file.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
@@ -48,10 +49,12 @@ class MatFile {
   [[noreturn]] void fail(const std::string& what) const {
     throw DataError(fmt::format("{}: {}", file_.string(), what));
   }
+  /// An extent counts characters. SciPy decodes UTF-16 to one character per unit, and Octave takes as many bytes of
+  /// UTF-8 as the extent says, so only UTF-16 without surrogates gives both the same text.
   static matvar_t* text_variable(const char* name, const std::string& value) {
-    const std::string ascii = comment_text(value);
-    std::array<std::size_t, 2> shape{ascii.empty() ? 0u : 1u, ascii.size()};
-    return Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF8, 2, shape.data(), const_cast<char*>(ascii.data()), 0);
+    std::u16string text = basic_utf16(value);
+    std::array<std::size_t, 2> shape{text.empty() ? 0u : 1u, text.size()};
+    return Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF16, 2, shape.data(), text.data(), 0);
   }
   void put(matvar_t* variable) {
     if (!variable) fail("out of memory");

@@ -8,7 +8,8 @@
 
 #include "app/init/mounting.hpp"
 #include "app/init/words.hpp"
-#include "ident/base/characters.hpp"
+#include "ident/base/printable.hpp"
+#include "io/import/expression.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -25,9 +26,6 @@ struct Candidate {
 
   bool is_held() const { return channel->check.repeated > most_repeated; }
 };
-
-/// Whether a line of a configuration can hold the name, in quotes if need be.
-bool may_be_named(const std::string& name) { return std::none_of(name.begin(), name.end(), is_control); }
 
 bool same_table(const ChannelPlace& a, const ChannelPlace& b) { return a.file == b.file && a.table == b.table; }
 
@@ -58,7 +56,7 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
       const std::string from = table.name.empty() ? files[f].path.stem().string() + " " : "";
       for (std::size_t c = 0; c < table.channels.size(); ++c) {
         const SurveyedChannel& channel = table.channels[c];
-        if (!channel.moves() || channel.counts || channel.name == table.run || !may_be_named(channel.name)) continue;
+        if (!channel.moves() || channel.counts || channel.name == table.run || !can_be_stated(channel.name)) continue;
         if (std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end()) continue;
         NameScore score = score_name(channel.name, from + table.type);
         if (!score.ignored) all.push_back({{f, t, c}, &table, &channel, score, score});
@@ -161,6 +159,31 @@ bool is_measured_motion(const std::vector<SurveyedFile>& files, const ChannelPla
   return points > 0 && points < least_of_command;
 }
 
+/// Why a channel that a person would take is not taken; empty without a reason.
+std::string why_left(const SurveyedTable& table, const SurveyedChannel& channel) {
+  if (!channel.why_text.empty()) return fmt::format("; column {}: {}", channel.name, channel.why_text);
+  if (!channel.moves()) return "";
+  if (!can_be_stated(channel.name))
+    return fmt::format(
+        "; column '{}': no configuration can state a name that is empty or has a control character; rename it",
+        printable_name(channel.name));
+  const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
+  if (is_time || !score_name(channel.name).ignored) return "";
+  return fmt::format(
+      "; column {}: its name is that of a time, counter, pose, place or label; rename it if it is a signal",
+      channel.name);
+}
+
+std::string why_nothing_moves(const std::vector<SurveyedFile>& files) {
+  std::string why;
+  for (const SurveyedFile& file : files) {
+    for (const std::string& note : file.notes) why += "; " + note;
+    for (const SurveyedTable& table : file.tables)
+      for (const SurveyedChannel& channel : table.channels) why += why_left(table, channel);
+  }
+  return why;
+}
+
 }  // namespace
 
 const SurveyedChannel& channel_at(const std::vector<SurveyedFile>& files, const ChannelPlace& place) {
@@ -170,15 +193,8 @@ const SurveyedChannel& channel_at(const std::vector<SurveyedFile>& files, const 
 Guess guess_roles(const std::vector<SurveyedFile>& files) {
   std::vector<Candidate> all = candidates_of(files);
   if (all.empty()) {
-    std::string why;
-    for (const SurveyedFile& file : files) {
-      for (const std::string& note : file.notes) why += "; " + note;
-      for (const SurveyedTable& table : file.tables)
-        for (const SurveyedChannel& channel : table.channels)
-          if (!channel.why_text.empty()) why += fmt::format("; column {}: {}", channel.name, channel.why_text);
-    }
     throw DataError(fmt::format("{}: no channel moves: nothing can be a state{}",
-                                files.empty() ? "" : files.front().path.string(), why));
+                                files.empty() ? "" : files.front().path.string(), why_nothing_moves(files)));
   }
   Guess guess;
   guess_states(all, guess);
@@ -224,7 +240,7 @@ std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, c
           continue;
         }
         left.push_back({channel.name, score.ignored ? "its name is that of a time, counter, pose, place or label"
-                                      : !may_be_named(channel.name)
+                                      : !can_be_stated(channel.name)
                                           ? "its name has a line end or another control character"
                                       : channel.counts ? "counts up evenly, as times and counters do"
                                       : score.input > score.state && with_inputs

@@ -182,7 +182,8 @@ class Proposer {
       };
       while (is_taken(alias)) alias += "_";
       const std::string& own = channel(place).unit;
-      const std::string unit = own.empty() ? usual_unit(name) : own;
+      std::string unit = own.empty() ? usual_unit(name) : own;
+      if (unit.find(']') != std::string::npos) unit.clear();  // it would end the unit's bracket
       add("derive", fmt::format("{}{} = {}", alias, unit.empty() ? "" : " [" + unit + "]", quoted_channel_name(name)),
           "");
       short_names_[name] = alias;
@@ -198,7 +199,7 @@ class Proposer {
   std::string names(const std::vector<ChannelPlace>& places) const {
     std::vector<std::string> all;
     for (const ChannelPlace& place : places) all.push_back(name_of(place));
-    return fmt::format("{}", fmt::join(all, ", "));
+    return listed_channel_names(all);
   }
 
   /// Units that the format does not say, but the names; none unless all are known.
@@ -211,7 +212,8 @@ class Proposer {
           said && (!own.empty() || (name_of(place) != channel(place).name && !usual_unit(channel(place).name).empty()));
       all.push_back(own.empty() ? usual_unit(channel(place).name) : own);
     }
-    if (said || std::count(all.begin(), all.end(), "") > 0) return;
+    const auto cannot_be_listed = [](const std::string& unit) { return unit.empty() || needs_quotes(unit); };
+    if (said || std::any_of(all.begin(), all.end(), cannot_be_listed)) return;
     const bool alike = std::count(all.begin(), all.end(), all.front()) == std::ssize(all);
     add(key, alike ? all.front() : fmt::format("{}", fmt::join(all, ", ")), "a guess from the names");
   }

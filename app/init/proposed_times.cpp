@@ -1,7 +1,6 @@
 #include "app/init/proposed_times.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "app/init/words.hpp"
 #include "io/import/expression.hpp"
@@ -56,13 +55,10 @@ void propose_times(const SurveyedTable& states, const SurveyedTable& inputs, Pro
                                states.time.front(), states.sampling.rate_hz));
   propose_form(states, proposal);
   if (own(states) && own(inputs)) return;  // what a recording calls its stamps needs no key
-  std::vector<std::string> stamps;
-  for (const std::string& name : states.time)
-    stamps.push_back(name.find(',') == std::string::npos ? name : quoted_channel_name(name));
-  const std::string time = fmt::format("{}", fmt::join(stamps, ", "));
+  const std::string time = listed_channel_names(states.time);
   if (states.time != inputs.time)
     proposal.doubt(fmt::format("times are called {} in one table and {} in the other: data.time takes one name", time,
-                               fmt::join(inputs.time, ", ")));
+                               listed_channel_names(inputs.time)));
   if (time != "time") proposal.add("time", time, why_time(states));
 }
 

@@ -12,6 +12,10 @@ std::size_t character_bytes(std::string_view text);
 /// Whether the bytes are text in UTF-8 (RFC 3629: no surrogates, nothing longer than needed, at most U+10FFFF).
 bool is_utf8(std::string_view bytes);
 
+/// The text in UTF-16 without surrogates. A byte that begins no character, and a character beyond U+FFFF, becomes
+/// U+FFFD.
+std::u16string basic_utf16(std::string_view text);
+
 /// Appends a code point, of which 21 bits count.
 void append_utf8(std::string& text, std::uint32_t code);
 

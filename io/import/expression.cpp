@@ -7,8 +7,10 @@
 
 #include "ident/base/characters.hpp"
 #include "ident/base/nearest_name.hpp"
+#include "ident/base/printable.hpp"
 #include "io/import/expression_functions.hpp"
 #include "io/import/expression_program.hpp"
+#include "io/table/number.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -63,6 +65,17 @@ std::string quoted_channel_name(std::string_view name) {
   std::string result = "'";
   for (const char c : name) result += c == '\'' ? std::string("''") : std::string(1, c);
   return result + "'";
+}
+
+bool can_be_stated(std::string_view name) { return !name.empty() && !name_holds_controls(name); }
+
+std::string listed_channel_names(const std::vector<std::string>& names) {
+  std::string result;
+  for (const std::string& name : names) {
+    const bool plain = name.find(',') == std::string::npos && !name.starts_with('\'') && without_blanks(name) == name;
+    result += (&name == &names.front() ? "" : ", ") + (plain ? name : quoted_channel_name(name));
+  }
+  return result;
 }
 
 /// Turns text into tokens and tokens into steps: an argument of diff or unwrap is a column of its own.

@@ -64,4 +64,11 @@ std::string take_channel_name(std::string_view& text);
 /// The name in single quotes, as take_channel_name reads it.
 std::string quoted_channel_name(std::string_view name);
 
+/// Whether a configuration can state a name of the user's data: it has characters, and none of them is a line end or
+/// another control character.
+bool can_be_stated(std::string_view name);
+
+/// Names by commas, as a configuration states them: one that would read otherwise stands in single quotes.
+std::string listed_channel_names(const std::vector<std::string>& names);
+
 }  // namespace modebank

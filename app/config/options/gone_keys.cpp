@@ -61,6 +61,7 @@ constexpr std::array gone{
     Gone{"track.alarm", "", "one in 1000 samples of a true filter"},
     Gone{"filter.variant", "gpb1", "imm"},
     Gone{"filter.variant", "gpb2", "imm"},
+    Gone{"float", "", "export --to c writes double"},
     Gone{"filter.variant", "mmae", "imm with bank.transition = stay and bank.stay = 1"},
 };
 

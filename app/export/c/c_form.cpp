@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <boost/algorithm/string.hpp>
+#include <string_view>
 
-#include "app/export/c/c_parts.hpp"
+#include "app/export/c/c_table.hpp"
+#include "app/export/c/templates.hpp"
 #include "app/export/forms.hpp"
 #include "app/export/names.hpp"
 #include "modebank/base/error.hpp"
@@ -10,7 +12,7 @@
 namespace modebank::app {
 namespace {
 
-/// What the program's text does not have is refused, not left out: it would be another filter.
+/// A filter that filter.c does not have is refused: without the part that is missing it would be another filter.
 void refuse_what_c_lacks(const ExportedBank& exported) {
   const auto refuse = [&](const std::string& what) {
     throw DataError(fmt::format("{}: cannot be exported to C: {}", exported.archive, what));
@@ -23,28 +25,55 @@ void refuse_what_c_lacks(const ExportedBank& exported) {
   if (exported.bank.is_quantised()) refuse("measurements in steps (data.quantum)");
 }
 
-std::string in_style(std::string text, const std::string& prefix, bool single_precision) {
-  using boost::algorithm::replace_all;
-  replace_all(text, "$real", single_precision ? "float" : "double");
-  replace_all(text, "$f", single_precision ? "f" : "");
-  replace_all(text, "$F", single_precision ? "F" : "");
-  replace_all(text, "$p", prefix);
-  replace_all(text, "$P", boost::algorithm::to_upper_copy(prefix));
+std::string lag_text(double lag_s) {
+  if (lag_s == 0.0) return "";
+  if (lag_s > 0.0)
+    return fmt::format("\n * Inputs act {0:.17g} s late: at time t give it those recorded at t - {0:.17g} s.", lag_s);
+  return fmt::format(
+      "\n * Inputs act {0:.17g} s before they are recorded: at time t give it those recorded at t + {0:.17g} s;"
+      "\n * live, measurements wait that long for them.",
+      -lag_s);
+}
+
+/// The comment that opens a file: the verdict first, then the bank's origin and the equation.
+std::string opening(const ExportedBank& exported, const char* what) {
+  const LinearStructure& s = exported.structure();
+  std::string remarks;
+  for (const std::string& remark : exported.remarks()) remarks += "\n * " + comment_text(remark) + ".";
+  return fmt::format(
+      "/* Calibration: {}\n *\n * {}, made by modebank {} of\n * {}, filter {}, SHA-256\n * {}\n * {}\n * dt_s = "
+      "{:.17g} s; {} state lag(s), {} input lag(s), delay {} sample(s){}{}\n * {} */\n",
+      comment_text(exported.verdict_text()), what, comment_text(exported.provenance.modebank_version),
+      comment_text(exported.archive), exported.filter, exported.sha256, exported_equation, exported.bank.dt_s,
+      s.state_lags, s.input_lags, s.input_delay, lag_text(exported.input_lag_s), remarks, transition_meaning);
+}
+
+/// The template without its own opening comment, its identifiers named by `prefix`.
+std::string named(std::string_view file, const std::string& prefix) {
+  std::string text(file.substr(file.find("*/\n") + 3));
+  boost::algorithm::replace_all(text, "modebank_", prefix + "_");
+  boost::algorithm::replace_all(text, "MODEBANK_", boost::algorithm::to_upper_copy(prefix) + "_");
   return text;
+}
+
+/// Puts `text` in place of the line that includes `file`.
+std::string with(std::string source, const std::string& file, const std::string& text) {
+  boost::algorithm::replace_first(source, "#include \"" + file + "\"\n", text);
+  return source;
 }
 
 }  // namespace
 
-CFiles to_c(const ExportedBank& exported, const std::string& stem, bool single_precision) {
+CFiles to_c(const ExportedBank& exported, const std::string& stem) {
   refuse_what_c_lacks(exported);
   // A file may be called double.c, but nothing in it.
   const std::string prefix = identifiers({boost::algorithm::to_lower_copy(stem)}, Language::c).front();
-  const std::string source = c_form::opening(exported, "The numbers and the filter of a bank of modes") +
-                             fmt::format("#include \"{}.h\"\n\n#include <math.h>\n\n", stem) +
-                             c_form::constants(exported, single_precision) + c_form::data(exported) +
-                             c_form::program(exported);
-  return {in_style(c_form::header(exported, prefix), prefix, single_precision),
-          in_style(source, prefix, single_precision)};
+  const std::string header = with(named(assets::filter_h(), prefix), "bank_sizes.h",
+                                  c_form::bank_sizes(exported, boost::algorithm::to_upper_copy(prefix)));
+  const std::string source = with(with(named(assets::filter_c(), prefix), "filter.h", "#include \"" + stem + ".h\"\n"),
+                                  "bank_numbers.h", c_form::bank_numbers(exported));
+  return {opening(exported, "A bank of modes and its filter") + header,
+          opening(exported, "The numbers and the filter of a bank of modes") + source};
 }
 
 }  // namespace modebank::app

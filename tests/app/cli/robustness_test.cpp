@@ -369,7 +369,7 @@ TEST_F(Robustness, P8WhatOneFormOfACommandDoesNotReadIsRefused) {
     EXPECT_THAT(result.err, HasSubstr(why));
   };
   refuses({"verify", archive(), "--repair"}, "--repair: verify repairs folders of studies alone");
-  refuses({"export", archive(), "--to", "json", "--float"}, "--float belongs to export --to c");
+  refuses({"export", archive(), "--to", "c", "--float"}, "--float, which went; instead: export --to c writes double");
   refuses({"export", archive(), "--to", "c", "--table", "/bank"}, "--table belongs to export --to csv");
   refuses({"export", archive(), "--to", "mat", "--wheel_radius_m", "1"},
           "--wheel_radius_m belongs to export --to ros2");

@@ -34,18 +34,13 @@ class ExportedCOfRobots : public CliTest {
         held_out.push_back(run);
         samples += run.transitions();
       }
-    for (const bool single_precision : {false, true}) {
-      const Differences worst = app::test::differences_of_c(exported, held_out, single_precision);
-      const double tolerance = single_precision ? 1e-3 : 1e-9;
-      EXPECT_LE(worst.mean, tolerance);
-      EXPECT_LE(worst.probability, tolerance);
-      EXPECT_LE(worst.ahead, tolerance);
-      EXPECT_GT(worst.compared, samples - 20 * std::ssize(held_out));
-      const std::string kind = single_precision ? "float_" : "double_";
-      RecordProperty(kind + "mean", std::to_string(worst.mean / tolerance));
-      fmt::print("{}: {} samples, means within {:.2g} predicted standard deviations, probabilities within {:.2g}\n",
-                 kind, worst.compared, worst.mean, worst.probability);
-    }
+    const Differences worst = app::test::differences_of_c(exported, held_out);
+    EXPECT_LE(worst.mean, 1e-9);
+    EXPECT_LE(worst.probability, 1e-9);
+    EXPECT_LE(worst.ahead, 1e-9);
+    EXPECT_GT(worst.compared, samples - 20 * std::ssize(held_out));
+    fmt::print("{} samples, means within {:.2g} predicted standard deviations, probabilities within {:.2g}\n",
+               worst.compared, worst.mean, worst.probability);
   }
 };
 

@@ -161,8 +161,6 @@ TEST_F(Export, WritesFilesWholeOrNotAtAll) {
   judge(Calibration::calibrated);
   ASSERT_EQ(exported("c", {"-o", file("robot.c").string()}).status, 0);
   EXPECT_THAT(text_of(file("robot.h")), HasSubstr("typedef double robot_real;"));
-  ASSERT_EQ(exported("c", {"-o", file("robot.c").string(), "--float"}).status, 0);
-  EXPECT_THAT(text_of(file("robot.h")), HasSubstr("typedef float robot_real;"));
   ASSERT_EQ(exported("mat", {"-o", file("robot.mat").string()}).status, 0);
   EXPECT_EQ(text_of(file("robot.mat")).rfind("MATLAB 5.0 MAT-file", 0), 0u);
   ASSERT_EQ(exported("casadi", {"-o", file("robot.py").string()}).status, 0);

@@ -31,22 +31,22 @@ static double number(void) {
   if (scanf("%63s", word) != 1) exit(0);
   return strtod(word, NULL);
 }
-static void print(const robot_real *values, int count) {
-  for (int i = 0; i < count; ++i) printf("%.17g ", (double)values[i]);
+static void print(const double *values, int count) {
+  for (int i = 0; i < count; ++i) printf("%.17g ", values[i]);
 }
 int main(void) {
   static robot_filter filter, ahead;
   static robot_estimate estimate;
-  robot_real input[ROBOT_INPUT_ROOM] = {0}, measurement[ROBOT_MEASUREMENTS];
-  robot_real held[5 * ROBOT_INPUT_ROOM], mean[5 * ROBOT_MEASUREMENTS];
-  robot_real S[5 * ROBOT_MEASUREMENTS * ROBOT_MEASUREMENTS];
+  double input[ROBOT_ROOM_FOR_INPUTS] = {0}, measurement[ROBOT_MEASUREMENTS];
+  double held[5 * ROBOT_ROOM_FOR_INPUTS], mean[5 * ROBOT_MEASUREMENTS];
+  double S[5 * ROBOT_MEASUREMENTS * ROBOT_MEASUREMENTS];
   robot_restart(&filter);
   for (int k = 0;; ++k) {
     const double time_s = number();
-    for (int i = 0; i < ROBOT_INPUTS; ++i) input[i] = (robot_real)number();
-    for (int i = 0; i < ROBOT_MEASUREMENTS; ++i) measurement[i] = (robot_real)number();
+    for (int i = 0; i < ROBOT_INPUTS; ++i) input[i] = number();
+    for (int i = 0; i < ROBOT_MEASUREMENTS; ++i) measurement[i] = number();
     robot_step(&filter, time_s, input, measurement, &estimate);
-    printf("%d %.17g ", estimate.steps, (double)estimate.log_density);
+    printf("%d %.17g ", estimate.steps, estimate.log_density);
     print(estimate.prediction, ROBOT_STATES);
     print(estimate.state, ROBOT_STATES);
     print(&estimate.innovation_covariance[0][0], ROBOT_MEASUREMENTS * ROBOT_MEASUREMENTS);
@@ -55,7 +55,7 @@ int main(void) {
     print(estimate.mode_probability, ROBOT_MODES);
     print(estimate.innovation, ROBOT_MEASUREMENTS);
     if (k % 37 == 0) {
-      for (int i = 0; i < 5 * ROBOT_INPUTS; ++i) held[i] = input[i % ROBOT_INPUT_ROOM];
+      for (int i = 0; i < 5 * ROBOT_INPUTS; ++i) held[i] = input[i % ROBOT_ROOM_FOR_INPUTS];
       robot_predict(&filter, &ahead, 5, held, mean, S);
       print(mean, 5 * ROBOT_MEASUREMENTS);
       print(S, 5 * ROBOT_MEASUREMENTS * ROBOT_MEASUREMENTS);
@@ -229,24 +229,27 @@ std::vector<FilterEstimate> stepped(const Bank& bank, const FilterOptions& optio
   return estimates;
 }
 
-Differences differences_of_c(const ExportedBank& exported, const std::vector<Trajectory>& runs, bool single_precision) {
+Differences differences_of_c(const ExportedBank& exported, const std::vector<Trajectory>& runs) {
   const TemporaryFolder folder;
   const auto file = [&](const std::string& name) { return (folder.path() / name).string(); };
-  const CFiles files = to_c(exported, "robot", single_precision);
+  const CFiles files = to_c(exported, "robot");
   write_file(file("robot.h"), files.header);
   write_file(file("robot.c"), files.source);
   write_file(file("driver.c"), driver);
-  const auto compiled = run_program({"/usr/bin/cc", "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion",
-                                     "-Werror", "-O1", "-o", file("driver"), file("driver.c"), file("robot.c"), "-lm"});
-  EXPECT_EQ(compiled.status, 0) << compiled.err;
   Differences worst;
-  for (const Trajectory& run : runs) {
-    write_file(file("samples"), input_of(run));
-    const auto result =
-        run_program({"/bin/sh", "-c", "\"$1\" < \"$2\" > \"$3\"", "sh", file("driver"), file("samples"), file("said")});
-    EXPECT_EQ(result.status, 0) << result.err;
-    std::ifstream said(file("said"));
-    worst.join(compare(exported, run, said));
+  for (const std::string compiler : {"gcc", "clang"}) {
+    if (!modebank::test::has_program(compiler)) continue;
+    const auto compiled = run_program({compiler, "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Werror",
+                                       "-O1", "-o", file("driver"), file("driver.c"), file("robot.c"), "-lm"});
+    EXPECT_EQ(compiled.status, 0) << compiler << compiled.err;
+    for (const Trajectory& run : runs) {
+      write_file(file("samples"), input_of(run));
+      const auto result = run_program(
+          {"/bin/sh", "-c", "\"$1\" < \"$2\" > \"$3\"", "sh", file("driver"), file("samples"), file("said")});
+      EXPECT_EQ(result.status, 0) << result.err;
+      std::ifstream said(file("said"));
+      worst.join(compare(exported, run, said));
+    }
   }
   return worst;
 }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/export/forms.hpp"
+#include "ident/base/utf8.hpp"
 #include "tests/app/export/exported.hpp"
 #include "tests/app/export/hostile_names.hpp"
 #include "tests/filter/filter_test_support.hpp"
@@ -33,7 +34,11 @@ struct Opened {
   }
   std::string text(const char* name) const {
     const auto variable = at(name);
-    return variable ? std::string(static_cast<const char*>(variable->data), variable->nbytes) : "";
+    if (!variable || variable->data_type != MAT_T_UTF16) return "";
+    std::string result;
+    for (std::size_t i = 0; i < variable->nbytes / 2; ++i)
+      append_utf8(result, static_cast<const std::uint16_t*>(variable->data)[i]);
+    return result;
   }
 };
 
@@ -92,6 +97,44 @@ TEST(ExportedMat, HoldsHostileNames) {
     EXPECT_NE(Mat_VarGetCell(names.get(), 0), nullptr);
     EXPECT_EQ(opened.text("ss_lines").find('\n'), std::string::npos);
   }
+}
+
+/// A bank whose channels have these names.
+ExportedBank named(const std::vector<std::string>& names) {
+  ExportedBank exported = as_exported(modebank::test::example_bank(static_cast<Index>(names.size()), 1, 1));
+  for (std::size_t i = 0; i < names.size(); ++i) exported.states[i] = exported.measurements[i] = {names[i], names[i]};
+  exported.mode_names[0] = names[0];
+  return exported;
+}
+
+/// Their letters take two and three bytes in UTF-8; the last name has a character that takes two units of UTF-16.
+const std::vector<std::string> foreign_names{"Glätte", "µ", "速度 m/s", "a*/ \\b", "\xff", "go \U0001F600"};
+
+TEST(ExportedMat, ScipyReadsEveryName) {
+  MODEBANK_NEEDS(run_program({"/usr/bin/python3", "-c", "import scipy.io"}).status == 0,
+                 "SciPy is absent: apt-get install python3-scipy");
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "bank.mat").string();
+  write_mat(named(foreign_names), file);
+  const auto result = run_program({"/usr/bin/python3", "-c",
+                                   "import scipy.io, sys; m = scipy.io.loadmat(sys.argv[1], chars_as_strings=True)\n"
+                                   "for k in ('state_names', 'measurement_units', 'mode_names'):\n"
+                                   "  print(*[ascii(str(c[0][0])) for c in m[k]], sep='|')",
+                                   file});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string all = R"('Gl\xe4tte'|'\xb5'|'\u901f\u5ea6 m/s'|'a*/ \\b'|'\ufffd'|'go \ufffd')";
+  EXPECT_EQ(result.out, all + "\n" + all + "\n'Gl\\xe4tte'\n");
+}
+
+TEST(ExportedMat, OctaveReadsEveryName) {
+  MODEBANK_NEEDS(modebank::test::has_program("octave-cli"), "Octave is absent: apt-get install octave");
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "bank.mat").string();
+  write_mat(named(foreign_names), file);
+  const auto result = run_program(
+      {"octave-cli", "--no-gui", "--eval", "load('" + file + "'); printf('%s|', state_names{:}, mode_names{:});"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, "Glätte|µ|速度 m/s|a*/ \\b|\uFFFD|go \uFFFD|Glätte|");
 }
 
 TEST(ExportedMat, OctaveLoadsAndSimulates) {

@@ -90,7 +90,7 @@ TEST(Names, DoNotReachTheCompiler) {
     exported.archive = name;
     exported.mode_names.assign(2, name);
     exported.provenance.modebank_version = name;
-    const CFiles files = to_c(exported, "auto", true);
+    const CFiles files = to_c(exported, "auto");
     write_file(folder.path() / "auto.h", files.header);
     write_file(folder.path() / "auto.c", files.source);
     const std::string source = (folder.path() / "auto.c").string(), object = (folder.path() / "auto.o").string();

@@ -8,11 +8,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <random>
 
 #include "app/cli/init_trial.hpp"
 #include "app/config/config_file.hpp"
 #include "app/init/proposal.hpp"
 #include "app/init/survey_set.hpp"
+#include "io/import/derived.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/support/paths.hpp"
@@ -43,11 +45,31 @@ class InitLogs : public ::testing::Test {
     for (const FileSet& set : sets) surveyed.push_back(survey_set(set));
     Proposal proposal = propose(sets, surveyed, guess_roles(surveyed), folder.path().string());
     const fs::path target = folder.path() / "log.ini";
+    state_values(proposal);
     make_it_run(proposal, target);
     const std::string text = configuration_text(proposal, "modebank init");
     write_file(target, text);
     const Config config = load_config(target, {});
     return {config.data.state, config.data.input, text};
+  }
+
+  /// The first run holds, for each state, the rows of the column that has its name.
+  void expect_columns(const Names& header, const std::vector<std::vector<double>>& columns) const {
+    Config config = load_config(folder.path() / "log.ini", {});
+    validate(config);
+    config.data.lag_auto = false;
+    const Trajectory run = import_data(config.data).recording.runs.front();
+    for (std::size_t i = 0; i < config.data.state.size(); ++i) {
+      std::string name = config.data.state[i];
+      for (const std::string& line : config.data.derive)
+        if (const DerivedChannel derived = parse_derived(line); derived.name == name)
+          name = derived.expression.channels().front();
+      const auto found = std::find(header.begin(), header.end(), name);
+      ASSERT_NE(found, header.end()) << name;
+      const std::vector<double>& column = columns[static_cast<std::size_t>(found - header.begin())];
+      for (Index k = 0; k < run.samples(); ++k)
+        ASSERT_EQ(run.state(static_cast<Index>(i), k), column[static_cast<std::size_t>(k)]) << name << " row " << k;
+    }
   }
 
   Names in(const fs::path& at, const std::string& ending) const {
@@ -243,6 +265,47 @@ TEST_F(InitLogs, NamesChannelsThatAConfigurationCannotName) {
               HasSubstr("# not taken, without a name: column 4\n"));
   EXPECT_THAT(init({write("lines.csv", log_of("time,wz,cmd,\"u\nV\"\n", 400, row))}).text,
               HasSubstr("# not taken, its name has a line end or another control character: u\\x0aV\n"));
+}
+
+/// The names are a draw of what names may hold. Either the configuration names the columns as they are called, and the
+/// data that it imports are theirs, or the message says what to rename.
+TEST_F(InitLogs, NamesOfAnyLetters) {
+  const Names pieces{"v",  "w z", " ", ",", "=", "#", ";",  "\"",   "'",          "[",      "]",     "(",   ")",
+                     "\\", "ä",   "µ", "*", "+", "/", "\t", "\x01", "\u0085",     "\u202e", "speed", "cmd", "1",
+                     ".",  "-",   "$", "%", "|", ":", "&",  "速",   "\U0001F600", "time",   "pi",    "in",  "x"};
+  std::mt19937_64 draw(40);
+  const auto name = [&] {
+    std::string text;
+    for (std::size_t i = 0, length = 1 + draw() % 5; i < length; ++i) text += pieces[draw() % pieces.size()];
+    return text;
+  };
+  const auto field = [](const std::string& text) {
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+  };
+  std::vector<std::vector<double>> columns(3);
+  for (const Drive& d : drive(300)) {
+    const double values[] = {d.t, d.rate, d.left + d.noise};
+    for (std::size_t c = 0; c < 3; ++c) columns[c].push_back(std::round(1e5 * values[c]) / 1e5);
+  }
+  int written = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Names header{name(), name(), name()};
+    std::string text = fmt::format("{},{},{}\n", field(header[0]), field(header[1]), field(header[2]));
+    SCOPED_TRACE(text);
+    for (std::size_t k = 0; k < 300; ++k)
+      text += fmt::format("{:.5f},{:.5f},{:.5f}\n", columns[0][k], columns[1][k], columns[2][k]);
+    try {
+      init({write("any.csv", text)});
+    } catch (const std::exception& error) {
+      EXPECT_THAT(error.what(), HasSubstr("rename"));
+      continue;
+    }
+    ++written;
+    expect_columns(header, columns);
+  }
+  EXPECT_GT(written, 100);
 }
 
 /// Whatever a column is called, clocks in it are times; what cannot be read as times is said once.
