@@ -52,9 +52,8 @@ MAY_INCLUDE = {
     "app/export": BELOW_APP + ["app/chain", "app/text"],
     "app/study": BELOW_APP + ["app/chain", "app/config", "app/text"],
     "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
-    "app/view": BELOW_APP + ["app/report"],
     "app/init": BELOW_APP,
-    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("init", "chain", "check", "config", "text", "pipeline", "export", "study", "report", "view")],
+    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("init", "chain", "check", "config", "text", "pipeline", "export", "study", "report")],
     "python/bindings": BELOW_APP + [f"app/{folder}" for folder in ("chain", "config", "text", "pipeline")],
 }
 # Whose the installed headers <modebank/NAME/...> are.

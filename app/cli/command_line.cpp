@@ -41,8 +41,6 @@ po::options_description describe_options(CommandLine& line) {
   add_switch("apply", line.apply);
   add_switch("force", line.force);
   add_switch("yes", line.yes);
-  add_switch("open", line.open);
-  add("port", po::value(&line.port));
   add("form", po::value(&line.form));
   add("output,o", po::value(&line.output));
   add("to", po::value(&line.exported.to));
@@ -129,6 +127,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   CommandLine line;
   for (int i = 0; i < argc; ++i) line.typed += (i ? " " : "") + shell_quoted(argv[i]);
   line.program = program_as_called(argc > 0 ? argv[0] : "modebank");
+  if (argc > 1) refuse_gone_command(argv[1]);  // before its options, which went with it
   const po::options_description description = describe_options(line);
   po::positional_options_description positional;
   positional.add("words", -1);

@@ -32,8 +32,6 @@ struct CommandLine {
   bool apply = false;              ///< check: write what it suggests
   bool force = false;              ///< write though something speaks against it (init, demo, export)
   bool yes = false;                ///< init: ask nothing
-  bool open = false;               ///< view: in the browser
-  int port = 0;                    ///< view: 0, the kernel's choice
   std::string run = {};            ///< whose rows `show` and `export` give; empty: all
   std::string form = "increment";  ///< of models that `show` prints: increment or full
   std::string

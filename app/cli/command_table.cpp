@@ -134,26 +134,14 @@ std::vector<Command> commands_to_use() {
        run_show},
       {"Use",
        "report",
-       "ARCHIVE|STUDY [ARCHIVE...]",
-       "a page that opens offline in a browser: of a run, a study, or runs side by side",
-       "",
+       "ARCHIVE|STUDY|FOLDER [ARCHIVE...]",
+       "a page that opens offline in a browser: of a run, a study, runs side by side, or a folder",
+       "A folder of archives becomes SITE/index.html, a table that sorts, filters and compares, with a page for each "
+       "archive and study below the folder. Run again, it makes the pages whose archive changed.",
        "modebank report robot.h5",
        {"report"},
-       {as_json(), output("FILE", "the page (named after the archive)")},
+       {as_json(), output("FILE|SITE", "the page, or the folder of pages (named after the archive or folder)")},
        run_report},
-      {"Use",
-       "view",
-       "ARCHIVE|FOLDER",
-       "the report in a browser, served to this machine alone; of a folder an overview to compare from",
-       "Prints an address that opens once. New archives of the folder and of those below it appear by themselves. "
-       "Links "
-       "are not followed; every page is made by a process of its own with 512 MB and 20 s.",
-       "modebank view results",
-       {},
-       {{"open", "", "open the browser (xdg-open)"},
-        {"port", "N", "of 127.0.0.1; 0: any that is free"},
-        {"json", "", "what the overview says of an archive, and stop"}},
-       run_view},
       {"Use",
        "track",
        "ARCHIVE",
@@ -277,6 +265,12 @@ const std::vector<CommandOption>& common_options() {
                                                   {"verbose,v", "", "every candidate that was tried, too"},
                                                   {"version", "", "version and revision"}};
   return options;
+}
+
+void refuse_gone_command(const std::string& name) {
+  if (name == "view")
+    throw ConfigurationError(
+        "view went; instead: `modebank report FOLDER -o SITE` writes an index and pages that open from disk");
 }
 
 const Command* find_command(const std::string& name) {

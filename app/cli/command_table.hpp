@@ -40,6 +40,9 @@ const std::vector<Command>& command_table();
 /// Options that every command has.
 const std::vector<CommandOption>& common_options();
 
+/// Throws ConfigurationError, which names what takes its place, for a command of an earlier version.
+void refuse_gone_command(const std::string& name);
+
 /// Null when there is none of that name.
 const Command* find_command(const std::string& name);
 

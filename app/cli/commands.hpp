@@ -18,7 +18,6 @@ Result do_simulate(const CommandLine& line);  ///< the same without printing
 int run_report(const CommandLine& line);
 int run_study(const CommandLine& line);
 int run_show(const CommandLine& line);
-int run_view(const CommandLine& line);
 int run_track(const CommandLine& line);
 int run_predict(const CommandLine& line);
 int run_export(const CommandLine& line);

@@ -134,6 +134,7 @@ std::string help_overview() {
 
 std::string help_on(const std::string& name) {
   if (const Command* command = find_command(name)) return command_text(*command);
+  refuse_gone_command(name);
   if (const std::string section = section_text(name); !section.empty()) return section;
   std::vector<std::string> known;
   if (const std::string term = term_text(name, known); !term.empty()) return term;

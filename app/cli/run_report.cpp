@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
 #include "app/report/page/compare_page.hpp"
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/write_page.hpp"
+#include "app/report/site/report_folder.hpp"
+#include "app/study/answers/verify_study.hpp"
 #include "io/archive/archive.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
@@ -14,12 +17,19 @@
 namespace modebank::app {
 namespace {
 
-/// Where the page goes: -o, else the archive's name with .html in the current folder.
+/// Whether one folder is named that is not a study's.
+bool is_site(const CommandLine& line) {
+  const std::filesystem::path folder = line.files.front();
+  return line.files.size() == 1 && std::filesystem::is_directory(folder) && !is_study_folder(folder) &&
+         !std::filesystem::exists(folder / "study.h5");
+}
+
+/// Where the page or the site goes: -o, else into the current folder under the archive's or folder's name.
 std::filesystem::path page_path(const CommandLine& line) {
   if (!line.output.empty()) return line.output;
   std::filesystem::path named = std::filesystem::path(line.files.front()).lexically_normal();
   if (!named.has_filename()) named = named.parent_path();
-  return named.stem().string() + ".html";
+  return named.stem().string() + (is_site(line) ? "_site" : ".html");
 }
 
 void report_run(const OpenArchive& opened, const std::filesystem::path& page, const ReportConfig& options,
@@ -28,6 +38,21 @@ void report_run(const OpenArchive& opened, const std::filesystem::path& page, co
   report::check_page_path(page, {file});
   const Archive archive = read_archive(opened, Evaluations::in_file);
   report::write_page(page, report::run_page(archive, file.filename().string(), options), written);
+}
+
+/// The index of a folder and the pages of its archives.
+void report_site(const CommandLine& line, const std::filesystem::path& site, const ReportConfig& options,
+                 report::Written& written) {
+  const report::SiteResult result = report::report_folder(line.files.front(), site, options, written);
+  std::string text = fmt::format("{} archives; pages: {} written, {} removed\n", result.archives,
+                                 written.files.size() - 1, result.removed.size());
+  nlohmann::json problems = nlohmann::json::array();
+  for (const auto& [file, what] : result.problems) {
+    text += fmt::format("no page of {}: {}\n", file, what);
+    problems.push_back({{"file", file}, {"what", what}});
+  }
+  print_text(line, text);
+  print_json(line, {{"written", written.files}, {"removed", result.removed}, {"problems", problems}});
 }
 
 /// The page or pages of what was named.
@@ -52,12 +77,16 @@ void report_files(const CommandLine& line, const std::filesystem::path& page, co
 int run_report(const CommandLine& line) {
   if (line.files.empty() || line.files.size() > report::most_compared)
     throw ConfigurationError(fmt::format(
-        "report needs an archive, a study's folder, or two to {} archives to compare: modebank report ARCHIVE "
-        "[ARCHIVE...] [-o page.html]",
+        "report needs an archive, a study's folder, a folder of archives, or two to {} archives to compare: modebank "
+        "report ARCHIVE [ARCHIVE...] [-o page.html]",
         report::most_compared));
   const ReportConfig options = stored_config("", line.overrides).report;
   const std::filesystem::path page = final_target(page_path(line));
   report::Written written{[&](const std::string& text) { print_text(line, text); }, {}};
+  if (is_site(line)) {
+    report_site(line, page, options, written);
+    return 0;
+  }
   report_files(line, page, options, written);
   print_json(line, {{"written", written.files}});
   return 0;

@@ -4,8 +4,7 @@
 scale.py MODEBANK FOLDER [--rows N] [--runs N] [--page N]
 
 One run of so many rows and three channels, cut into twenty blocks (data.split), with bank.refine = none and with the
-default, and its report; the page of one whole run, made with the limits that `modebank view` gives each page; so many
-runs of six rows in one file (data.run), run, shown, verified and reported. Data are simulated with a
+default, and its report; the page of one whole run; so many runs of six rows in one file (data.run), run, shown, verified and reported. Data are simulated with a
 fixed seed: two motions that change every 50 samples in the mean. One lag and no search for more, so that the figures
 are those of reading, filtering and writing, and compare with those of older programs.
 """
@@ -13,7 +12,6 @@ are those of reading, filtering and writing, and compare with those of older pro
 import argparse
 import os
 import platform
-import resource
 import subprocess
 import time
 from pathlib import Path
@@ -70,18 +68,12 @@ def processor_seconds(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def limit_as_view():
-    """What app/view/child.hpp allows a page."""
-    resource.setrlimit(resource.RLIMIT_AS, (512 << 20, 512 << 20))
-    resource.setrlimit(resource.RLIMIT_CPU, (20, 20))
-
-
-def measure(command, folder, limit=None):
+def measure(command, folder):
     """Wall-clock and processor seconds, those since the last evaluation, largest resident memory in MB, and standard
     error."""
     start, evaluated, text = time.monotonic(), 0.0, ""
     with open(folder / "stdout.txt", "w") as output:
-        process = subprocess.Popen(command, cwd=folder, stdout=output, stderr=subprocess.PIPE, text=True, preexec_fn=limit)
+        process = subprocess.Popen(command, cwd=folder, stdout=output, stderr=subprocess.PIPE, text=True)
         for line in process.stderr:
             text += line
             if line.startswith("evaluation:"):
@@ -93,12 +85,11 @@ def measure(command, folder, limit=None):
     return time.monotonic() - start, processor, processor - evaluated, usage.ru_maxrss / 1024, text
 
 
-def row(command, folder, archive=None, limit=None):
-    wall, processor, written, memory, text = measure(command, folder, limit)
+def row(command, folder, archive=None):
+    wall, processor, written, memory, text = measure(command, folder)
     size = f"{(folder / archive).stat().st_size / 1e6:.0f}" if archive else ""
     shown = " ".join(["modebank", *map(str, command[1:])])
-    limited = " within the limits of `view`" if limit else ""
-    print(f"| `{shown}`{limited} | {wall:.1f} | {processor:.1f} | {memory:.0f} | {size} |", flush=True)
+    print(f"| `{shown}` | {wall:.1f} | {processor:.1f} | {memory:.0f} | {size} |", flush=True)
     return [line for line in text.splitlines() if "learned from" in line], written
 
 
@@ -132,7 +123,7 @@ def main():
     write_rows(folder / "page.csv", options.page)
     (folder / "page.ini").write_text(BLOCK.format(data="page.csv", split="", length=10))
     row([program, "run", "page.ini", "--bank.refine", "none", "--archive.output", "page.h5"], folder, "page.h5")
-    row([program, "report", "page.h5", "-o", "page.html"], folder, limit=limit_as_view)
+    row([program, "report", "page.h5", "-o", "page.html"], folder)
     write_runs(folder / "runs.csv", options.runs)
     (folder / "runs.ini").write_text(BLOCK.format(data="runs.csv", split="run = id", length=5))
     _, written = row([program, "run", "runs.ini", "--bank.refine", "none", "--archive.output", "runs.h5"], folder, "runs.h5")

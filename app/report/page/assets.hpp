@@ -12,8 +12,7 @@ std::string_view plotly_sha256();  ///< of Plotly as it is unpacked, as sha256su
 std::string_view run_js();         ///< what draws the page of a run
 std::string_view study_js();       ///< that of a study
 std::string_view compare_js();     ///< that of two runs
-std::string_view overview_html();  ///< of a folder of archives, for app/view
-std::string_view overview_js();
+std::string_view index_js();       ///< that of the index of a folder
 std::string_view terms_json();  ///< every term's one definition, of pages and of help
 
 // Configurations of the demo.

@@ -138,16 +138,17 @@ json z_cells(const MatchedMode& pair) {
 /// The modes of run k beside the first's.
 json match_of(const Runs& runs, std::size_t k) {
   const auto &first = runs[0].archive.bank, &other = runs[k].archive.bank;
-  if (!first || !other) return {{"difference", "not both hold a bank"}, {"modes", json::array()}};
-  const ModeMatch match = match_modes(*first, *other);
+  if (!first || !other) return {{"difference", "not both hold a bank"}, {"by_time", false}, {"modes", json::array()}};
+  const ModeMatch match = match_modes(*first, *other, time_in_common(runs[0].archive, runs[k].archive));
   json modes = json::array();
   for (const MatchedMode& pair : match.modes)
     modes.push_back({{"first", pair.first},
                      {"second", pair.second},
                      {"distance", number(pair.z.size() ? pair.distance : NAN, fmt::format("{:.2g}", pair.distance))},
+                     {"shared", percent(pair.shared)},
                      {"agree", pair.agree()},
                      {"z", z_cells(pair)}});
-  return {{"difference", match.difference}, {"modes", modes}};
+  return {{"difference", match.difference}, {"by_time", match.by_time}, {"modes", modes}};
 }
 
 json matches_of(const Runs& runs) {

@@ -54,7 +54,7 @@ void append_part(std::string_view name, const Page& page, std::string& html) {
   else if (name == "arrays")
     append_arrays(page.arrays, html);
   else if (name == "plotly")
-    html += assets::plotly_packed();
+    html += page.plots ? assets::plotly_packed() : std::string_view();
   else if (name == "script")
     html += page.script;
   else

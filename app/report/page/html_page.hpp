@@ -15,6 +15,7 @@ struct Page {
   nlohmann::json data;      ///< what the script draws; texts in it are shown as text, whatever they hold
   PageArrays arrays;        ///< the large part of it
   std::string_view script;  ///< one of assets.hpp
+  bool plots = true;        ///< Plotly is in the page
 };
 
 /// As text between tags.

@@ -57,6 +57,23 @@ std::string obstacle(const Bank& first, const Bank& second) {
   return "";
 }
 
+/// How near the modes of both banks are by their parameters: larger is nearer.
+Eigen::MatrixXd nearness(const Bank& first, const Bank& second) {
+  Eigen::MatrixXd near(first.mode_count(), second.mode_count());
+  for (Index a = 0; a < near.rows(); ++a)
+    for (Index b = 0; b < near.cols(); ++b) {
+      const double distance = pair_of(first, a, second, b).distance;
+      near(a, b) = -std::log1p(distance * distance);
+    }
+  return near;
+}
+
+/// Whether one of two modes has more time in common with the other than with any further mode.
+bool go_together(const Eigen::MatrixXd& shared, Index a, Index b) {
+  const double time = shared(a, b);
+  return time > 0.0 && (time == shared.row(a).maxCoeff() || time == shared.col(b).maxCoeff());
+}
+
 }  // namespace
 
 bool MatchedMode::agree() const {
@@ -65,26 +82,30 @@ bool MatchedMode::agree() const {
   return z.cwiseAbs().maxCoeff() <= limit;
 }
 
-ModeMatch match_modes(const Bank& first, const Bank& second) {
+ModeMatch match_modes(const Bank& first, const Bank& second, const Eigen::MatrixXd& shared) {
   ModeMatch match;
+  match.by_time = shared.size() > 0 && shared.sum() > 0.0;
   match.difference = obstacle(first, second);
-  if (!match.difference.empty()) return match;
+  const bool comparable = match.difference.empty();
+  if (!comparable && !match.by_time) return match;
   const Index K = first.mode_count(), L = second.mode_count(), most = std::max(K, L);
-  // Rows and columns that only fill up cost the same with everyone.
+  // Rows and columns that only fill up are worth the same with every mode.
   Eigen::MatrixXd merit = Eigen::MatrixXd::Zero(most, most);
-  for (Index a = 0; a < K; ++a)
-    for (Index b = 0; b < L; ++b) {
-      const double distance = pair_of(first, a, second, b).distance;
-      merit(a, b) = -std::log1p(distance * distance);
-    }
+  merit.topLeftCorner(K, L) = match.by_time ? shared : nearness(first, second);
   const std::vector<Index> column = best_assignment(merit);
+  std::vector<MatchedMode> alone;
   for (Index a = 0; a < most; ++a) {
     const Index b = column[static_cast<std::size_t>(a)];
-    if (a < K && b < L)
-      match.modes.push_back(pair_of(first, a, second, b));
-    else
-      match.modes.push_back({a < K ? a : -1, b < L ? b : -1, {}});
+    const bool both = a < K && b < L;
+    if (both && (!match.by_time || go_together(shared, a, b))) {
+      match.modes.push_back(comparable ? pair_of(first, a, second, b) : MatchedMode{a, b, {}});
+      if (match.by_time) match.modes.back().shared = shared(a, b);
+      continue;
+    }
+    if (a < K) match.modes.push_back({a, -1, {}});
+    if (b < L) alone.push_back({-1, b, {}});
   }
+  match.modes.insert(match.modes.end(), alone.begin(), alone.end());
   return match;
 }
 

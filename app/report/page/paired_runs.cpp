@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "app/chain/judged_runs.hpp"
 
@@ -27,23 +29,26 @@ bool same_samples(const Trajectory& a, const Trajectory& b) {
   return a.run == b.run && a.role == b.role && a.time_s == b.time_s && a.state == b.state;
 }
 
-/// The judged runs of one that the other holds, too, with what both banks said of them.
-struct CommonRuns {
-  std::vector<Eigen::VectorXd> better, other;
-};
-
-CommonRuns common_runs(const Archive& better, const Archive& other) {
-  CommonRuns common;
-  const auto &first = better.recording->runs, &second = other.recording->runs;
+/// Positions of the judged runs of one archive, each with that of the same run in the other. Empty where not both hold
+/// runs and a bank that was scored.
+std::vector<std::pair<std::size_t, std::size_t>> common_runs(const Archive& one, const Archive& other) {
+  std::vector<std::pair<std::size_t, std::size_t>> common;
+  if (!one.recording || !other.recording || !bank_of(one) || !bank_of(other)) return common;
+  const auto &first = one.recording->runs, &second = other.recording->runs;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    if (first[i].role != judged_role(better)) continue;
+    if (first[i].role != judged_role(one)) continue;
     const auto found =
         std::find_if(second.begin(), second.end(), [&](const Trajectory& run) { return same_samples(first[i], run); });
-    if (found == second.end()) continue;
-    common.better.push_back(log_density(*bank_of(better), i));
-    common.other.push_back(log_density(*bank_of(other), static_cast<std::size_t>(found - second.begin())));
+    if (found != second.end()) common.emplace_back(i, static_cast<std::size_t>(found - second.begin()));
   }
   return common;
+}
+
+Eigen::MatrixXd mode_probability(const FilterEvaluation& evaluation, std::size_t run) {
+  Eigen::MatrixXd probability;
+  evaluation.with_run(run, {"mode_probability"},
+                      [&](const RunEvaluation& said) { probability = said.mode_probability; });
+  return probability;
 }
 
 }  // namespace
@@ -55,13 +60,32 @@ ArchiveGain gain_between(const Archive& better, const Archive& other) {
     result.difference = "not both were scored";
     return result;
   }
-  const CommonRuns common = common_runs(better, other);
-  result.runs = std::ssize(common.better);
+  std::vector<Eigen::VectorXd> of_better, of_other;
+  for (const auto& [i, j] : common_runs(better, other)) {
+    of_better.push_back(log_density(*bank_of(better), i));
+    of_other.push_back(log_density(*bank_of(other), j));
+  }
+  result.runs = std::ssize(of_better);
   if (result.runs == 0)
     result.difference = "no judged run is in both with the same samples";
   else
-    result.gain = paired_gain("", common.better, common.other);
+    result.gain = paired_gain("", of_better, of_other);
   return result;
+}
+
+Eigen::MatrixXd time_in_common(const Archive& first, const Archive& second) {
+  Eigen::MatrixXd both, either;
+  for (const auto& [i, j] : common_runs(first, second)) {
+    const Eigen::MatrixXd a = mode_probability(*bank_of(first), i), b = mode_probability(*bank_of(second), j);
+    if (both.size() == 0) either = both = Eigen::MatrixXd::Zero(a.rows(), b.rows());
+    for (Index k = 0; k < a.cols(); ++k) {
+      if (!a.col(k).allFinite() || !b.col(k).allFinite()) continue;
+      const Eigen::MatrixXd of_a = a.col(k).replicate(1, b.rows()), of_b = b.col(k).transpose().replicate(a.rows(), 1);
+      both += of_a.cwiseMin(of_b);
+      either += of_a.cwiseMax(of_b);
+    }
+  }
+  return (either.array() > 0.0).select(both.array() / either.array(), 0.0);
 }
 
 std::string gain_words(const PairedGain& gain) {

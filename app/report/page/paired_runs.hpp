@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 
 #include "filter/judge/score/paired_gain.hpp"
@@ -16,6 +17,11 @@ struct ArchiveGain {
 
 /// Over the judged runs of the same name, times and measurements: only there do densities compare.
 ArchiveGain gain_between(const Archive& better, const Archive& other);
+
+/// K x L: of mode a of `first` and mode b of `second`, the sum over samples of the smaller of their two probabilities,
+/// each after its measurement, over that of the larger: 1 where both are as probable at every sample. Empty where no
+/// judged run is in both.
+Eigen::MatrixXd time_in_common(const Archive& first, const Archive& second);
 
 /// " by 0.134 +- 0.040 nats per sample", without the error where it is not known.
 std::string gain_words(const PairedGain& gain);

@@ -83,8 +83,8 @@ TEST_F(Json, CommandsGiveTheMembersThatAreDocumented) {
       {"export", archive(), "--to", "json", "--force"},
       {"export", archive(), "--to", "c", "--force", "-o", file("f.c").string()},
       {"report", archive(), "-o", file("page.html").string()},
+      {"report", file("").string(), "-o", file("site").string()},
       {"verify", archive()},
-      {"view", archive()},
       {"study", config(), "--study.vary", "window.length = 20 | 25", "--study.output", file("s").string()},
       {"verify", file("s").string()},
   };

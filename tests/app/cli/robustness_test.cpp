@@ -373,7 +373,8 @@ TEST_F(Robustness, P8WhatOneFormOfACommandDoesNotReadIsRefused) {
   refuses({"export", archive(), "--to", "c", "--table", "/bank"}, "--table belongs to export --to csv");
   refuses({"export", archive(), "--to", "mat", "--wheel_radius_m", "1"},
           "--wheel_radius_m belongs to export --to ros2");
-  refuses({"view", archive(), "--json", "--port", "8000"}, "--port: view --json prints and stops");
+  refuses({"view", "results", "--open", "--port", "8000"}, "view went; instead: `modebank report FOLDER -o SITE`");
+  refuses({"help", "view"}, "view went; instead: `modebank report FOLDER -o SITE`");
   refuses({"evaluate", config(), "--archive.bank", archive(), "--archive.output", file("o.h5").string(),
            "--bank.refine", "none"},
           "--bank.refine: with archive.bank nothing is learned");

@@ -98,6 +98,64 @@ TEST(MatchedModes, LeaveOverWhatOneHasMore) {
   EXPECT_NE(match_modes(first, other).difference, "");
 }
 
+/// Modes are numbered by chance: those that are probable at the same samples are one, whatever their parameters say.
+TEST(MatchedModes, HaveTimeInCommon) {
+  const Bank first = bank_of({{-0.5, 1.0}, {0.0, 0.0}, {-0.9, 2.0}}, 0.1),
+             second = bank_of({{-0.5, 1.0}, {0.0, 0.0}}, 0.1);
+  Eigen::MatrixXd shared(3, 2);
+  shared << 0.01, 0.9,  // by parameters the first mode of both were a pair
+      0.6, 0.02, 0.05, 0.02;
+  const auto match = match_modes(first, second, shared);
+  ASSERT_EQ(match.modes.size(), 3u);
+  EXPECT_TRUE(match.by_time);
+  EXPECT_EQ(match.modes[0].second, 1);
+  EXPECT_EQ(match.modes[0].shared, 0.9);
+  EXPECT_EQ(match.modes[1].second, 0);
+  EXPECT_NEAR(match.modes[1].z(0), -0.5 / (0.1 * std::sqrt(2.0)), 1e-12);
+  EXPECT_EQ(match.modes[2].second, -1);
+  EXPECT_TRUE(std::isnan(match.modes[2].shared));
+}
+
+/// Modes that rule at different times are no pair, however near their parameters are.
+TEST(MatchedModes, ThatNeverRuleTogetherStayAlone) {
+  const Bank bank = bank_of({{-0.5, 1.0}, {0.0, 0.0}}, 0.1);
+  Eigen::MatrixXd shared(2, 2);
+  shared << 0.5, 0.4, 0.0, 0.05;
+  const auto match = match_modes(bank, bank, shared);
+  ASSERT_EQ(match.modes.size(), 2u);
+  EXPECT_EQ(match.modes[0].second, 0);
+  EXPECT_EQ(match.modes[1].second, 1);
+  shared(1, 1) = 0.0;
+  shared(1, 0) = 0.05;
+  const auto apart = match_modes(bank, bank, shared);  // 0.5 and 0 in place of 0.4 and 0.05
+  ASSERT_EQ(apart.modes.size(), 3u);
+  EXPECT_EQ(apart.modes[0].second, 0);
+  EXPECT_EQ(apart.modes[1].second, -1);
+  EXPECT_EQ(apart.modes[2].first, -1);
+  EXPECT_EQ(apart.modes[2].second, 1);
+}
+
+TEST(MatchedModes, OfABankOfOneModeIsTheOneUsedMost) {
+  const auto match =
+      match_modes(bank_of({{0.0, 0.0}}, 0.1), bank_of({{0.0, 0.0}, {5.0, 5.0}}, 0.1), Eigen::RowVector2d(0.33, 0.67));
+  ASSERT_EQ(match.modes.size(), 2u);
+  EXPECT_EQ(match.modes[0].second, 1);
+  EXPECT_EQ(match.modes[0].shared, 0.67);
+  EXPECT_EQ(match.modes[1].second, 0);
+}
+
+TEST(MatchedModes, OfOtherModelsAreMatchedByTimeAlone) {
+  const Bank first = bank_of({{-0.5, 1.0}, {0.0, 0.0}}, 0.1);
+  Bank second = first;
+  second.input_names = {"v"};
+  const auto match = match_modes(first, second, Eigen::Matrix2d{{0.1, 0.9}, {0.8, 0.2}});
+  EXPECT_NE(match.difference, "");
+  ASSERT_EQ(match.modes.size(), 2u);
+  EXPECT_EQ(match.modes[0].second, 1);
+  EXPECT_EQ(match.modes[0].z.size(), 0);
+  EXPECT_FALSE(match.modes[0].agree());
+}
+
 /// Six held-out runs of one sample rate; every sample of run r is predicted better by `gains[r]`.
 Archive archive_with(const std::vector<double>& gains) {
   Archive archive;
@@ -148,6 +206,27 @@ TEST(PairedRuns, OtherSamplesDoNotCount) {
   EXPECT_EQ(none.runs, 0);
   EXPECT_TRUE(std::isnan(none.gain.gain));
   EXPECT_NE(none.difference, "");
+}
+
+/// Two modes in the first and three in the second; the runs differ in their measurements.
+TEST(PairedRuns, TimeInCommonIsThatOfCommonRuns) {
+  Archive first = archive_with({0.0, 0.0}), second = first;
+  for (std::size_t r = 0; r < 2; ++r) {
+    first.evaluations[0].runs[r].mode_probability = Eigen::Vector2d(0.75, 0.25).replicate(1, 50);
+    second.evaluations[0].runs[r].mode_probability = Eigen::Vector3d(0.5, 0.5, 0.0).replicate(1, 50);
+    second.evaluations[0].runs[r].mode_probability(0, 0) = NAN;  // before the start
+  }
+  second.recording->runs[1].state *= 2.0;
+  const Eigen::MatrixXd shared = app::report::time_in_common(first, second);
+  ASSERT_EQ(shared.rows(), 2);
+  ASSERT_EQ(shared.cols(), 3);
+  EXPECT_NEAR(shared(0, 0), 0.5 / 0.75, 1e-12);
+  EXPECT_NEAR(shared(1, 1), 0.25 / 0.5, 1e-12);
+  EXPECT_EQ(shared(0, 2), 0.0);
+  // A bank and itself share all time, however undecided it is.
+  EXPECT_TRUE(app::report::time_in_common(first, first).diagonal().isOnes(1e-12));
+  second.recording->runs.clear();
+  EXPECT_EQ(app::report::time_in_common(first, second).size(), 0);
 }
 
 TEST(RepeatGain, IsPairedByRepeat) {

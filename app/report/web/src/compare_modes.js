@@ -14,8 +14,8 @@ const namesOf = (bank) => (bank.motion_names.length ? bank.motion_names : bank.p
 const modeText = (k) => (k < 0 ? '–' : String(k));
 
 /** `ofModes`: the colours of A's modes and of the other's. */
-function pairColumns(a, b, letter, ofModes) {
-  const names = namesOf(a);
+function pairColumns(a, b, letter, ofModes, {by_time: byTime, difference}) {
+  const names = difference ? [] : namesOf(a);
   const colourOf = (i, mode) => (mode < 0 ? null : ofModes[i](mode));
   const cell = (bank, mode, i) => {
     const values = parametersOf(bank, mode);
@@ -29,6 +29,8 @@ function pairColumns(a, b, letter, ofModes) {
       of: (pair) => modeText(pair.second),
       swatch: (pair) => colourOf(1, pair.second)
     },
+    ...(byTime ? [{name: 'Time in common', of: (pair) => (pair.first < 0 || pair.second < 0 ? null : pair.shared)}] :
+                 []),
     {name: 'Apart [standard errors]', of: (pair) => (pair.first < 0 || pair.second < 0 ? null : pair.distance)},
     {name: 'They', text: true, of: (pair) => differingWords(pair, names, letter)},
     ...names.flatMap(
@@ -42,8 +44,9 @@ function pairColumns(a, b, letter, ofModes) {
 function matchTables(data, match, k, ofModes) {
   const letter = letters[k], [a, b] = [data.runs[0].bank, data.runs[k].bank];
   const heading = h('h3', {}, `A and ${letter}`);
-  if (match.difference) return [heading, note(`They cannot be matched: ${match.difference}.`)];
-  const columns = pairColumns(a, b, letter, [ofModes[0], ofModes[k]]), [differing, agreeing] = sortedPairs(match);
+  if (!match.modes.length) return [heading, note(`They cannot be matched: ${match.difference}.`)];
+  const columns = pairColumns(a, b, letter, [ofModes[0], ofModes[k]], match),
+        [differing, agreeing] = sortedPairs(match);
   const same = agreeing.length ? table(columns, agreeing, {caption: `Modes of A and ${letter} that agree`}) : null;
   const fold = same && differing.length ? details(`${agreeing.length} pairs agree within their errors`, same) : same;
   return [
@@ -55,11 +58,14 @@ function matchTables(data, match, k, ofModes) {
 }
 
 export function drawModes(data) {
-  const how =
-      'Matched one to one by their distance: the root mean square difference of the parameters in standard errors, ' +
-      'both errors together. What agrees does so in all parameters together at 95 %. Matched modes have one colour.';
+  const how = data.matches.some(({by_time: byTime}) => byTime) ?
+      'Matched one to one by their time in common: over the samples of common runs, the sum of the smaller of both ' +
+          'probabilities over the sum of the larger.' :
+      'No run is in both: matched one to one by the parameters.';
+  const rest = ' Apart: the root mean square difference of the parameters in standard errors, both errors together. ' +
+      'Modes that agree do so in all parameters together at 95 %. Matched modes have one colour.';
   const ofModes = modeColours(data);
   section(
       'modes', 'Modes side by side', data.matches.map((match, i) => matchTables(data, match, i + 1, ofModes)),
-      data.matches.some(({difference}) => !difference) ? h('p', {class: 'caption'}, how) : null);
+      data.matches.some(({modes}) => modes.length) ? h('p', {class: 'caption'}, how + rest) : null);
 }

@@ -58,8 +58,9 @@ function modeTraces(data, chosen) {
   const list = data.runs.map((run) => run.windows);
   const at = list.map((windows) => [axisOf(windows, chosen.x), axisOf(windows, chosen.y)]);
   const banks = list.map(({bank, parameters}, k) => (bank && at[k].every((a) => a < parameters) ? bank : null));
-  const matched =
-      banks[0] ? data.matches.flatMap((match, i) => (banks[i + 1] ? [links(match, banks, at, i + 1)] : [])) : [];
+  const matched = banks[0] ?
+      data.matches.flatMap((match, i) => (banks[i + 1] && !match.difference ? [links(match, banks, at, i + 1)] : [])) :
+      [];
   return [...matched, ...banks.flatMap((bank, k) => (bank && bank.length ? [bankPoints(k, bank, at)] : []))];
 }
 

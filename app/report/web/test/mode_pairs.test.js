@@ -16,6 +16,7 @@ test('pairs that differ come first, those of one bank alone last', () => {
 });
 
 test('what a pair differs in', () => {
+  assert.equal(differingWords(pair(0, 1, null, false), [], 'B'), '–');  // of other models
   assert.equal(differingWords(modes[1], ['A [1/s]', 'B'], 'B'), 'differ in A (8.0), B (-2.5)');
   assert.equal(differingWords(modes[0], ['A', 'B'], 'B'), 'agree within their errors');
   assert.equal(differingWords(modes[2], ['A', 'B'], 'C'), 'only in A');
