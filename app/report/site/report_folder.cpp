@@ -103,7 +103,7 @@ class Site {
     const std::size_t first = written_.files.size();
     Written pages{[](const std::string&) {}, {}};
     if (is_study(archive))
-      report_study(folder_ / name, archive, site_ / page, options_, pages);
+      report_study({folder_ / name, archive.path(), read_study_file(archive, "study")}, site_ / page, options_, pages);
     else
       write_run(archive, site_ / page, pages);
     written_.files.insert(written_.files.end(), pages.files.begin(), pages.files.end());
