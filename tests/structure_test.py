@@ -7,7 +7,7 @@ import pathlib
 import re
 import sys
 
-# A folder and what its files may include besides themselves; everything under a folder that is not named belongs to it.
+# A folder and what its files may include besides themselves, lowest first; everything under a folder that is not named belongs to it.
 IDENT = ["ident/base", "ident/data", "ident/model"]
 FIT = IDENT + ["ident/model/models", "ident/fit"]
 STEP = IDENT + ["filter/step"]
@@ -44,17 +44,15 @@ MAY_INCLUDE = {
     "io/import": FIT + ["ident/lag", "ident/check", "io/files", "io/table", "io/csv", "io/arrays", "io/recording"],
     "io/include": LIBRARIES + ["io/archive/bank"],  # modebank/modebank.hpp, which includes all that is installed
     "io/simulation": IDENT + ["ident/simulate", "io/files"],
-    "app/chain": BELOW_APP,
-    "app/check": BELOW_APP + ["app/chain"],
-    "app/config": BELOW_APP + ["app/chain"],
-    "app/text": BELOW_APP + ["app/chain"],
-    "app/pipeline": BELOW_APP + ["app/chain", "app/config", "app/text"],
-    "app/export": BELOW_APP + ["app/chain", "app/text"],
-    "app/study": BELOW_APP + ["app/chain", "app/config", "app/text"],
-    "app/report": BELOW_APP + ["app/chain", "app/config", "app/text", "app/study"],
+    "app/config": BELOW_APP,
+    "app/text": BELOW_APP,
+    "app/chain": BELOW_APP + ["app/config", "app/text"],
+    "app/study": BELOW_APP + ["app/config", "app/text", "app/chain"],
+    "app/export": BELOW_APP + ["app/config", "app/text"],
+    "app/report": BELOW_APP + ["app/config", "app/text", "app/chain", "app/study"],
     "app/init": BELOW_APP,
-    "app/cli": BELOW_APP + [f"app/{folder}" for folder in ("init", "chain", "check", "config", "text", "pipeline", "export", "study", "report")],
-    "python/bindings": BELOW_APP + [f"app/{folder}" for folder in ("chain", "config", "text", "pipeline")],
+    "app/cli": BELOW_APP + [f"app/{room}" for room in ("config", "text", "chain", "study", "export", "report", "init")],
+    "python/bindings": BELOW_APP + [f"app/{room}" for room in ("config", "text", "chain")],
 }
 # Whose the installed headers <modebank/NAME/...> are.
 PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge/run",
@@ -89,8 +87,19 @@ def left_out_of_the_whole(root):
     return [f"modebank/modebank.hpp does not include {header}" for header in sorted(headers - included)]
 
 
+def upward():
+    """Folders that may include one which stands after them in the table. Without such a folder, no circle is possible."""
+    order = list(MAY_INCLUDE)
+    return [f"{home} may include {target}, which stands above it" for home in order for target in MAY_INCLUDE[home] if order.index(target) > order.index(home)]
+
+
+def rooms_without_cmake_file(root):
+    """Rooms of app that are no library of their own."""
+    return [f"{room} has no CMakeLists.txt" for room in MAY_INCLUDE if room.startswith("app/") and not (root / room / "CMakeLists.txt").exists()]
+
+
 def main(root):
-    bad = left_out_of_the_whole(root)
+    bad = left_out_of_the_whole(root) + upward() + rooms_without_cmake_file(root)
     for folder in sorted({f.split("/")[0] for f in MAY_INCLUDE}):
         for source in sorted((root / folder).rglob("*.[hc]pp")):
             name = source.relative_to(root).as_posix()

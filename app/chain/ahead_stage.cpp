@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
+#include "app/text/judged_runs.hpp"
 #include "filter/judge/score/combination.hpp"
 #include "filter/learn/chain/forecasters.hpp"
 #include "ident/base/work_counter.hpp"

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "app/chain/expected_time.hpp"
-#include "app/chain/mode_names.hpp"
-#include "app/chain/section.hpp"
+#include "app/config/section.hpp"
+#include "app/text/mode_names.hpp"
 #include "filter/learn/chain/chain.hpp"
 #include "filter/learn/chain/training_check.hpp"
 #include "io/import/import.hpp"

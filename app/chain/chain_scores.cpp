@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "app/chain/chain.hpp"
-#include "app/chain/mode_names.hpp"
 #include "app/chain/model_rows.hpp"
 #include "app/chain/stored_banks.hpp"
+#include "app/text/mode_names.hpp"
 
 namespace modebank {
 

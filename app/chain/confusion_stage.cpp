@@ -1,5 +1,5 @@
-#include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
+#include "app/text/judged_runs.hpp"
 
 namespace modebank {
 

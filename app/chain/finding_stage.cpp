@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "app/chain/error_pattern.hpp"
-#include "app/chain/finding_text.hpp"
-#include "app/chain/judged_runs.hpp"
 #include "app/chain/stages.hpp"
+#include "app/text/finding_text.hpp"
+#include "app/text/judged_runs.hpp"
 #include "ident/check/run_check.hpp"
 #include "ident/check/stream_check.hpp"
 #include "ident/model/equations.hpp"

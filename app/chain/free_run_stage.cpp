@@ -2,16 +2,8 @@
 
 #include "app/chain/stages.hpp"
 #include "filter/judge/run/free_run.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank {
-void check_free_run(const LinearStructure& structure, const FreeRunOptions& options) {
-  const Index fewest = fewest_start_samples(structure);
-  if (options.samples > 0 && options.samples < fewest)
-    throw ConfigurationError(
-        fmt::format("filter.simulate = {}: a model with these lags starts from at least {} measured samples",
-                    options.samples, fewest));
-}
 
 std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,
                                  const std::vector<FreeRun>& free_runs) {

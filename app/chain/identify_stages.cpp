@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "app/chain/section.hpp"
 #include "app/chain/stages.hpp"
+#include "app/config/section.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "modebank/base/error.hpp"
 

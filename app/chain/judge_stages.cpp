@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "app/chain/stages.hpp"
+#include "app/config/free_run_check.hpp"
 #include "filter/judge/decide/diagnostics.hpp"
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/run/smoother.hpp"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "app/chain/options.hpp"
+#include "app/config/chain_options.hpp"
 #include "filter/learn/chain/inputs.hpp"
 
 /// The options that each stage around learning gets (those of learning: filter/learn/chain/inputs.hpp).

@@ -57,8 +57,6 @@ void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Arc
 /// lost.
 std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,
                                  const std::vector<FreeRun>& free_runs);
-/// Throws ConfigurationError, naming the key, unless a free run of this model can start from so many samples.
-void check_free_run(const LinearStructure& structure, const FreeRunOptions& options);
 
 /// Whether the judged runs of an archive ask for the modes of its bank, from what was scored, with its sentences; empty
 /// without a scored bank.

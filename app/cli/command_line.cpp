@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "app/cli/check_options.hpp"
 #include "app/cli/command_table.hpp"
+#include "app/cli/given_options.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "app/study/launch/shell.hpp"

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/chain/stages.hpp"
-#include "app/cli/check_output.hpp"
-#include "app/cli/check_suggestions.hpp"
+#include "app/cli/check/check_output.hpp"
+#include "app/cli/check/check_suggestions.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/json_number.hpp"
 #include "app/cli/progress_meter.hpp"

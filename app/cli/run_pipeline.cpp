@@ -7,6 +7,7 @@
 #include <map>
 
 #include "app/chain/chain.hpp"
+#include "app/chain/pipeline.hpp"
 #include "app/chain/provenance.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
@@ -14,7 +15,6 @@
 #include "app/cli/progress_meter.hpp"
 #include "app/cli/summary_json.hpp"
 #include "app/config/valid_config.hpp"
-#include "app/pipeline/pipeline.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
 #include "app/text/summary_text.hpp"

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/chain/mode_names.hpp"
 #include "app/cli/json_number.hpp"
+#include "app/text/mode_names.hpp"
 
 namespace modebank::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "app/chain/options.hpp"
+#include "app/config/chain_options.hpp"
 #include "app/config/study_config.hpp"
 #include "ident/simulate/simulate.hpp"
 #include "ident/simulate/simulate_vehicle.hpp"

@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
-#include "app/chain/section.hpp"
-#include "app/chain/stages.hpp"
 #include "app/config/config.hpp"
+#include "app/config/free_run_check.hpp"
+#include "app/config/section.hpp"
+#include "filter/learn/chain/stages.hpp"
 #include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "modebank/base/error.hpp"
@@ -17,7 +18,8 @@ void require(bool condition, const std::string& message) {
 void check_prior(const FitOptions& window, Index parameters) {
   const Index sds = std::ssize(window.prior_sd);
   require(sds <= 1 || sds == parameters,
-          fmt::format("window.prior has {} standard deviations: give one, or one per parameter ({}), or none", sds, parameters));
+          fmt::format("window.prior has {} standard deviations: give one, or one per parameter ({}), or none", sds,
+                      parameters));
 }
 
 /// bank.transition = logit has no meaning where no bank is refined, and none in filters that know a constant T alone.

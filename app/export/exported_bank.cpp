@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "app/chain/judged_runs.hpp"
-#include "app/chain/mode_names.hpp"
 #include "app/text/calibration_text.hpp"
+#include "app/text/judged_runs.hpp"
+#include "app/text/mode_names.hpp"
 #include "app/text/mode_words.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/model/parameter_labels.hpp"

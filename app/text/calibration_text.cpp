@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "app/chain/judged_runs.hpp"
+#include "app/text/judged_runs.hpp"
 #include "filter/judge/decide/calibration_reason.hpp"
 
 namespace modebank::app {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "app/chain/judged_runs.hpp"
-#include "app/chain/mode_names.hpp"
+#include "app/text/judged_runs.hpp"
+#include "app/text/mode_names.hpp"
 #include "app/text/text_table.hpp"
 
 namespace modebank::app {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "app/chain/judged_runs.hpp"
+#include "app/text/judged_runs.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/warnings.hpp"
 #include "ident/base/characters.hpp"

@@ -6,8 +6,8 @@
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 
-#include "app/chain/judged_runs.hpp"
-#include "app/chain/mode_names.hpp"
+#include "app/text/judged_runs.hpp"
+#include "app/text/mode_names.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/text_table.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "app/chain/judged_runs.hpp"
+#include "app/text/judged_runs.hpp"
 #include "filter/judge/decide/finding.hpp"
 #include "ident/base/clustered_error.hpp"
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "app/chain/judged_runs.hpp"
+#include "app/text/judged_runs.hpp"
 #include "app/text/named_forecasts.hpp"
 #include "app/text/warnings.hpp"
 #include "filter/judge/decide/calibration_reason.hpp"

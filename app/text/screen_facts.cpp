@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <functional>
 
-#include "app/chain/judged_runs.hpp"
 #include "app/text/calibration_text.hpp"
+#include "app/text/judged_runs.hpp"
 #include "app/text/structure_text.hpp"
 #include "app/text/warnings.hpp"
 #include "ident/base/not_a_number.hpp"

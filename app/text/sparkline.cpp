@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "app/chain/judged_runs.hpp"
+#include "app/text/judged_runs.hpp"
 #include "app/text/stretch_means.hpp"
 
 namespace modebank::app {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "app/chain/judged_runs.hpp"
-#include "app/chain/mode_names.hpp"
+#include "app/text/judged_runs.hpp"
+#include "app/text/mode_names.hpp"
 #include "app/text/mode_words.hpp"
 #include "app/text/noise_factor_text.hpp"
 #include "app/text/number_text.hpp"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/chain/judged_runs.hpp"
 #include "app/text/confusion_text.hpp"
+#include "app/text/judged_runs.hpp"
 #include "app/text/lag_text.hpp"
 #include "app/text/mode_words.hpp"
 #include "app/text/number_text.hpp"

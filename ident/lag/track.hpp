@@ -31,8 +31,8 @@ struct LagTrackOptions {
 /// the end of the range do not count.
 ///
 /// Worth its place because no other estimate sees a lag that wanders inside a run: on BorealTC it finds the spans that
-/// the data's own description states (FLOORING 03: 0.4 to 1.9 s; tests/app/check/check_real_test.cpp), where one lag
-/// and a drift per run see an average.
+/// the data's own description states (FLOORING 03: 0.4 to 1.9 s; tests/app/cli/check/check_real_test.cpp), where one
+/// lag and a drift per run see an average.
 LagTrack track_lag(const Stream& states, const Stream& inputs, const LagTrackOptions& options = {});
 
 }  // namespace modebank

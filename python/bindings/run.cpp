@@ -1,7 +1,7 @@
 #include <string>
 
+#include "app/chain/pipeline.hpp"
 #include "app/config/valid_config.hpp"
-#include "app/pipeline/pipeline.hpp"
 #include "modebank/base/error.hpp"
 #include "python/bindings/bindings.hpp"
 #include "python/bindings/keys.hpp"

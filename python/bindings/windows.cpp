@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "app/chain/section.hpp"
+#include "app/config/section.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/model/parameter_labels.hpp"

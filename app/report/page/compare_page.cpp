@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 
-#include "app/chain/judged_runs.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "app/report/page/assets.hpp"
@@ -15,6 +14,7 @@
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/paired_runs.hpp"
 #include "app/report/page/run_sections.hpp"
+#include "app/text/judged_runs.hpp"
 
 namespace modebank::app::report {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/chain/judged_runs.hpp"
+#include "app/text/judged_runs.hpp"
 
 namespace modebank::app::report {
 namespace {

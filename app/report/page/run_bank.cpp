@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "app/chain/judged_runs.hpp"
-#include "app/chain/mode_names.hpp"
 #include "app/report/page/folded_transition.hpp"
 #include "app/report/page/guard_map.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
+#include "app/text/judged_runs.hpp"
+#include "app/text/mode_names.hpp"
 #include "app/text/mode_words.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/bank/units.hpp"

@@ -2,12 +2,12 @@
 
 #include <set>
 
-#include "app/chain/judged_runs.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/pit_histogram.hpp"
 #include "app/report/page/residual_pool.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
+#include "app/text/judged_runs.hpp"
 
 namespace modebank::app::report {
 namespace {

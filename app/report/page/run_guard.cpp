@@ -6,10 +6,10 @@
 #include <numeric>
 #include <vector>
 
-#include "app/chain/judged_runs.hpp"
 #include "app/report/page/guard_map.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
+#include "app/text/judged_runs.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/bank/units.hpp"

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "app/chain/judged_runs.hpp"
-#include "app/chain/mode_names.hpp"
 #include "app/report/page/bucket_extremes.hpp"
 #include "app/report/page/run_sections.hpp"
+#include "app/text/judged_runs.hpp"
+#include "app/text/mode_names.hpp"
 
 namespace modebank::app::report {
 namespace {

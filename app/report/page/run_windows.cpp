@@ -1,10 +1,10 @@
 #include <algorithm>
 
-#include "app/chain/judged_runs.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
 #include "app/report/page/window_modes.hpp"
+#include "app/text/judged_runs.hpp"
 #include "app/text/window_text.hpp"
 #include "ident/base/distributions.hpp"
 #include "io/archive/bank/units.hpp"

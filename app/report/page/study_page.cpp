@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <map>
 
-#include "app/chain/judged_runs.hpp"
 #include "app/report/page/assets.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/study/answers/answers.hpp"
+#include "app/text/judged_runs.hpp"
 
 namespace modebank::app::report {
 namespace {

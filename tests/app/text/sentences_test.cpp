@@ -7,8 +7,8 @@
 #include <random>
 #include <regex>
 
-#include "app/chain/finding_text.hpp"
 #include "app/text/calibration_text.hpp"
+#include "app/text/finding_text.hpp"
 #include "tests/filter/filter_test_support.hpp"
 
 namespace modebank::test {

@@ -1,0 +1,238 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "app/cli/check/check_output.hpp"
+#include "app/text/text_units.hpp"
+
+namespace modebank::app {
+namespace {
+
+constexpr std::size_t most_names = 8;
+
+/// "00, 03 and 5 more" of the runs that meet a condition; empty: none does.
+std::string runs_where(const DataCheck& check, const std::function<bool(const RunReport&)>& condition) {
+  std::vector<std::string> names;
+  for (const RunReport& run : check.runs)
+    if (condition(run)) names.push_back(run.run);
+  const std::size_t shown = std::min(names.size(), most_names);
+  std::string text =
+      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  return names.size() > shown ? text + fmt::format(" and {} more", names.size() - shown) : text;
+}
+
+Index sum_over(const DataCheck& check, const std::function<Index(const RunReport&)>& value) {
+  Index sum = 0;
+  for (const RunReport& run : check.runs) sum += value(run);
+  return sum;
+}
+
+Index disorder(const SamplingCheck& s) { return s.repeated_times + s.backward_times; }
+
+void time_findings(const DataCheck& check, const Config& config, std::vector<std::string>& found) {
+  const auto add = [&](bool accepted, const std::string& text, const std::string& mend) {
+    found.push_back(text + (accepted ? " (accepted as configured)" : ": " + mend));
+  };
+  if (const auto runs =
+          runs_where(check, [](const RunReport& r) { return disorder(r.inputs) + disorder(r.states) > 0; });
+      !runs.empty())
+    add(config.data.disorder == Disorder::sort,
+        fmt::format(
+            "time repeats {} times and goes backwards {} times in {}",
+            sum_over(check, [](const RunReport& r) { return r.inputs.repeated_times + r.states.repeated_times; }),
+            sum_over(check, [](const RunReport& r) { return r.inputs.backward_times + r.states.backward_times; }),
+            runs),
+        "data.disorder = sort accepts it");
+  if (const auto runs =
+          runs_where(check, [](const RunReport& r) { return r.inputs.missing_samples + r.states.missing_samples > 0; });
+      !runs.empty())
+    add(config.data.missing != Missing::error,
+        fmt::format(
+            "{} samples miss a value in {}",
+            sum_over(check, [](const RunReport& r) { return r.inputs.missing_samples + r.states.missing_samples; }),
+            runs),
+        "data.missing = gap or predict accepts them");
+  if (const auto runs =
+          runs_where(check, [](const RunReport& r) { return r.inputs.missing_times + r.states.missing_times > 0; });
+      !runs.empty())
+    found.push_back(fmt::format("samples without a time in {}: remove these rows, no setting accepts them", runs));
+  if (const auto runs = runs_where(check, [](const RunReport& r) { return r.inputs.gaps + r.states.gaps > 0; });
+      !runs.empty())
+    found.push_back(fmt::format("gaps of more than 5 periods in {}: they split these runs", runs));
+  const auto scatters = [](const RunReport& r) { return r.inputs.jitter > most_step_scatter; };
+  if (const auto runs = runs_where(check, scatters); !runs.empty()) {
+    double worst = 0.0;
+    for (const RunReport& run : check.runs) worst = std::max(worst, run.inputs.jitter);
+    found.push_back(fmt::format(
+        "steps scatter by up to {:.0f} % of their median in {}: a model holds for one step length, and where steps "
+        "differ it finds modes that are none, so that modes are not judged; log at an even rate",
+        percent * worst, runs));
+  }
+}
+
+/// Excitation of the inputs together, in the run that excites least; empty where a run does not excite at all.
+std::string excitation_words(const DataCheck& check) {
+  Index least = check.runs.empty() ? 0 : check.runs.front().excitation;
+  for (const RunReport& run : check.runs) least = std::min(least, run.excitation);
+  if (least < 1) return "";
+  return fmt::format(", and the inputs are persistently exciting of order {}{} in every run", least,
+                     least < most_excitation_order ? "" : " or more");
+}
+
+void channel_findings(const DataCheck& check, std::vector<std::string>& found) {
+  for (std::size_t i = 0; i < check.channels.size(); ++i) {
+    const ChannelSummary& channel = check.channels[i];
+    const std::size_t states = check.runs.empty() ? 0 : check.runs.front().state.size();
+    if (channel.saturated > 0.0)
+      found.push_back(fmt::format(
+          "{} {} ({:.1f} % of samples; range {:.4g} to {:.4g}) in {}: a limiter? the model cannot know what it cut off",
+          channel.channel.name,
+          channel.limits.soft ? "crowds towards the end of its range" : "piles up at the end of its range",
+          percent * channel.saturated, channel.values.least, channel.values.largest,
+          runs_where(check, [&](const RunReport& run) {
+            return (channel.is_state ? run.state_saturated[i] : run.input_saturated[i - states]) > 0.0;
+          })));
+    if (channel.values.quantum > 0.0)
+      found.push_back(fmt::format(
+          "{} comes in multiples of {:.6g}{}", channel.channel.name, channel.values.quantum,
+          channel.is_state ? ": noise of a third of that is in every sample; data.quantum = auto takes values for "
+                             "intervals of it where that is coarse against the noise"
+                           : ""));
+    if (channel.values.levels == 1)
+      found.push_back(fmt::format("{} is constant: {:g} in every sample", channel.channel.name, channel.values.least));
+    else if (channel.values.two_level)
+      found.push_back(fmt::format("{} is a binary signal: it switches between two levels (range {:.4g} to {:.4g}){}",
+                                  channel.channel.name, channel.values.least, channel.values.largest,
+                                  channel.is_state ? "" : excitation_words(check)));
+    else if (channel.repeated > 0.3 && (channel.is_state || channel.values.quantum == 0.0))
+      found.push_back(fmt::format("{} repeats {:.0f} % of its samples in motion: its source is slower than the file",
+                                  channel.channel.name, percent * channel.repeated));
+    if (channel.is_state && channel.values.outliers > 0)
+      found.push_back(fmt::format("{} has {} isolated spikes", channel.channel.name, channel.values.outliers));
+  }
+}
+
+void rest_findings(const DataCheck& check, std::vector<std::string>& found) {
+  std::size_t named = 0;
+  for (const RunReport& run : check.runs)
+    for (Index i = 0; i < run.rest.mean.size(); ++i)
+      if (std::isfinite(run.rest.mean(i)) && ++named <= most_names)
+        found.push_back(fmt::format("run {}: {} is {:.3g} (sd {:.2g}) at rest ({:.1f} s)", run.run,
+                                    check.channels[static_cast<std::size_t>(i)].channel.name, run.rest.mean(i),
+                                    run.rest.sd(i), run.rest.duration_s));
+}
+
+void excitation_findings(const DataCheck& check, std::vector<std::string>& found) {
+  constexpr double many = 0.5;
+  Index windows = 0, deficient = 0;
+  for (const RunReport& run : check.runs) {
+    windows += run.windows.windows;
+    deficient += run.windows.deficient;
+  }
+  if (windows > 0 && static_cast<double>(deficient) > many * static_cast<double>(windows))
+    found.push_back(fmt::format(
+        "{:.0f} % of the windows are rank deficient: keep window.prior = global, and read `information` before theta",
+        percent * static_cast<double>(deficient) / static_cast<double>(windows)));
+  if (const auto runs =
+          runs_where(check, [](const RunReport& run) { return run.excitation < 1 && !run.input.empty(); });
+      !runs.empty())
+    found.push_back(fmt::format("inputs are zero or proportional to each other throughout {}", runs));
+}
+
+void lag_findings(const DataCheck& check, const Config& config, std::vector<std::string>& found) {
+  if (!check.has_lag) return;
+  if (check.lag.correction != LagCorrection::none && !config.data.lag_auto && config.data.lag_s == 0.0) {
+    const auto score = std::find_if(check.lag.scores.begin(), check.lag.scores.end(),
+                                    [&](const LagScore& s) { return s.correction == check.lag.correction; });
+    found.push_back(
+        fmt::format("the inputs act {:+.3f} +- {:.3f} s later than their stamps say: undone, the global model gains "
+                    "{:.3f} +- {:.3f} "
+                    "nats/transition on training runs left out",
+                    check.lag.lag.mean, check.lag.lag.standard_error, score->gain, score->gain_standard_error));
+  }
+  if (const auto runs = runs_where(check,
+                                   [](const RunReport& run) {
+                                     return run.lag.match_windows > 1 &&
+                                            run.lag.match_largest_s - run.lag.match_least_s > 0.5;
+                                   });
+      !runs.empty())
+    found.push_back(
+        fmt::format("the lag wanders by more than 0.5 s inside {}: the stamps cannot be trusted there", runs));
+}
+
+}  // namespace
+
+std::string unusable_text(const DataCheck& check) {
+  const bool too_short = !check.unusable.empty() && check.longest_stretch < check.window_length;
+  return check.unusable + (too_short ? fmt::format("; window.length is {}", check.window_length) : "");
+}
+
+std::vector<std::string> findings_of(const DataCheck& check, const Config& config) {
+  std::vector<std::string> found;
+  if (!check.unusable.empty()) found.push_back("UNUSABLE as configured: " + unusable_text(check));
+  time_findings(check, config, found);
+  found.insert(found.end(), check.dominating.begin(), check.dominating.end());
+  channel_findings(check, found);
+  rest_findings(check, found);
+  excitation_findings(check, found);
+  if (!check.open_effects.empty()) found.push_back(check.open_effects);
+  lag_findings(check, config, found);
+  return found;
+}
+
+std::string rate_reason(const Advice& advice) {
+  const RateFacts& facts = advice.rate_facts;
+  switch (advice.rate.reason) {
+    case RateReason::too_fast:
+      return fmt::format(
+          "{:.3g} Hz resolves the response's time constant of {:.2g} s {:.0f}-fold, which leaves mostly "
+          "noise in one step; ten samples do",
+          facts.inputs_hz, facts.time_constant_s, facts.inputs_hz * facts.time_constant_s);
+    case RateReason::too_slow:
+      return fmt::format(
+          "{:.3g} Hz has fewer than two samples in the response's time constant of {:.2g} s, the states "
+          "({:.3g} Hz) show more",
+          facts.inputs_hz, facts.time_constant_s, facts.states_hz);
+    case RateReason::repeats:
+      return fmt::format("the inputs repeat {:.0f} % of their samples, so they really come at about this rate",
+                         percent * facts.repeated);
+    case RateReason::jitter:
+      return fmt::format("intervals vary by {:.0f} % of a period, but one step must mean one time",
+                         percent * facts.jitter);
+    case RateReason::keep:
+      break;
+  }
+  if (facts.time_constant_s > 0.0)
+    return fmt::format(
+        "the inputs' own times: {:.3g} Hz is {:.2g} samples per time constant ({:.2g} s), jitter {:.1f} %",
+        facts.inputs_hz, facts.inputs_hz * facts.time_constant_s, facts.time_constant_s, percent * facts.jitter);
+  return fmt::format("the inputs' own times ({:.3g} Hz, jitter {:.1f} %); no run shows a time constant to judge it by",
+                     facts.inputs_hz, percent * facts.jitter);
+}
+
+std::string length_reason(const Advice& advice) {
+  if (advice.length.length == 0) return "no run is long enough for any";
+  if (advice.length.enough)
+    return fmt::format("the shortest with at most a fifth of the windows rank deficient ({:.0f} %)",
+                       percent * advice.length.deficient);
+  return fmt::format(
+      "{:.0f} % of the windows are rank deficient even so, and longer ones hardly gain: the prior has to "
+      "carry them",
+      percent * advice.length.deficient);
+}
+
+std::string loss_reason(const Advice& advice) {
+  const TailCheck& tails = advice.loss.tails;
+  return fmt::format(
+      "{:.2g} % of one-step errors are beyond 4 robust standard deviations, {:.2g} % beyond 8 (normal "
+      "noise: 0.006 %, 0 %); {}",
+      percent * tails.beyond_four, percent * tails.beyond_eight,
+      advice.loss.loss == Loss::trivial ? "least squares loses nothing"
+      : advice.loss.loss == Loss::tukey ? "that many gross errors must have no pull at all"
+                                        : "a bounded pull is safe, and costs 5 % at most");
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "app/cli/check/check.hpp"
+#include "app/config/config.hpp"
+
+namespace modebank::app {
+
+/// Why the data cannot be used as configured; empty: they can.
+std::string unusable_text(const DataCheck& check);
+
+/// What stands out, each with what would accept or mend it.
+std::vector<std::string> findings_of(const DataCheck& check, const Config& config);
+
+std::string check_text(const DataCheck& check, const std::vector<std::string>& findings);
+nlohmann::json check_json(const DataCheck& check, const std::vector<std::string>& findings);
+
+/// Why the advice is what it is.
+std::string rate_reason(const Advice& advice);
+std::string length_reason(const Advice& advice);
+std::string loss_reason(const Advice& advice);
+
+}  // namespace modebank::app

@@ -1,0 +1,32 @@
+#include "app/text/judged_runs.hpp"
+
+namespace modebank {
+
+const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role) {
+  return modebank::pooled_row(archive.summary, filter, role);
+}
+
+const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role, Eigen::Index mode) {
+  for (const DiagnosticsRow& row : archive.diagnostics)
+    if (row.filter == filter && row.role == role && row.mode == mode) return &row;
+  return nullptr;
+}
+
+const FilterEvaluation* evaluation_of(const Archive& archive, const std::string& filter) {
+  for (const FilterEvaluation& evaluation : archive.evaluations)
+    if (evaluation.filter == filter) return &evaluation;
+  return nullptr;
+}
+
+Role judged_role(const Archive& archive) { return modebank::judged_role(archive.summary); }
+
+std::vector<std::size_t> positions_of(const Recording& recording, Role role) {
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < recording.runs.size(); ++i)
+    if (recording.runs[i].role == role) positions.push_back(i);
+  return positions;
+}
+
+const char* words_for(Role role) { return role == Role::test ? "held-out" : "training"; }
+
+}  // namespace modebank
