@@ -11,9 +11,6 @@ namespace modebank::app {
 /// What `modebank study` does: everything, or one step of it.
 enum class StudyStage { all, plan, run, merge, status, submit };
 
-/// How `sample` points are laid over the varied keys.
-enum class SampleMethod { latin_hypercube, sobol };
-
 /// What a failed trial means for the others.
 enum class OnFailure { record, stop };
 
@@ -23,14 +20,11 @@ struct StudyConfig {
   std::vector<std::string> together;  ///< "KEY, KEY": varied in step
   std::vector<std::string> when;      ///< "KEY if OTHER = v1 | v2"
   std::int64_t sample = 0;            ///< 0: the full grid
-  SampleMethod sampling = SampleMethod::latin_hypercube;
   std::int64_t repeats = 1;
   std::string output;  ///< folder; empty: the configuration file's name with .study, in the current folder
   int jobs = 0;        ///< 0: one per core
   double timeout_s = 0.0;
   OnFailure on_failure = OnFailure::record;
-  bool retry = true;
-  double cache_mb = 1000.0;
   StudyStage stage = StudyStage::all;
   std::int64_t shard_index = 0, shard_count = 1;
   bool flat = false;
@@ -43,11 +37,6 @@ struct StudyConfig {
 template <>
 struct modebank::EnumNames<modebank::app::StudyStage> {
   static constexpr Names<6> values{"all", "plan", "run", "merge", "status", "submit"};
-};
-
-template <>
-struct modebank::EnumNames<modebank::app::SampleMethod> {
-  static constexpr Names<2> values{"latin_hypercube", "sobol"};
 };
 
 template <>

@@ -45,11 +45,10 @@ std::vector<Option> space_options() {
             "the key is varied only where another one has such a value; elsewhere it stays as configured", parse_when,
             MODEBANK_FIELD(study.when))
           .touch("when a varied key means nothing beside some values of another"),
-      numeric("study.sample", between(0, 1e6), "", "so many points instead of the full grid; 0: the grid",
+      numeric("study.sample", between(0, 1e6), "",
+              "so many points of a Latin hypercube, drawn with job.seed, instead of the full grid; 0: the grid",
               MODEBANK_FIELD(study.sample))
           .touch("when the full grid has more runs than there is time for"),
-      words("study.sampling", "how sample lays them, from job.seed", MODEBANK_FIELD(study.sampling))
-          .touch("sobol, when a study is extended later: its points fill what those before left"),
       numeric("study.repeats", between(1, 100'000), "",
               "runs of each point: the first with its own job.seed, the others with seeds derived from it",
               MODEBANK_FIELD(study.repeats))
@@ -70,11 +69,6 @@ std::vector<Option> work_options() {
       words("study.on_failure", "a failed run is recorded and the study goes on, or stops",
             MODEBANK_FIELD(study.on_failure))
           .touch("stop, while you try out a study's configuration"),
-      flag("study.retry", "try runs again that failed in an earlier execution", MODEBANK_FIELD(study.retry))
-          .touch("false, when failures are known to come again"),
-      numeric("study.cache_mb", at_least(0), "MB", "limit of the folder's cache of stages that runs share",
-              MODEBANK_FIELD(study.cache_mb))
-          .touch("more, when many runs share a long import; less, on a small disk"),
       words("study.stage", "one step alone; all: plan, run and merge on this machine", MODEBANK_FIELD(study.stage))
           .touch("on a cluster: submit, then merge at the end; on one machine never"),
       shard_option().touch("never on a cluster, whose job script sets it; by hand to share a study among machines"),

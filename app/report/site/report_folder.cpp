@@ -66,7 +66,7 @@ class Site {
     json row = {{"name", name.string()}};
     try {
       const fs::path path = folder_ / name;
-      const OpenArchive archive(study_file(path));
+      const OpenArchive archive(fs::is_directory(path) ? path / "study.h5" : path);
       row.update(index_row(archive));
       row["page"] = page_of(name, archive);
       row["archive"] = fs::absolute(path).lexically_normal().string();

@@ -59,9 +59,9 @@ std::size_t threads_per_trial(const Config& study) {
 }
 
 /// The report on a trial that an earlier execution has settled; empty when the trial is to be run. An archive that is
-/// not whole is removed, and so is a record of failure that is to be tried again.
+/// not whole is removed, and so is a record of failure: it is tried again.
 std::optional<TrialReport> left_before(const TrialStore& store, const TrialStore::Listing& there, const TrialRow& row,
-                                       std::size_t place, bool retry) {
+                                       std::size_t place) {
   if (there.archives.count(row.key) > 0) {
     const std::vector<std::string> problems = store.problems(row.key);
     // A process that was killed when it had just made the archive has left its claim.
@@ -74,10 +74,7 @@ std::optional<TrialReport> left_before(const TrialStore& store, const TrialStore
     const std::optional<Claim> mine = Claim::take(store.claim(row.key));
     if (mine) std::filesystem::remove(store.archive(row.key));
   }
-  if (there.failures.count(row.key) == 0) return std::nullopt;
-  if (!retry)
-    return TrialReport{.row = place, .outcome = TrialOutcome::failed, .message = store.failure(row.key).value_or("")};
-  store.forget_failure(row.key);
+  if (there.failures.count(row.key) > 0) store.forget_failure(row.key);
   return std::nullopt;
 }
 
@@ -128,7 +125,7 @@ class StudyRun {
     for (const auto& group : groups) places.insert(places.end(), group.begin(), group.end());
     std::vector<std::optional<TrialReport>> before(rows_.size());
     tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-      before[places[i]] = left_before(store_, there, rows_[places[i]], places[i], settings_.config.study.retry);
+      before[places[i]] = left_before(store_, there, rows_[places[i]], places[i]);
     });
     all_ = places.size();
     task_ = {.config = settings_.config,

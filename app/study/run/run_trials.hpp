@@ -30,7 +30,7 @@ struct TrialSettings {
 using TrialListener = std::function<void(const TrialRow&, const TrialReport&, std::size_t finished, std::size_t all)>;
 
 /// Runs the groups' trials in study.jobs processes of this program. Trials whose archives are there and whole are not
-/// run again; those that failed are if study.retry. Each process begins at another group and passes over trials that
+/// run again; so are those that failed. Each process begins at another group and passes over trials that
 /// others have claimed; it waits for those at its end. A trial whose process crashes or takes longer than
 /// study.timeout_s has failed, and another process takes that one's place.
 RunResult run_trials(const TrialSettings& settings, const StudyPlan& plan, const TrialGroups& groups,

@@ -23,6 +23,8 @@
 namespace modebank::app {
 namespace {
 
+constexpr double most_cached_mb = 1000.0;  // of stages that runs share
+
 using nlohmann::json;
 
 void write_line(const std::string& line) {
@@ -38,7 +40,7 @@ void report(const TrialReport& report) { write_line(pack_report(report) + "\n");
 class Worker {
  public:
   explicit Worker(const WorkerTask& task)
-      : task_(task), store_(task.config.study.output), runner_(store_.cache(), task.config.study.cache_mb) {}
+      : task_(task), store_(task.config.study.output), runner_(store_.cache(), most_cached_mb) {}
 
   /// Until every row has an archive or has failed, by whatever process.
   void run(std::size_t first) {

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <boost/random/sobol.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
 #include <cmath>
@@ -157,25 +156,10 @@ std::vector<std::vector<double>> latin_hypercube(std::size_t count, std::size_t 
   return coordinates;
 }
 
-std::vector<std::vector<double>> sobol_points(std::size_t count, std::size_t axes, std::uint64_t seed) {
-  std::vector<std::vector<double>> coordinates(count, std::vector<double>(axes));
-  boost::random::sobol sequence(axes);
-  std::vector<std::uint64_t> shifts;
-  for (std::size_t a = 0; a < axes; ++a) shifts.push_back(derive_seed(seed, "study.sample", a));
-  // Boost leaves out the sequence's first point, the origin, without which no block of 2^k points fills its strata.
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t a = 0; a < axes; ++a) {
-      const std::uint64_t bits = (i == 0 ? 0 : sequence()) ^ shifts[a];
-      coordinates[i][a] = static_cast<double>(bits >> 11) * 0x1p-53;  // 53 bits, so always below 1
-    }
-  return coordinates;
-}
-
 std::vector<StudyPoint> samples(const Definition& definition, const Config& config) {
   const auto count = static_cast<std::size_t>(config.study.sample);
   const std::size_t axes = definition.axes.size();
-  const auto coordinates = config.study.sampling == SampleMethod::sobol ? sobol_points(count, axes, config.job.seed)
-                                                                        : latin_hypercube(count, axes, config.job.seed);
+  const auto coordinates = latin_hypercube(count, axes, config.job.seed);
   std::vector<StudyPoint> points(count, StudyPoint(definition.varied.size()));
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t a = 0; a < axes; ++a) place(definition, definition.axes[a], coordinates[i][a], points[i]);

@@ -140,7 +140,7 @@ TEST(StudyAnswers, OnlyFinishedTrialsCount) {
 }
 
 TEST(StudyAnswers, ASampledKeyDoesNotExplainAllByHavingAValuePerTrial) {
-  StudyTable table{{"window.prior_sd", "filter.variant"}, {"modes", "bank_test_log_score"}, {}};
+  StudyTable table{{"window.prior", "filter.variant"}, {"modes", "bank_test_log_score"}, {}};
   for (int i = 0; i < 20; ++i)  // the score follows the variant alone
     for (const int repeat : {0, 1})
       table.rows.push_back(trial({std::to_string(0.01 * (i * 7 % 20 + 1)), i % 2 == 0 ? "imm" : "kf"},
@@ -154,13 +154,13 @@ TEST(StudyAnswers, ASampledKeyDoesNotExplainAllByHavingAValuePerTrial) {
       EXPECT_LT(influence.share, 0.3);
     }
   }
-  StudyTable sweep{{"window.prior_sd"}, table.score_names, {}};  // nothing else varies: each value stays
+  StudyTable sweep{{"window.prior"}, table.score_names, {}};  // nothing else varies: each value stays
   for (int i = 0; i < 20; ++i) sweep.rows.push_back(trial({std::to_string(i)}, {2.0, 1.0 * i}));
   EXPECT_EQ(value_groups(sweep, 0).size(), 20u);
 }
 
 TEST(StudyAnswers, ManyNumbersAreGroupedIntoRanges) {
-  StudyTable table{{"window.prior_sd"}, {"bank_test_log_score"}, {}};
+  StudyTable table{{"window.prior"}, {"bank_test_log_score"}, {}};
   for (int i = 0; i < 100; ++i) table.rows.push_back(trial({std::to_string((i * 37) % 100)}, {0.0}));
   const std::vector<ValueGroup> groups = value_groups(table, 0);
   ASSERT_EQ(groups.size(), value_range_count);

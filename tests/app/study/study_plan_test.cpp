@@ -63,14 +63,15 @@ TEST_F(StudyPlans, KeysNameConfigurationAndDataWhateverTheStudyAroundThem) {
 }
 
 TEST_F(StudyPlans, InvalidCombinationsAreDroppedWithTheReason) {
-  const StudyPlan made = plan({{"study.vary", "window.scale = run | fixed"}, {"study.vary", "window.sigma = 0 | 0.1"}});
+  const StudyPlan made = plan(
+      {{"study.vary", "mixture.error_aware = true | false"}, {"study.vary", "window.covariance = model | sandwich"}});
   ASSERT_EQ(made.table.rows.size(), 4u);
   std::size_t dropped = 0;
   for (const TrialRow& row : made.table.rows) {
     if (row.status != TrialStatus::dropped) continue;
     ++dropped;
-    EXPECT_EQ(row.varied, (std::vector<std::string>{"fixed", "0"}));
-    EXPECT_NE(row.message.find("window.sigma"), std::string::npos);
+    EXPECT_EQ(row.varied, (std::vector<std::string>{"true", "sandwich"}));
+    EXPECT_NE(row.message.find("window.covariance"), std::string::npos);
     EXPECT_TRUE(row.key.empty());
   }
   EXPECT_EQ(dropped, 1u);
@@ -125,7 +126,8 @@ TEST_F(StudyPlans, TrialsAreConfigurationsOfTheirOwn) {
 }
 
 TEST_F(StudyPlans, PlanFilesReadBack) {
-  StudyPlan made = plan({{"study.vary", "window.scale = run | fixed"}, {"study.vary", "window.sigma = 0 | 0.1"}});
+  StudyPlan made = plan(
+      {{"study.vary", "mixture.error_aware = true | false"}, {"study.vary", "window.covariance = model | sandwich"}});
   write_plan(file(""), made);
   const StudyPlan stored = read_plan(file(""));
   EXPECT_EQ(stored.config, made.config);

@@ -151,8 +151,8 @@ TEST_F(SharedFileSystem, FailuresAreTriedAgainWhateverTheClocksSay) {
   EXPECT_EQ(in_log(",failed,"), 1U);
   EXPECT_EQ(failing({"n2", 3600}, {}).status, 1);
   EXPECT_EQ(in_log(",failed,"), 2U) << "not tried again";
-  EXPECT_EQ(failing({"n3", -3600}, {"--study.retry", "false"}).status, 1);
-  EXPECT_EQ(in_log(",failed,"), 2U) << "tried again";
+  EXPECT_EQ(failing({"n3", -3600}, {}).status, 1);
+  EXPECT_EQ(in_log(",failed,"), 3U) << "not tried again";
 }
 
 int rounds() {

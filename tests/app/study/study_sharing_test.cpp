@@ -65,8 +65,8 @@ const std::vector<KeyValues> trials{
     {},
     {{"filter.smooth", "false"}, {"filter.horizon", "1..3"}},
     {{"bank.theta", "mean"}},
-    {{"bank.refine", "em"}, {"bank.max_iterations", "2"}, {"bank.folds", "1"}},
-    {{"bank.refine", "em"}, {"bank.max_iterations", "2"}, {"bank.folds", "1"}, {"filter.noise", "adaptive"}},
+    {{"bank.refine", "em"}},
+    {{"bank.refine", "em"}, {"filter.noise", "adaptive"}},
     {{"bank.measurement_variance", "0.01"}},
     {{"mixture.components", "2"}},
     {{"mixture.components", "2"}, {"mixture.features", "parameters"}},
@@ -96,7 +96,7 @@ TEST_F(StudySharing, TrialsAreWhatRunWritesToTheBit) {
 
 /// The store of `run` and of studies keeps each stage but the data, up to the last one that it is told.
 TEST_F(StudySharing, TheStoreKeepsTheStagesThatAreLaterUsed) {
-  const Config trial = configured({{"bank.refine", "em"}, {"bank.max_iterations", "2"}, {"bank.folds", "1"}});
+  const Config trial = configured({{"bank.refine", "em"}});
   TrialRunner(file("cache"), 100.0, 0.0).run(trial, "");
   std::set<std::string> stages;
   for (const auto& entry : std::filesystem::directory_iterator(file("cache"))) {

@@ -39,7 +39,7 @@ TEST(VaryText, ExpandsValuesAndBraces) {
   EXPECT_EQ(parse_vary("mixture.components = {3..5} | 8").values, (Texts{"3", "4", "5", "8"}));
   EXPECT_EQ(parse_vary("mixture.components = {2..9 step 3}").values, (Texts{"2", "5", "8"}));
   EXPECT_EQ(parse_vary("bank.stay = {0.1..0.9 lin 5}").values, (Texts{"0.1", "0.3", "0.5", "0.7", "0.9"}));
-  EXPECT_EQ(parse_vary("window.prior_sd = {0.001..1 log 4}").values, (Texts{"0.001", "0.01", "0.1", "1"}));
+  EXPECT_EQ(parse_vary("window.prior = {0.001..1 log 4}").values, (Texts{"0.001", "0.01", "0.1", "1"}));
   EXPECT_EQ(parse_vary("data.lag_s = {0..1 step 0.1}").values.size(), 11u);
   EXPECT_EQ(parse_vary("filter.variant = imm|kf").values, (Texts{"imm", "kf"}));
   EXPECT_EQ(parse_vary("mixture.components = 1..{5..7}").values, (Texts{"1..5", "1..6", "1..7"}));
@@ -50,7 +50,7 @@ TEST(VaryText, RangesAreForSampling) {
   const VariedKey uniform = parse_vary("bank.stay = {0.5..0.99}");
   EXPECT_TRUE(uniform.is_range());
   EXPECT_FALSE(uniform.logarithmic);
-  const VariedKey logarithmic = parse_vary("window.prior_sd = {0.001..1 log}");
+  const VariedKey logarithmic = parse_vary("window.prior = {0.001..1 log}");
   EXPECT_TRUE(logarithmic.is_range() && logarithmic.logarithmic);
   EXPECT_THROW(lay_out(with({"bank.stay = {0.5..0.99}"})), ConfigurationError);
 }
@@ -128,7 +128,7 @@ TEST(StudySpace, ConditionsOnKeysThatAreNotVariedLookAtTheConfiguration) {
 }
 
 TEST(StudySpace, LatinHypercubeFillsEveryStratumOfEveryAxisOnce) {
-  Config config = with({"data.lag_s = {0..1 lin}", "filter.variant = imm | kf", "window.prior_sd = {0.001..1 log}"});
+  Config config = with({"data.lag_s = {0..1 lin}", "filter.variant = imm | kf", "window.prior = {0.001..1 log}"});
   config.study.sample = 20;
   const StudySpace space = lay_out(config);
   ASSERT_EQ(space.points.size(), 20u);
@@ -141,21 +141,8 @@ TEST(StudySpace, LatinHypercubeFillsEveryStratumOfEveryAxisOnce) {
   for (const int count : strata(exponents)) EXPECT_EQ(count, 1);
 }
 
-TEST(StudySpace, SobolPointsFillDyadicStrataAlsoInPairs) {
-  Config config = with({"data.lag_s = {0..1 lin}", "window.loss = trivial | huber | cauchy | tukey"});
-  config.study.sampling = SampleMethod::sobol;
-  config.study.sample = 64;
-  const StudySpace space = lay_out(config);
-  ASSERT_EQ(space.points.size(), 64u);
-  for (const int count : strata(column(space, 0))) EXPECT_EQ(count, 1);
-  // A (0, 6, 2)-net in base 2: 16 x 4 boxes hold one point each.
-  std::map<std::pair<int, std::string>, int> boxes;
-  for (std::size_t i = 0; i < 64; ++i) ++boxes[{static_cast<int>(column(space, 0)[i] * 16.0), space.points[i][1]}];
-  EXPECT_EQ(boxes.size(), 64u);
-}
-
 TEST(StudySpace, SamplesFollowTheSeedAlone) {
-  Config config = with({"data.lag_s = {0..1 lin}", "window.prior_sd = {0.001..1 log}"});
+  Config config = with({"data.lag_s = {0..1 lin}", "window.prior = {0.001..1 log}"});
   config.study.sample = 10;
   const std::vector<StudyPoint> first = lay_out(config).points;
   EXPECT_EQ(lay_out(config).points, first);
