@@ -23,7 +23,7 @@ void track_lines(std::string_view text) {
   DataOptions columns;
   columns.input = {"u0"};
   columns.state = {"x0"};
-  app::SampleReader reader(columns, app::LineFormat::automatic);
+  app::SampleReader reader(columns);
   BankFilter filter = new_filter(text.size() % 2 == 0);
   double last_s = -INFINITY;
   for (std::size_t begin = 0; begin < text.size();) {

@@ -17,6 +17,7 @@
 #include "filter/step/transition_logit.hpp"
 #include "tests/app/export/exported.hpp"
 #include "tests/filter/filter_test_support.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace modebank::app::test {
@@ -140,8 +141,8 @@ TEST(CTemplate, CompilesUnderAnyName) {
   for (const std::string stem : {"acting", "bank", "clear", "double", "kept", "largest", "mode", "modebank", "record",
                                  "state", "step", "transition-by", "x"}) {
     const CFiles files = to_c(exported, stem);
-    write_file(folder.path() / (stem + ".h"), files.header);
-    write_file(folder.path() / (stem + ".c"), files.source);
+    modebank::test::write_file(folder.path() / (stem + ".h"), files.header);
+    modebank::test::write_file(folder.path() / (stem + ".c"), files.source);
     const auto compiled =
         modebank::test::run_program({"/usr/bin/cc", "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion",
                                      "-Werror", "-fsyntax-only", (folder.path() / (stem + ".c")).string()});
