@@ -29,7 +29,7 @@ Index evaluated_numbers(const Archive& archive) {
 /// Beyond this much an archive is made in the file system rather than in memory.
 bool is_large(const Archive& archive) {
   constexpr Index most_in_memory = Index{2} << 20;  // doubles
-  constexpr Index numbers_per_parameter = 8;         // of a window: value, error and what describes the fit
+  constexpr Index numbers_per_parameter = 8;        // of a window: value, error and what describes the fit
   if (evaluated_numbers(archive) > most_in_memory / 2) return true;
   if (archive.windows &&
       numbers_per_parameter * archive.windows->parameters.size() + archive.windows->covariance.size() > most_in_memory)

@@ -87,7 +87,7 @@ Option prior_option() {
   result.get = [](const Config& config) {
     const FitOptions& window = config.window;
     return window.prior == Prior::global && std::ssize(window.prior_sd) > 0 ? format_value(window.prior_sd)
-                                                                                : format_value(window.prior);
+                                                                            : format_value(window.prior);
   };
   return result;
 }

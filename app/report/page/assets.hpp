@@ -13,7 +13,7 @@ std::string_view run_js();         ///< what draws the page of a run
 std::string_view study_js();       ///< that of a study
 std::string_view compare_js();     ///< that of two runs
 std::string_view index_js();       ///< that of the index of a folder
-std::string_view terms_json();  ///< every term's one definition, of pages and of help
+std::string_view terms_json();     ///< every term's one definition, of pages and of help
 
 // Configurations of the demo.
 std::string_view simulate_ice_ini();
