@@ -300,7 +300,7 @@ TEST(StageKeys, OfMostKeysAreTested) {
   const auto effective = std::count_if(options.begin(), options.end(), [](const Option& option) {
     return is_tried(option) && !without_effect.contains(option.key);
   });
-  EXPECT_GE(effective, 60) << "too few change anything for the test to mean much (63 do)";
+  EXPECT_GE(effective, 56) << "too few change anything for the test to mean much (59 do)";
 }
 
 /// The stages that the merging scores of a study once came from: the defect that made these keys.
