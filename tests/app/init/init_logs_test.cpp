@@ -394,6 +394,7 @@ TEST(ShippedConfigurations, FindTheirData) {
   MODEBANK_NEEDS_SHARED_DATA();
   int imported = 0;
   for (const auto& entry : fs::directory_iterator(test::project_dir() / "configs")) {
+    if (!entry.is_regular_file()) continue;  // a folder of systems
     const std::string name = entry.path().stem().string();
     if (name == "minimal" || name == "reference" || name == "demo" || name.starts_with("simulate")) continue;
     Config config = load_config(entry.path(), {{"data.root", test::shared_data_dir().string()}});
