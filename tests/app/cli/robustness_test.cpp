@@ -343,7 +343,7 @@ TEST_F(Robustness, P8WhatACommandDoesNotReadIsRefused) {
   refuses({"verify", "none.h5", "--track.filter", "bank"}, "--track.filter", "--repair");
   refuses({"run", config(), "-o", "x.h5"}, "--output", "--force");
   refuses({"run", config(), "--repair"}, "--repair", "--force");
-  refuses({"track", "none.h5", "--json"}, "--json", "--track.*");
+  refuses({"track", "none.h5", "--dry-run"}, "--dry-run", "--track.*");
   refuses({"report", "none.h5", "--to", "c"}, "--to", "--output");
   // A section's keys that would change nothing, too.
   refuses({"track", "none.h5", "--data.label", "x"}, "--data.label", "but for --data.truth, --data.weight");
@@ -358,7 +358,7 @@ TEST_F(Robustness, P8WhereToWriteIsSaidWhereThereIsNoShortOption) {
   EXPECT_THAT(modebank({"run", config(), "-o", "x.h5"}).err, HasSubstr("--archive.output PATH says where it writes"));
   EXPECT_THAT(modebank({"study", config(), "-o", "x"}).err, HasSubstr("--study.output PATH says where it writes"));
   EXPECT_THAT(modebank({"simulate", config(), "-o", "x"}).err, HasSubstr("--simulate.output PATH says where"));
-  EXPECT_THAT(modebank({"track", "none.h5", "-o", "x"}).err, HasSubstr("--output; it reads --data.*"));
+  EXPECT_THAT(modebank({"track", "none.h5", "-o", "x"}).err, HasSubstr("--output; it reads --json, --data.*"));
 }
 
 TEST_F(Robustness, P8WhatOneFormOfACommandDoesNotReadIsRefused) {

@@ -146,8 +146,7 @@ TEST_F(ConfigFile, KeyOutsideAnySectionIsExplained) {
 TEST_F(ConfigFile, WordsThatAreGoneAreAnsweredWithThoseThatAreLeft) {
   using Case = std::array<std::string, 3>;
   for (const auto& [key, gone, left] :
-       {Case{"windows", "trim", "automatic | full_rank | all"}, Case{"start", "hierarchical", "random | an archive"},
-        Case{"start", "auto", ".h5"}})
+       {Case{"windows", "trim", "automatic | full_rank | all"}, Case{"covariance", "spherical", "full | diagonal"}})
     try {
       load("[mixture]\n" + key + " = " + gone + "\n");
       ADD_FAILURE() << key << " = " << gone << " is accepted";
@@ -161,7 +160,13 @@ TEST_F(ConfigFile, KeysThatWentAreAnsweredWithWhatTakesTheirPlace) {
   using Case = std::array<std::string, 2>;
   for (const auto& [text, instead] :
        {Case{"[window]\nresidual = simulation\n", "help bank.measurement_variance"},
-        Case{"[mixture]\nstart = kmeans++\n", "instead: random"},
+        Case{"[mixture]\nstart = kmeans++\n", "instead: mixture.restarts"},
+        Case{"[window]\nprior_sd = 0.5\n", "instead: the numbers as window.prior"},
+        Case{"[window]\nscale = fixed\n", "instead: run"}, Case{"[bank]\nrestarts = 6\n", "ten of mixture.restarts"},
+        Case{"[bank]\nlook_ahead_score = error\n", "bank.look_ahead = 10 error"},
+        Case{"[bank]\nscreen = false\n", "bank.theta = mean"}, Case{"[study]\nretry = false\n", "tried again"},
+        Case{"[track]\nlevel = 0.9\n", "intervals hold 95 %"},
+        Case{"[simulate]\nfriction = 0.1\n", "the file that simulate.system names"},
         Case{"[mixture]\nstart_runs = 2\n", "mixture.restarts"}, Case{"[mixture]\ncriterion = aic\n", "instead: bic"},
         Case{"[mixture]\nheldout = never\n", "mixture.criterion = heldout"},
         Case{"[mixture]\nbootstrap = 200\n", "standard errors of their coefficients"},
