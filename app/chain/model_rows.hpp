@@ -41,6 +41,7 @@ void put_rows(const std::string& model, std::vector<Row> rows, std::vector<Row>&
 template <class Row>
 std::vector<Row> rows_of(const std::vector<std::string>& models, const std::vector<Row>& all) {
   std::vector<Row> rows;
+  rows.reserve(all.size());  // growing copies evaluations once more
   for (const Row& row : all)
     if (std::find(models.begin(), models.end(), model_of(row)) != models.end()) rows.push_back(row);
   return rows;
