@@ -17,8 +17,9 @@ void write_page(const std::filesystem::path& path, const Page& page, Written& wr
   const std::string html = html_of(page);
   replace_file(path, {html});
   written.files.push_back(path.string());
-  written.say(fmt::format("{}: {:.1f} MB; open it in a browser\n", path.string(),
-                          static_cast<double>(html.size()) / bytes_per_MB));
+  const double size_MB = static_cast<double>(html.size()) / bytes_per_MB;
+  written.say(fmt::format("{}: {}; open it in a browser\n", path.string(),
+                          size_MB < 0.1 ? fmt::format("{:.0f} kB", 1e3 * size_MB) : fmt::format("{:.1f} MB", size_MB)));
 }
 
 }  // namespace modebank::app::report
