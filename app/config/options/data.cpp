@@ -160,10 +160,11 @@ std::vector<Option> data_options() {
            "what is known of each sample, as the ground: text or whole numbers, the last one holds; compared with the "
            "modes, /evaluation/confusion. Empty: none",
            MODEBANK_FIELD(data.label))
-          .touch("when the log says on which ground, gear or floor it was: it names modes and checks them"),
+          .touch("when a column of the log holds the ground, gear or floor: modes are named after it and compared with "
+                 "it"),
       text("data.state_unit", "units", "one per state, or one for all; written to the archive and the plots",
            MODEBANK_FIELD(data.state_unit))
-          .touch("when the log has no units, so that plots and exported filters say them"),
+          .touch("when the log has no units, so that plots and exported filters have them"),
       text("data.input_unit", "units", "one per input, or one for all", MODEBANK_FIELD(data.input_unit))
           .touch("when the log has no units; export to ros2 looks for m/s and rad/s"),
       text("data.time", "one column name, or two of a stamp in two parts",

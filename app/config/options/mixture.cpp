@@ -27,7 +27,7 @@ std::vector<Option> mixture_options() {
             "error_aware",
             MODEBANK_FIELD(mixture.windows))
           .touch("all, with error_aware, when hardly any window is of full rank"),
-      words("mixture.straddling", "windows that straddle a switch of mode", MODEBANK_FIELD(mixture.straddling))
+      words("mixture.straddling", "windows over a switch of mode", MODEBANK_FIELD(mixture.straddling))
           .touch("never, unless you study how windows over a switch blur the components"),
       numeric("mixture.restarts", between(1, 10'000), "",
               "independent starts per candidate; three for every ten, from random stretches of runs, are starts of "

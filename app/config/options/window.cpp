@@ -53,7 +53,7 @@ Option lag_option(std::string key, const Range& range, const std::string& help, 
                         count, choice);
 }
 
-/// Of a window, or of its run.
+/// Each window has a residual scale, or each run.
 Option scale_option() {
   Option result =
       words("window.scale", "residual scale sigma: of each window, or of its run", MODEBANK_FIELD(window.scale));
@@ -71,7 +71,7 @@ Option prior_option() {
   Option result =
       of_several("window.prior", "none | global | each > 0", "parameter unit",
                  "Gaussian prior on a window's parameters; global: about the fit of all training runs, 3 times "
-                 "the spread of full-rank windows wide; numbers: about that fit, with these standard deviations, "
+                 "the spread of full-rank windows wide; numbers: about that fit, with these widths, "
                  "one per parameter or one for all");
   result.set = [range](Config& config, const std::string& text) {
     std::vector<double> widths;

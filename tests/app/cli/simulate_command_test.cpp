@@ -87,7 +87,7 @@ TEST_F(SimulateCommand, RefusesWhatASystemDoesNotHave) {
   EXPECT_THAT(refusal("mass = 5\n"), HasSubstr("system.kind is not set"));
   EXPECT_THAT(refusal("kind = linear\n"), HasSubstr("system.modes is empty"));
   EXPECT_THAT(refusal("kind = car\n"), HasSubstr("linear | vehicle"));
-  EXPECT_THAT(refusal("", "left, right", "car"), HasSubstr("neither husky_ice nor three_grips"));
+  EXPECT_THAT(refusal("", "left, right", "car"), HasSubstr("expected husky_ice, three_grips or a file"));
   EXPECT_THAT(refusal("kind = vehicle\n", "a, b, c"), HasSubstr("left and right wheel speed"));
   EXPECT_THAT(modebank({"simulate", file("sim.ini").string(), "--simulate.friction", "0.1"}).err,
               HasSubstr("a line of the file that simulate.system names"));

@@ -25,7 +25,7 @@ import sys
 CONFIG = pathlib.Path(__file__).resolve().parents[3] / "configs" / "cascaded_tanks.ini"
 TRAINING, QUARTERS = 700, 4  # samples that the protocol learns from; parts of the cross-validation
 Choice = collections.namedtuple("Choice", "knee, lags, modes, ahead, score")
-# Of several modes fits to errors have free runs without bounds, see the results' page.
+# Fits of several modes to errors have free runs without bounds, see the results' page.
 CHOICES = [Choice(None, *rest, "density") for rest in itertools.product((2, 3), (1, 2, 3), (1, 10, 30)) if rest[1] > 1 or rest[2] == 1]
 CHOICES += [Choice(knee, lags, 1, ahead, "error") for knee, lags, ahead in itertools.product((None, 3, 3.5, 4, 4.5), (2, 3), (60, 120))]
 FILTERS = ("bank", "one_motion")
