@@ -71,7 +71,7 @@ Option prior_option() {
   Option result =
       of_several("window.prior", "none | global | each > 0", "parameter unit",
                  "Gaussian prior on a window's parameters; global: about the fit of all training runs, 3 times "
-                 "the spread of full-rank windows wide; numbers: about that fit, with these widths, "
+                 "the standard deviation of full-rank windows wide; numbers: about that fit, with these widths, "
                  "one per parameter or one for all");
   result.set = [range](Config& config, const std::string& text) {
     std::vector<double> widths;
