@@ -16,8 +16,6 @@
 #include "app/study/run/study_worker.hpp"
 #include "modebank/base/error.hpp"
 
-extern char** environ;
-
 namespace modebank::app {
 namespace {
 
