@@ -20,8 +20,7 @@ namespace {
 /// Whether one folder is named that is not a study's.
 bool is_site(const CommandLine& line) {
   const std::filesystem::path folder = line.files.front();
-  return line.files.size() == 1 && std::filesystem::is_directory(folder) && !is_study_folder(folder) &&
-         !std::filesystem::exists(folder / "study.h5");
+  return line.files.size() == 1 && std::filesystem::is_directory(folder) && !report::holds_a_study(folder);
 }
 
 /// Where the page or the site goes: -o, else into the current folder under the archive's or folder's name.

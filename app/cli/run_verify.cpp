@@ -19,7 +19,7 @@ std::string named_problem(const std::string& file, const std::string& what) {
   return what.rfind(file + ": ", 0) == 0 ? what : fmt::format("{}: {}", file, what);
 }
 
-/// Of one archive or study: its problems, and what else there is to say.
+/// The problems of one archive or study, and remarks on it.
 json report_archive(const CommandLine& line, const std::string& file) {
   const Verification result = verify_archive(file);
   if (result.ok()) print_text(line, fmt::format("{}: ok\n", file));

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/config/config_file.hpp"
@@ -34,11 +34,9 @@ SystemText system_text(const std::string& system, const std::filesystem::path& f
 }
 
 const Option& parameter(const std::string& where, const std::string& key) {
-  const std::vector<Option>& all = system_parameters();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Option& option) { return option.key == key; });
-  if (found != all.end()) return *found;
+  if (const Option* const found = find_option(system_parameters(), key)) return *found;
   std::vector<std::string> keys;
-  for (const Option& option : all) keys.push_back(option.key);
+  for (const Option& option : system_parameters()) keys.push_back(option.key);
   throw ConfigurationError(fmt::format("{}: unknown key {}{}", where, key, did_you_mean(key, keys)));
 }
 

@@ -30,7 +30,7 @@ bool takes_quotes(const std::string& key) {
 
 namespace {
 
-/// What stands in quotes from `begin` on, if nothing but a comment follows.
+/// The value in the quotes that `text` begins with; nullopt where more than a comment follows them.
 std::optional<std::string> unquoted(std::string_view text) {
   std::string value;
   std::size_t i = 1;

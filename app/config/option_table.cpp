@@ -86,8 +86,9 @@ const std::vector<Option>& option_table() {
   return table;
 }
 
-const Option* find_option(const std::string& key) {
-  const std::vector<Option>& table = option_table();
+const Option* find_option(const std::string& key) { return find_option(option_table(), key); }
+
+const Option* find_option(const std::vector<Option>& table, const std::string& key) {
   const auto found = std::find_if(table.begin(), table.end(), [&](const Option& option) { return option.key == key; });
   return found == table.end() ? nullptr : &*found;
 }

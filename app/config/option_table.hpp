@@ -42,5 +42,6 @@ const std::vector<Option>& option_table();
 
 /// The option of that key; null when there is none.
 const Option* find_option(const std::string& key);
+const Option* find_option(const std::vector<Option>& table, const std::string& key);
 
 }  // namespace modebank::app

@@ -8,16 +8,11 @@ namespace {
 
 /// A number of samples, and whether errors are counted.
 Option look_ahead_option() {
-  Option result =
-      text("bank.look_ahead", "1 to 1000, and error or nothing",
-           "what em chooses by: the mean log score of predictions 1 to so many samples ahead of the runs left out; "
-           "error: their squared error, which the parameters of a bank of at most 50 free numbers then minimise where "
-           "the runs left out gain by it, for forecasts and free runs; em chooses by one step",
-           MODEBANK_FIELD(mode_names))
-          .touch(
-              "when predictions several samples ahead matter (control): the number of samples; with error, when the "
-              "mean of long predictions matters (free run) and not their spread");
-  result.unit = "samples";
+  Option result = of_several(
+      "bank.look_ahead", "1 to 1000, and error or nothing", "samples",
+      "what em chooses by: the mean log score of predictions 1 to so many samples ahead of the runs left out; "
+      "error: their squared error, which the parameters of a bank of at most 50 free numbers then minimise where "
+      "the runs left out gain by it, for forecasts and free runs; em chooses by one step");
   result.set = [](Config& config, const std::string& text) {
     const bool errors = text.ends_with(" error");
     Eigen::Index samples = 0;

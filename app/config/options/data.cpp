@@ -78,13 +78,11 @@ Option time_format_option() {
 
 /// none, blocks N, or last P %.
 Option split_option() {
-  Option result;
-  result.key = "data.split";
-  result.range = "none, blocks N (2 to 1000) or last P % (1 to 99)";
-  result.help =
+  Option result = of_several(
+      "data.split", "none, blocks N (2 to 1000) or last P % (1 to 99)", "",
       "every run becomes runs of its own: N blocks, of which the 1st, 3rd, ... train and the others are held out, or "
       "what "
-      "comes before and the last P %, held out; a window and its lags are dropped in between";
+      "comes before and the last P %, held out; a window and its lags are dropped in between");
   result.set = [](Config& config, const std::string& text) {
     std::istringstream words(text);
     std::string kind, rest;

@@ -4,7 +4,6 @@
 #include "app/config/options/sections.hpp"
 
 namespace modebank::app {
-
 namespace {
 
 std::vector<Option> only_for(SimulatedSystem system, std::vector<Option> options) {
@@ -14,44 +13,6 @@ std::vector<Option> only_for(SimulatedSystem system, std::vector<Option> options
   }
   return options;
 }
-
-}  // namespace
-
-std::vector<Option> simulate_options() {
-  std::vector<Option> all{
-      text("simulate.output", "a folder", "where the runs are written", MODEBANK_FIELD(simulate.output))
-          .touch("for every simulation that is to be kept"),
-      text("simulate.system", "a name, or a file",
-           "what is simulated: husky_ice, three_grips, or a file with a section [system]",
-           MODEBANK_FIELD(simulate.name))
-          .touch("for a system of your own: copy one of configs/systems and change it"),
-      numeric("simulate.runs", between(1, 100'000), "", "number of runs", MODEBANK_FIELD(simulate.system.runs))
-          .touch("when an answer needs more (or fewer) runs: evidence needs some"),
-      numeric("simulate.samples", between(2, 1e8), "", "samples per run", MODEBANK_FIELD(simulate.system.samples))
-          .touch("when an answer needs longer runs"),
-      numeric("simulate.rate_hz", between(1e-6, 1e6), "Hz", "rate of commands and of the inputs file",
-              MODEBANK_FIELD(simulate.rate_hz))
-          .touch("as in your logs"),
-      numeric("simulate.state_rate_hz", between(1e-6, 1e6), "Hz",
-              "rate of the states file; for a linear system a multiple of rate_hz keeps every measurement",
-              MODEBANK_FIELD(simulate.state_rate_hz))
-          .touch("as in your logs; equal to rate_hz where both come together"),
-  };
-  for (Option& entry :
-       only_for(SimulatedSystem::vehicle, {numeric("simulate.lag_s", any(), "s",
-                                                   "the inputs file's times are this much early (negative: late): "
-                                                   "data.lag_s with the same value undoes it",
-                                                   MODEBANK_FIELD(simulate.vehicle.sensors.lag_s))
-                                               .touch("to see whether lag_s = auto finds it"),
-                                           numeric("simulate.drift", between(-0.5, 0.5), "s/s",
-                                                   "true time = t + lag_s + drift * t for a time t of the inputs file",
-                                                   MODEBANK_FIELD(simulate.vehicle.sensors.drift))
-                                               .touch("to see whether lag_s = auto finds it")}))
-    all.push_back(std::move(entry));
-  return all;
-}
-
-namespace {
 
 std::vector<Option> common_parameters() {
   return {
@@ -183,6 +144,40 @@ std::vector<Option> vehicle_parameters() {
 }
 
 }  // namespace
+
+std::vector<Option> simulate_options() {
+  std::vector<Option> all{
+      text("simulate.output", "a folder", "where the runs are written", MODEBANK_FIELD(simulate.output))
+          .touch("for every simulation that is to be kept"),
+      text("simulate.system", "a name, or a file",
+           "what is simulated: husky_ice, three_grips, or a file with a section [system]",
+           MODEBANK_FIELD(simulate.name))
+          .touch("for a system of your own: copy one of configs/systems and change it"),
+      numeric("simulate.runs", between(1, 100'000), "", "number of runs", MODEBANK_FIELD(simulate.system.runs))
+          .touch("when an answer needs more (or fewer) runs: evidence needs some"),
+      numeric("simulate.samples", between(2, 1e8), "", "samples per run", MODEBANK_FIELD(simulate.system.samples))
+          .touch("when an answer needs longer runs"),
+      numeric("simulate.rate_hz", between(1e-6, 1e6), "Hz", "rate of commands and of the inputs file",
+              MODEBANK_FIELD(simulate.rate_hz))
+          .touch("as in your logs"),
+      numeric("simulate.state_rate_hz", between(1e-6, 1e6), "Hz",
+              "rate of the states file; for a linear system a multiple of rate_hz keeps every measurement",
+              MODEBANK_FIELD(simulate.state_rate_hz))
+          .touch("as in your logs; equal to rate_hz where both come together"),
+  };
+  for (Option& entry :
+       only_for(SimulatedSystem::vehicle, {numeric("simulate.lag_s", any(), "s",
+                                                   "the inputs file's times are this much early (negative: late): "
+                                                   "data.lag_s with the same value undoes it",
+                                                   MODEBANK_FIELD(simulate.vehicle.sensors.lag_s))
+                                               .touch("to see whether lag_s = auto finds it"),
+                                           numeric("simulate.drift", between(-0.5, 0.5), "s/s",
+                                                   "true time = t + lag_s + drift * t for a time t of the inputs file",
+                                                   MODEBANK_FIELD(simulate.vehicle.sensors.drift))
+                                               .touch("to see whether lag_s = auto finds it")}))
+    all.push_back(std::move(entry));
+  return all;
+}
 
 const std::vector<Option>& system_parameters() {
   static const std::vector<Option> table = [] {

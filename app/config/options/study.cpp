@@ -11,10 +11,7 @@ namespace modebank::app {
 namespace {
 
 Option shard_option() {
-  Option result;
-  result.key = "study.shard";
-  result.range = "i/n with 0 <= i < n";
-  result.help = "run: only this share of the runs";
+  Option result = of_several("study.shard", "i/n with 0 <= i < n", "", "run: only this share of the runs");
   result.set = [](Config& config, const std::string& text) {
     const auto slash = text.find('/');
     if (slash == std::string::npos) throw std::invalid_argument("is not of the form i/n");

@@ -23,10 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-bool is_study_of_folder(const fs::path& folder) {
-  return is_study_folder(folder) || fs::is_regular_file(folder / "study.h5");
-}
-
 /// Program and settings, on which pages depend beside their archive.
 std::string site_maker(const ReportConfig& options) {
   return fmt::format("modebank {} {}, report.size_mb {}, report.runs {}", build_info::version, build_info::git_revision,
@@ -157,6 +153,10 @@ class Site {
 
 }  // namespace
 
+bool holds_a_study(const fs::path& folder) {
+  return is_study_folder(folder) || fs::is_regular_file(folder / "study.h5");
+}
+
 std::vector<fs::path> archives_below(const fs::path& folder) {
   std::vector<fs::path> names;
   fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied);
@@ -164,9 +164,9 @@ std::vector<fs::path> archives_below(const fs::path& folder) {
     std::error_code error;
     const fs::path& path = entry->path();
     const bool hidden = path.filename().string().front() == '.', below = entry->is_directory(error);
-    if (below && (hidden || is_study_of_folder(path))) entry.disable_recursion_pending();
+    if (below && (hidden || holds_a_study(path))) entry.disable_recursion_pending();
     if (hidden) continue;
-    if (below ? is_study_of_folder(path) : path.extension() == ".h5" && entry->is_regular_file(error))
+    if (below ? holds_a_study(path) : path.extension() == ".h5" && entry->is_regular_file(error))
       names.push_back(path.lexically_relative(folder));
   }
   std::sort(names.begin(), names.end());

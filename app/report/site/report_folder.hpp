@@ -16,6 +16,9 @@ struct SiteResult {
   std::vector<std::string> removed;                           ///< pages whose archive went, or has fewer
 };
 
+/// Whether a folder is that of one study, merged or not, rather than one of archives.
+bool holds_a_study(const std::filesystem::path& folder);
+
 /// The archives (*.h5) of `folder` and of those below it, by name relative to it; of a study's folder the study alone.
 /// Hidden files are left out.
 std::vector<std::filesystem::path> archives_below(const std::filesystem::path& folder);

@@ -22,7 +22,7 @@ struct TrialReport {
   std::string message = {};  ///< why it failed, or what was wrong with the archive that was there
   double seconds = 0.0;
   std::array<double, stage_count> stage_seconds = {};
-  /// Of the bank on the held-out runs, else on the training runs; NaN: none.
+  /// The bank's log score on the held-out runs, without these on the training runs; NaN: none.
   double log_score = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -11,7 +11,7 @@ namespace modebank {
 inline constexpr std::array<double, 4> coverage_levels{0.50, 0.90, 0.95, 0.99};
 inline constexpr std::size_t deciding_level = 2;
 
-/// Of a true filter, what lies beyond each of the two quantiles that fractions are counted by.
+/// Share of a true filter's samples beyond each of the two quantiles by which fractions are counted.
 inline constexpr double true_tail = 0.025;
 
 /// Where a normal score z lies: whatever counts coverage or tails asks here.
