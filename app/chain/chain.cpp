@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/chain/expected_time.hpp"
+#include "app/chain/model_rows.hpp"
 #include "app/config/section.hpp"
 #include "app/text/mode_names.hpp"
 #include "filter/learn/chain/chain.hpp"
@@ -16,11 +17,11 @@ namespace modebank {
 
 namespace {
 
-/// The part of an archive that is of type P, alone.
+/// The part of an archive that is of type P, alone and out of the archive.
 template <class P>
-Archive part_of(const Archive& archive) {
+Archive part_out_of(Archive& archive) {
   Archive part;
-  static_cast<P&>(part) = static_cast<const P&>(archive);
+  static_cast<P&>(part) = std::exchange(static_cast<P&>(archive), {});
   return part;
 }
 
@@ -50,7 +51,7 @@ void Chain::provide(Stage stage, const StagePart& part) {
 
 template <class P>
 void Chain::provide(Stage stage, const std::function<void()>& compute) {
-  provide(stage, {compute, [this] { return part_of<P>(archive_); },
+  provide(stage, {compute, [this] { return part_out_of<P>(archive_); },
                   [this](Archive&& part) { take_part<P>(std::move(part), archive_); }});
 }
 
@@ -85,8 +86,8 @@ void Chain::import(const DataInputs& inputs) {
                                    archive_.recording->runs.size(), archive_.recording->transitions(Role::train),
                                    archive_.recording->transitions(Role::test), watch.seconds()));
   };
-  const auto copy = [&] {
-    Archive part = part_of<DataPart>(archive_);
+  const auto give = [&] {
+    Archive part = part_out_of<DataPart>(archive_);
     part.provenance.inputs = data_.files;
     part.provenance.data_hash = data_.data_hash;
     return part;
@@ -96,7 +97,7 @@ void Chain::import(const DataInputs& inputs) {
     archive_.provenance.data_hash = data_.data_hash = std::move(part.provenance.data_hash);
     take_part<DataPart>(std::move(part), archive_);
   };
-  provide(Stage::data, {compute, copy, take});
+  provide(Stage::data, {compute, give, take});
 }
 
 void Chain::learn(const ChainOptions& options, Stage last) {
@@ -143,22 +144,25 @@ void Chain::provide_learned(Stage stage, const std::function<void()>& compute) {
 }
 
 void Chain::provide_windows(const std::function<void()>& compute) {
-  constexpr double written_per_s = 1e5;  // with their samples and a copy of both, on a slow disk
+  constexpr double written_per_s = 1e5;  // with their samples, on a slow disk
   const WindowInputs& inputs = inputs_.windows;
   const auto in_time = [&] {
     tell_if_long(listener_, "windows", expected_windows_s(*archive_.recording, inputs.window),
                  "--window.step 10 fits every tenth window");
     in_section("window", compute);
   };
-  const auto copy = [&] {
-    Archive part = part_of<WindowsPart>(archive_);
-    part.recording = archive_.recording;
+  const auto give = [&] {
+    Archive part = part_out_of<WindowsPart>(archive_);
+    part.recording = std::exchange(archive_.recording, {});
     return part;
+  };
+  const auto take = [&](Archive&& part) {
+    put_back_recording(part, archive_);
+    take_part<WindowsPart>(std::move(part), archive_);
   };
   const double windows =
       static_cast<double>(archive_.recording->transitions(Role::train)) / static_cast<double>(inputs.window.step);
-  provide(Stage::windows, {in_time, copy, [&](Archive&& part) { take_part<WindowsPart>(std::move(part), archive_); },
-                           windows / written_per_s});
+  provide(Stage::windows, {in_time, give, take, windows / written_per_s});
 }
 
 void Chain::describe(const Execution& execution, const std::vector<InputFile>& more_files) {

@@ -13,10 +13,10 @@
 
 namespace modebank {
 
-/// How a stage's result comes into the chain's archive, and out of it.
+/// How a stage's result comes into the chain's archive, and out of it: no part of it is copied.
 struct StagePart {
   std::function<void()> compute;
-  std::function<Archive()> copy;        ///< an archive of the result alone
+  std::function<Archive()> give;        ///< an archive of the result alone, which `take` must get back
   std::function<void(Archive&&)> take;  ///< puts the result that such an archive holds in place
   double writing_s = 0.0;  ///< about how long its writing takes: what is computed faster is not worth keeping
 };
@@ -25,7 +25,7 @@ struct StagePart {
 class StageSource {
  public:
   virtual ~StageSource() = default;
-  /// Calls part.compute, or part.take with what an earlier part.copy gave for the same key.
+  /// Calls part.compute, or part.take with what an earlier part.give gave for the same key.
   virtual void provide(Stage, const std::string& /*key*/, const StagePart& part) { part.compute(); }
 };
 
@@ -88,6 +88,7 @@ class Chain {
   std::optional<EvaluationStream> stream_to_sink() const;
   void put(FilterScores scores);
   void put_scores(Archive&& part);
+  void warn_of_free_runs() const;
   void forget(const std::string& filter);
   void forget_competitors();
   void score_competitors(const CompetitorScoreInputs& inputs);

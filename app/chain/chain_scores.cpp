@@ -26,14 +26,13 @@ void Chain::conclude(const FilterOptions& filter, const ScoringOptions& scoring)
   const std::optional<EvaluationStream> stream = stream_to_sink();
   if (std::optional<FilterScores> together = score_combined(filter, scoring, archive_, stream ? &*stream : nullptr))
     put(std::move(*together));
+  warn_of_free_runs();
   archive_.finding = find_modes(archive_);
   archive_.confusion = confusion_of(archive_);
 }
 
 void Chain::put(FilterScores scores) {
   const std::string filter = scores.evaluation.filter;
-  for (const std::string& line : remarks(filter, archive_.recording->runs, scores.evaluation.free_runs))
-    listener_.warning(line);
   if (!scores.residual_tests.runs.empty()) put(std::move(scores.residual_tests));
   std::vector<FilterEvaluation> evaluation;
   evaluation.push_back(std::move(scores.evaluation));
@@ -51,12 +50,19 @@ void Chain::put(ResidualTestSet tests) {
 }
 
 void Chain::put_scores(Archive&& part) {
+  put_back_recording(part, archive_);
   for (FilterEvaluation& evaluation : part.evaluations) {
     const std::string filter = evaluation.filter;
-    put({std::move(evaluation), rows_of({filter}, part.summary), rows_of({filter}, part.diagnostics),
-         rows_of({filter}, part.free_runs)});
+    put({std::move(evaluation), rows_out_of(part.summary, {filter}), rows_out_of(part.diagnostics, {filter}),
+         rows_out_of(part.free_runs, {filter})});
   }
   for (ResidualTestSet& tests : part.residual_tests) put(std::move(tests));
+}
+
+void Chain::warn_of_free_runs() const {
+  for (const FilterEvaluation& evaluation : archive_.evaluations)
+    for (const std::string& line : remarks(evaluation.filter, archive_.recording->runs, evaluation.free_runs))
+      listener_.warning(line);
 }
 
 void Chain::forget(const std::string& filter) {
@@ -78,24 +84,24 @@ void Chain::score_competitors(const CompetitorScoreInputs& inputs) {
     put(test_global(*archive_.recording, *archive_.windows, inputs.window));
     for (const char* filter : competitor_names) score(filter, competitor_filter(filter, inputs.filter), inputs.scoring);
   };
-  const auto copy = [&] {
+  const auto give = [&] {
     std::vector<std::string> models(competitor_names.begin(), competitor_names.end());
     models.emplace_back("global");
-    return scores_of(models, archive_);
+    return scores_out_of(archive_, models);
   };
   const auto take = [&](Archive&& part) {
     forget_competitors();
     put_scores(std::move(part));
   };
-  provide(Stage::competitor_scores, {score_all, copy, take});
+  provide(Stage::competitor_scores, {score_all, give, take});
 }
 
 void Chain::judge(const ChainInputs& inputs) {
   const Stopwatch watch;
   score_competitors(inputs.competitor_scores);
   const auto score_bank = [&] { score("bank", inputs.bank_scores.filter, inputs.bank_scores.scoring); };
-  const auto copy = [&] { return scores_of({"bank"}, archive_); };
-  provide(Stage::bank_scores, {score_bank, copy, [&](Archive&& part) { put_scores(std::move(part)); }});
+  const auto give = [&] { return scores_out_of(archive_, {"bank"}); };
+  provide(Stage::bank_scores, {score_bank, give, [&](Archive&& part) { put_scores(std::move(part)); }});
   conclude(inputs.bank_scores.filter, inputs.bank_scores.scoring);
   listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
 }

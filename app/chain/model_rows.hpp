@@ -38,25 +38,32 @@ void put_rows(const std::string& model, std::vector<Row> rows, std::vector<Row>&
                    [](const Row& a, const Row& b) { return model_rank(model_of(a)) < model_rank(model_of(b)); });
 }
 
+/// Takes the rows of these models out.
 template <class Row>
-std::vector<Row> rows_of(const std::vector<std::string>& models, const std::vector<Row>& all) {
-  std::vector<Row> rows;
-  rows.reserve(all.size());  // growing copies evaluations once more
-  for (const Row& row : all)
-    if (std::find(models.begin(), models.end(), model_of(row)) != models.end()) rows.push_back(row);
+std::vector<Row> rows_out_of(std::vector<Row>& all, const std::vector<std::string>& models) {
+  const auto others = std::stable_partition(all.begin(), all.end(), [&](const Row& row) {
+    return std::find(models.begin(), models.end(), model_of(row)) == models.end();
+  });
+  std::vector<Row> rows(std::make_move_iterator(others), std::make_move_iterator(all.end()));
+  all.erase(others, all.end());
   return rows;
 }
 
-/// Everything that was found out about these models.
-inline Archive scores_of(const std::vector<std::string>& models, const Archive& archive) {
+/// Takes everything out that was found out about these models, with the recording: an archive of scores holds it.
+inline Archive scores_out_of(Archive& archive, const std::vector<std::string>& models) {
   Archive part;
-  part.recording = archive.recording;
-  part.evaluations = rows_of(models, archive.evaluations);
-  part.summary = rows_of(models, archive.summary);
-  part.free_runs = rows_of(models, archive.free_runs);
-  part.diagnostics = rows_of(models, archive.diagnostics);
-  part.residual_tests = rows_of(models, archive.residual_tests);
+  part.recording = std::exchange(archive.recording, {});
+  part.evaluations = rows_out_of(archive.evaluations, models);
+  part.summary = rows_out_of(archive.summary, models);
+  part.free_runs = rows_out_of(archive.free_runs, models);
+  part.diagnostics = rows_out_of(archive.diagnostics, models);
+  part.residual_tests = rows_out_of(archive.residual_tests, models);
   return part;
+}
+
+/// Where a part was given with the recording. One from a file has its own, of the same data.
+inline void put_back_recording(Archive& part, Archive& archive) {
+  if (!archive.recording) archive.recording = std::move(part.recording);
 }
 
 }  // namespace modebank

@@ -59,14 +59,16 @@ bool StageStore::load(const fs::path& file, const StagePart& part) const {
 }
 
 void StageStore::store(const fs::path& file, const StagePart& part) const {
+  Archive result = part.give();
   try {
     fs::create_directory(folder_);
-    write_archive(file, part.copy());
+    write_archive(file, result);
     if (rules_.kept) rules_.kept();
     if (std::isfinite(rules_.limit_mb)) make_room();
   } catch (const std::exception& obstacle) {  // the file would have saved time, nothing else
     spdlog::debug("{}", obstacle.what());
   }
+  part.take(std::move(result));
 }
 
 void StageStore::make_room() const {

@@ -49,9 +49,11 @@ class Recorder : public StageSource {
   explicit Recorder(std::filesystem::path scratch) : scratch_(std::move(scratch)) {}
   void provide(Stage stage, const std::string& key, const StagePart& part) override {
     part.compute();
-    Archive content = part.copy();
-    content.provenance = {};
+    Archive content = part.give();
+    std::swap(content.provenance, provenance_);
     write_archive(scratch_, content);
+    std::swap(content.provenance, provenance_);
+    part.take(std::move(content));
     keys[index_of(stage)] = key;
     contents[index_of(stage)] = sha256_hex(read_file(scratch_));
   }
@@ -60,6 +62,7 @@ class Recorder : public StageSource {
 
  private:
   std::filesystem::path scratch_;
+  Provenance provenance_;  ///< empty but while a part is written
 };
 
 class StageKey : public ::testing::Test {
