@@ -1,14 +1,18 @@
 #include "app/cli/command_line.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <boost/program_options.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <type_traits>
+#include <variant>
 
 #include "app/cli/command_table.hpp"
-#include "app/cli/given_options.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "app/study/launch/shell.hpp"
@@ -19,40 +23,48 @@ namespace po = boost::program_options;
 namespace modebank::app {
 namespace {
 
-/// Options of predict alone, short for these keys.
-constexpr std::pair<const char*, const char*> predict_words[]{
-    {"samples", "filter.simulate"}, {"horizon", "filter.simulate_horizon"}, {"filter", "track.filter"}};
+/// Each option once: those of one name, in several commands, have one target.
+std::map<std::string, CommandOption> all_options() {
+  std::map<std::string, CommandOption> options;
+  const auto add = [&](const std::vector<CommandOption>& more) {
+    for (const CommandOption& option : more) options.try_emplace(option.long_name(), option);
+  };
+  add(common_options());
+  for (const Command& command : command_table()) add(command.options);
+  return options;
+}
 
-/// What holds an option's value; command_table says which commands have it and what it means.
-po::options_description describe_options(CommandLine& line) {
+po::options_description describe_options(const std::map<std::string, CommandOption>& options, CommandLine& line) {
   po::options_description description;
   auto add = description.add_options();
-  const auto add_switch = [&add](const char* name, bool& value) { add(name, po::bool_switch(&value)); };
-  add_switch("help,h", line.help);
-  add_switch("version", line.version);
-  add_switch("quiet,q", line.quiet);
-  add_switch("verbose,v", line.verbose);
-  add_switch("dry-run", line.dry_run);
-  add_switch("schema", line.schema);
-  add_switch("markdown", line.markdown);
-  add_switch("json", line.json);
-  add_switch("repair", line.repair);
-  add_switch("findings", line.findings);
-  add_switch("apply", line.apply);
-  add_switch("force", line.force);
-  add_switch("yes", line.yes);
-  add("form", po::value(&line.form));
-  add("output,o", po::value(&line.output));
-  add("to", po::value(&line.exported.to));
-  add("table", po::value(&line.exported.table));
-  add("run", po::value(&line.run));
-  add("wheel_separation_m", po::value(&line.exported.wheel_separation_m));
-  add("wheel_radius_m", po::value(&line.exported.wheel_radius_m));
+  const auto bind = [&](const char* name, const auto& target) {
+    if constexpr (std::is_same_v<decltype(target), const std::string&>)
+      add(name, po::value<std::string>());
+    else if constexpr (std::is_same_v<decltype(target), bool CommandLine::*const&>)
+      add(name, po::bool_switch(&(line.*target)));
+    else
+      add(name, po::value(&(line.*target)));
+  };
+  for (const auto& [name, option] : options)
+    std::visit([&](const auto& target) { bind(option.name.c_str(), target); }, option.target);
   add("words", po::value<std::vector<std::string>>());
-  for (const auto& [word, key] : predict_words) add(word, po::value<std::string>());
   for (const Option& option : option_table())
     add(option.key.c_str(), po::value<std::vector<std::string>>()->composing());  // given twice, the last wins
   return description;
+}
+
+/// An option that is short for a key sets it; one with words to choose from has one of them.
+void take_values(const std::map<std::string, CommandOption>& options, const po::variables_map& values,
+                 CommandLine& line) {
+  for (const auto& [name, option] : options) {
+    if (const auto* key = std::get_if<std::string>(&option.target); key && values.count(name))
+      line.overrides.emplace_back(*key, values[name].as<std::string>());
+    const std::vector<std::string> words = option.choices();
+    if (words.empty() || !values.count(name)) continue;
+    const auto& value = values[name].as<std::string>();
+    if (std::find(words.begin(), words.end(), value) == words.end())
+      throw ConfigurationError(fmt::format("--{} {}: allowed are {}", name, value, fmt::join(words, " and ")));
+  }
 }
 
 /// Whether the shell finds this program by the name alone.
@@ -119,6 +131,47 @@ std::vector<std::string> joined_values(int argc, const char* const* argv, const 
   return words;
 }
 
+/// The key that says where a command writes what it has no -o for; empty where it has none.
+std::string output_key(const Command& command) {
+  for (const char* key : {"archive.output", "study.output", "simulate.output"})
+    if (command.reads(key)) return key;
+  return {};
+}
+
+/// What it has in place of an option that it does not read.
+std::string instead_of(const Command& command, const std::string& option) {
+  const std::string key = option == "output" ? output_key(command) : "";
+  return key.empty() ? "" : fmt::format("--{} PATH says where it writes; ", key);
+}
+
+/// "--data.*, --track.filter", and of the sections what is left out.
+std::string known_words(const Command& command) {
+  std::vector<std::string> known;
+  for (const CommandOption& each : command.options) known.push_back("--" + each.long_name());
+  for (const std::string& keys : command.keys)
+    known.push_back(keys.find('.') == std::string::npos ? "--" + keys + ".*" : "--" + keys);
+  if (known.empty()) return "it has no options";
+  const std::string but =
+      command.not_keys.empty() ? "" : fmt::format(", but for --{}", fmt::join(command.not_keys, ", --"));
+  return fmt::format("it reads {}{}", fmt::join(known, ", "), but);
+}
+
+/// "-o" and "--window.length x" are refused alike where nothing would read them.
+[[noreturn]] void refuse(const Command& command, const std::string& option) {
+  throw ConfigurationError(fmt::format("{0} does not read --{1}; {2}{3} (modebank help {0})", command.name, option,
+                                       instead_of(command, option), known_words(command)));
+}
+
+void check_command(const Command& command, const CommandLine& line) {
+  for (const std::string& given : line.given)
+    if (!command.find_option(given)) refuse(command, given);
+  for (const auto& [key, value] : line.overrides)
+    if (!command.reads(key)) refuse(command, key);
+  const auto& [text, needs, fewest, most] = command.arguments;
+  if (!line.version && (line.files.size() < fewest || line.files.size() > most))
+    throw ConfigurationError(fmt::format("{} {}, as in: {}", command.name, needs, command.example));
+}
+
 }  // namespace
 
 std::string shell_quoted(const std::string& word) { return shell_word(word); }
@@ -128,7 +181,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   for (int i = 0; i < argc; ++i) line.typed += (i ? " " : "") + shell_quoted(argv[i]);
   line.program = program_as_called(argc > 0 ? argv[0] : "modebank");
   if (argc > 1) refuse_gone_command(argv[1]);  // before its options, which went with it
-  const po::options_description description = describe_options(line);
+  const std::map<std::string, CommandOption> options = all_options();
+  const po::options_description description = describe_options(options, line);
   po::positional_options_description positional;
   positional.add("words", -1);
   po::variables_map values;
@@ -158,11 +212,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     line.command = line.files.front();
     line.files.erase(line.files.begin());
   }
-  if (const Command* command = find_command(line.command); command && !line.help) check_options(*command, line);
-  for (const auto& [word, key] : predict_words)
-    if (values.count(word)) line.overrides.emplace_back(key, values[word].as<std::string>());
-  if (line.form != "increment" && line.form != "full")
-    throw ConfigurationError(fmt::format("--form {}: allowed are increment and full", line.form));
+  if (const Command* command = find_command(line.command); command && !line.help) check_command(*command, line);
+  take_values(options, values, line);
   return line;
 }
 

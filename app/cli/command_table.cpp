@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "app/cli/commands.hpp"
+#include "app/config/option_table.hpp"
+#include "app/report/page/compare_page.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -12,16 +15,29 @@ namespace {
 
 const std::vector<std::string> chain_keys{"data", "window", "mixture", "bank", "filter", "archive", "job"};
 
-CommandOption output(const std::string& what, const std::string& help) { return {"output,o", what, help}; }
-CommandOption force(const std::string& help) { return {"force", "", help}; }
-CommandOption dry_run() { return {"dry-run", "", "say what would be read and written, and stop"}; }
-CommandOption as_json() { return {"json", "", "the result as one JSON object"}; }
+constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
+const Arguments one_config{"CONFIG", "needs one configuration file", 1, 1};
+const Arguments no_name{"", "takes no name", 0, 0};
+const Arguments one_command{"[COMMAND]", "takes one command", 0, 1};
+const Arguments one_archive{"ARCHIVE", "needs one archive", 1, 1};
+
+CommandOption output(const std::string& what, const std::string& help) {
+  return {"output,o", what, help, &CommandLine::output};
+}
+CommandOption force(const std::string& help) { return {"force", "", help, &CommandLine::force}; }
+CommandOption of_run(const std::string& help) { return {"run", "NAME", help, &CommandLine::run}; }
+CommandOption dry_run() {
+  return {"dry-run", "", "say what would be read and written, and stop", &CommandLine::dry_run};
+}
+CommandOption as_json(const std::string& help = "the result as one JSON object") {
+  return {"json", "", help, &CommandLine::json};
+}
 
 std::vector<Command> commands_to_start() {
   return {
       {"Start",
        "demo",
-       "",
+       no_name,
        "simulate a robot on ice and grip and run the whole chain on it",
        "The ground is known there, so that what is found can be compared. Needs no file.",
        "modebank demo",
@@ -31,7 +47,7 @@ std::vector<Command> commands_to_start() {
        run_demo},
       {"Start",
        "init",
-       "FILE...",
+       {"FILE...", "needs one or more logs", 1, any_number},
        "look into logs and write a configuration to start from",
        "CSV, ROS 1 bag, ROS 2 MCAP and .db3, MATLAB, HDF5: every channel with its unit, rate, range and gaps; time, "
        "states and inputs are guessed, each guess with its reason beside it.",
@@ -40,31 +56,32 @@ std::vector<Command> commands_to_start() {
        {as_json(),
         output("FILE", "the configuration (named after the log)"),
         force("overwrite a configuration of that name"),
-        {"yes", "", "ask nothing; without it a terminal is asked whether state and inputs are right"}},
+        {"yes", "", "ask nothing; without it a terminal is asked whether state and inputs are right",
+         &CommandLine::yes}},
        run_init},
       {"Start",
        "check",
-       "CONFIG",
+       one_config,
        "advice on the data before anything is fitted, and settings that gain",
        "Clocks, gaps, repeats, excitation and outliers, run by run; then settings that score better on training runs "
        "left out.",
        "modebank check robot.ini",
        chain_keys,
        {as_json(),
-        {"findings", "", "leave the settings out, which take minutes on large data"},
-        {"apply", "", "write the configuration with the suggested settings, to -o FILE"},
+        {"findings", "", "leave the settings out, which take minutes on large data", &CommandLine::findings},
+        {"apply", "", "write the configuration with the suggested settings, to -o FILE", &CommandLine::apply},
         output("FILE", "what --apply writes"),
         force("overwrite a configuration of that name")},
        run_check},
       {"Start",
        "config",
-       "CONFIG",
+       {"CONFIG", "needs one configuration file", 0, 1},
        "the resolved configuration, and where each value comes from",
        "Of every key its value and its origin: line of the file, command line or default. It is itself a "
        "configuration.",
        "modebank config robot.ini",
        {"data", "window", "mixture", "bank", "filter", "archive", "job", "study", "track", "report", "simulate"},
-       {as_json(), {"schema", "", "a JSON schema of all keys, for editors; takes no CONFIG"}},
+       {as_json(), {"schema", "", "a JSON schema of all keys, for editors; takes no CONFIG", &CommandLine::schema}},
        run_config},
   };
 }
@@ -73,13 +90,13 @@ std::vector<Command> commands_to_identify() {
   const std::vector<CommandOption> written{as_json(), dry_run()};
   const std::vector<CommandOption> archived{as_json(), dry_run(), force("replace an archive of other data")};
   return {
-      {"Identify", "run", "CONFIG", "the whole chain, from log to verdict: writes an archive and prints a summary",
+      {"Identify", "run", one_config, "the whole chain, from log to verdict: writes an archive and prints a summary",
        "Reads the runs, fits windows, clusters them, learns a bank of modes and judges it on held-out runs against "
        "models that one would use instead.",
        "modebank run robot.ini --window.length 30", chain_keys, archived, run_pipeline},
       {"Identify",
        "identify",
-       "CONFIG",
+       one_config,
        "fit the windows alone and archive them",
        "",
        "modebank identify robot.ini",
@@ -88,19 +105,19 @@ std::vector<Command> commands_to_identify() {
        run_pipeline},
       {"Identify",
        "cluster",
-       "CONFIG",
+       one_config,
        "cluster the windows (of --archive.input, if given)",
        "",
        "modebank cluster robot.ini --archive.input windows.h5",
        {"data", "window", "mixture", "archive", "job"},
        archived,
        run_pipeline},
-      {"Identify", "evaluate", "CONFIG",
+      {"Identify", "evaluate", one_config,
        "learn a bank and judge it (from --archive.input), or judge that of --archive.bank", "",
        "modebank evaluate other.ini --archive.bank robot.h5", chain_keys, archived, run_pipeline},
       {"Identify",
        "study",
-       "CONFIG",
+       one_config,
        "run a chain for many settings, on one machine or on a Slurm cluster",
        "Plans, runs and merges; what is done is not done again. --study.stage does one step.",
        "modebank study robot.ini --study.vary 'window.length = 20 | 40 | 80'",
@@ -109,7 +126,7 @@ std::vector<Command> commands_to_identify() {
        run_study},
       {"Identify",
        "simulate",
-       "CONFIG",
+       one_config,
        "write runs with known truth, in a layout that run reads",
        "",
        "modebank simulate vehicle.ini",
@@ -123,18 +140,21 @@ std::vector<Command> commands_to_use() {
   return {
       {"Use",
        "show",
-       "ARCHIVE [PATH]",
+       {"ARCHIVE [PATH]", "needs an archive and at most one path in it", 1, 2},
        "all that a run found, or one object of the archive",
        "",
        "modebank show robot.h5 /bank/A",
        {},
        {as_json(),
-        {"run", "NAME", "of arrays over samples and of tables, the rows of this run"},
-        {"form", "increment | full", "of A: x[k+1] - x[k] = A x[k], or x[k+1] = A x[k]"}},
+        of_run("of arrays over samples and of tables, the rows of this run"),
+        {"form", "increment | full", "of A: x[k+1] - x[k] = A x[k], or x[k+1] = A x[k]", &CommandLine::form}},
        run_show},
       {"Use",
        "report",
-       "ARCHIVE|STUDY|FOLDER [ARCHIVE...]",
+       {"ARCHIVE|STUDY|FOLDER [ARCHIVE...]",
+        fmt::format("needs an archive, a study, a folder of archives, or two to {} archives to compare",
+                    report::most_compared),
+        1, report::most_compared},
        "a page that opens offline in a browser: of a run, a study, runs side by side, or a folder",
        "A folder of archives becomes SITE/index.html, a table that sorts, filters and compares, with a page for each "
        "archive and study below the folder. Run again, it makes the pages whose archive changed.",
@@ -144,7 +164,7 @@ std::vector<Command> commands_to_use() {
        run_report},
       {"Use",
        "track",
-       "ARCHIVE",
+       one_archive,
        "live filter: samples in on standard input or from --data.inputs, estimates out, line by line",
        "Lines in: a header with the columns that the archive was made from (or JSON objects of these names), then a "
        "sample each, in any form that `run` reads; a state that was not measured stays empty. --data.inputs FILE reads "
@@ -154,27 +174,27 @@ std::vector<Command> commands_to_use() {
        "for the next sample, an alarm.",
        "modebank track robot.h5 < log.csv",
        {"data", "filter.variant", "filter.noise", "track"},
-       {{"json", "", "lines out are JSON objects, as they are where lines in are"}},
+       {as_json("lines out are JSON objects, as they are where lines in are")},
        run_track,
        {"data.truth", "data.weight", "data.label"}},
       {"Use",
        "predict",
-       "ARCHIVE",
+       one_archive,
        "free run: a few measured samples, then inputs only",
        "Files need the archive's columns; states after the first samples may be missing. Out comes, per sample and "
        "state, the prediction with its standard deviation and 95 % band, and the most probable mode.",
        "modebank predict robot.h5 --data.inputs plan.csv --samples 10",
        {"data", "filter", "track.filter", "job"},
        {as_json(),
-        {"samples", "N", "measured samples at the start, short for --filter.simulate"},
-        {"horizon", "H", "steps from there on, short for --filter.simulate_horizon"},
-        {"filter", "NAME", "which model, short for --track.filter"},
+        {"samples", "N", "measured samples at the start, short for --filter.simulate", "filter.simulate"},
+        {"horizon", "H", "steps from there on, short for --filter.simulate_horizon", "filter.simulate_horizon"},
+        {"filter", "NAME", "which model, short for --track.filter", "track.filter"},
         output("FILE", "CSV file (standard output)")},
        run_predict,
        {"data.truth", "data.weight", "data.label", "filter.horizon", "filter.smooth"}},
       {"Use",
        "export",
-       "ARCHIVE --to FORM",
+       {"ARCHIVE --to FORM", "needs one archive", 1, 1},
        "the bank for other programs: json, mat, c, casadi, ros2, or a table as csv",
        "Every form is x[k+1] = A x[k] + B u[k] + c: json one page; mat for MATLAB and Octave; c a C99 filter without "
        "heap; casadi Python text for MPC; ros2 parameter files, one per mode. Refused where the verdict on its "
@@ -182,22 +202,22 @@ std::vector<Command> commands_to_use() {
        "modebank export robot.h5 --to c -o tracker.c",
        {"track.filter"},
        {as_json(),
-        {"to", "FORM", "json, mat, c, casadi, ros2 or csv"},
+        {"to", "FORM", "json, mat, c, casadi, ros2 or csv", &CommandLine::to},
         output("FILE", "file, or folder of ros2"),
         force("also where the verdict speaks against it"),
-        {"table", "PATH", "csv: which table of the archive"},
-        {"run", "NAME", "csv: the rows of this run; of /data or /evaluation/FILTER, a column per signal"},
-        {"wheel_separation_m", "W", "ros2: as the controller has it"},
-        {"wheel_radius_m", "R", "ros2: as the controller has it"}},
+        {"table", "PATH", "csv: which table of the archive", &CommandLine::table},
+        of_run("csv: the rows of this run; of /data or /evaluation/FILTER, a column per signal"),
+        {"wheel_separation_m", "W", "ros2: as the controller has it", &CommandLine::wheel_separation_m},
+        {"wheel_radius_m", "R", "ros2: as the controller has it", &CommandLine::wheel_radius_m}},
        run_export},
       {"Use",
        "verify",
-       "ARCHIVE|STUDY...",
+       {"ARCHIVE|STUDY...", "needs at least one archive or study", 1, any_number},
        "check hash, schema and completeness",
        "",
        "modebank verify robot.h5",
        {},
-       {as_json(), {"repair", "", "of study folders: remove what is broken"}},
+       {as_json(), {"repair", "", "of study folders: remove what is broken", &CommandLine::repair}},
        run_verify},
   };
 }
@@ -206,24 +226,24 @@ std::vector<Command> commands_about() {
   return {
       {"About",
        "help",
-       "[COMMAND | SECTION | KEY | TERM]",
+       {"[COMMAND | SECTION | KEY | TERM]", "", 0, any_number},
        "what a command, a key or a word of the summary means",
        "",
        "modebank help window.length",
        {},
-       {as_json(), {"markdown", "", "all keys as a table"}},
+       {as_json(), {"markdown", "", "all keys as a table", &CommandLine::markdown}},
        nullptr},
-      {"About", "version", "", "version and revision", "", "modebank version", {}, {as_json()}, nullptr},
+      {"About", "version", no_name, "version and revision", "", "modebank version", {}, {as_json()}, nullptr},
       {"About",
        "completion",
-       "bash | zsh | fish",
+       {"bash | zsh | fish", "needs one shell", 1, 1},
        "completion for a shell, to be sourced",
        "",
        "source <(modebank completion bash)",
        {},
        {},
        run_completion},
-      {"About", "manual", "[COMMAND]", "manual page in roff", "", "modebank manual run | man -l -", {}, {}, run_manual},
+      {"About", "manual", one_command, "manual page in roff", "", "modebank manual run | man -l -", {}, {}, run_manual},
   };
 }
 
@@ -235,6 +255,8 @@ std::string CommandOption::typed() const {
   return (comma == std::string::npos ? "" : fmt::format("-{}{}, ", name.substr(comma + 1), value)) + "--" +
          long_name() + value;
 }
+
+std::vector<std::string> CommandOption::choices() const { return choices_in(argument); }
 
 bool Command::reads(const std::string& key) const {
   if (std::find(not_keys.begin(), not_keys.end(), key) != not_keys.end()) return false;
@@ -260,10 +282,11 @@ const std::vector<Command>& command_table() {
 }
 
 const std::vector<CommandOption>& common_options() {
-  static const std::vector<CommandOption> options{{"help,h", "", "what a command does and reads"},
-                                                  {"quiet,q", "", "errors only on standard error"},
-                                                  {"verbose,v", "", "every candidate that was tried, too"},
-                                                  {"version", "", "version and revision"}};
+  static const std::vector<CommandOption> options{
+      {"help,h", "", "what a command does and reads", &CommandLine::help},
+      {"quiet,q", "", "errors only on standard error", &CommandLine::quiet},
+      {"verbose,v", "", "every candidate that was tried, too", &CommandLine::verbose},
+      {"version", "", "version and revision", &CommandLine::version}};
   return options;
 }
 

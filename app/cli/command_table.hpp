@@ -1,29 +1,43 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "app/cli/command_line.hpp"
 
 namespace modebank::app {
 
+/// Where the value of an option goes: a member of CommandLine, or the configuration key that the option is short for.
+using OptionTarget = std::variant<bool CommandLine::*, std::string CommandLine::*, double CommandLine::*, std::string>;
+
 /// An option of a command that is no configuration key.
 struct CommandOption {
   std::string name;      ///< without dashes; "output,o" has a short form as well
-  std::string argument;  ///< what follows it; empty: a switch
+  std::string argument;  ///< what follows it, or words to choose from ("increment | full"); empty: a switch
   std::string help;
+  OptionTarget target;
 
   std::string long_name() const { return name.substr(0, name.find(',')); }
-  std::string typed() const;  ///< "-o FILE, --output FILE"
+  std::string typed() const;                 ///< "-o FILE, --output FILE"
+  std::vector<std::string> choices() const;  ///< the words to choose from; empty: any text
 };
 
-/// One command: help, manual, completion and the refusal of options that it does not read all come from here.
+/// The words that follow a command's name.
+struct Arguments {
+  std::string text;   ///< as help shows them
+  std::string needs;  ///< "needs one archive", for the refusal of fewer or more
+  std::size_t fewest, most;
+};
+
+/// One command: parsing, help, manual, completion and the refusal of options that it does not read all come from here.
 struct Command {
-  std::string group;      ///< heading under which `help` lists it
-  std::string name;       ///
-  std::string arguments;  ///< what follows the name
-  std::string summary;    ///< one line
-  std::string details;    ///< sentences; may be empty
+  std::string group;    ///< heading under which `help` lists it
+  std::string name;     ///
+  Arguments arguments;  ///
+  std::string summary;  ///< one line
+  std::string details;  ///< sentences; may be empty
   std::string example;
   std::vector<std::string> keys;  ///< sections, or single keys, of the configuration that it reads
   std::vector<CommandOption> options;

@@ -30,7 +30,6 @@ void print_help(const CommandLine& line) {
 }
 
 void print_version(const CommandLine& line) {
-  if (!line.version && !line.files.empty()) throw ConfigurationError("version takes no name: " + line.files.front());
   print_text(line, fmt::format("modebank {} ({})\n", build_info::version, build_info::git_revision));
   print_json(line, {{"revision", build_info::git_revision}});
 }

@@ -58,8 +58,8 @@ std::string row(const std::string& left, const std::string& right, std::size_t l
 }
 
 std::string heading_of(const Command& command) {
-  return fmt::format("usage: modebank {}{}{}{}{}\n\n", command.name, command.arguments.empty() ? "" : " ",
-                     command.arguments, command.options.empty() ? "" : " [options]",
+  return fmt::format("usage: modebank {}{}{}{}{}\n\n", command.name, command.arguments.text.empty() ? "" : " ",
+                     command.arguments.text, command.options.empty() ? "" : " [options]",
                      command.keys.empty() ? "" : " [--section.key value ...]");
 }
 

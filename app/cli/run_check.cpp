@@ -24,7 +24,6 @@ namespace modebank::app {
 namespace {
 
 void require_usage(const CommandLine& line) {
-  if (line.files.size() != 1) throw ConfigurationError("check needs one configuration file: modebank check CONFIG");
   if (line.apply && line.output.empty())
     throw ConfigurationError("--apply: name the configuration file to write: modebank check CONFIG --apply -o FILE");
   if (!line.apply && !line.output.empty())

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <boost/algorithm/string.hpp>
+#include <map>
 
 #include "app/cli/command_table.hpp"
 #include "app/cli/commands.hpp"
@@ -29,7 +30,7 @@ struct Word {
 std::vector<Word> options_in(const std::vector<CommandOption>& options) {
   std::vector<Word> words;
   for (const CommandOption& option : options)
-    words.push_back({option.long_name(), option.help, !option.argument.empty()});
+    words.push_back({option.long_name(), option.help, !option.argument.empty(), option.choices()});
   return words;
 }
 
@@ -48,13 +49,16 @@ std::vector<Word> words_after(const Command& command) {
   return all;
 }
 
-/// A branch of a script for each key whose value is one of some words. `action` has {} where these stand.
+/// A branch of a script for each option and key whose value is one of some words. `action` has {} where these stand.
 std::string value_branches(fmt::format_string<std::string> action) {
+  std::map<std::string, std::vector<std::string>> choices;
+  for (const Command& command : command_table())
+    for (const Word& word : words_after(command)) choices.emplace(word.name, word.choices);
   std::string text;
-  for (const Option& option : option_table())
-    if (const auto choices = option.choices(); !choices.empty())
-      text += fmt::format("    --{}) {}; return ;;\n", option.key,
-                          fmt::format(action, fmt::format("{}", fmt::join(choices, " "))));
+  for (const auto& [name, words] : choices)
+    if (!words.empty())
+      text +=
+          fmt::format("    --{}) {}; return ;;\n", name, fmt::format(action, fmt::format("{}", fmt::join(words, " "))));
   return text;
 }
 
@@ -158,7 +162,7 @@ std::string fish_script() {
 }  // namespace
 
 int run_completion(const CommandLine& line) {
-  const std::string shell = line.files.size() == 1 ? line.files.front() : "";
+  const std::string& shell = line.files.front();
   if (shell != "bash" && shell != "zsh" && shell != "fish")
     throw ConfigurationError("completion needs a shell: modebank completion bash | zsh | fish");
   fmt::print("{}", shell == "bash" ? bash_script() : shell == "zsh" ? zsh_script() : fish_script());

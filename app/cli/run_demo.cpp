@@ -98,8 +98,6 @@ CommandLine typed_command(const CommandLine& demo, const std::vector<std::string
 }  // namespace
 
 int run_demo(const CommandLine& line) {
-  if (!line.files.empty())
-    throw ConfigurationError(fmt::format("demo takes no file, but -o FOLDER: {}", line.files.front()));
   const DemoFolder demo{line.output.empty() ? "modebank_demo" : line.output};
   const CommandLine simulate = typed_command(
       line, {"simulate", demo.simulation().string(), fmt::format("--simulate.output={}", demo.data().string())});

@@ -104,7 +104,7 @@ json asked_table(const CommandLine& line, const std::string& path) {
 }
 
 json export_csv(const CommandLine& line) {
-  const std::string table = line.exported.table.empty() && !line.run.empty() ? "/data" : line.exported.table;
+  const std::string table = line.table.empty() && !line.run.empty() ? "/data" : line.table;
   if (table.empty())
     throw ConfigurationError(
         "export --to csv needs --table PATH, such as /evaluation/summary (modebank show ARCHIVE /), or --run NAME");
@@ -149,7 +149,7 @@ json export_c(const CommandLine& line) {
 }
 
 json export_ros2(const CommandLine& line) {
-  const RobotSizes sizes{line.exported.wheel_separation_m, line.exported.wheel_radius_m};
+  const RobotSizes sizes{line.wheel_separation_m, line.wheel_radius_m};
   if (!(sizes.wheel_separation_m >= 0.0 && sizes.wheel_radius_m >= 0.0))
     throw ConfigurationError("--wheel_separation_m and --wheel_radius_m are lengths above 0");
   const auto files = to_ros2(read_bank(line), sizes);
@@ -182,23 +182,22 @@ void check_form_options(const CommandLine& line) {
   const std::map<std::string, std::string> belongs{
       {"table", "csv"}, {"run", "csv"}, {"wheel_separation_m", "ros2"}, {"wheel_radius_m", "ros2"}};
   for (const std::string& option : line.given)
-    if (const auto only = belongs.find(option); only != belongs.end() && only->second != line.exported.to)
+    if (const auto only = belongs.find(option); only != belongs.end() && only->second != line.to)
       throw ConfigurationError(
-          fmt::format("--{} belongs to export --to {}, not to --to {}", option, only->second, line.exported.to));
+          fmt::format("--{} belongs to export --to {}, not to --to {}", option, only->second, line.to));
 }
 
 }  // namespace
 
 int run_export(const CommandLine& line) {
-  const auto form = forms.find(line.exported.to);
-  if (line.files.size() != 1 || form == forms.end())
+  const auto form = forms.find(line.to);
+  if (form == forms.end())
     throw ConfigurationError(
-        fmt::format("export needs one archive and one of the forms json, mat, c, casadi, ros2 and csv{}: modebank "
-                    "export ARCHIVE --to FORM",
-                    line.exported.to.empty() || form != forms.end() ? "" : ", not " + line.exported.to));
+        fmt::format("export needs one of the forms json, mat, c, casadi, ros2 and csv{}: modebank export {} --to json",
+                    line.to.empty() ? "" : ", not " + line.to, line.files.front()));
   check_form_options(line);
   json result = form->second(line);
-  result["form"] = line.exported.to;
+  result["form"] = line.to;
   print_json(line, result);
   return 0;
 }

@@ -55,7 +55,6 @@ bool is_asked(const CommandLine& line) {
 }  // namespace
 
 int run_init(const CommandLine& line) {
-  if (line.files.empty()) throw ConfigurationError("init needs one or more logs: modebank init FILE...");
   const std::vector<FileSet> sets = file_sets(line.files);
   refuse_unnameable(sets);
   const std::string target = line.output.empty() ? default_name(sets) : line.output;

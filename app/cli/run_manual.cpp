@@ -61,7 +61,7 @@ std::string page_of(const Command& command) {
   const std::string options = options_text(command.options);
   return title(name) + fmt::format(".SH NAME\n{} \\- {}\n", roff(name), roff(command.summary)) +
          fmt::format(".SH SYNOPSIS\n.B modebank {}\n{}\n", command.name,
-                     roff(command.arguments + (options.empty() ? "" : " [options]") +
+                     roff(command.arguments.text + (options.empty() ? "" : " [options]") +
                           (command.keys.empty() ? "" : " [--section.key value ...]"))) +
          fmt::format(".SH DESCRIPTION\n{}\n.SH OPTIONS\n{}", roff(details), options + options_text(common_options())) +
          keys_text(command) +
@@ -77,7 +77,7 @@ std::string main_page() {
       "filter and judges it on runs held out.\n.SH COMMANDS\n";
   std::vector<std::string> pages;
   for (const Command& command : command_table()) {
-    text += item(boost::trim_copy(command.name + " " + command.arguments), command.summary + ".");
+    text += item(boost::trim_copy(command.name + " " + command.arguments.text), command.summary + ".");
     pages.push_back(fmt::format(".BR modebank\\-{} (1)", command.name));
   }
   text += ".SH OPTIONS\n" + options_text(common_options());
@@ -91,7 +91,6 @@ std::string main_page() {
 }  // namespace
 
 int run_manual(const CommandLine& line) {
-  if (line.files.size() > 1) throw ConfigurationError("manual takes one command: modebank manual [COMMAND]");
   if (line.files.empty()) {
     fmt::print("{}", main_page());
     return 0;

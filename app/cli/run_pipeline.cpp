@@ -154,9 +154,6 @@ Result execute(const CommandLine& line, const Config& config, StageSource& sourc
 }  // namespace
 
 Result do_pipeline(const CommandLine& line) {
-  if (line.files.size() != 1)
-    throw ConfigurationError(
-        fmt::format("{} needs one configuration file: modebank {} CONFIG", line.command, line.command));
   const Config config = load_valid_config(line.files.front(), line.overrides);
   check_request(line.command, config, line.files.front());
   refuse_learning_options(line, config);

@@ -104,8 +104,6 @@ Task task_of(const CommandLine& line, const OpenArchive& archive) {
 }  // namespace
 
 int run_predict(const CommandLine& line) {
-  if (line.files.size() != 1)
-    throw ConfigurationError("predict needs one archive: modebank predict ARCHIVE --data.inputs FILES --samples N");
   const OpenArchive archive(line.files.front());
   const Task task = task_of(line, archive);
   const Config& config = task.config;

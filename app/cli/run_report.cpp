@@ -12,7 +12,6 @@
 #include "app/study/answers/verify_study.hpp"
 #include "io/archive/archive.hpp"
 #include "io/files/replace_file.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
@@ -74,11 +73,6 @@ void report_files(const CommandLine& line, const std::filesystem::path& page, co
 }  // namespace
 
 int run_report(const CommandLine& line) {
-  if (line.files.empty() || line.files.size() > report::most_compared)
-    throw ConfigurationError(fmt::format(
-        "report needs an archive, a study's folder, a folder of archives, or two to {} archives to compare: modebank "
-        "report ARCHIVE [ARCHIVE...] [-o page.html]",
-        report::most_compared));
   const ReportConfig options = stored_config("", line.overrides).report;
   const std::filesystem::path page = final_target(page_path(line));
   report::Written written{[&](const std::string& text) { print_text(line, text); }, {}};

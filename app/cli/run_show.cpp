@@ -76,8 +76,6 @@ void convert_to_full_form(const OpenArchive& file, const std::string& path, json
 }  // namespace
 
 int run_show(const CommandLine& line) {
-  if (line.files.empty() || line.files.size() > 2)
-    throw ConfigurationError("show needs an archive and at most one path in it: modebank show ARCHIVE [PATH]");
   if (line.files.size() == 1 && !line.json && line.run.empty()) {
     print_overview(line);
     return 0;

@@ -77,8 +77,6 @@ void simulate_system(const Config& config) {
 }  // namespace
 
 Result do_simulate(const CommandLine& line) {
-  if (line.files.size() != 1)
-    throw ConfigurationError("simulate needs one configuration file: modebank simulate CONFIG");
   Config config = load_config(line.files.front(), line.overrides);
   read_system(std::filesystem::absolute(line.files.front()).parent_path(), config);
   check_keys_apply(config);

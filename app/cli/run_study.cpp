@@ -3,12 +3,10 @@
 #include "app/config/config_file.hpp"
 #include "app/study/answers/study_json.hpp"
 #include "app/study/study.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 
 int run_study(const CommandLine& line) {
-  if (line.files.size() != 1) throw ConfigurationError("study needs one configuration file: modebank study CONFIG");
   const std::string& file = line.files.front();
   const Config config = load_config(file, line.overrides);
   if (line.dry_run) return print_result(line, dry_run(config, {config.study.output}));

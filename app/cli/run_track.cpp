@@ -12,7 +12,6 @@
 #include "io/archive/filter_checkpoint.hpp"
 #include "io/files/output_file.hpp"
 #include "io/import/import.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
@@ -39,9 +38,6 @@ void check_checkpoint(const std::string& archive, const Config& config, bool rea
 }  // namespace
 
 int run_track(const CommandLine& line) {
-  if (line.files.size() != 1)
-    throw ConfigurationError(
-        "track needs one archive: modebank track ARCHIVE < LOG, or modebank track ARCHIVE --data.inputs LOG");
   const OpenArchive archive(line.files.front());
   Config config = stored_config(load_configuration(archive), line.overrides);
   config.track.json = line.json;

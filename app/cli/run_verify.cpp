@@ -50,7 +50,6 @@ json report_study(const CommandLine& line, const std::string& folder) {
 }  // namespace
 
 int run_verify(const CommandLine& line) {
-  if (line.files.empty()) throw ConfigurationError("verify needs at least one archive: modebank verify ARCHIVE...");
   if (line.repair && std::none_of(line.files.begin(), line.files.end(), is_study_folder))
     throw ConfigurationError("--repair: verify repairs folders of studies alone; " + line.files.front() + " is none");
   json files = json::array();

@@ -62,9 +62,9 @@ bool is_basic(const std::string& key) {
 
 }  // namespace
 
-std::vector<std::string> Option::choices() const {
+std::vector<std::string> choices_in(const std::string& text) {
   std::vector<std::string> words;
-  boost::split(words, range, [](char c) { return c == '|'; });
+  boost::split(words, text, [](char c) { return c == '|'; });
   for (std::string& word : words) boost::trim(word);
   const bool all_words = std::all_of(words.begin(), words.end(), [](const std::string& word) {
     return !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;

@@ -10,6 +10,9 @@
 
 namespace modebank::app {
 
+/// The words to choose from, of a text such as "auto | point | comma"; empty where it is another text.
+std::vector<std::string> choices_in(const std::string& text);
+
 /// One configuration key: the only place that knows its name, range, unit and help text. Its default is the Config's
 /// own.
 struct Option {
@@ -25,7 +28,7 @@ struct Option {
   bool repeatable = false;  ///< may stand in several lines of a file; `get` joins them by newlines
 
   /// The words to choose from, of a range such as "auto | point | comma"; empty where other values are allowed.
-  std::vector<std::string> choices() const;
+  std::vector<std::string> choices() const { return choices_in(range); }
 
   /// When to touch it.
   Option touch(std::string sentence) && {

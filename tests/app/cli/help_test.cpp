@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <variant>
 
 #include "app/cli/command_table.hpp"
 #include "app/config/config_file.hpp"
@@ -45,6 +47,37 @@ TEST_F(Help, OfEveryKeySaysWhenToTouchIt) {
   }
   const std::string help = modebank({"help", "data.split"}).out;
   EXPECT_NE(help.find("When to touch it: when there is one long run"), std::string::npos) << help;
+}
+
+/// An option is declared in the table alone: commands that share its name share the place of its value.
+TEST_F(Help, OptionsOfOneNameHaveOneTarget) {
+  std::map<std::string, app::CommandOption> known;
+  for (const app::Command& command : app::command_table())
+    for (const app::CommandOption& option : command.options) {
+      const auto [first, fresh] = known.emplace(option.long_name(), option);
+      EXPECT_EQ(first->second.name, option.name) << command.name;
+      EXPECT_TRUE(first->second.target == option.target) << command.name << " --" << option.long_name();
+      const auto* key = std::get_if<std::string>(&option.target);
+      EXPECT_TRUE(!key || command.reads(*key)) << *key;
+    }
+  EXPECT_GT(known.size(), 15u);
+}
+
+TEST_F(Help, WordsAfterACommandAreCounted) {
+  for (const app::Command& command : app::command_table()) {
+    const auto& [text, needs, fewest, most] = command.arguments;
+    if (fewest > 0) {
+      const ProgramResult few = modebank({command.name});
+      EXPECT_EQ(few.status, 2) << command.name;
+      EXPECT_NE(few.err.find(command.name + " " + needs + ", as in: " + command.example), std::string::npos) << few.err;
+    }
+    if (most > 6) continue;
+    std::vector<std::string> words(most + 1, config());
+    words.insert(words.begin(), command.name);
+    const ProgramResult many = modebank(words);
+    EXPECT_EQ(many.status, 2) << command.name;
+    EXPECT_NE(many.err.find(command.name + " " + needs), std::string::npos) << many.err;
+  }
 }
 
 /// An option that nothing would read is a mistake of the user's, whatever its value.
@@ -142,6 +175,7 @@ TEST_F(Help, BashCompletesCommandsOptionsKeysAndWords) {
   EXPECT_EQ(completed("modebank verify --rep"), " --repair \n");
   EXPECT_EQ(completed("modebank run --window.len"), " --window.length \n");
   EXPECT_EQ(completed("modebank run --data.decimal co"), " comma \n");
+  EXPECT_EQ(completed("modebank show --form inc"), " increment \n");
 }
 
 class CompletionScript : public Help, public ::testing::WithParamInterface<const char*> {};

@@ -379,6 +379,7 @@ TEST_F(Robustness, P8WhatOneFormOfACommandDoesNotReadIsRefused) {
            "--bank.refine", "none"},
           "--bank.refine: with archive.bank nothing is learned");
   refuses({"version", "x"}, "version takes no name");
+  refuses({"show", archive(), "bank/A", "--form", "half"}, "--form half: allowed are increment and full");
   refuses({"help", "run", "--markdown"}, "takes no name");
 }
 
