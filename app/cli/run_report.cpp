@@ -65,7 +65,7 @@ void report_files(const CommandLine& line, const std::filesystem::path& page, co
     return report::report_study(report::find_study(name, written), page, options, written);
   const OpenArchive file(name);
   if (report::is_study(file))
-    report::report_study({name, name, read_study_file(file, "study")}, page, options, written);
+    report::report_study(report::find_study(file), page, options, written);
   else
     report_run(file, page, options, written);
 }

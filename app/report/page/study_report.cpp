@@ -75,6 +75,14 @@ bool is_merged(const StudyFile& merged, const StudyPlan& plan) {
                      [&](const TrialRow& row) { return settled.count(row.key) > 0; });
 }
 
+FoundStudy counted(FoundStudy study, const StudyTable& table) {
+  for (const TrialRow& row : table.rows) {
+    study.runs += row.status != TrialStatus::dropped;
+    study.done += row.status == TrialStatus::done;
+  }
+  return study;
+}
+
 void write_study_page(const FoundStudy& study, const StudyTable& table, const fs::path& page,
                       const ReportConfig& options, Written& written) {
   std::vector<TrialPlace> places = archives_of(table, study.file.parent_path());
@@ -94,15 +102,22 @@ FoundStudy find_study(const fs::path& folder, Written& written) {
   if (!fs::exists(file) && !has_plan)
     throw ConfigurationError(
         fmt::format("{}: no study's folder: it holds neither study.h5 nor plan.h5", folder.string()));
-  std::optional<StudyFile> merged;
-  if (fs::exists(file)) merged = read_study_file(file, "study");
-  if (merged && !has_plan) return {folder, file, *merged};
+  std::optional<FoundStudy> merged;
+  if (fs::exists(file)) merged = find_study(OpenArchive(file));
+  if (merged) merged->name = folder;
+  if (merged && !has_plan) return *merged;
   const StudyPlan plan = read_plan(folder);
-  if (merged && is_merged(*merged, plan)) return {folder, file, *merged};
+  if (merged && is_merged(merged->content, plan)) return *merged;
   const TrialStore store(folder);
   const StudyTable table = collect_table(store, plan);
   written.say(table_text(table, store));
-  return {folder, file, study_file_of(plan, table, answer(table))};
+  return counted({.name = folder, .file = file, .content = study_file_of(plan, table, answer(table))}, table);
+}
+
+FoundStudy find_study(const OpenArchive& file) {
+  FoundStudy study{
+      .name = file.path(), .file = file.path(), .content = read_study_file(file, "study"), .digest = file.digest()};
+  return counted(study, study_table_of(study.content));
 }
 
 bool is_study(const OpenArchive& file) { return inspect(file, "/").at("members").contains("study"); }

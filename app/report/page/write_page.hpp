@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -29,11 +30,15 @@ struct FoundStudy {
   std::filesystem::path name;  ///< as the command line has it: its folder, or study.h5
   std::filesystem::path file;  ///< study.h5, which need not be there
   StudyFile content;
+  std::size_t runs = 0, done = 0;
+  std::string digest = {};  ///< of study.h5; empty where it does not hold every run of the plan
 };
 
 /// The study of a folder: what study.h5 holds, or, where the study still runs or was not merged since, the runs that
 /// are done; then their number is printed.
 FoundStudy find_study(const std::filesystem::path& folder, Written& written);
+/// The study of an open study.h5.
+FoundStudy find_study(const OpenArchive& file);
 
 /// The page of a study.
 void report_study(const FoundStudy& study, const std::filesystem::path& page, const ReportConfig& options,

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "io/archive/inspect.hpp"
 
@@ -28,13 +29,17 @@ bool has(const OpenArchive& archive, const std::string& group, const char* name)
 }
 
 /// The name of the file that was read, or of the folder of the first and how many there are.
-std::string data_name(const OpenArchive& archive) {
-  if (!has(archive, "/provenance", "inputs")) return {};
-  const json rows = inspect(archive, "/provenance/inputs").at("value");
-  if (!rows.is_array() || rows.empty()) return {};
-  const fs::path first = text_in(rows[0], "path");
-  if (rows.size() == 1) return first.filename().string();
-  return fmt::format("{}, {} files", first.parent_path().filename().string(), rows.size());
+std::string data_name(const std::vector<fs::path>& files) {
+  if (files.empty()) return {};
+  if (files.size() == 1) return files.front().filename().string();
+  return fmt::format("{}, {} files", files.front().parent_path().filename().string(), files.size());
+}
+
+std::vector<fs::path> files_of(const OpenArchive& archive) {
+  std::vector<fs::path> files;
+  if (has(archive, "/provenance", "inputs"))
+    for (const json& row : inspect(archive, "/provenance/inputs").at("value")) files.emplace_back(text_in(row, "path"));
+  return files;
 }
 
 void add_verdict(const OpenArchive& archive, json& line) {
@@ -55,14 +60,23 @@ void add_scores(const OpenArchive& archive, json& line) {
 
 json index_row(const OpenArchive& archive) {
   const json root = inspect(archive, "/");
-  json line = {{"created", text_in(root.at("attributes"), "created")}, {"data", data_name(archive)}};
-  const bool is_study = root.at("members").contains("study");
-  line["kind"] = is_study ? "study" : "run";
-  if (!is_study && root.at("members").contains("evaluation")) {
+  json line = {
+      {"kind", "run"}, {"created", text_in(root.at("attributes"), "created")}, {"data", data_name(files_of(archive))}};
+  if (root.at("members").contains("evaluation")) {
     add_verdict(archive, line);
     add_scores(archive, line);
   }
   return line;
+}
+
+json index_row(const FoundStudy& study) {
+  const Provenance& provenance = study.content.provenance;
+  std::vector<fs::path> files;
+  for (const InputFile& file : provenance.inputs) files.emplace_back(file.path);
+  return {{"kind", "study"},
+          {"created", provenance.created},
+          {"data", data_name(files)},
+          {"text", fmt::format("{} of {} runs are done.", study.done, study.runs)}};
 }
 
 }  // namespace modebank::app::report

@@ -62,9 +62,7 @@ class Site {
     json row = {{"name", name.string()}};
     try {
       const fs::path path = folder_ / name;
-      const OpenArchive archive(fs::is_directory(path) ? path / "study.h5" : path);
-      row.update(index_row(archive));
-      row["page"] = page_of(name, archive);
+      fs::is_directory(path) ? add_study(name, find_study(path, silent_), row) : add_archive(name, path, row);
       row["archive"] = fs::absolute(path).lexically_normal().string();
       whole_.insert(name.string());
     } catch (const std::exception& error) {
@@ -76,20 +74,38 @@ class Site {
     return row;
   }
 
-  bool is_current(const std::string& name, const OpenArchive& archive) const {
+  void add_archive(const fs::path& name, const OpenArchive& archive, json& row) {
+    if (is_study(archive)) return add_study(name, find_study(archive), row);
+    row.update(index_row(archive));
+    row["page"] = page_of(name, name, archive.digest(), [&](const fs::path& page, Written& pages) {
+      check_page_path(page, {archive.path()});
+      const Archive content = read_archive(archive, Evaluations::in_file);
+      write_page(page, run_page(content, archive.path().filename().string(), options_), pages);
+    });
+  }
+
+  /// A study's folder and an archive beside it may have one name.
+  void add_study(const fs::path& name, const FoundStudy& study, json& row) {
+    row.update(index_row(study));
+    const fs::path file = fs::is_directory(folder_ / name) ? name / "study.h5" : name;
+    row["page"] = page_of(name, file, study.digest,
+                          [&](const fs::path& page, Written& pages) { report_study(study, page, options_, pages); });
+  }
+
+  /// Never that of a study that goes on.
+  bool is_current(const std::string& name, const std::string& digest) const {
     const auto found = before_.find(name);
-    if (found == before_.end() || found->second.archive != archive.digest() || found->second.maker != maker_)
-      return false;
+    if (digest.empty() || found == before_.end()) return false;
+    if (found->second.archive != digest || found->second.maker != maker_) return false;
     const std::vector<std::string>& files = found->second.files;
     return std::all_of(files.begin(), files.end(), [&](const std::string& file) { return fs::exists(site_ / file); });
   }
 
-  /// Where the archive's page is, relative to the site.
-  std::string page_of(const fs::path& name, const OpenArchive& archive) {
-    // A study's folder and an archive beside it may have one name.
-    const fs::path file = fs::is_directory(folder_ / name) ? name / "study.h5" : name;
+  /// Where the page of an archive is, relative to the site. `write` makes it and the pages below it.
+  template <class Write>
+  std::string page_of(const fs::path& name, const fs::path& file, const std::string& digest, Write write) {
     const fs::path page = ("pages" / file).replace_extension(".html");
-    if (is_current(name.string(), archive)) return page.string();
+    if (is_current(name.string(), digest)) return page.string();
     // Known before it is there, so that a page of a run that was killed is removed when its archive went.
     SitePages& made = now_[name.string()];
     made.archive.clear();
@@ -97,24 +113,14 @@ class Site {
     write_site_record(site_, now_);
     fs::create_directories((site_ / page).parent_path());
     const std::size_t first = written_.files.size();
-    Written pages{[](const std::string&) {}, {}};
-    if (is_study(archive))
-      report_study({folder_ / name, archive.path(), read_study_file(archive, "study")}, site_ / page, options_, pages);
-    else
-      write_run(archive, site_ / page, pages);
+    Written pages = silent_;
+    write(site_ / page, pages);
     written_.files.insert(written_.files.end(), pages.files.begin(), pages.files.end());
-    made = {archive.digest(), maker_, {page.string()}};
+    made = {digest, maker_, {page.string()}};
     for (std::size_t i = first; i < written_.files.size(); ++i)
       if (const fs::path other = fs::path(written_.files[i]).lexically_relative(site_); other != page)
         made.files.push_back(other.string());
     return page.string();
-  }
-
-  void write_run(const OpenArchive& archive, const fs::path& page, Written& pages) const {
-    check_page_path(page, {archive.path()});
-    write_page(page,
-               run_page(read_archive(archive, Evaluations::in_file), archive.path().filename().string(), options_),
-               pages);
   }
 
   void write_index(const json& rows) {
@@ -145,6 +151,7 @@ class Site {
   fs::path folder_, site_;
   const ReportConfig& options_;
   Written& written_;
+  Written silent_{[](const std::string&) {}, {}};
   const std::string maker_ = site_maker(options_);
   SiteRecord before_, now_;
   std::set<std::string> whole_;  ///< names of archives whose pages are there

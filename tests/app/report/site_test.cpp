@@ -143,6 +143,25 @@ TEST_F(Site, AStudyIsOneLineWithItsPage) {
   EXPECT_FALSE(fs::exists(site / "pages/s"));
 }
 
+/// A study that goes on has the row and the page that `report STUDY` makes, anew each time.
+TEST_F(Site, AStudyThatGoesOnIsALineWithWhatIsDone) {
+  const std::string folder = (results / "s").string();
+  std::vector<std::string> half{"study",          config(), "--study.vary",  "window.length = 20 | 25 | 30",
+                                "--study.output", folder,   "--study.stage", "run",
+                                "--study.shard",  "0/3"};
+  ASSERT_EQ(modebank(half).status, 0);
+  ASSERT_FALSE(fs::exists(results / "s/study.h5"));
+  EXPECT_EQ(json::parse(make().out).at("problems").size(), 0u);
+  EXPECT_EQ(rows().at("s").at("text"), "1 of 3 runs are done.");
+  EXPECT_EQ(rows().at("s").at("page"), "pages/s/study.html");
+  EXPECT_TRUE(fs::exists(site / "pages/s/study.html"));
+  half.resize(half.size() - 4);
+  ASSERT_EQ(modebank(half).status, 0);
+  EXPECT_THAT(files("written"), ::testing::Contains("pages/s/study.html"));
+  EXPECT_EQ(rows().at("s").at("text"), "3 of 3 runs are done.");
+  EXPECT_THAT(files("written"), ElementsAre("index.html"));
+}
+
 TEST_F(Site, AFolderOfOtherFilesIsRefused) {
   fs::create_directories(file("site_of_others"));
   write("site_of_others/index.html", "<!DOCTYPE html>");
