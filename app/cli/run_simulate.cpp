@@ -5,22 +5,11 @@
 #include "app/cli/dry_run.hpp"
 #include "app/cli/simulated_system.hpp"
 #include "app/config/config_file.hpp"
-#include "app/config/option_table.hpp"
 #include "io/simulation/simulation_writer.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
-
-/// A key that the simulated system does not have would be ignored: say so.
-void check_keys_apply(const Config& config) {
-  const Config defaults{};
-  for (const Option& option : option_table())
-    if (option.only_for && *option.only_for != config.simulate.kind && option.get(config) != option.get(defaults))
-      throw ConfigurationError(fmt::format("{} = {} belongs to systems of kind {}, but this one is {}", option.key,
-                                           option.get(config), name_of(*option.only_for),
-                                           name_of(config.simulate.kind)));
-}
 
 /// The system's sizes follow from the columns' names and from the length of a mode's parameters.
 SimulationOptions system_of(const Config& config) {
@@ -79,7 +68,6 @@ void simulate_system(const Config& config) {
 Result do_simulate(const CommandLine& line) {
   Config config = load_config(line.files.front(), line.overrides);
   read_system(std::filesystem::absolute(line.files.front()).parent_path(), config);
-  check_keys_apply(config);
   if (line.dry_run) return dry_run({}, {config.simulate.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   simulate_system(config);

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <set>
+#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "app/config/config_file.hpp"
@@ -40,25 +39,35 @@ const Option& parameter(const std::string& where, const std::string& key) {
   throw ConfigurationError(fmt::format("{}: unknown key {}{}", where, key, did_you_mean(key, keys)));
 }
 
+/// A parameter or key of another kind of system would be ignored. `where` it is set, by key.
+void refuse_other_kinds(const Config& config, const std::map<std::string, std::string>& where) {
+  const Config defaults{};
+  for (const std::vector<Option>* table : {&system_parameters(), &option_table()})
+    for (const Option& option : *table) {
+      if (!option.only_for || *option.only_for == config.simulate.kind) continue;
+      const auto line = where.find(option.key);
+      if (line != where.end() || option.get(config) != option.get(defaults))
+        throw ConfigurationError(fmt::format(
+            "{}{} belongs to system.kind = {}, but {} is {}", line == where.end() ? "" : line->second + ": ",
+            option.key, name_of(*option.only_for), config.simulate.name, name_of(config.simulate.kind)));
+    }
+}
+
 }  // namespace
 
 void read_system(const std::filesystem::path& folder, Config& config) {
   const SystemText system = system_text(config.simulate.name, folder);
-  std::set<std::string> seen;
-  std::vector<std::pair<const Option*, std::string>> of_one_kind;
+  std::map<std::string, std::string> seen;
   for (const FileEntry& entry : parse_lines(system.text, system.name)) {
     const std::string where = fmt::format("{}:{}", system.name, entry.line);
     const Option& option = parameter(where, entry.key);
-    if (!seen.insert(entry.key).second) throw ConfigurationError(fmt::format("{}: {} is set twice", where, entry.key));
+    if (!seen.emplace(entry.key, where).second)
+      throw ConfigurationError(fmt::format("{}: {} is set twice", where, entry.key));
     set_option(config, option, where, entry.value, entry.has_comment);
-    if (option.only_for) of_one_kind.emplace_back(&option, where);
   }
   if (!seen.contains("system.kind"))
     throw ConfigurationError(system.name + ": system.kind is not set: linear or vehicle");
-  for (const auto& [option, where] : of_one_kind)
-    if (*option->only_for != config.simulate.kind)
-      throw ConfigurationError(fmt::format("{}: {} belongs to system.kind = {}, but the system is {}", where,
-                                           option->key, name_of(*option->only_for), name_of(config.simulate.kind)));
+  refuse_other_kinds(config, seen);
 }
 
 }  // namespace modebank::app

@@ -92,7 +92,8 @@ TEST_F(SimulateCommand, RefusesWhatASystemDoesNotHave) {
   EXPECT_THAT(modebank({"simulate", file("sim.ini").string(), "--simulate.friction", "0.1"}).err,
               HasSubstr("a line of the file that simulate.system names"));
   write("lag.ini", "[data]\nstate = wz\ninput = a, b\n[simulate]\nsystem = three_grips\nlag_s = 0.1\n");
-  EXPECT_THAT(modebank({"simulate", file("lag.ini").string()}).err, HasSubstr("belongs to systems of kind vehicle"));
+  EXPECT_THAT(modebank({"simulate", file("lag.ini").string()}).err,
+              HasSubstr("simulate.lag_s belongs to system.kind = vehicle, but three_grips is linear"));
 }
 
 /// The shipped systems are those of the program, and state every parameter of their kind.
