@@ -45,8 +45,10 @@ std::string option_text(const Option& option) {
 }
 
 std::string when_text(const Option& option) {
+  const std::string stage =
+      option.stage ? fmt::format(" It changes the stage {} and those that follow.", name_of(*option.stage)) : "";
   return fmt::format("      {}\n",
-                     fmt::join(filled("When to touch it: " + option.when + ".", help_width - 6), "\n      "));
+                     fmt::join(filled("When to touch it: " + option.when + "." + stage, help_width - 6), "\n      "));
 }
 
 /// Two columns; the second is wrapped below itself.

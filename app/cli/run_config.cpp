@@ -59,6 +59,7 @@ nlohmann::ordered_json schema_of(const Option& option) {
   if (!option.unit.empty()) schema["x-unit"] = option.unit;
   schema["x-basic"] = option.basic;
   schema["x-when"] = option.when;
+  if (option.stage) schema["x-stage"] = name_of(*option.stage);
   if (!option.repeatable) return schema;
   return {{"oneOf", {schema, {{"type", "array"}, {"items", {{"type", "string"}}}}}}};
 }

@@ -14,6 +14,7 @@
 #include "app/cli/kept_stages.hpp"
 #include "app/cli/progress_meter.hpp"
 #include "app/cli/summary_json.hpp"
+#include "app/config/option_table.hpp"
 #include "app/config/valid_config.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
@@ -30,17 +31,17 @@ namespace modebank::app {
 namespace {
 
 /// Stages that are taken as they are must have been made as the configuration says, which the new archive will record.
-void check_same_settings(const Config& config, const std::string& stored, const std::vector<std::string>& sections) {
+void check_same_settings(const Config& config, const std::string& stored, Stage taken) {
   const std::map<std::string, std::string> before = resolved_values(stored),
                                            now = resolved_values(resolved_text(config));
-  for (const auto& [key, value] : now) {
-    const std::string section = key.substr(0, key.find('.'));
-    const bool decides = std::find(sections.begin(), sections.end(), section) != sections.end() && decides_numbers(key);
-    if (const auto stage = before.find(key); decides && stage != before.end() && stage->second != value)
+  for (const Option& option : option_table()) {
+    const auto stage = before.find(option.key);
+    if (!option.stage || *option.stage > taken || stage == before.end()) continue;
+    if (const std::string& value = now.at(option.key); stage->second != value)
       throw ConfigurationError(
           fmt::format("archive.input: {} was made with {} = {}, the configuration says '{}': take the stored value, or "
                       "start from the data",
-                      config.archive.input, key, stage->second.empty() ? "''" : stage->second, value));
+                      config.archive.input, option.key, stage->second.empty() ? "''" : stage->second, value));
   }
 }
 
@@ -53,10 +54,8 @@ Stage last_taken(const std::string& command) {
 StoredStages earlier_stages(const Config& config, const std::string& command) {
   StoredStages source(config.archive.input, last_taken(command));
   const Archive& stored = source.stored();
-  std::vector<std::string> sections{"data"};
-  if (command != "identify" && stored.windows) sections.emplace_back("window");
-  if (command == "evaluate" && stored.mixture) sections.insert(sections.end(), {"mixture", "job"});
-  check_same_settings(config, stored.config, sections);
+  const Stage there = stored.mixture ? Stage::mixture : stored.windows ? Stage::windows : Stage::data;
+  check_same_settings(config, stored.config, std::min(there, last_taken(command)));
   return source;
 }
 

@@ -219,14 +219,14 @@ std::map<std::string, std::string> resolved_values(const std::string& resolved) 
 }
 
 bool decides_numbers(const std::string& key) {
-  return key != "data.root" && key.rfind("archive.", 0) != 0 && key.rfind("track.", 0) != 0 &&
-         key.rfind("report.", 0) != 0 && key.rfind("study.", 0) != 0 && key != "job.threads";
+  const Option* const option = find_option(key);
+  return option && option->stage;
 }
 
 std::string config_hash(const Config& config) {
   std::vector<std::string> lines;
   for (const Option& option : option_table()) {
-    if (decides_numbers(option.key)) lines.push_back(option.key + "=" + option.get(config) + "\n");
+    if (option.stage) lines.push_back(option.key + "=" + option.get(config) + "\n");
   }
   std::sort(lines.begin(), lines.end());
   return sha256_hex(boost::join(lines, ""));

@@ -35,7 +35,7 @@ std::string resolved_text(const Config& config);
 /// Key and value of every line of a resolved configuration.
 std::map<std::string, std::string> resolved_values(const std::string& resolved);
 
-/// Whether a key can change a number of the result: not where data lie, archives go or how many threads work.
+/// Whether a key can change a number of a run: its row of the option table names a stage.
 bool decides_numbers(const std::string& key);
 
 /// SHA-256 over the resolved keys that decide numbers, in name order.

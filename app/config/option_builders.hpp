@@ -19,6 +19,9 @@
 /// What the lines of the option table are written with.
 namespace modebank::app {
 
+/// For touch(): among the few keys that most users set.
+inline constexpr bool basic = true;
+
 /// Allowed numbers, in words and as a test.
 struct Range {
   std::string text;

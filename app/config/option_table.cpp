@@ -1,7 +1,6 @@
 #include "app/config/option_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 
@@ -45,23 +44,6 @@ ChainOptions chain_options(const Config& c) {
   return {learning, data_options_of(c), c.mode_names};
 }
 
-namespace {
-
-/// What a first configuration is made of; help shows these before all others.
-constexpr std::array basic_keys{
-    "data.inputs",      "data.states",        "data.state",   "data.input",      "data.time",       "data.derive",
-    "data.rate_hz",     "data.lag_s",         "data.test",    "data.split",      "data.label",      "window.model",
-    "window.length",    "mixture.components", "bank.modes",   "bank.refine",     "filter.horizon",  "filter.simulate",
-    "archive.output",   "archive.input",      "job.threads",  "job.seed",        "study.vary",      "study.output",
-    "track.checkpoint", "track.resume",       "track.filter", "simulate.system", "simulate.output", "simulate.runs",
-    "simulate.samples"};
-
-bool is_basic(const std::string& key) {
-  return std::find(basic_keys.begin(), basic_keys.end(), key) != basic_keys.end();
-}
-
-}  // namespace
-
 std::vector<std::string> choices_in(const std::string& text) {
   std::vector<std::string> words;
   boost::split(words, text, [](char c) { return c == '|'; });
@@ -77,10 +59,7 @@ const std::vector<Option>& option_table() {
     std::vector<Option> all;
     for (auto section : {data_options, window_options, mixture_options, bank_options, filter_options, archive_options,
                          study_options, track_options, report_options, simulate_options})
-      for (Option& entry : section()) {
-        entry.basic = is_basic(entry.key);
-        all.push_back(std::move(entry));
-      }
+      for (Option& entry : section()) all.push_back(std::move(entry));
     return all;
   }();
   return table;

@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "app/config/config.hpp"
+#include "filter/learn/chain/stage.hpp"
 
 namespace modebank::app {
 
 /// The words to choose from, of a text such as "auto | point | comma"; empty where it is another text.
 std::vector<std::string> choices_in(const std::string& text);
 
-/// One configuration key: the only place that knows its name, range, unit and help text. Its default is the Config's
-/// own.
+/// One configuration key: the only place that has its name, range, unit, help text and stage. Its default is the
+/// Config's own.
 struct Option {
   std::string key;    ///< "section.name", also the command line's --section.name
   std::string range;  ///< what is allowed, in words
@@ -23,16 +24,19 @@ struct Option {
   std::function<void(Config&, const std::string&)> set;  ///< throws std::invalid_argument when the text is not in range
   std::function<std::string(const Config&)> get;         ///< text that `set` reads back to the same value
   std::optional<SimulatedSystem> only_for = {};          ///< the simulated system that has this key; empty: all
-  bool basic = false;                                    ///< among the few that most users set
+  std::optional<Stage> stage = {};                       ///< first stage whose numbers it can change; empty: none
+  bool basic = false;                                    ///< among the few that most users set; help shows them first
   std::string when = {};                                 ///< when to touch it: a sentence without its full stop
   bool repeatable = false;  ///< may stand in several lines of a file; `get` joins them by newlines
 
   /// The words to choose from, of a range such as "auto | point | comma"; empty where other values are allowed.
   std::vector<std::string> choices() const { return choices_in(range); }
 
-  /// When to touch it.
-  Option touch(std::string sentence) && {
+  /// When to touch it, and what follows.
+  Option touch(std::string sentence, std::optional<Stage> changed = {}, bool among_basic = false) && {
     when = std::move(sentence);
+    stage = changed;
+    basic = among_basic;
     return std::move(*this);
   }
 

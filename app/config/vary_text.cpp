@@ -25,8 +25,7 @@ std::vector<std::string> words_between(const std::string& text, const char* sepa
 const Option& variable_option(const std::string& key) {
   const Option* option = find_option(key);
   if (!option) throw std::invalid_argument(fmt::format("names an unknown key {}{}", key, nearest_key_hint(key)));
-  if (!decides_numbers(key) || option->section() == "simulate")
-    throw std::invalid_argument(fmt::format("varies {}, which decides no number of a run", key));
+  if (!option->stage) throw std::invalid_argument(fmt::format("varies {}, which decides no number of a run", key));
   return *option;
 }
 

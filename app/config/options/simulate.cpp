@@ -148,15 +148,15 @@ std::vector<Option> vehicle_parameters() {
 std::vector<Option> simulate_options() {
   std::vector<Option> all{
       text("simulate.output", "a folder", "where the runs are written", MODEBANK_FIELD(simulate.output))
-          .touch("for every simulation that is to be kept"),
+          .touch("for every simulation that is to be kept", std::nullopt, basic),
       text("simulate.system", "a name, or a file",
            "what is simulated: husky_ice, three_grips, or a file with a section [system]",
            MODEBANK_FIELD(simulate.name))
-          .touch("for a system of your own: copy one of configs/systems and change it"),
+          .touch("for a system of your own: copy one of configs/systems and change it", std::nullopt, basic),
       numeric("simulate.runs", between(1, 100'000), "", "number of runs", MODEBANK_FIELD(simulate.system.runs))
-          .touch("when an answer needs more (or fewer) runs: evidence needs some"),
+          .touch("when an answer needs more (or fewer) runs: evidence needs some", std::nullopt, basic),
       numeric("simulate.samples", between(2, 1e8), "", "samples per run", MODEBANK_FIELD(simulate.system.samples))
-          .touch("when an answer needs longer runs"),
+          .touch("when an answer needs longer runs", std::nullopt, basic),
       numeric("simulate.rate_hz", between(1e-6, 1e6), "Hz", "rate of commands and of the inputs file",
               MODEBANK_FIELD(simulate.rate_hz))
           .touch("as in your logs"),

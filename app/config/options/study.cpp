@@ -34,7 +34,7 @@ std::vector<Option> space_options() {
             "values of a key; {3..12}, {2..20 step 2}, {0..1 lin 5} and {0.001..1 log 7} expand; with sample also the "
             "ranges {0..1} and {0.001..1 log}",
             parse_vary, MODEBANK_FIELD(study.vary))
-          .touch("for every study: it is what a study varies"),
+          .touch("for every study: it is what a study varies", std::nullopt, basic),
       lines("study.together", "KEY, KEY, ...", "varied keys whose values go in step: first with first, and so on",
             parse_together, MODEBANK_FIELD(study.together))
           .touch("when two varied keys belong together (rate and window length)"),
@@ -57,7 +57,7 @@ std::vector<Option> work_options() {
   return {
       text("study.output", "a folder", "the study's; empty: this file's name with .study, in the current folder",
            MODEBANK_FIELD(study.output))
-          .touch("when the study's folder shall have another name or place"),
+          .touch("when the study's folder shall have another name or place", std::nullopt, basic),
       numeric("study.jobs", between(0, 1024), "", "runs at a time; 0: one per core", MODEBANK_FIELD(study.jobs))
           .touch("fewer than cores, when runs need much memory"),
       numeric("study.timeout_s", at_least(0), "s", "a run that takes longer is stopped and has failed; 0: no limit",

@@ -108,45 +108,53 @@ Option terms_option() {
 }  // namespace
 
 std::vector<Option> window_options() {
+  using enum Stage;
   return {
       model_option().touch("auto, when the screen's last lines say that errors follow a pattern, or the plant answers "
-                           "late; a motion model, when its parameters (a track, a radius) are what you are after"),
+                           "late; a motion model, when its parameters (a track, a radius) are what you are after",
+                           structure, basic),
       lag_option("window.state_lags", between(1, 100), "varx: states x[k], x[k-1], ... that predict x[k+1]",
                  MODEBANK_FIELD(window.state_lags), MODEBANK_FIELD(structure.state))
-          .touch("with varx, or to keep auto from searching: when the order of the motion is known"),
+          .touch("with varx, or to keep auto from searching: when the order of the motion is known", structure),
       lag_option("window.input_lags", between(1, 100), "varx: input samples that act on one transition",
                  MODEBANK_FIELD(window.input_lags), MODEBANK_FIELD(structure.input))
-          .touch("with varx, or to keep auto from searching: when the length of the input's effect is known"),
+          .touch("with varx, or to keep auto from searching: when the length of the input's effect is known",
+                 structure),
       lag_option("window.input_delay", between(0, 1000),
                  "varx: from an input to its first effect; 0: u[k+1] acts on x[k+1]",
                  MODEBANK_FIELD(window.input_delay), MODEBANK_FIELD(structure.delay))
           .touch("with varx, or to keep auto from searching: when a dead time of whole samples is known; for lags of "
-                 "clocks data.lag_s"),
+                 "clocks data.lag_s",
+                 structure),
       number_or_auto(
           numeric("window.length", between(1, 1e6), "transitions", "length of a window", MODEBANK_FIELD(window.length)),
           "25, or 1.5 to 3 times the model's regressors where that is more, the less the more often motion changes",
           shortest_automatic_length, MODEBANK_FIELD(window.length), MODEBANK_FIELD(structure.length))
           .touch("when `modebank check` suggests another: longer where windows are rank deficient, shorter where modes "
-                 "last less than a window; auto, when the model has many lags"),
+                 "last less than a window; auto, when the model has many lags",
+                 windows, basic),
       number_or_auto(numeric("window.step", between(1, 1e6), "transitions", "from one window's start to the next",
                              MODEBANK_FIELD(window.step)),
                      "1, or as many as leave 100,000 windows", 1, MODEBANK_FIELD(window.step),
                      MODEBANK_FIELD(structure.step))
           .touch("larger, when windows are too many to wait for: neighbours share most of their samples; beyond "
-                 "100,000 windows auto does it"),
+                 "100,000 windows auto does it",
+                 windows),
       words("window.loss", "robust loss of a sample's residual", MODEBANK_FIELD(window.loss))
-          .touch("when `modebank check` suggests it: tukey for gross errors, trivial for clean data"),
-      scale_option().touch("run, when windows are so short that their own scale is noise"),
+          .touch("when `modebank check` suggests it: tukey for gross errors, trivial for clean data", windows),
+      scale_option().touch("run, when windows are so short that their own scale is noise", windows),
       prior_option().touch(
           "none, when windows excite everything and you want each one's own fit, as the published recipe; standard "
-          "deviations, when the prior pulls windows of a rare ground towards the common one"),
+          "deviations, when the prior pulls windows of a rare ground towards the common one",
+          windows),
       terms_option().touch(
-          "a list, when physics says how the motion bends, such as vx * wz; none, to leave nonlinear and its time out"),
+          "a list, when physics says how the motion bends, such as vx * wz; none, to leave nonlinear and its time out",
+          competitors),
       flag("window.intercept", "estimate a constant term c", MODEBANK_FIELD(window.intercept))
-          .touch("when the motion has a constant part: a slope, a leak, a sensor's offset"),
+          .touch("when the motion has a constant part: a slope, a leak, a sensor's offset", windows),
       words("window.covariance", "covariance of a window's parameters: M-estimator or HC3 sandwich",
             MODEBANK_FIELD(window.covariance))
-          .touch("sandwich, when noise differs within a window and you use the windows' standard errors"),
+          .touch("sandwich, when noise differs within a window and you use the windows' standard errors", windows),
   };
 }
 

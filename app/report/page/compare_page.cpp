@@ -35,7 +35,7 @@ json configuration_differences(const Runs& runs) {
     }
     if (std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) != values.end())
       differences.push_back(
-          {{"key", option.key}, {"values", values}, {"help", option.help}, {"decides", decides_numbers(option.key)}});
+          {{"key", option.key}, {"values", values}, {"help", option.help}, {"decides", option.stage.has_value()}});
   }
   return differences;
 }

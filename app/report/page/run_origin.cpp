@@ -19,7 +19,7 @@ json changed_settings(const std::string& config) {
   json changed = json::array();
   for (const Option& option : option_table()) {
     const auto value = values.find(option.key);
-    if (value == values.end() || value->second == option.get(defaults) || !decides_numbers(option.key)) continue;
+    if (value == values.end() || value->second == option.get(defaults) || !option.stage) continue;
     changed.push_back(
         {{"key", option.key}, {"value", value->second}, {"standard", option.get(defaults)}, {"help", option.help}});
   }
