@@ -4,8 +4,7 @@ import h5py
 import session
 from session import PageTest
 
-FILTERS = ["baseline", "noise_only", "one_motion", "drifting", "nonlinear", "combined"]
-STUDY_SECTIONS = ["verdict", "better", "runs", "parallel", "effects", "heatmap", "pareto", "coverage", "origin"]
+STUDY_SECTIONS = ["verdict", "better", "runs", "effects", "pareto", "origin"]
 
 
 class StudyPage(PageTest):
@@ -84,7 +83,6 @@ class StudyPage(PageTest):
 
     def test_filtering_and_what_follows_it(self):
         self.open(self.page())
-        session.browser.draw_all("#parallel")
         session.browser.draw_all("#pareto")
         stored = self.stored()
         points = "return document.querySelector('#pareto div.plot')._fullData[0].x.length"
@@ -100,13 +98,9 @@ class StudyPage(PageTest):
         self.filter("mixture.components", "")
         self.filter("mixture.covariance", "")
         self.assertEqual(len(self.rows()), len(stored))
-        # What is dragged along an axis of the parallel coordinates filters, too: here the first two values of the first key.
-        session.browser.run("return Plotly.restyle(document.querySelector('#parallel div.plot'), {'dimensions[1].constraintrange': [[0.5, 1.5]]}, [0])")
-        session.browser.wait("return document.querySelectorAll('#study-table tbody tr').length === arguments[0]", int(sum(stored["mixture.components"] == 2)),
-                     what="the dragged range to filter the table")
         self.assert_quiet()
 
-    def test_main_effects_heat_map_and_front(self):
+    def test_main_effects_and_front(self):
         self.open(self.page())
         session.browser.draw_all()
         stored = self.stored()
@@ -116,8 +110,7 @@ class StudyPage(PageTest):
             select.selectedIndex = arguments[1]; select.dispatchEvent(new Event('change'));"""
         keys = ["window.length", "mixture.components", "mixture.covariance"]
         for way, of in ((0, lambda values: values.max()), (1, lambda values: values.mean())):
-            for section in ("#effects", "#heatmap"):
-                session.browser.run(choose, section, way)
+            session.browser.run(choose, "#effects", way)
             first = stored[keys[0]] == min(stored[keys[0]])
             session.browser.wait(f"{effects.replace('return', 'return Math.abs(')}[0][0] - arguments[0]) < 1e-9", float(of(score[first])), what="the main effects")
             for key, shown in zip(keys, session.browser.run(effects)):
@@ -127,31 +120,10 @@ class StudyPage(PageTest):
                     self.assertAlmostEqual(value, float(of(score[stored[key] == level])), places=10)
                 if way == 0:
                     self.assertEqual(max(shown), score.max())  # the plots agree with the verdict
-            cells = session.browser.run("return document.querySelector('#heatmap div.plot')._fullData[0].z")
-            for a, length in enumerate((15, 25)):
-                for b, components in enumerate((1, 2, 3)):
-                    here = (stored["window.length"] == length) & (stored["mixture.components"] == components)
-                    self.assertAlmostEqual(cells[b][a], float(of(score[here])), places=10)
-            frame = session.browser.run("const s = document.querySelector('#heatmap div.plot')._fullLayout.shapes[0]; return [s.x0 + 0.46, s.y0 + 0.46]")
-            best = max((value, a, b) for b, line in enumerate(cells) for a, value in enumerate(line))
-            self.assertEqual([round(x) for x in frame], list(best[1:]))
         front = session.browser.run("return document.querySelector('#pareto div.plot')._fullData[1].customdata")
         beaten = lambda i: any((stored["modes"][j] <= stored["modes"][i]) and (stored["bank_test_log_score"][j] > stored["bank_test_log_score"][i]) for j in range(len(stored)))
         for i in front:
             self.assertFalse(beaten(i))
-
-    def test_samples_outside_over_the_number_of_components(self):
-        self.open(self.page())
-        session.browser.draw_all("#coverage")
-        stored = self.stored()
-        shown = session.browser.run("return Object.fromEntries(document.querySelector('#coverage div.plot').data.map((t) => [t.meta, t.y]))")
-        for role in ("train", "test"):
-            for side, score, sign in (("above", "too_far", 1), ("below", "too_close", -1)):
-                wanted = [stored[f"{name}_{role}_{score}"].mean() for name in FILTERS
-                          if f"{name}_{role}_{score}" in stored.dtype.names]
-                wanted += [stored[f"bank_{role}_{score}"][stored["mixture.components"] == k].mean() for k in (1, 2, 3)]
-                for value, mean in zip(shown[f"{role} {side}"], wanted):
-                    self.assertAlmostEqual(value, sign * 100 * mean, places=9)
 
     def test_a_run_is_a_click_away(self):
         self.open(self.page())

@@ -19,8 +19,6 @@ export const shortNames = {
   combined: 'combined',
   global: 'global model'
 };
-// All but the bank, the simplest first.
-export const otherFilters = Object.keys(shortNames).filter((name) => name !== 'bank' && name !== 'global');
 // The scores that count samples on either side of what a true filter has, by kind.
 export const sidesOf = {
   z: {above: 'too_far', below: 'too_close'},

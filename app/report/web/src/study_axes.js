@@ -1,5 +1,5 @@
-// Columns of a study as axes of its plots, and what the plots share. `context` of a plot: {study, shown: {rows, base,
-// listeners}, showRun(row), restrict(test)}.
+// Columns of a study as axes of its plots, and what the plots share. `context` of a plot: {study, shown: {rows,
+// listeners}, showRun(row)}.
 import {choice} from './elements.js';
 import {plainValue} from './ordering.js';
 import {plain} from './plots.js';
@@ -47,12 +47,10 @@ export const wayWords = {
 };
 export const wayChoice = (onchange) => choice('Show', ways.map(([, text]) => text), 0, (i) => onchange(ways[i][0]));
 
-export const isDrawn = (element) => element.plot.querySelector('.main-svg') !== null;
-
 // The figure is drawn anew when the runs that are shown change.
 export function follow(context, element) {
   context.shown.listeners.push(() => {
-    if (isDrawn(element)) element.redraw();
+    if (element.plot.querySelector('.main-svg')) element.redraw();
   });
 }
 

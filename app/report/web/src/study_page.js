@@ -4,10 +4,7 @@ import {draw, head, section} from './page.js';
 import {pageData} from './page_data.js';
 import {columnTitle} from './score_names.js';
 import {drawBetter} from './study_better.js';
-import {drawCoverage} from './study_coverage.js';
 import {drawEffects} from './study_effects.js';
-import {drawHeatMap} from './study_heat_map.js';
-import {drawParallel} from './study_parallel.js';
 import {drawPareto} from './study_pareto.js';
 import {drawStudyTable} from './study_table.js';
 import {table} from './table.js';
@@ -74,9 +71,7 @@ function markChosen(row) {
 
 draw(async () => {
   const data = pageData(), {study} = data;
-  // The runs that pass the filters (base) and what was dragged in the parallel coordinates, too (rows); every plot
-  // follows.
-  const shown = {rows: study.rows, base: study.rows, listeners: []};
+  const shown = {rows: study.rows, listeners: []};  // the runs that pass the filters; every plot follows
   const detail = h(
       'div', {id: 'run-detail', tabindex: -1, 'aria-live': 'polite'}, note('Choose a run in the table or in a plot.'));
   let chosen = null;
@@ -86,22 +81,19 @@ draw(async () => {
     markChosen(row);
     detail.scrollIntoView({block: 'nearest'});
   };
-  const filter = (rows, base, dragged) => {
-    Object.assign(shown, {rows, base});
-    shown.listeners.forEach((listener) => listener(dragged));
+  const filter = (rows) => {
+    shown.rows = rows;
+    shown.listeners.forEach((listener) => listener());
   };
   document.title = `Study ${data.file}`;
   head(`Study ${data.file}`, `${study.rows.length} runs, made ${data.origin.created}`);
   drawVerdict(study, showRun);
   drawBetter(study, showRun);
   const runs = section('runs', 'Runs');
-  const {restrict} = drawStudyTable(runs, study, {filter, showRun, chosen: () => chosen});
+  drawStudyTable(runs, study, {filter, showRun, chosen: () => chosen});
   runs.append(detail);
-  const context = {study, shown, showRun, restrict};
-  drawParallel(context);
+  const context = {study, shown, showRun};
   drawEffects(context);
-  drawHeatMap(context);
   drawPareto(context);
-  drawCoverage(context);
   drawOrigin(study, data.origin);
 });

@@ -10,7 +10,7 @@ import {ariaSort, cellOf, headingOf, pressed, scrolling, sortButton} from './tab
 const at_once = 30;  // lines shown at first
 
 class StudyTable {
-  // `reader`: filter(rows, base, dragged), showRun(row), chosen() => row.
+  // `reader`: filter(rows), showRun(row), chosen() => row.
   constructor(study, reader) {
     this.study = study;
     this.reader = reader;
@@ -18,7 +18,6 @@ class StudyTable {
         study.columns.map((column, i) => ({...column, of: (row) => row.cells[i], visible: column.shown, filter: ''})));
     this.order = this.bestFirst();
     this.grouped = study.rows.some((row) => row.repeat > 0);
-    this.restriction = null;
     this.most = at_once;
     this.rows = study.rows;
     this.body = h('tbody');
@@ -86,13 +85,12 @@ class StudyTable {
     return column ? sortedRows(rows, column.of, down) : rows;
   }
 
-  // Filters, restricts and sorts the rows anew.
-  update(dragged = false) {
+  // Filters and sorts the rows anew.
+  update() {
     const tests = this.columns.filter(({filter}) => filter.trim()).map(({filter, of}) => [filterOf(filter), of]);
-    const base = this.study.rows.filter((row) => tests.every(([test, of]) => test(of(row))));
-    this.rows = this.restriction ? base.filter(this.restriction) : base;
+    this.rows = this.study.rows.filter((row) => tests.every(([test, of]) => test(of(row))));
     this.fill();
-    this.reader.filter(this.rows, base, dragged);
+    this.reader.filter(this.rows);
   }
 
   heading(column) {
@@ -160,11 +158,4 @@ export function drawStudyTable(place, study, reader) {
   place.append(...table.elements());
   table.frame();
   table.update();
-  return {
-    // Only rows that pass the test, too; null for all.
-    restrict: (test) => {
-      table.restriction = test;
-      table.update(true);
-    },
-  };
 }

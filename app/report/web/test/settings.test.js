@@ -3,7 +3,7 @@ import {test} from 'node:test';
 
 import {groupedRows} from '../src/repeats.js';
 import {columnTitle} from '../src/score_names.js';
-import {bestCell, cellsOver, interaction, levelOf, reached, repeatSpread, settingsOf} from '../src/settings.js';
+import {bestCell, levelOf, reached, settingsOf} from '../src/settings.js';
 
 // K over 1, 2, 3 and a filter that is good or bad: with the bad one few components are best, with the good one many.
 const scores = {
@@ -38,7 +38,6 @@ test('repeats of a setting are one setting', () => {
   assert.equal(settings.length, 6);
   close(settings[2].mean, 1.6);
   close(settings[2].sd, 0.04 / Math.SQRT2);
-  close(repeatSpread(settings), 0.04 / Math.SQRT2);
 });
 
 test('the best over the others agrees with the best setting, the average does not', () => {
@@ -50,19 +49,8 @@ test('the best over the others agrees with the best setting, the average does no
   assert.equal(bestCell([of('mean')], higher).a, 0);
 });
 
-test('an interaction names the level whose best is another, and what keeping the overall best costs there', () => {
-  const found = interaction(cellsOver(K, variant, settingsOf(rows, score), higher, 'best'), higher);
-  assert.deepEqual([found.level, found.best, found.kept], [1, 0, 2]);
-  close(found.cost, 4);
-  // Nothing to say of parallel lines, nor of what repeats differ by.
-  assert.equal(interaction([[1, 2, 3], [2, 3, 4]], higher), null);
-  assert.equal(interaction([[1, 2, 2.05], [2, 3.2, 3.1]], higher, 0.1), null);
-});
-
-test('cells that no run has are empty, lower is better where the goal says so', () => {
-  const cells = cellsOver(K, axis(1, ['good', 'none']), settingsOf(rows, score), {kind: 'lower'}, 'best');
-  assert.deepEqual(cells[1], [null, null, null]);
-  assert.equal(bestCell(cells, {kind: 'lower'}).a, 0);
+test('lower is better where the goal says so', () => {
+  assert.equal(bestCell([[3, null, 2]], {kind: 'lower'}).a, 2);
 });
 
 test('a line of the table holds the mean of the repeats, their spread and their seeds', () => {
