@@ -177,19 +177,15 @@ class RunPages(PageTest):
             session.browser.size(1200, 900)
 
     def check_print(self):
-        """All of a figure is on the sheet, and the cloud, which WebGL draws, is there."""
+        """All of a figure is on the sheet."""
         session.browser.run("""
             addEventListener('beforeprint', () => {
-              const copy = document.querySelector('#windows canvas.still'), pixels = copy.getContext('2d').getImageData(0, 0, copy.width, copy.height).data;
-              window.printed = {inked: pixels.filter((value, i) => value !== pixels[i % 4]).length,  // unlike the corner
-                                widths: [...document.querySelectorAll('div.js-plotly-plot .main-svg')].map((plot) => plot.getBoundingClientRect().width)};
+              window.printed = {widths: [...document.querySelectorAll('div.js-plotly-plot .main-svg')].map((plot) => plot.getBoundingClientRect().width)};
             }, {once: true});""")
         pdf = session.browser.cdp("Page.printToPDF", printBackground=True)["data"]
         self.assertGreater(len(pdf), 100_000)
         printed = session.browser.run("return window.printed")
-        self.assertGreater(printed["inked"], 5000)
         self.assertLessEqual(max(printed["widths"]), 801)
-        self.assertEqual(session.browser.run("return document.querySelectorAll('canvas.still').length"), 0)
 
     def test_keyboard_and_names_for_screen_readers(self):
         self.open(session.modebank.page("demo", session.made["demo"]))

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 /// More points than this hide each other: every second, third, ... window is drawn then.
 constexpr Index most_windows = 100'000;
-/// And no more numbers of covariances than this: beyond, windows have no ellipsoids.
+/// And no more numbers of covariances than this: beyond, windows have no ellipses.
 constexpr Index most_covariances = 2'000'000;
 
 /// As people read them: parameters by their labels, noise in words, what is of one-lag fits with a note.
@@ -180,8 +180,7 @@ nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
       {"covariance", of_parameters ? covariances_of(arrays, fits, drawn.windows) : json()},
       {"refined", archive.unrefined.has_value()},
       {"level", drawn_level},
-      {"limit2", chi_square_quantile(drawn_level, 2.0)},
-      {"limit3", chi_square_quantile(drawn_level, 3.0)}};
+      {"limit2", chi_square_quantile(drawn_level, 2.0)}};
   add_places(section, arrays, archive, drawn.windows);
   if (archive.mixture) {
     section["label"] = labels_of(arrays, archive.mixture->labels, drawn.windows);

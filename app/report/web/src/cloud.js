@@ -1,5 +1,5 @@
 // Local models as a cloud of points: figures, their legend and controls, pointing and picking.
-import {flatFigure, groupColour, solidFigure} from './cloud_figures.js';
+import {flatFigure, groupColour} from './cloud_figures.js';
 import {check, choice, choiceIfAny, controls, h, swatch} from './elements.js';
 import {array} from './page_data.js';
 import {onFirstDrawing} from './plots.js';
@@ -44,7 +44,7 @@ function makeTip(cloud) {
 }
 
 // Reads the window under the pointer and picks one by a click. `reader`: tell(i), pick(i), picked().
-function listen(element, tip, reader, byPlotly) {
+function listen(element, tip, reader) {
   const {plot} = element;
   let pointed = -1, down = null;
   plot.on('plotly_hover', (event) => {
@@ -61,13 +61,11 @@ function listen(element, tip, reader, byPlotly) {
   plot.addEventListener('mousemove', tip.follow);
   plot.addEventListener('mouseleave', tip.hide);
   // A finger hovers over nothing: there Plotly's own click says where it was.
-  if (byPlotly) {
-    plot.on('plotly_click', (event) => {
-      const i = windowAt(event);
-      if (i >= 0 && i !== reader.picked()) reader.pick(i);
-    });
-  }
-  // Plotly tells a click from a turn or a drag by luck while a page draws: a press that does not move is a click.
+  plot.on('plotly_click', (event) => {
+    const i = windowAt(event);
+    if (i >= 0 && i !== reader.picked()) reader.pick(i);
+  });
+  // Plotly tells a click from a drag by luck while a page draws: a press that does not move is a click.
   plot.addEventListener('pointerdown', (event) => {
     down = {x: event.clientX, y: event.clientY, i: pointed};
   }, true);
@@ -102,7 +100,7 @@ function makeLegend(cloud, redraw) {
 }
 
 function makeControls(cloud, redraw, fillLegend) {
-  const {windows} = cloud, solid = cloud.dimensions === 3, bys = cloud.groupings();
+  const {windows} = cloud, bys = cloud.groupings();
   const names = windows.axes.map((axis) => (axis.unit ? `${axis.name} [${axis.unit}]` : axis.name));
   const set = (key) => (value) => {
     cloud[key] = value;
@@ -123,8 +121,6 @@ function makeControls(cloud, redraw, fillLegend) {
       names.length > 3 ? cloud.axes.map(axis) : null,
       choiceIfAny('Colour by', bys.map((name) => groups[name]), bys.indexOf(cloud.by), by),
       check('Outlying windows, too', false, set('showAll')),
-      (windows.components || windows.bank) && solid ? check('Shells', cloud.shells, set('shells')) : null,
-      cloud.covariance && solid ? check('Error ellipsoids of 60 windows', false, set('showErrors')) : null,
       windows.bank ? check('Modes of the bank', true, set('showBank')) : null);
 }
 
@@ -132,8 +128,9 @@ function makeControls(cloud, redraw, fillLegend) {
 // Returns the elements, top to bottom.
 export async function drawCloud(windows, runs, goTo) {
   const cloud = new WindowCloud(windows, await loadWindows(windows), runs);
-  const solid = solidFigure(cloud), flat = flatFigure(cloud), figures = [solid, flat].filter(Boolean);
-  const redraw = () => Promise.all(figures.map((element) => element.update()));
+  const flat = flatFigure(cloud);
+  if (!flat) return [];
+  const redraw = () => flat.update();
   const info =
       h('p', {class: 'note', id: 'window-info', 'aria-live': 'polite'},
         'Point at a window to read it; click it to see its stretch of the data.');
@@ -150,9 +147,7 @@ export async function drawCloud(windows, runs, goTo) {
     },
   };
   const tip = makeTip(cloud);
-  for (const element of figures) {
-    onFirstDrawing(element, () => listen(element, tip, reader, element !== solid));
-  }
+  onFirstDrawing(flat, () => listen(flat, tip, reader));
   const legend = makeLegend(cloud, redraw);
-  return [makeControls(cloud, redraw, legend.fill), legend.list, solid, info, flat].filter(Boolean);
+  return [makeControls(cloud, redraw, legend.fill), legend.list, info, flat];
 }

@@ -1,12 +1,11 @@
-// The two figures of a WindowCloud: rotatable in three parameters, flat in their three projections.
-import {appendWires, ellipsePath, surface} from './ellipsoid.js';
+// The figure of a WindowCloud: its chosen parameters two at a time.
+import {ellipsePath} from './ellipsoid.js';
 import {modeTitle} from './mode_names.js';
-import {axisTitle, componentColour, figure, ink, modeColour, palette, plain, translucent} from './plots.js';
+import {axisTitle, componentColour, figure, ink, modeColour, palette, plain} from './plots.js';
 import {usualRange} from './statistics.js';
 
 const many = 20000;      // windows that are drawn smaller and fainter
 const many_flat = 3000;  // windows that are drawn by WebGL
-const error_windows = 60;
 
 // A bank that was not refined has the components for its modes.
 const colourIn = (cloud, k) => (cloud.by === 'mode' || !cloud.windows.refined ? modeColour(k) : componentColour(k));
@@ -16,21 +15,21 @@ const rangeOf = (cloud, a) => (cloud.showAll ? undefined : usualRange(cloud.valu
 const within = (cloud, axes) => (cloud.covariance ? cloud.parametersOnly(axes) : false);
 
 function windowPoints(cloud, axes, type) {
-  const crowded = cloud.count > many, solid = type === 'scatter3d';
+  const crowded = cloud.count > many;
   return cloud.shownGroups(axes).map(({key, list}) => {
-    const marker = {size: solid ? 2.2 : crowded ? 2.5 : 4, color: groupColour(cloud, key), line: {width: 0}};
+    const marker = {size: crowded ? 2.5 : 4, color: groupColour(cloud, key), line: {width: 0}};
     marker.opacity = key < 0 ? 0.3 : crowded ? 0.35 : 0.65;
     const trace =
         {type, mode: 'markers', name: plain(cloud.groupName(key)), customdata: list, hoverinfo: 'none', marker};
     axes.forEach((a, j) => {
-      trace['xyz'[j]] = Float32Array.from(list, (i) => cloud.values[a][i]);
+      trace['xy'[j]] = Float32Array.from(list, (i) => cloud.values[a][i]);
     });
     return trace;
   });
 }
 
 function bankPoints(cloud, axes, type) {
-  const {bank} = cloud.windows, solid = type === 'scatter3d';
+  const {bank} = cloud.windows;
   if (!bank || !cloud.showBank || !cloud.parametersOnly(axes)) return [];
   const trace = {
     type,
@@ -40,73 +39,15 @@ function bankPoints(cloud, axes, type) {
     hoverinfo: 'text',
     marker: {
       symbol: 'diamond',
-      size: solid ? 6 : 11,
+      size: 11,
       color: bank.map((_, k) => modeColour(k)),
-      line: {width: solid ? 1 : 1.5, color: ink()},
+      line: {width: 1.5, color: ink()},
     },
   };
   axes.forEach((a, j) => {
-    trace['xyz'[j]] = bank.map((group) => group.mean[a]);
+    trace['xy'[j]] = bank.map((group) => group.mean[a]);
   });
   return [trace];
-}
-
-// Error ellipsoids: of the picked window, and of some spread over all when asked for.
-function errorWires(cloud, axes) {
-  if (!within(cloud, axes)) return [];
-  const some = {
-    list: cloud.showErrors ? cloud.someWindows(error_windows) : [],
-    color: translucent(ink(), 0.45),
-    width: 1
-  };
-  const picked = {list: cloud.picked >= 0 ? [cloud.picked] : [], color: ink(), width: 4};
-  return [some, picked].filter(({list}) => list.length).map(({list, color, width}) => {
-    const to = [[], [], []];
-    for (const i of list) appendWires(to, cloud.point(i, axes), cloud.errorMatrix(i, axes), cloud.windows.limit3);
-    return {type: 'scatter3d', mode: 'lines', x: to[0], y: to[1], z: to[2], line: {color, width}, hoverinfo: 'skip'};
-  });
-}
-
-function shells(cloud, axes) {
-  if (!cloud.shells) return [];
-  return cloud.ellipses(axes).flatMap(({k, mean, covariance}) => {
-    const mesh = surface(mean, covariance, cloud.windows.limit3);
-    if (!mesh) return [];
-    return [{type: 'mesh3d', ...mesh, color: colourIn(cloud, k), opacity: 0.16, hoverinfo: 'skip', showlegend: false}];
-  });
-}
-
-// WebGL shows &lt; as it stands.
-const solidTitle = ({name, unit}) => axisTitle({name: name.replace(/<-/g, '←'), unit});
-
-function solidPlot(cloud) {
-  const {axes} = cloud, named = cloud.windows.axes;
-  const scene = {
-    dragmode: 'orbit',
-    aspectmode: 'cube',
-    uirevision: axes.join(),
-    camera: {eye: {x: 1.5, y: 1.5, z: 1}, center: {x: 0, y: 0, z: -0.12}},
-  };
-  ['xaxis', 'yaxis', 'zaxis'].forEach((name, j) => {
-    scene[name] = {title: {text: solidTitle(named[axes[j]])}, range: rangeOf(cloud, axes[j]), nticks: 5};
-  });
-  const traces = [
-    ...windowPoints(cloud, axes, 'scatter3d'),
-    ...shells(cloud, axes),
-    ...errorWires(cloud, axes),
-    ...bankPoints(cloud, axes, 'scatter3d'),
-  ];
-  return {traces, layout: {height: 520, margin: {l: 0, r: 0, t: 0, b: 0}, scene, showlegend: false}};
-}
-
-export function solidFigure(cloud) {
-  if (cloud.dimensions < 3) return null;
-  const label = 'Local models of all windows in three parameters; the tables of modes below hold the same information';
-  return figure(
-      label, () => solidPlot(cloud),
-      `Turn with the mouse or a finger. Shells hold ${100 * cloud.windows.level} % of a mixture component (of the ` +
-          'spread of a mode, when coloured so); wires are the error ellipsoid of a window’s estimate; diamonds are ' +
-          'the modes of the bank.');
 }
 
 // Pairs of the chosen axes.

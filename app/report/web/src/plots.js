@@ -61,15 +61,7 @@ const axisTheme = () => ({
   color: ink(),
 });
 
-function themedScene(scene) {
-  const result = {bgcolor: ground(), ...scene};
-  for (const axis of ['xaxis', 'yaxis', 'zaxis']) {
-    result[axis] = {...axisTheme(), showbackground: false, ...(scene || {})[axis]};
-  }
-  return result;
-}
-
-// The layout with the theme's colours put into each of its axes and scenes.
+// The layout with the theme's colours put into each of its axes.
 function themed(layout) {
   const result = {
     ...layout,
@@ -80,7 +72,6 @@ function themed(layout) {
   };
   for (const key of new Set([...Object.keys(layout), 'xaxis', 'yaxis'])) {
     if (/^[xy]axis\d*$/.test(key)) result[key] = {automargin: true, ...axisTheme(), ...layout[key]};
-    if (/^scene\d*$/.test(key)) result[key] = themedScene(layout[key]);
   }
   return result;
 }

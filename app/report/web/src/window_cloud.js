@@ -2,8 +2,6 @@
 import {part} from './ellipsoid.js';
 import {modeCell, modeTitle} from './mode_names.js';
 
-const few_shells = 6;
-
 /**
  * @typedef {{run: Int32Array, begin: Float64Array, end: Float64Array, label: Int32Array|null, mode: Int32Array|null,
  *   values: Float32Array[], covariance: Float32Array[]|null}} WindowArrays
@@ -26,12 +24,9 @@ export class WindowCloud {
     this.values = arrays.values;
     this.covariance = arrays.covariance;
     this.count = this.run.length;
-    this.dimensions = Math.min(3, windows.axes.length);
     this.axes = windows.default_axes;
     this.by = this.firstGrouping();
-    this.shells = Math.max((windows.components || {list: []}).list.length, (windows.bank || []).length) <= few_shells;
-    this.showAll = false;     // outlying windows, too
-    this.showErrors = false;  // error ellipsoids of some windows
+    this.showAll = false;  // outlying windows, too
     this.showBank = true;
     this.picked = -1;
     this.hidden = new Set();  // groups
@@ -115,12 +110,6 @@ export class WindowCloud {
     return groups.map((group, k) => ({group, k}))
         .filter(({group, k}) => group.covariance && !this.hidden.has(k))
         .map(({group, k}) => ({k, mean: places.map((p) => group.mean[p]), covariance: part(group.covariance, places)}));
-  }
-
-  // The windows whose error ellipsoids are drawn when asked for: some, spread over all.
-  someWindows(most) {
-    const n = Math.min(most, this.count);
-    return Array.from({length: n}, (_, j) => Math.floor((j * this.count) / n));
   }
 
   place(i) {

@@ -24,7 +24,7 @@ for (const variant of ['good', 'bad']) {
   });
 }
 const axis = (i, levels) => ({of: (row) => row.cells[i], levels});
-const K = axis(0, [1, 2, 3]), variant = axis(1, ['good', 'bad']);
+const K = axis(0, [1, 2, 3]);
 const score = {
   of: (row) => row.cells[2].v
 };
