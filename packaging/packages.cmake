@@ -44,8 +44,8 @@ if(NOT licence)
 use, change or distribution, and none are made up here.\n")
 endif()
 
-# What others wrote and is compiled in, as headers, as a static library or, Plotly and d3, as text: Debian's packages have its terms.
-set(others libboost-dev libceres-dev libeigen3-dev libfmt-dev libhwy-dev libspdlog-dev nlohmann-json3-dev node-d3-path node-d3-scale python3-plotly)
+# Packages of others that are compiled in, as headers, as a static library or (d3) as text; Debian's packages have their terms.
+set(others libboost-dev libceres-dev libeigen3-dev libfmt-dev libhwy-dev libspdlog-dev nlohmann-json3-dev node-d3-path node-d3-scale)
 set(notices "")
 foreach(package IN LISTS others)
   if(EXISTS /usr/share/doc/${package}/copyright)

@@ -83,7 +83,7 @@ class Browser:
         end = time.monotonic() + seconds
         while True:
             pending = self.run("""
-                const pending = [...document.querySelectorAll(arguments[0] + ' div.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.dataset.drawn && !p.querySelector('.main-svg'));
+                const pending = [...document.querySelectorAll(arguments[0] + ' div.plot')].filter((p) => p.offsetParent && !p.dataset.failed && !p.dataset.drawn);
                 if (pending.length) pending[0].scrollIntoView({block: 'center'});
                 return pending.length;""", within)
             if not pending or time.monotonic() > end:
@@ -92,7 +92,7 @@ class Browser:
         failed = self.run("return [...document.querySelectorAll('div.plot[data-failed]')].map((p) => p.getAttribute('aria-label'))")
         assert not failed, f"plots that failed: {failed}"
         assert not pending, f"{pending} plots were never drawn"
-        return self.run("return [...document.querySelectorAll('div.plot')].filter((p) => p.dataset.drawn || p.querySelector('.main-svg')).length")
+        return self.run("return [...document.querySelectorAll('div.plot')].filter((p) => p.dataset.drawn).length")
 
     def messages(self):
         """Console errors and requests to anywhere but this file since the last call."""

@@ -8,7 +8,7 @@ const isReady = () => document.documentElement.dataset.ready === 'true' || docum
 const look = () => {
   const seen = (it) => it.offsetParent;
   const plots = [...document.querySelectorAll('div.plot')].filter(seen);
-  const pending = plots.filter((it) => !it.dataset.failed && !it.dataset.drawn && !it.querySelector('.main-svg'));
+  const pending = plots.filter((it) => !it.dataset.failed && !it.dataset.drawn);
   if (pending.length) pending[0].scrollIntoView({block: 'center'});
   const inked = (canvas) => canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v);
   const blank = [...document.querySelectorAll('canvas.picture, .timeplot canvas')].filter((it) => seen(it) && !inked(it)).length;

@@ -87,7 +87,7 @@ class FirstScreen(PageTest):
             new PerformanceObserver(() => {
               if (window.atFirstPaint) return;
               const canvas = document.querySelector('#picture canvas');
-              window.atFirstPaint = {said: document.querySelector('#said')?.textContent ?? '', plotly: 'Plotly' in window,
+              window.atFirstPaint = {said: document.querySelector('#said')?.textContent ?? '', rest: document.getElementById('filter') !== null,
                                      inked: canvas ? canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v) : false};
             }).observe({type: 'paint', buffered: true});""")
         try:
@@ -97,7 +97,7 @@ class FirstScreen(PageTest):
             session.browser.cdp("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
         self.assertIn("modes of motion", first["said"])
         self.assertTrue(first["inked"])
-        self.assertFalse(first["plotly"])
+        self.assertFalse(first["rest"])
 
     def test_many_modes_are_folded(self):
         self.open_run("many_modes")
@@ -139,8 +139,7 @@ class FirstScreen(PageTest):
         self.open_run("demo")
         session.browser.draw_all()
         names = session.browser.run("""
-            return [...document.querySelectorAll('div.js-plotly-plot')].flatMap((plot) => Object.entries(plot._fullLayout))
-                .filter(([key, axis]) => /^[xy]axis/.test(key) && axis.title).map(([, axis]) => axis.title.text)
+            return [...document.querySelectorAll('.chart .axis-title')].map((title) => title.textContent)
                 .concat([...document.querySelectorAll('option')].map((option) => option.textContent));""")
         self.assertTrue(names)
         for name in names:

@@ -37,14 +37,15 @@ class ModePages(PageTest):
             second = int(file["bank/B"][:].ravel().argmin())  # the one of gain -0.3
         guard, traces = session.browser.run("""
             const plot = [...document.querySelectorAll('#bank div.plot')].find((p) => p.ariaLabel.startsWith('Which states and inputs'));
-            return [plot._fullLayout.xaxis.title.text, plot._fullData.map(({mode, name, x, y}) => ({mode, name, x: [...x], y: [...y]}))];""")
+            const [{x: axis, marks}] = plot.drawing.panels;
+            return [axis.title, marks.map(({kind, name, x, y}) => ({kind, name, x: [...x], y: [...y]}))];""")
         self.assertEqual(guard, "u [m/s]")
-        samples = {trace["name"]: trace["x"] for trace in traces if trace["mode"] == "markers"}
+        samples = {trace["name"]: trace["x"] for trace in traces if trace["kind"] == "points"}
         self.assertEqual(sum(map(len, samples.values())), 4 * 299)
         for name, inputs in samples.items():
             right = [(u > archives.GUARD_BORDER) == (name == f"mode {second}") for u in inputs]
             self.assertGreater(sum(right), 0.9 * len(right))
-        lines = {trace["name"]: trace for trace in traces if trace["mode"] == "lines"}
+        lines = {trace["name"]: trace for trace in traces if trace["kind"] == "line"}
         self.assertEqual(len(lines), 2)
         for name, line in lines.items():
             for u, share in zip(line["x"], line["y"]):

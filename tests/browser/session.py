@@ -10,6 +10,15 @@ import h5py
 from browser import Browser
 
 modebank = browser = data = work = None
+# Pairs of texts of a figure that lie over each other; tilted ones have boxes that are larger than they are.
+OVERLAPS = """
+    const over = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 2;
+    return [...document.querySelectorAll('.chart svg')].flatMap((svg) => {
+      const texts = [...svg.querySelectorAll('text:not([transform^="rotate(-45"])')].map((it) => [it.textContent, it.getBoundingClientRect()]);
+      return texts.flatMap(([a, p], i) => texts.slice(i + 1).filter(([, q]) => over(p, q)).map(([b]) => [a, b]));
+    });"""
+# A colour as the browser computes it, in bytes.
+BYTES = "const bytes = (colour) => { const v = colour.match(/[\\d.]+/g).slice(0, 3).map(Number); return v.map((x) => Math.round(colour.startsWith('color') ? 255 * x : x)); };"
 
 
 class Made(dict):
@@ -85,6 +94,14 @@ class PageTest(unittest.TestCase):
         plots = browser.draw_all()
         self.assert_quiet()
         return plots
+
+    def assert_legible(self, *widths):
+        """No label of a figure lies over another, on pages so wide."""
+        for width in widths:
+            browser.size(width, 900)
+            browser.wait("return [...document.querySelectorAll('.chart')].every((plot) => !plot.layout || plot.layout.width === plot.clientWidth)", what="figures to fit")
+            self.assertEqual(browser.run(OVERLAPS), [], width)
+        browser.size(1200, 900)
 
     def table(self, caption):
         """Rows of the table with this caption: {heading: (text, exact value)}."""

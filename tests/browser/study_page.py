@@ -39,6 +39,7 @@ class StudyPage(PageTest):
             session.browser.scheme(scheme)
             self.assert_whole(page, STUDY_SECTIONS)
             session.browser.screenshot(f"study_{scheme}")
+            self.assert_legible(360, 1400)
         accessible.assert_accessible(self)
 
     def test_numbers_are_the_tables(self):
@@ -85,7 +86,7 @@ class StudyPage(PageTest):
         self.open(self.page())
         session.browser.draw_all("#pareto")
         stored = self.stored()
-        points = "return document.querySelector('#pareto div.plot')._fullData[0].x.length"
+        points = "return document.querySelector('#pareto div.plot').drawing.panels[0].marks[0].x.length"
         self.assertEqual(session.browser.run(points), len(stored))
         self.filter("mixture.components", ">= 2")
         self.assertEqual(len(self.rows()), sum(stored["mixture.components"] >= 2))
@@ -105,7 +106,7 @@ class StudyPage(PageTest):
         session.browser.draw_all()
         stored = self.stored()
         score = stored["bank_test_log_score"]
-        effects = "return document.querySelector('#effects div.plot')._fullData.filter((t) => t.meta === 'main effect').map((t) => t.y)"
+        effects = "return document.querySelector('#effects div.plot').drawing.panels.map(({marks}) => marks.find(({name}) => name === 'main effect').y)"
         choose = """const select = [...document.querySelectorAll(arguments[0] + ' label')].find((l) => l.textContent.startsWith('Show')).querySelector('select');
             select.selectedIndex = arguments[1]; select.dispatchEvent(new Event('change'));"""
         keys = ["window.length", "mixture.components", "mixture.covariance"]
@@ -120,7 +121,7 @@ class StudyPage(PageTest):
                     self.assertAlmostEqual(value, float(of(score[stored[key] == level])), places=10)
                 if way == 0:
                     self.assertEqual(max(shown), score.max())  # the plots agree with the verdict
-        front = session.browser.run("return document.querySelector('#pareto div.plot')._fullData[1].customdata")
+        front = session.browser.run("return document.querySelector('#pareto div.plot').drawing.panels[0].marks.find(({name}) => name === 'front').which")
         beaten = lambda i: any((stored["modes"][j] <= stored["modes"][i]) and (stored["bank_test_log_score"][j] > stored["bank_test_log_score"][i]) for j in range(len(stored)))
         for i in front:
             self.assertFalse(beaten(i))

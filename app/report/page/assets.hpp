@@ -7,13 +7,11 @@ namespace modebank::app::assets {
 
 std::string_view page_html();  ///< the skeleton of every page, see html_page.hpp
 std::string_view page_css();
-std::string_view plotly_packed();  ///< Plotly with its licence: gzip in base64
-std::string_view plotly_sha256();  ///< of Plotly as it is unpacked, as sha256sum prints it
-std::string_view run_js();         ///< what draws the page of a run
-std::string_view study_js();       ///< that of a study
-std::string_view compare_js();     ///< that of two runs
-std::string_view index_js();       ///< that of the index of a folder
-std::string_view terms_json();     ///< every term's one definition, of pages and of help
+std::string_view run_js();      ///< what draws the page of a run
+std::string_view study_js();    ///< that of a study
+std::string_view compare_js();  ///< that of two runs
+std::string_view index_js();    ///< that of the index of a folder
+std::string_view terms_json();  ///< every term's one definition, of pages and of help
 
 // Configurations of the demo.
 std::string_view simulate_ice_ini();

@@ -161,7 +161,6 @@ json run_json(const ComparedRun& run, PageArrays& arrays, std::size_t room) {
   return {{"name", run.name},
           {"origin", origin_section(run.archive)},
           {"windows", windows_section(run.archive, arrays)},
-          {"selection", selection_section(run.archive)},
           {"bank", bank_section(run.archive)},
           {"filter", filter_section(run.archive)},
           {"data", affordable_runs_section(run.archive, arrays, room)}};

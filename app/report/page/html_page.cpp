@@ -53,8 +53,6 @@ void append_part(std::string_view name, const Page& page, std::string& html) {
     html += json_in_script(page.data);
   else if (name == "arrays")
     append_arrays(page.arrays, html);
-  else if (name == "plotly")
-    html += page.plots ? assets::plotly_packed() : std::string_view();
   else if (name == "script")
     html += page.script;
   else
@@ -64,22 +62,18 @@ void append_part(std::string_view name, const Page& page, std::string& html) {
 }  // namespace
 
 std::string page_policy(const std::vector<std::string_view>& scripts) {
-  constexpr std::size_t hash_digits = 64;  // what follows them is the file's name
-  // Plotly is unpacked into an element of its own; where it draws by WebGL it makes functions of texts.
-  std::string runs = hash_source(assets::plotly_sha256().substr(0, hash_digits)) + " 'unsafe-eval'";
+  std::string runs;
   for (const std::string_view script : scripts) runs += hash_source(sha256_hex(script));
-  // Plotly fills an element of style, empty at first, rule by rule; elements that are made by a script have attributes
-  // of style.
+  // Elements that are made by a script have attributes of style.
   return fmt::format(
-      "default-src 'none'; script-src{}; style-src{}{}; style-src-attr 'unsafe-inline'; img-src data: blob:; "
-      "font-src data:; worker-src blob:",
-      runs, hash_source(sha256_hex(assets::page_css())), hash_source(sha256_hex("")));
+      "default-src 'none'; script-src{}; style-src{}; style-src-attr 'unsafe-inline'; img-src data: blob:", runs,
+      hash_source(sha256_hex(assets::page_css())));
 }
 
 std::string html_of(const Page& page) {
   constexpr std::size_t tables = 4'000'000;
   std::string html;
-  html.reserve(page.arrays.bytes() + assets::plotly_packed().size() + page.script.size() + tables);
+  html.reserve(page.arrays.bytes() + page.script.size() + tables);
   std::string_view rest = assets::page_html();
   constexpr std::string_view open = "{{", close = "}}";
   for (auto at = rest.find(open); at != std::string_view::npos; at = rest.find(open)) {

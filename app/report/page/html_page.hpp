@@ -9,13 +9,12 @@
 
 namespace modebank::app::report {
 
-/// What one page consists of beside the parts that all have (web/page.html, page.css, Plotly).
+/// One page, but for the parts that all have (web/page.html, page.css).
 struct Page {
   std::string title;
   nlohmann::json data;      ///< what the script draws; texts in it are shown as text, whatever they hold
   PageArrays arrays;        ///< the large part of it
   std::string_view script;  ///< one of assets.hpp
-  bool plots = true;        ///< Plotly is in the page
 };
 
 /// As text between tags.

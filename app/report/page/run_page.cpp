@@ -16,7 +16,7 @@ constexpr std::size_t least_signal_bytes = 1'000'000;
 std::size_t room_for_signals(const Page& page, const ReportConfig& options) {
   constexpr double bytes_per_MB = 1e6;
   constexpr std::size_t tables = 1'000'000;
-  const std::size_t taken = assets::plotly_packed().size() + page.script.size() + page.arrays.bytes() + tables;
+  const std::size_t taken = page.script.size() + page.arrays.bytes() + tables;
   const auto allowed = static_cast<std::size_t>(options.size_mb * bytes_per_MB);
   return std::max(least_signal_bytes, allowed > taken ? allowed - taken : 0);
 }

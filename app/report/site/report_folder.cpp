@@ -129,7 +129,6 @@ class Site {
     Page page;
     page.title = fmt::format("{} · modebank", name);
     page.script = assets::index_js();
-    page.plots = false;
     page.data = {{"kind", "index"}, {"folder", name}, {"most_compared", most_compared}, {"rows", rows}};
     write_page(site_ / "index.html", page, written_);
   }

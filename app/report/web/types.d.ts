@@ -1,5 +1,4 @@
-// What the checker of types cannot know: Plotly, which the page unpacks, and Debian's modules, which have no types.
-interface Window { Plotly: any; }
+// What the checker of types cannot know: Debian's modules, which have no types.
 interface Uint8ArrayConstructor { fromBase64?(text: string): Uint8Array; }
 declare class DecompressionStream implements GenericTransformStream {
   constructor(format: string);

@@ -1,116 +1,97 @@
 // The figure of a WindowCloud: its chosen parameters two at a time.
-import {ellipsePath} from './ellipsoid.js';
+import {figure} from './chart.js';
+import {ellipseLine} from './ellipse.js';
+import {componentColour, INK, modeColour, palette} from './look.js';
 import {modeTitle} from './mode_names.js';
-import {axisTitle, componentColour, figure, ink, modeColour, palette, plain} from './plots.js';
 import {usualRange} from './statistics.js';
+import {titleOf} from './time_rows.js';
+import {digits} from './window_cloud.js';
 
-const many = 20000;      // windows that are drawn smaller and fainter
-const many_flat = 3000;  // windows that are drawn by WebGL
+const many = 20000;  // windows that are drawn smaller and fainter
 
 // A bank that was not refined has the components for its modes.
 const colourIn = (cloud, k) => (cloud.by === 'mode' || !cloud.windows.refined ? modeColour(k) : componentColour(k));
 export const groupColour = (cloud, key) => (key < 0 ? palette.unclustered : colourIn(cloud, key));
 
-const rangeOf = (cloud, a) => (cloud.showAll ? undefined : usualRange(cloud.values[a]));
-const within = (cloud, axes) => (cloud.covariance ? cloud.parametersOnly(axes) : false);
+const rangeOf = (cloud, a) => (cloud.showAll ? null : usualRange(cloud.values[a]));
 
-function windowPoints(cloud, axes, type) {
+// The tip of a window: where it is, and its values on the axes that are shown.
+const told =
+    (cloud,
+     i) => [cloud.place(i), ...cloud.axes.map((a) => `${cloud.windows.axes[a].name} = ${digits(cloud.values[a][i])}`)];
+
+function windowPoints(cloud, [a, b], pick) {
   const crowded = cloud.count > many;
-  return cloud.shownGroups(axes).map(({key, list}) => {
-    const marker = {size: crowded ? 2.5 : 4, color: groupColour(cloud, key), line: {width: 0}};
-    marker.opacity = key < 0 ? 0.3 : crowded ? 0.35 : 0.65;
-    const trace =
-        {type, mode: 'markers', name: plain(cloud.groupName(key)), customdata: list, hoverinfo: 'none', marker};
-    axes.forEach((a, j) => {
-      trace['xy'[j]] = Float32Array.from(list, (i) => cloud.values[a][i]);
-    });
-    return trace;
+  return cloud.shownGroups([a, b]).map(({key, list}) => {
+    const at = (axis) => Float32Array.from(list, (i) => cloud.values[axis][i]);
+    return {
+      kind: 'points',
+      name: cloud.groupName(key),
+      which: list,
+      x: at(a),
+      y: at(b),
+      colour: groupColour(cloud, key),
+      size: crowded ? 2.5 : 4,
+      opacity: key < 0 ? 0.3 :
+          crowded      ? 0.4 :
+                         0.65,
+      tip: (i) => told(cloud, list[i]),
+      pick: (i) => pick(list[i]),
+    };
   });
 }
 
-function bankPoints(cloud, axes, type) {
+function bankPoints(cloud, [a, b]) {
   const {bank} = cloud.windows;
-  if (!bank || !cloud.showBank || !cloud.parametersOnly(axes)) return [];
-  const trace = {
-    type,
-    mode: 'markers',
-    customdata: bank.map(() => -1),
-    hovertext: bank.map((_, k) => `${plain(modeTitle(k))} of the bank`),
-    hoverinfo: 'text',
-    marker: {
-      symbol: 'diamond',
-      size: 11,
-      color: bank.map((_, k) => modeColour(k)),
-      line: {width: 1.5, color: ink()},
-    },
-  };
-  axes.forEach((a, j) => {
-    trace['xy'[j]] = bank.map((group) => group.mean[a]);
-  });
-  return [trace];
+  if (!bank || !cloud.showBank || !cloud.parametersOnly([a, b])) return [];
+  return bank.map(({mean}, k) => ({
+                    kind: 'points',
+                    x: [mean[a]],
+                    y: [mean[b]],
+                    colour: modeColour(k),
+                    symbol: 'diamond',
+                    size: 11,
+                    edge: true,
+                    tip: () => `${modeTitle(k)} of the bank`,
+                  }));
 }
 
 // Pairs of the chosen axes.
 function pairsOf(axes) {
-  if (axes.length < 2) return [[0, 0]];
   if (axes.length < 3) return [axes];
   return [[0, 1], [0, 2], [1, 2]].map(([a, b]) => [axes[a], axes[b]]);
 }
 
-// Ellipses of the groups and of the picked window, on the axes numbered n.
-function ellipseShapes(cloud, pair, n) {
+// Ellipses of the groups and of the picked window.
+function ellipses(cloud, pair) {
   const {limit2} = cloud.windows;
-  const shape = (path, line) => ({type: 'path', path, xref: `x${n}`, yref: `y${n}`, line, layer: 'above'});
-  const list = cloud.ellipses(pair).map(
-      ({k, mean, covariance}) => shape(ellipsePath(mean, covariance, limit2), {color: colourIn(cloud, k), width: 2}));
-  if (cloud.picked >= 0 && within(cloud, pair)) {
-    const path = ellipsePath(cloud.point(cloud.picked, pair), cloud.errorMatrix(cloud.picked, pair), limit2);
-    list.push(shape(path, {color: ink(), width: 2, dash: 'dot'}));
-  }
-  return list.filter(({path}) => path);
+  const outline = (mean, covariance, look) => {
+    const closed = ellipseLine(mean, covariance, limit2);
+    return closed ? [{kind: 'line', ...closed, width: 2, ...look}] : [];
+  };
+  const groups =
+      cloud.ellipses(pair).flatMap(({k, mean, covariance}) => outline(mean, covariance, {colour: colourIn(cloud, k)}));
+  const {picked} = cloud;
+  if (picked < 0 || !cloud.covariance || !cloud.parametersOnly(pair)) return groups;
+  const own = outline(cloud.point(picked, pair), cloud.errorMatrix(picked, pair), {colour: INK, dash: 'dot'});
+  return [...groups, ...own];
 }
 
-// Axes of panel s of `count`, beside each other or, on a narrow window, above each other.
-function panelAxes(cloud, [a, b], s, count, stacked) {
-  const n = s === 0 ? '' : s + 1, share = 1 / count, gap = stacked ? 0.06 : 0.05;
-  const span = [s * share + (s ? gap : 0), (s + 1) * share - (s < count - 1 ? gap / 3 : 0)];
-  const axis = (which, title) => ({title, range: rangeOf(cloud, which), nticks: 6, zeroline: false});
-  const name = (which) => axisTitle(cloud.windows.axes[which]);
+function panelOf(cloud, pair, pick) {
+  const axis = (a) => ({title: titleOf(cloud.windows.axes[a]), range: rangeOf(cloud, a)});
   return {
-    [`xaxis${n}`]: {...axis(a, {text: name(a)}), anchor: `y${n}`, domain: stacked ? [0, 1] : span},
-    [`yaxis${n}`]: {
-      ...axis(b, {text: name(b), standoff: 4}),
-      anchor: `x${n}`,
-      domain: stacked ? [1 - span[1], 1 - span[0]] : [0, 1],
-    },
+    x: axis(pair[0]),
+    y: axis(pair[1]),
+    marks: [...windowPoints(cloud, pair, pick), ...ellipses(cloud, pair), ...bankPoints(cloud, pair)],
   };
 }
 
-function flatPlot(cloud) {
-  const pairs = pairsOf(cloud.axes), stacked = window.innerWidth < 700;
-  const type = cloud.count > many_flat ? 'scattergl' : 'scatter';
-  const traces = [];
-  const layout = {
-    height: stacked ? 330 * pairs.length : 380,
-    margin: {l: 66, r: 12, t: 32, b: 48},
-    showlegend: false,
-    shapes: [],
-  };
-  pairs.forEach((pair, s) => {
-    const n = s === 0 ? '' : s + 1;
-    Object.assign(layout, panelAxes(cloud, pair, s, pairs.length, stacked));
-    for (const trace of [...windowPoints(cloud, pair, type), ...bankPoints(cloud, pair, type)]) {
-      traces.push({...trace, xaxis: `x${n}`, yaxis: `y${n}`});
-    }
-    layout.shapes.push(...ellipseShapes(cloud, pair, n));
-  });
-  return {traces, layout};
-}
-
-export function flatFigure(cloud) {
+/** `pick(i)`: window i was clicked. Null where there is nothing to draw in two dimensions. */
+export function cloudFigure(cloud, pick) {
   if (cloud.windows.axes.length < 2) return null;
   return figure(
       'The local models in two parameters at a time, with the ellipses of the mixture components',
-      () => flatPlot(cloud),
-      `Ellipses hold ${100 * cloud.windows.level} % of a mixture component, or of the spread of a mode’s windows.`);
+      () => ({panels: pairsOf(cloud.axes).map((pair) => panelOf(cloud, pair, pick)), height: 290, wide: 300}),
+      `Ellipses hold ${100 * cloud.windows.level} % of a mixture component, or of the spread of a mode’s windows. ` +
+          'Diamonds are the modes of the bank. The numbers stand in the tables of modes.');
 }

@@ -23,7 +23,12 @@ export function paletteColour(palette, k) {
 // ranks and which modes are others (used_modes, told_modes of app/text/mode_words.hpp), here and for figures in papers.
 export const usedColour = (palette, rank) => paletteColour(palette, rank < palette.modes.length ? rank : -1);
 
-// For thin lines: lighter on a dark ground.
+/** A colour as a script draws it: lighter on a dark ground. */
 export function onGround(colour, dark) {
-  return dark && /^#[0-9a-f]{6}$/i.test(colour) ? mixed(colour, '#ffffff', 0.35) : colour;
+  if (!dark || !/^#[0-9a-f]{6}/i.test(colour)) return colour;
+  return mixed(colour.slice(0, 7), '#ffffff', 0.35) + colour.slice(7);
 }
+
+/** The same as CSS has it, whatever the ground: --own is the share that a colour keeps of itself (page.css). */
+export const shade = (colour) =>
+    (/^#[0-9a-f]{6}$/i.test(colour) ? `color-mix(in srgb, ${colour} var(--own), #fff)` : colour);

@@ -1,8 +1,8 @@
 // Data of the runs with what all banks predicted.
 import {controls, note} from './elements.js';
+import {INK} from './look.js';
 import {section} from './page.js';
-import {colours, letters, modeColours, pairLegend, stroke, symbols} from './pair.js';
-import {ink} from './plots.js';
+import {colours, dashes, letters, modeColours, pairLegend, symbols} from './pair.js';
 import {inputRows, nisRow, probabilityRow, stateRow} from './time_rows.js';
 import {runChoice, timeControls, timePlot, TimeState} from './timeview.js';
 
@@ -26,7 +26,7 @@ const layersOf = (data) => data.runs.map((_, k) => ({
                                            line: colours[k],
                                            nis: colours[k],
                                            // A lies below: broader, so that it is seen beside what covers it.
-                                           stroke: {color: stroke(k).color, dash: stroke(k).dash, width: k ? 1.4 : 3},
+                                           stroke: {dash: dashes[k], width: k ? 1.4 : 3},
                                            symbol: symbols[k],
                                          }));
 
@@ -54,6 +54,6 @@ export function drawData(data) {
       'true filter. Modes that are matched have the same colour.';
   const plot = timePlot(state, label, rows, caption);
   section(
-      'data', 'Data and predictions', pairLegend(data.runs, [[ink(), 'measured']]),
+      'data', 'Data and predictions', pairLegend(data.runs, [[INK, 'measured']]),
       controls(runChoice(state), timeControls(state)), plot);
 }

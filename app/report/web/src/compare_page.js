@@ -3,13 +3,11 @@ import {drawData} from './compare_data.js';
 import {drawFilter} from './compare_filter.js';
 import {drawModes} from './compare_modes.js';
 import {drawWindows} from './compare_windows.js';
-import {criteria, criterionTrace} from './criteria.js';
-import {choice, controls, copyButton, details, facts, h, note} from './elements.js';
+import {copyButton, details, facts, h, note} from './elements.js';
 import {roleNames, shortNames} from './filters.js';
 import {draw, head, section} from './page.js';
 import {pageData} from './page_data.js';
-import {colours, letters, pairLegend, stroke, symbols} from './pair.js';
-import {figure} from './plots.js';
+import {colours, letters, pairLegend} from './pair.js';
 import {table} from './table.js';
 
 const settingColumns = (runs) =>
@@ -83,42 +81,6 @@ function drawScores(data) {
       data.scores.length ? scoreTables(data) : note('Not all hold scores.'));
 }
 
-/** @param {any[]} both @param {string[]} criterion */
-function selectionDrawing(both, [key, name]) {
-  const traces = both.flatMap((one, k) => {
-    if (!one) return [];
-    const trace = criterionTrace(one.candidates, key, letters[k]);
-    const size = trace.customdata.map((selected) => (selected ? 13 : 6));
-    return [{...trace, line: stroke(k), marker: {size, color: colours[k], symbol: symbols[k]}}];
-  });
-  const layout = {
-    height: 320,
-    showlegend: false,
-    xaxis: {title: {text: 'components K'}, dtick: 1},
-    yaxis: {title: {text: name}},
-  };
-  return {traces, layout};
-}
-
-function drawSelection(data) {
-  const title = 'How many components', both = data.runs.map((run) => run.selection);
-  const known = (key) => both.some((one) => one && one.candidates.some((row) => row[key] && row[key].v !== null));
-  const kinds = criteria.filter(([key]) => known(key));
-  if (!kinds.length) {
-    section('selection', title, note('None holds a mixture.'));
-    return;
-  }
-  let [kind] = kinds;
-  const element = figure(
-      'A criterion over the number of components, for all runs', () => selectionDrawing(both, kind),
-      'Large: the chosen one. Values compare only where windows and features are the same.');
-  const pick = choice('Criterion', kinds.map(([, name]) => name), 0, (i) => {
-    kind = kinds[i];
-    element.redraw();
-  });
-  section('selection', title, pairLegend(data.runs), controls(pick), element);
-}
-
 function bankTable(bank, letter) {
   const columns = [
     {name: 'Mode', of: (row) => row.mode},
@@ -150,7 +112,6 @@ draw(() => {
   drawWindows(data);
   drawData(data);
   drawFilter(data);
-  drawSelection(data);
   drawBanks(data);
   drawOrigins(data);
 });

@@ -1,39 +1,35 @@
 // Local models and modes of the runs in two parameters.
+import {figure} from './chart.js';
 import {choice, controls, note} from './elements.js';
+import {INK, palette} from './look.js';
 import {section} from './page.js';
 import {array} from './page_data.js';
 import {colours, letters, pairLegend, symbols} from './pair.js';
-import {axisTitle, figure, ink, palette} from './plots.js';
 import {usualRange} from './statistics.js';
+import {titleOf} from './time_rows.js';
 
 const title = 'Local models';
 
 function windowPoints(k, x, y, look = {}) {
-  return {
-    type: 'scattergl',
-    mode: 'markers',
-    x,
-    y,
-    name: letters[k],
-    marker: {size: 4, color: colours[k], symbol: symbols[k], opacity: 0.35, ...look},
-    hovertemplate: `${letters[k]}: %{x:.4g}, %{y:.4g}<extra></extra>`,
-  };
+  const tip = (i) => `${letters[k]}: ${Number(x[i].toPrecision(4))}, ${Number(y[i].toPrecision(4))}`;
+  return {kind: 'points', x, y, colour: colours[k], symbol: symbols[k], opacity: 0.4, ...look, tip};
 }
 
 const place = (mode, at) => at.map((a) => mode.mean[a]);
 
+// The first's full, the others' open around them: modes that agree are both seen.
 function bankPoints(k, bank, at) {
+  const places = bank.map((mode) => place(mode, at[k]));
   return {
-    type: 'scatter',
-    mode: 'markers',
-    meta: `modes of ${letters[k]}`,
-    x: bank.map((mode) => place(mode, at[k])[0]),
-    y: bank.map((mode) => place(mode, at[k])[1]),
-    text: bank.map((_, mode) => `mode ${mode} of ${letters[k]}`),
-    hoverinfo: 'text',
-    // The first's full, the others' open around them: modes that agree are both seen.
-    marker: k ? {symbol: `${symbols[k]}-open`, size: 14 + 4 * k, color: colours[k], line: {width: 3}} :
-                {symbol: symbols[0], size: 10, color: colours[0], line: {color: ink(), width: 1}},
+    kind: 'points',
+    name: `modes of ${letters[k]}`,
+    x: places.map(([x]) => x),
+    y: places.map(([, y]) => y),
+    colour: colours[k],
+    symbol: symbols[k],
+    size: k ? 14 + 4 * k : 10,
+    ...(k ? {open: true} : {edge: true}),
+    tip: (mode) => `mode ${mode} of ${letters[k]}`,
   };
 }
 
@@ -43,10 +39,10 @@ function links(match, banks, at, k) {
   for (const {first, second} of match.modes) {
     if (first < 0 || second < 0) continue;
     const from = place(banks[0][first], at[0]), to = place(banks[k][second], at[k]);
-    x.push(from[0], to[0], null);
-    y.push(from[1], to[1], null);
+    x.push(from[0], to[0], NaN);
+    y.push(from[1], to[1], NaN);
   }
-  return {type: 'scatter', mode: 'lines', x, y, line: {color: ink(), width: 1.5}, hoverinfo: 'skip', meta: 'matches'};
+  return {kind: 'line', name: 'matches', x, y, colour: INK, width: 1.5};
 }
 
 const axisOf = (windows, name) => windows.axes.findIndex((axis) => axis.name === name);
@@ -54,7 +50,7 @@ const alike = (lists) =>
     lists.every((list) => list.length === lists[0].length && list.every((v, i) => v === lists[0][i]));
 
 // The modes of the banks with parameters on both axes, and which are matched.
-function modeTraces(data, chosen) {
+function modeMarks(data, chosen) {
   const list = data.runs.map((run) => run.windows);
   const at = list.map((windows) => [axisOf(windows, chosen.x), axisOf(windows, chosen.y)]);
   const banks = list.map(({bank, parameters}, k) => (bank && at[k].every((a) => a < parameters) ? bank : null));
@@ -70,12 +66,11 @@ async function windowsDrawing(data, chosen) {
   const values = (name) => Promise.all(all.map((windows) => array(windows.values[axisOf(windows, name)])));
   const xs = await values(chosen.x), ys = await values(chosen.y);
   // The same windows in all would hide each other.
-  const points = alike(xs) && alike(ys) ? [windowPoints(0, xs[0], ys[0], {color: palette.unclustered})] :
+  const points = alike(xs) && alike(ys) ? [windowPoints(0, xs[0], ys[0], {colour: palette.unclustered})] :
                                           all.map((_, k) => windowPoints(k, xs[k], ys[k]));
-  const axis = (name, lists) =>
-      ({title: {text: axisTitle(all[0].axes[axisOf(all[0], name)])}, range: usualRange(...lists)});
-  const layout = {height: 460, showlegend: false, xaxis: axis(chosen.x, xs), yaxis: axis(chosen.y, ys)};
-  return {traces: [...points, ...modeTraces(data, chosen)], layout};
+  const axis = (name, lists) => ({title: titleOf(all[0].axes[axisOf(all[0], name)]), range: usualRange(...lists)});
+  const panel = {x: axis(chosen.x, xs), y: axis(chosen.y, ys), marks: [...points, ...modeMarks(data, chosen)]};
+  return {panels: [panel], height: 380};
 }
 
 // The parameters that are shown first: the page of A's, where B has them, too.
@@ -105,7 +100,7 @@ export function drawWindows(data) {
           'join those that are matched.');
   const pick = (label, key) => choice(label, shared, shared.indexOf(chosen[key]), (i) => {
     chosen[key] = shared[i];
-    element.redraw();
+    element.update();
   });
   section('windows', title, pairLegend(data.runs), controls(pick('Across', 'x'), pick('Up', 'y')), element);
 }

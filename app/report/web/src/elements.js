@@ -1,4 +1,5 @@
 // Elements of the pages. Whatever comes from an archive enters them as text (textContent), never as markup.
+import {shade} from './colour.js';
 
 function fill(element, attributes, children) {
   for (const [name, given] of Object.entries(attributes)) {
@@ -47,12 +48,15 @@ export function note(text, bad = false) {
   return h('p', {class: bad ? 'note bad' : 'note'}, text);
 }
 
-export const swatch = (colour) => h('span', {class: 'swatch', style: `background:${colour}`});
+/** In a colour as look.js has it; `opacity`: that of what is drawn. */
+export const swatch = (colour, opacity = 1) =>
+    h('span', {class: 'swatch', style: `background:${shade(colour)};opacity:${opacity}`});
 
-// entries: [colour, text].
+// entries: [colour, text, opacity].
 export function legend(entries, label = 'Colours') {
   return h(
-      'ul', {class: 'legend', 'aria-label': label}, entries.map(([colour, text]) => h('li', {}, swatch(colour), text)));
+      'ul', {class: 'legend', 'aria-label': label},
+      entries.map(([colour, text, opacity]) => h('li', {}, swatch(colour, opacity), text)));
 }
 
 // Pages opened from a file may be refused the clipboard.

@@ -1,55 +1,37 @@
-// What plots of one run and of two runs draw alike of how true a filter's uncertainty is.
-import {dashedLine, greyBand} from './plots.js';
+// Panels of how true a filter's uncertainty is, for the pages of one run and of several.
 
-// Residual autocorrelation by lag, from one sample on; `look`: more of the trace.
-export function autocorrelationTrace(series, look) {
-  const y = series.slice(1);
-  return {type: 'scatter', mode: 'lines+markers', x: y.map((_, lag) => lag + 1), y, ...look};
+/** Residual autocorrelation by lag, from one sample on: a panel with a line and points for each of `rows`. */
+export function autocorrelationPanel(rows, band) {
+  const marks = rows.flatMap(({series, name, colour, dash, symbol}) => {
+    const y = series.slice(1), x = y.map((_, lag) => lag + 1);
+    const tip = (i) => `${name}, lag ${x[i]}: ${y[i].toFixed(3)}`;
+    return [{kind: 'line', x, y, colour, dash}, {kind: 'points', x, y, colour, symbol, size: 5, name, tip}];
+  });
+  const grey = band === undefined ? [] : [{kind: 'band', low: -band, high: band}];
+  return {x: {title: 'lag [samples]', whole: true}, y: {title: 'autocorrelation'}, marks: [...grey, ...marks]};
 }
 
-export const autocorrelationLayout = (band, layout) => ({
-  height: 350,
-  xaxis: {title: {text: 'lag [samples]'}},
-  yaxis: {title: {text: 'autocorrelation'}},
-  shapes: band === undefined ? [] : [greyBand(-band, band, {layer: 'below'})],
-  ...layout,
-});
-
-// Counts of the bars of a histogram of probability integral transforms (PIT), each with its middle and what it says.
-export function pitBars({counts}) {
-  const bins = counts.length;
+/** A histogram of probability integral transforms (PIT) as bars, with what a true filter's are. */
+export function pitPanel({counts, band, expected}, colour, title) {
+  const bins = counts.length, x = counts.map((_, b) => (b + 0.5) / bins);
+  const tip = (b) => `${b / bins} to ${(b + 1) / bins}: ${counts[b]} samples`;
   return {
-    x: counts.map((_, b) => (b + 0.5) / bins),
-    y: counts,
-    width: 0.94 / bins,
-    text: counts.map((count, b) => `${b / bins} to ${(b + 1) / bins}: ${count} samples`),
+    title,
+    x: {title: 'PIT', range: [0, 1]},
+    y: {title: 'samples', zero: true},
+    marks: [
+      {kind: 'bars', x, y: counts, width: 0.94 / bins, colour, tip},
+      {kind: 'band', low: band[0], high: band[1]},
+      {kind: 'rule', y: expected},
+    ],
   };
 }
 
-// The same histogram as a density: edges of steps for a line of shape hv.
+/** The same histogram as a density: edges of steps. */
 export function pitSteps({counts, expected}) {
   const bins = counts.length;
   return {
     x: Array.from({length: bins + 1}, (_, i) => i / bins),
-    y: [...counts, counts[bins - 1]].map((count) => count / expected),
+    y: [counts[0], ...counts].map((count) => count / expected),
   };
 }
-
-// Bars of the samples outside an interval, in per cent; `cells`: shares as C++ formatted them, `texts`: whose they are.
-export function outsideBars(cells, texts) {
-  return {
-    type: 'bar',
-    y: cells.map((cell) => 100 * cell.v),
-    text: cells.map((cell, i) => `${texts[i]}: ${cell.t}`),
-    textposition: 'none',
-    hoverinfo: 'text',
-  };
-}
-
-export const outsideLayout = (tail, title, layout) => ({
-  barmode: 'group',
-  xaxis: {type: 'category'},
-  yaxis: {title: {text: title}, rangemode: 'tozero'},
-  shapes: [dashedLine(100 * tail)],
-  ...layout,
-});

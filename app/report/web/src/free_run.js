@@ -1,7 +1,7 @@
 // The free run: a run predicted from its first samples and the inputs alone, by the bank and its best competitor.
 import {h, legend} from './elements.js';
 import {shortNames} from './filters.js';
-import {ink, lineColour, palette} from './plots.js';
+import {INK, palette} from './look.js';
 import {freeRunTable} from './run_scores.js';
 import {stateRow} from './time_rows.js';
 import {timePlot} from './timeview.js';
@@ -32,6 +32,6 @@ export function drawFreeRun(filter, runs, state) {
   const plot = timePlot(
       state, 'Free run of one run over time: measured, and predicted from its first samples and the inputs alone', rows,
       `Bands: ${100 * runs.level} %. Nothing measured after the first samples is used.`);
-  const keys = layers.map((layer, k) => [lineColour(layer.line), `${shortNames[names[k]]}, with band`]);
-  return [h('h3', {}, 'Free run'), legend([[ink(), 'measured'], ...keys]), plot, freeRunTable(filter)];
+  const keys = layers.map((layer, k) => [layer.line, `${shortNames[names[k]]}, with band`]);
+  return [h('h3', {}, 'Free run'), legend([[INK, 'measured'], ...keys]), plot, freeRunTable(filter)];
 }

@@ -1,4 +1,5 @@
 // The transition graph of a bank: modes on a circle, arrows by probability.
+import {shade} from './colour.js';
 import {s} from './elements.js';
 
 const bend = 0.14;    // of an arrow's length
@@ -21,11 +22,11 @@ function arrow(from, to, width, colour, title) {
       s('g', {}, s('title', {}, title), s('path', {
           d: `M${put(start)}Q${put(middle)} ${put(end)}`,
           fill: 'none',
-          stroke: colour,
+          stroke: shade(colour),
           'stroke-width': width,
           'stroke-opacity': 0.75,
         }),
-        s('path', {d: `M${corners.map(put).join('L')}Z`, fill: colour}));
+        s('path', {d: `M${corners.map(put).join('L')}Z`, fill: shade(colour)}));
   // Nearer to where it comes from: in the middle the labels of all would meet.
   const t = 0.3, share = [(1 - t) ** 2, 2 * t * (1 - t), t ** 2];
   const on = (axis) => share[0] * start[axis] + share[1] * middle[axis] + share[2] * end[axis];
@@ -59,7 +60,7 @@ export function transitionGraph(transition, nodes) {
   const circles = places.map(
       ({x, y, r}, k) =>
           s('g', {}, s('title', {}, `${nodes[k].title} stays with probability ${transition[k][k].t}`),
-            s('circle', {cx: x, cy: y, r, fill: nodes[k].colour, stroke: 'var(--ink)'}),
+            s('circle', {cx: x, cy: y, r, fill: shade(nodes[k].colour), stroke: 'var(--ink)'}),
             s('text', {x, y, class: 'node'}, nodes[k].short)));
   picture.append(...pictures, ...circles, ...labels);
   return picture;

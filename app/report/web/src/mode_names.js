@@ -24,5 +24,5 @@ export const isOther = (k) => rankOf(k) >= toldCount;
 
 /** In a column of modes. */
 export const modeCell = (k) => (names[k] ? `${k} ${names[k]}` : String(k));
-/** Anywhere else. For Plotly as plain(modeTitle(k)). */
+/** Anywhere else. */
 export const modeTitle = (k) => (names[k] ? `mode ${k}: ${names[k]}` : `mode ${k}`);

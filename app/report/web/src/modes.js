@@ -1,7 +1,7 @@
 // The modes of a bank as the page's sections list them: most used first, those hardly used as one.
 import {legend} from './elements.js';
+import {modeColour, palette} from './look.js';
 import {modeTitle} from './mode_names.js';
-import {modeColour, palette} from './plots.js';
 
 /** Rows of the modes that are told one by one, and those of the others. */
 export function byUse(bank) {

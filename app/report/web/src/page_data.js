@@ -31,21 +31,11 @@ export function fromPlanes(planes, {type, size}) {
   return type === 'share' ? Float32Array.from(values, (v) => (v === nobody ? NaN : v / whole)) : values;
 }
 
-// What an element of the page holds, packed by 'deflate' or 'gzip'.
-function unpacking(id, format) {
-  const stored = bytesOf(document.getElementById(id).textContent);
-  return new Response(new Blob([stored]).stream().pipeThrough(new DecompressionStream(format)));
-}
-
+// Reads and unpacks the array in an element of the page.
 async function unpack(place) {
-  return fromPlanes(new Uint8Array(await unpacking(place.id, 'deflate').arrayBuffer()), place);
-}
-
-// Runs a script that the page holds packed.
-export async function runPacked(id) {
-  const script = document.createElement('script');
-  script.textContent = await unpacking(id, 'gzip').text();
-  document.head.append(script);
+  const stored = bytesOf(document.getElementById(place.id).textContent);
+  const stream = new Blob([stored]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return fromPlanes(new Uint8Array(await new Response(stream).arrayBuffer()), place);
 }
 
 // The typed array at a place of the page, unpacked once, on first need; a typed array stands for itself.

@@ -1,14 +1,13 @@
 // Runs that are compared, A, B, ...: one colour, dash and symbol each in every plot.
 import {legend} from './elements.js';
+import {palette, rankColour} from './look.js';
 import {matchedRanks} from './mode_pairs.js';
-import {palette, rankColour} from './plots.js';
 
 export const letters = ['A', 'B', 'C', 'D', 'E', 'F'];
 export const colours = [0, 3, 2, 4, 1, 5].map((k) => palette.modes[k]);
 export const symbols = ['circle', 'diamond', 'square', 'triangle-up', 'cross', 'x'];
-const dashes = ['solid', 'dash', 'dot', 'dashdot', 'longdash', 'longdashdot'];
+export const dashes = [undefined, 'dash', 'dot', 'dashdot', 'longdash', 'longdashdot'];
 
-export const stroke = (k, width = 1.4) => ({color: colours[k], width, dash: dashes[k], simplify: true});
 
 /** Of the page's data: for each run which colour its modes have, the same where they are matched. */
 export function modeColours(data) {

@@ -1,10 +1,10 @@
 // The bank: its modes in words, in numbers, by label.
 import {details, facts, h, note} from './elements.js';
 import {roleNames} from './filters.js';
+import {modeColour} from './look.js';
 import {modeCell, modeTitle} from './mode_names.js';
 import {byUse, othersName} from './modes.js';
 import {section} from './page.js';
-import {modeColour} from './plots.js';
 import {switching} from './run_switching.js';
 import {table} from './table.js';
 

@@ -2,11 +2,11 @@
 import {drawCloud} from './cloud.js';
 import {choiceIfAny, controls, h, legend, note} from './elements.js';
 import {filterNames} from './filters.js';
+import {INK, palette} from './look.js';
 import {nameModes} from './mode_names.js';
 import {modeLegend} from './modes.js';
 import {draw, head, section} from './page.js';
 import {pageData} from './page_data.js';
-import {ink, lineColour, palette} from './plots.js';
 import {drawBank} from './run_bank.js';
 import {dataPlot} from './run_data.js';
 import {drawFilter} from './run_filter.js';
@@ -42,15 +42,15 @@ function pickers(state, filters, options) {
 function dataLegend(runs, filtered) {
   const outliers = `outliers (1 in ${Math.round(1 / (1 - runs.outlier_level))} of a true filter)`;
   return legend([
-    [ink(), 'measured'],
+    [INK, 'measured'],
     ...(filtered ?
             [
-              [lineColour(palette.prediction), 'predicted one sample ahead'],
+              [palette.prediction, 'predicted one sample ahead'],
               [palette.band, `${100 * runs.level} % band`],
               [palette.outlier, outliers],
             ] :
             []),
-    ...(runs.runs.some((run) => run.truth) ? [[lineColour(palette.truth), 'truth']] : []),
+    ...(runs.runs.some((run) => run.truth) ? [[palette.truth, 'truth']] : []),
   ]);
 }
 

@@ -3,19 +3,19 @@
 import {mixed} from './colour.js';
 import {h, legend} from './elements.js';
 import {roleNames} from './filters.js';
+import {groundNow, INK, inkNow, modeColour, onCanvas, palette} from './look.js';
 import {modeTitle, rankOf} from './mode_names.js';
 import {dark, onTheme} from './page.js';
 import {segments, ticks} from './picture_layout.js';
-import {ink, lineColour, modeColour, palette} from './plots.js';
 
 const strip_px = 13, gap_px = 4, above_px = 18, left_px = 66, apart_px = 6;
 const least_px = 60;  // of a run's width: below it there is no room for its times
 
-// Greys, so that no label looks like a mode.
-export const labelColour = (k, count) => {
-  const ground = dark() ? '#14161a' : '#ffffff';
-  return mixed(ground, ink(), 0.12 + (0.58 * k) / Math.max(1, count - 1));
-};
+// Greys, so that no label looks like a mode: the share of ink, and the colour as it is now and in the legend.
+const inkShare = (k, count) => 0.12 + (0.58 * k) / Math.max(1, count - 1);
+const labelNow = (k, count) => mixed(groundNow(), inkNow(), inkShare(k, count));
+const labelColour = (k, count) =>
+    `color-mix(in srgb, var(--ink) ${(100 * inkShare(k, count)).toFixed(1)}%, var(--ground))`;
 
 const titleOf = ({name, unit}) => (unit ? `${name} [${unit}]` : name);
 
@@ -55,7 +55,7 @@ function drawState(pen, picture, at, {run, x, width}) {
       pen.lineTo(middle, y(run.low[i]));
       pen.lineTo(middle, y(high[i]));
     }
-    pen.strokeStyle = mode < 0 ? ink() : lineColour(modeColour(mode));
+    pen.strokeStyle = onCanvas(mode < 0 ? INK : modeColour(mode));
     pen.stroke();
   }
 }
@@ -117,9 +117,11 @@ function paint(canvas, picture) {
   pen.lineJoin = 'round';
   for (const place of at.places) {
     drawState(pen, picture, at, place);
-    if (at.strips.includes('mode') && place.run.mode) drawStrip(pen, place.run.mode, at.top('mode'), place, modeColour);
+    if (at.strips.includes('mode') && place.run.mode) {
+      drawStrip(pen, place.run.mode, at.top('mode'), place, (k) => onCanvas(modeColour(k)));
+    }
     if (place.run.label) {
-      drawStrip(pen, place.run.label, at.top('label'), place, (k) => labelColour(k, picture.labels.length));
+      drawStrip(pen, place.run.label, at.top('label'), place, (k) => labelNow(k, picture.labels.length));
     }
   }
   drawNames(pen, picture, at);

@@ -1,7 +1,7 @@
 // Tables of a run's scores.
 import {details, h} from './elements.js';
 import {roleNames, roleOf, shortNames} from './filters.js';
-import {filterColour} from './plots.js';
+import {filterColour} from './look.js';
 import {table} from './table.js';
 
 const whose = {

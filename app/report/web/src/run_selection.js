@@ -1,69 +1,49 @@
 // How many components: the criteria over K, what the restarts agree on, the table.
-import {criteria, criterionTrace} from './criteria.js';
+import {figure} from './chart.js';
 import {note} from './elements.js';
+import {palette} from './look.js';
 import {section} from './page.js';
-import {dashedLine, figure, ink, palette} from './plots.js';
 import {table} from './table.js';
 
-const panelKinds = [...criteria, ['agreeing', 'restarts that agree [%]']];
+const panelKinds = [
+  ['bic', 'BIC'],
+  ['icl', 'ICL'],
+  ['aic', 'AIC'],
+  ['heldout', 'held out [nats]'],
+  ['agreeing', 'restarts that agree [%]'],
+];
+const shapes = [['full', palette.modes[0], undefined, 'circle'], ['diagonal', palette.modes[1], 'dot', 'square']];
 
-// A line for each shape of covariance that was fitted.
+const valueOf = (row, key) => {
+  if (key !== 'agreeing') return row[key].v;
+  return row.restarts ? (100 * row.agreeing.v) / row.restarts : null;
+};
+
+// A line for each shape of covariance that was fitted, through the candidates.
 function curves(candidates, key) {
-  const share = (row) => (row.restarts ? (100 * row.agreeing.v) / row.restarts : null);
-  return ['full', 'diagonal']
-      .map((covariance, i) => {
-        const rows = candidates.filter((row) => row.covariance === covariance), color = palette.modes[i];
-        return {
-          ...criterionTrace(rows, key, covariance, key === 'agreeing' ? share : undefined),
-          line: {color, dash: i ? 'dot' : 'solid', width: 1.6},
-          marker: {size: 6, symbol: i ? 'square' : 'circle', color},
-        };
-      })
-      .filter((trace) => trace.x.length);
-}
-
-// Axes of panel i of columns times lines.
-function panelAxes(key, name, i, columns, lines, candidates) {
-  const n = i ? i + 1 : '', column = i % columns, row = Math.floor(i / columns), wide = 1 / columns, high = 1 / lines;
-  const dtick = candidates > 24 ? 4 : candidates > 12 ? 2 : 1;
-  const across = [column * wide + (column ? 0.05 : 0), (column + 1) * wide - 0.02];
-  const up = [1 - (row + 1) * high + (0.32 / lines) * 0.6, 1 - row * high - 0.03];
-  const range = key === 'agreeing' ? {range: [0, 104]} : {};
-  return {
-    [`xaxis${n}`]: {title: {text: 'components K', standoff: 3}, domain: across, anchor: `y${n}`, dtick},
-    [`yaxis${n}`]: {title: {text: name, standoff: 4}, domain: up, anchor: `x${n}`, nticks: 5, ...range},
-  };
-}
-
-function panelsDrawing(candidates, list, chosen) {
-  const columns = window.innerWidth < 700 ? 1 : Math.min(3, list.length), lines = Math.ceil(list.length / columns);
-  const traces = [];
-  const layout = {
-    height: 230 * lines + 40,
-    margin: {l: 64, r: 12, t: 36, b: 44},
-    shapes: [],
-    showlegend: list.some(([key]) => curves(candidates, key).length > 1),
-    legend: {orientation: 'h', y: 1.02, yanchor: 'bottom'},
-  };
-  list.forEach(([key, name], i) => {
-    const n = i ? i + 1 : '';
-    Object.assign(layout, panelAxes(key, name, i, columns, lines, candidates.length));
-    for (const trace of curves(candidates, key)) {
-      traces.push({...trace, xaxis: `x${n}`, yaxis: `y${n}`, showlegend: i === 0});
-    }
-    if (!chosen) return;
-    const K = chosen.components, line = {color: ink(), width: 1, dash: 'dash'};
-    layout.shapes.push(dashedLine(0, {xref: `x${n}`, yref: `y${n} domain`, x0: K, x1: K, y0: 0, y1: 1, line}));
+  return shapes.flatMap(([covariance, colour, dash, symbol]) => {
+    const rows = candidates.filter(
+        (row) => row.covariance === covariance && row.status === 'fitted' && valueOf(row, key) !== null);
+    if (!rows.length) return [];
+    const x = rows.map((row) => row.components), y = rows.map((row) => valueOf(row, key));
+    const tip = (i) => `${covariance}, K = ${x[i]}: ${rows[i][key].t}`;
+    return [{kind: 'line', x, y, colour, dash}, {kind: 'points', name: covariance, x, y, colour, symbol, size: 6, tip}];
   });
-  return {traces, layout};
 }
 
 function panels(candidates) {
   const list = panelKinds.filter(([key]) => curves(candidates, key).length);
   const chosen = candidates.find((row) => row.selected);
+  const panelOf = ([key, name]) => ({
+    x: {title: 'components K', whole: true},
+    y: {title: name, range: key === 'agreeing' ? [0, 104] : null},
+    marks: [...curves(candidates, key), ...(chosen ? [{kind: 'rule', x: chosen.components}] : [])],
+  });
+  const names = new Set(candidates.map((row) => row.covariance));
+  const keys = shapes.filter(([name]) => names.has(name)).map(([name, colour]) => [colour, name]);
+  const drawing = {panels: list.map(panelOf), height: 150, wide: 330, legend: keys.length > 1 ? keys : null};
   return figure(
-      'Criteria over the number of components; the table below holds the same numbers',
-      () => panelsDrawing(candidates, list, chosen),
+      'Criteria over the number of components; the table below holds the same numbers', () => drawing,
       `Lower is better for BIC, ICL and AIC, higher for held out.${
           chosen ? ` Dashed: the chosen K = ${chosen.components}.` : ''}`);
 }

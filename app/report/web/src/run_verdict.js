@@ -1,8 +1,8 @@
 // The first screen: what was found, whether the band may be used, what to do next, a picture. Its words and numbers are
 // those of the program's first screen (screen_facts.hpp).
 import {h, value} from './elements.js';
+import {modeColour} from './look.js';
 import {section} from './page.js';
-import {modeColour} from './plots.js';
 import {drawPicture} from './run_picture.js';
 import {cellOf, headingOf, scrolling} from './table.js';
 import {withTips} from './tips.js';

@@ -2,7 +2,6 @@
 // listeners}, showRun(row)}.
 import {choice} from './elements.js';
 import {plainValue} from './ordering.js';
-import {plain} from './plots.js';
 import {columnTitle} from './score_names.js';
 import {isNumber} from './statistics.js';
 
@@ -15,19 +14,7 @@ export function axisOf(study, name) {
   if (numeric) levels.sort((a, b) => a - b);
   const position = new Map(levels.map((level, k) => [level, k]));
   const {goal} = study.columns[i];
-  return {name, of, numeric, levels, position, goal, label: plain(columnTitle(name))};
-}
-
-// An axis whose levels stand at equal distances.
-export const levelTicks = (axis) =>
-    ({tickvals: axis.levels.map((_, k) => k), ticktext: axis.levels.map((level) => plain(level))});
-
-// Ticks of a numeric axis: whole numbers where all its values are.
-export function numberTicks(axis) {
-  const whole = axis.numeric && axis.levels.every(Number.isInteger);
-  if (!whole || !axis.levels.length) return {};
-  const range = axis.levels[axis.levels.length - 1] - axis.levels[0];
-  return {dtick: Math.max(1, Math.ceil(range / 12)), tick0: 0, tickformat: 'd'};
+  return {name, of, numeric, levels, position, goal, label: columnTitle(name)};
 }
 
 // Names of the columns of a kind: varied, score, cost.
@@ -49,10 +36,5 @@ export const wayChoice = (onchange) => choice('Show', ways.map(([, text]) => tex
 
 // The figure is drawn anew when the runs that are shown change.
 export function follow(context, element) {
-  context.shown.listeners.push(() => {
-    if (element.plot.querySelector('.main-svg')) element.redraw();
-  });
+  context.shown.listeners.push(() => element.update());
 }
-
-// A score's name along a short axis, in two lines.
-export const sideTitle = (score) => ({text: score.label.replace(': ', ':<br>')});

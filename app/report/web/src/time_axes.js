@@ -19,7 +19,7 @@ export const margins = (width) => ({left: width < 600 ? 46 : 64, right: 10});
  * @param {[number, number]} range what the pixels from `first` to `last` show
  * @returns {Scale}
  */
-function linear(range, first, last, count) {
+export function linearScale(range, first, last, count) {
   const scale = scaleLinear().domain(range).range([first, last]), format = scale.tickFormat(count);
   const ticks = scale.ticks(count).map((at) => ({at, text: format(at).replace('-', '−')}));
   return {to: scale, from: scale.invert, ticks, range};
@@ -29,7 +29,7 @@ function linear(range, first, last, count) {
 export function timeScale(range, width) {
   const {left, right} = margins(width);
   const count = Math.max(2, Math.floor((width - left - right) / px_per_tick.time));
-  return linear(range, left, width - right, count);
+  return linearScale(range, left, width - right, count);
 }
 
 const superscripts = '⁰¹²³⁴⁵⁶⁷⁸⁹';
@@ -59,7 +59,7 @@ function logarithmic([low, high], top, bottom) {
  */
 export function valueScale(range, top, bottom, log = false) {
   if (log) return logarithmic(range, top, bottom);
-  return linear(range, bottom, top, Math.max(2, Math.floor((bottom - top) / px_per_tick.value)));
+  return linearScale(range, bottom, top, Math.max(2, Math.floor((bottom - top) / px_per_tick.value)));
 }
 
 /**

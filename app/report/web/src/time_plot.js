@@ -1,20 +1,18 @@
 // Panels over time, one above the other, each with the readout of its signals above it.
 import {downloads} from './downloads.js';
 import {h, s, swatch} from './elements.js';
+import {canvasLook, coloured, groundNow} from './look.js';
 import {rangeText, secondsText} from './number_text.js';
-import {beforePrint, dark, onTheme} from './page.js';
+import {beforePrint, onTheme} from './page.js';
 import {canvasPen, font, svgPen} from './pens.js';
-import {ground, ink, inTurn, whenNear} from './plots.js';
 import {view} from './signals.js';
 import {margins, timeScale} from './time_axes.js';
 import {axis_px, drawPanel} from './time_drawing.js';
 import {listenToPointer} from './time_gestures.js';
 import {listenToKeys} from './time_keys.js';
+import {inTurn, whenNear} from './turns.js';
 
 const title_px = 22;  // above a panel in a file
-
-const look = () =>
-    ({ink: ink(), faint: dark() ? '#2c313a' : '#e4e7ec', ground: ground(), mark: dark() ? '#e8eaee26' : '#16181d24'});
 
 /** A frame of the screen later, or at once where the page is hidden and draws none. */
 const nextFrame = () => new Promise((done) => (document.hidden ? done() : requestAnimationFrame(() => done())));
@@ -83,10 +81,10 @@ class TimePlot {
     const {state} = this, range = state.shown(), clock = await state.clock(), {left, right} = margins(width);
     const seen = {run: state.current, clock, shown: view(clock, range, width - left - right), range};
     const all = await Promise.all(rows.map(async (row) => ({
-                                             traces: await row.draw(seen),
+                                             traces: (await row.draw(seen)).map(coloured),
                                              range: row.range || null,
                                              log: Boolean(row.log),
-                                             levels: row.levels ? row.levels() : [],
+                                             levels: (row.levels ? row.levels() : []).map(coloured),
                                            })));
     const frame = (i) => ({width, height: rows[i].height, last: i === rows.length - 1, range, mark: state.mark});
     return all.map((content, i) => ({content, frame: frame(i)}));
@@ -95,7 +93,7 @@ class TimePlot {
   async draw() {
     const rows = this.rows(), width = this.plot.clientWidth;
     if (!width) return;
-    const parts = await this.contents(rows, width), colours = look();
+    const parts = await this.contents(rows, width), colours = canvasLook();
     this.fit(rows);
     parts.forEach(({content, frame}, i) => this.paint(this.panels[i].canvas, content, frame, colours));
     this.range = this.state.shown();
@@ -151,7 +149,7 @@ class TimePlot {
 
   // The whole figure by one pen per panel: `begin(top)` gives it, its origin at the panel's corner.
   async drawFile(width, begin) {
-    const rows = this.rows(), parts = await this.contents(rows, width), colours = look();
+    const rows = this.rows(), parts = await this.contents(rows, width), colours = canvasLook();
     let top = 0;
     parts.forEach(({content, frame}, i) => {
       const pen = begin(top), {left} = margins(width);
@@ -174,7 +172,7 @@ class TimePlot {
     const root =
         s('svg',
           {xmlns: 'http://www.w3.org/2000/svg', width, height, viewBox: `0 0 ${width} ${height}`, 'font-family': font},
-          s('rect', {width, height, fill: ground()}));
+          s('rect', {width, height, fill: groundNow()}));
     await this.drawFile(width, (top) => {
       const group = s('g', {transform: `translate(0 ${top})`});
       root.append(group);
@@ -188,7 +186,7 @@ class TimePlot {
     const canvas =
         /** @type {HTMLCanvasElement} */ (h('canvas', {width: width * ratio, height: this.fileHeight() * ratio}));
     const context = canvas.getContext('2d');
-    context.fillStyle = ground();
+    context.fillStyle = groundNow();
     context.fillRect(0, 0, canvas.width, canvas.height);
     await this.drawFile(width, (top) => {
       context.setTransform(ratio, 0, 0, ratio, 0, top * ratio);

@@ -4,9 +4,9 @@
 //
 // A row is {title, height, draw: async ({run, clock, shown, range}) => traces, read: async (run, k) => entries, range,
 // log, levels}: `read` tells what its signals are at sample k (-1: none, the entries are then a legend).
+import {INK, modeColour, palette, translucent} from './look.js';
 import {modeTitle, rankOf} from './mode_names.js';
 import {array} from './page_data.js';
-import {ink, lineColour, modeColour, palette, translucent} from './plots.js';
 import {band, bounds, line, share, valueAt} from './signals.js';
 
 const most_outliers = 3000;
@@ -42,7 +42,7 @@ async function predictionTraces(layer, filter, i, {clock, shown}) {
     lowest: filter.lower[i],
     highest: filter.upper[i],
   };
-  const colour = lineColour(layer.line), dash = (layer.stroke || {}).dash === 'dash' ? 'dash' : undefined;
+  const colour = layer.line, dash = (layer.stroke || {}).dash === 'dash' ? 'dash' : undefined;
   return [
     {
       ...(await band(edges, clock, shown)),
@@ -62,7 +62,7 @@ async function predictionTraces(layer, filter, i, {clock, shown}) {
 }
 
 async function measuredTraces(signal, {clock, shown}) {
-  const measured = await line(signal, clock, shown), look = {colour: ink(), name: 'measured'};
+  const measured = await line(signal, clock, shown), look = {colour: INK, name: 'measured'};
   const curve = {...measured, ...look, kind: 'line', width: 1};
   if (measured.per > 1 || measured.y.length > few_markers) return [curve];
   return [curve, {...measured, ...look, kind: 'dots', size: 1.6}];
@@ -75,7 +75,7 @@ async function outlierTrace(outliers, i, range) {
     x.push(times[k]);
     y.push(values[k]);
   }
-  return {x, y, kind: 'dots', symbol: 'ring', size: 4.5, colour: lineColour(palette.outlier), name: 'outlier'};
+  return {x, y, kind: 'dots', symbol: 'ring', size: 4.5, colour: palette.outlier, name: 'outlier'};
 }
 
 async function stateTraces(layers, i, view) {
@@ -85,7 +85,7 @@ async function stateTraces(layers, i, view) {
   }
   if (run.truth) {
     const truth = await line(run.truth[i], clock, shown);
-    traces.push({...truth, kind: 'line', colour: lineColour(palette.truth), width: 1.2, dash: 'dot', name: 'truth'});
+    traces.push({...truth, kind: 'line', colour: palette.truth, width: 1.2, dash: 'dot', name: 'truth'});
   }
   traces.push(...(await measuredTraces(run.state[i], view)));
   const [filter] = filters;
@@ -96,16 +96,16 @@ async function stateTraces(layers, i, view) {
 }
 
 function stateEntries(layers, i, unit, run, k) {
-  const entries = [told(run.state[i], k, {name: 'measured', unit, colour: ink()})];
+  const entries = [told(run.state[i], k, {name: 'measured', unit, colour: INK})];
   for (const layer of layers) {
     const filter = layer.of(run);
     if (!filter) continue;
     const {prefix} = layer;
     entries.push(
-        told(filter.prediction[i], k, {name: `${prefix}predicted`, unit, colour: lineColour(layer.line)}),
+        told(filter.prediction[i], k, {name: `${prefix}predicted`, unit, colour: layer.line}),
         toldBand(filter, i, k, {name: `${prefix}band`, unit, colour: layer.band}));
   }
-  if (run.truth) entries.push(told(run.truth[i], k, {name: 'truth', unit, colour: lineColour(palette.truth)}));
+  if (run.truth) entries.push(told(run.truth[i], k, {name: 'truth', unit, colour: palette.truth}));
   return Promise.all(entries);
 }
 
@@ -122,7 +122,7 @@ export function stateRow(runs, i, layers, height = 230) {
 // Inputs that share a unit, in one row; their colours are not those of modes.
 export function inputRows(runs) {
   const look = (k) => ({
-    colour: lineColour(palette.inputs[k % palette.inputs.length]),
+    colour: palette.inputs[k % palette.inputs.length],
     dash: /** @type {'dash'|'dot'|undefined} */ ([undefined, 'dash', 'dot'][k % 3]),
   });
   return [...new Set(runs.inputs.map((channel) => channel.unit))].map((unit) => {
@@ -166,22 +166,22 @@ export function probabilityRow(of, title = 'probability of the modes', colourOf 
 }
 
 export function innovationRow(runs, i, of) {
-  const {unit} = runs.states[i], edge = {kind: 'line', colour: lineColour(palette.prediction), width: 1, name: 'bound'};
+  const {unit} = runs.states[i], edge = {kind: 'line', colour: palette.prediction, width: 1, name: 'bound'};
   const draw = async ({run, clock, shown}) => {
     const filter = of(run);
     if (!filter) return [];
     const {up, down} = await bounds(filter.half_width[i], clock, shown);
     const innovation = await line(filter.innovation[i], clock, shown);
     return [
-      {...up, ...edge}, {...down, ...edge}, {...innovation, kind: 'line', colour: ink(), width: 0.9, name: 'innovation'}
+      {...up, ...edge}, {...down, ...edge}, {...innovation, kind: 'line', colour: INK, width: 0.9, name: 'innovation'}
     ];
   };
   const read = async (run, k) => {
     const filter = of(run);
     if (!filter) return [];
     return Promise.all([
-      told(filter.innovation[i], k, {name: 'innovation', unit, colour: ink()}),
-      told(filter.half_width[i], k, {name: `± ${100 * runs.level} %`, unit, colour: lineColour(palette.prediction)}),
+      told(filter.innovation[i], k, {name: 'innovation', unit, colour: INK}),
+      told(filter.half_width[i], k, {name: `± ${100 * runs.level} %`, unit, colour: palette.prediction}),
     ]);
   };
   return {title: `innovation of ${titleOf(runs.states[i])}`, height: 130, draw, read};
@@ -189,7 +189,7 @@ export function innovationRow(runs, i, of) {
 
 async function nisTrace(layer, filter, {clock, shown}) {
   const curve = await line(filter.nis, clock, shown), dots = curve.per === 1 && curve.y.length < few_nis;
-  const look = {colour: lineColour(layer.nis || ink()), name: `${layer.prefix}NIS`};
+  const look = {colour: layer.nis || INK, name: `${layer.prefix}NIS`};
   if (dots) return {...curve, ...look, kind: 'dots', size: 1.8, symbol: layer.symbol};
   return {...curve, ...look, kind: 'line', width: 0.8};
 }
@@ -202,9 +202,8 @@ export function nisRow(runs, layers) {
     log: true,
     range: [1e-4, 300],
     draw: (view) => Promise.all(present(view.run).map(([layer, filter]) => nisTrace(layer, filter, view))),
-    levels: () => runs.nis_bounds.map((height) => ({height, colour: lineColour(palette.outlier)})),
+    levels: () => runs.nis_bounds.map((height) => ({height, colour: palette.outlier})),
     read: (run, k) => Promise.all(present(run).map(
-        ([layer, filter]) =>
-            told(filter.nis, k, {name: `${layer.prefix}NIS`, colour: lineColour(layer.nis || ink())}))),
+        ([layer, filter]) => told(filter.nis, k, {name: `${layer.prefix}NIS`, colour: layer.nis || INK}))),
   };
 }

@@ -1,5 +1,5 @@
 // Local models as points of a cloud: their groups, the Gaussians behind those, what is shown of them. Draws nothing.
-import {part} from './ellipsoid.js';
+import {part} from './ellipse.js';
 import {modeCell, modeTitle} from './mode_names.js';
 
 /**

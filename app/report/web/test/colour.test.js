@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {test} from 'node:test';
 
-import {mixed, onGround, paletteColour, translucent, usedColour} from '../src/colour.js';
+import {mixed, onGround, paletteColour, shade, translucent, usedColour} from '../src/colour.js';
 
 const palette = JSON.parse(readFileSync(new URL('../palette.json', import.meta.url), 'utf8'));
 
@@ -24,11 +24,14 @@ test('the palette comes again darker, then lighter, then as it was', () => {
   assert.equal(new Set(first).size, 3 * n);
 });
 
-test('opacity is the last byte; lines are lighter on a dark ground', () => {
+test('opacity is the last byte; colours are lighter on a dark ground', () => {
   assert.equal(translucent('#123456', 0.2), '#12345633');
   assert.equal(onGround('#000000', false), '#000000');
   assert.equal(onGround('#000000', true), '#595959');  // 0.35 * 255 = 89.25
+  assert.equal(onGround('#00000054', true), '#59595954');
   assert.equal(onGround('red', true), 'red');
+  assert.equal(shade('#123456'), 'color-mix(in srgb, #123456 var(--own), #fff)');
+  assert.equal(shade('var(--ink)'), 'var(--ink)');
 });
 
 test('the eight most used modes have a colour of their own, the others one together', () => {

@@ -1,4 +1,4 @@
-// Ellipses (x - mean)' C^-1 (x - mean) <= limit as paths.
+// Ellipses (x - mean)' C^-1 (x - mean) = limit as points.
 
 // Lower Cholesky factor of a small covariance; null when it is not one (a window that data do not determine).
 export function factor(matrix) {
@@ -25,10 +25,10 @@ const turnOf = (i, steps) => (2 * Math.PI * i) / steps;
 const circle = (steps) =>
     Array.from({length: steps + 1}, (_, i) => [Math.cos(turnOf(i, steps)), Math.sin(turnOf(i, steps))]);
 
-// An ellipse as an SVG path; null where there is none.
-export function ellipsePath(mean, matrix, limit) {
+// An ellipse as a closed line; null where there is none.
+export function ellipseLine(mean, matrix, limit) {
   const L = factor(matrix);
   if (!L) return null;
-  const points = circle(48).map((unit) => image(mean, L, Math.sqrt(limit), unit).join(','));
-  return `M${points.join('L')}Z`;
+  const points = circle(48).map((unit) => image(mean, L, Math.sqrt(limit), unit));
+  return {x: points.map(([x]) => x), y: points.map(([, y]) => y)};
 }

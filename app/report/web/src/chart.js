@@ -1,0 +1,90 @@
+// A figure of panels with axes, drawn as SVG: points, lines, bars, cells. Colours are CSS, so that the theme and paper
+// need no new drawing. chart_layout.js has where things stand, chart_marks.js what they look like.
+import {layoutOf} from './chart_layout.js';
+import {drawChart} from './chart_panel.js';
+import {readPoints} from './chart_tip.js';
+import {h, legend} from './elements.js';
+import {beforePrint} from './page.js';
+import {inTurn, whenNear} from './turns.js';
+
+/**
+ * x and y of equal length, null or NaN where there is nothing; `tip(i)` and `pick(i)`: what point i tells, and what a
+ * click on it does. 'points': symbols; 'line': through the points; 'bars': from zero to y about x; 'cells': a grid,
+ * `colours[i][j]` at y[i] and x[j]; 'band': grey between two heights; 'rule': a line across at a height y or from top
+ * to bottom at x.
+ * @typedef {{kind: string, x?: any, y?: any, colour?: string, size?: number,
+ *   symbol?: string, open?: boolean, opacity?: number, edge?: boolean, width?: number, dash?: string, step?: boolean,
+ *   name?: string, low?: number, high?: number, colours?: string[][], tip?: (i: number) => string|string[],
+ *   pick?: (i: number) => void, which?: any}} Mark
+ * `levels`: names at 0, 1, 2, ...; `whole`: ticks at whole numbers; `zero`: from zero on.
+ * @typedef {{title?: string, range?: number[]|null, levels?: string[], whole?: boolean, zero?: boolean}} Axis
+ * @typedef {{title?: string, x: Axis, y: Axis, marks: Mark[]}} Panel
+ * `wide`: pixels that a panel is wide at least, which says how many stand beside each other; `height`: of its inside.
+ * @typedef {{panels: Panel[], height?: number, wide?: number, legend?: any[]}} Drawing
+ */
+
+function oncePerFrame(work) {
+  let wanted = false;
+  return () => {
+    if (wanted) return;
+    wanted = true;
+    requestAnimationFrame(() => {
+      wanted = false;
+      work();
+    });
+  };
+}
+
+/**
+ * A figure: `make` returns a Drawing and is called again by redraw(). `label` is what a screen reader says.
+ * @param {string} label
+ * @param {() => Drawing|Promise<Drawing>} make
+ * @param {string} [caption]
+ * @returns {any} the element
+ */
+export function figure(label, make, caption) {
+  const plot = /** @type {any} */ (h('div', {class: 'plot chart', role: 'img', 'aria-label': label}));
+  const keys = h('div');
+  const element =
+      /** @type {any} */ (h('figure', {}, keys, plot, caption ? h('figcaption', {class: 'caption'}, caption) : null));
+  let begun = false;
+  const show = () => {
+    const width = plot.clientWidth;
+    if (!plot.drawing || !width) return;
+    const layout = layoutOf(plot.drawing, width), svg = drawChart(layout);
+    plot.layout = layout;
+    plot.replaceChildren(svg);
+    readPoints(svg, layout);
+    plot.dataset.drawn = 'true';
+  };
+  element.plot = plot;
+  element.redraw = async () => {
+    plot.drawing = await make();
+    keys.replaceChildren(...(plot.drawing.legend ? [legend(plot.drawing.legend)] : []));
+    show();
+  };
+  // Anew where it was drawn at all; what was not will be as things are then.
+  element.update = () => (plot.drawing ? element.redraw() : Promise.resolve());
+  element.ready = new Promise((resolve, reject) => {
+    element.begin = () => {
+      if (begun) return;
+      begun = true;
+      ignore();
+      inTurn(() => element.redraw().then(resolve, (error) => {
+        plot.dataset.failed = 'true';
+        reject(error);
+      }));
+    };
+    plot.style.minHeight = '200px';
+    const ignore = whenNear(plot, () => element.begin());
+  });
+  beforePrint(() => {
+    element.begin();
+    return element.ready;
+  }, plot);
+  const fit = oncePerFrame(show);
+  new ResizeObserver(() => {
+    if (plot.layout && plot.layout.width !== plot.clientWidth) fit();
+  }).observe(plot);
+  return element;
+}

@@ -1,0 +1,32 @@
+// Colours of the page. Scripts pass the palette's colours on as they are; what draws them makes them lighter on a dark
+// ground, to the same colour everywhere: shade() (colour.js) for elements and SVG, onCanvas() for a canvas.
+import palette from '../palette.json';
+
+import {onGround, paletteColour, translucent, usedColour} from './colour.js';
+import {isOther, rankOf} from './mode_names.js';
+import {dark} from './page.js';
+
+export {palette, translucent};
+
+/** The colour of text and of what was measured. */
+export const INK = 'var(--ink)';
+export const inkNow = () => (dark() ? '#e8eaee' : '#16181d');
+export const groundNow = () => (dark() ? '#14161a' : '#ffffff');
+
+/** A colour as it is now. */
+export const onCanvas = (colour) => (colour === INK ? inkNow() : onGround(colour, dark()));
+
+/** A trace or level of a plot over time in its colour as it is now, and what else is on the canvas. */
+export const coloured = (it) => ({...it, colour: onCanvas(it.colour)});
+export const canvasLook = () => ({
+  ink: inkNow(),
+  faint: dark() ? '#2c313a' : '#e4e7ec',
+  ground: groundNow(),
+  mark: dark() ? '#e8eaee26' : '#16181d24',
+});
+
+// A mode's colour is by its use, so that the modes that matter differ; the ninth and later ones are "others".
+export const rankColour = (rank) => usedColour(palette, rank);
+export const modeColour = (k) => rankColour(isOther(k) ? Infinity : rankOf(k));
+export const componentColour = (k) => paletteColour(palette, k);
+export const filterColour = (name) => palette.filters[name] || INK;
