@@ -22,8 +22,6 @@ constexpr double least_use = 0.01;  // modes used less are "others" in a short t
 constexpr int longest_name = 16;    // columns of a channel's name in a heading
 constexpr double standard_errors_95 = 1.96;
 
-std::string seconds(double value) { return std::isnan(value) ? "-" : fmt::format("{:.3g} s", value); }
-
 /// A channel's name, its middle left out where it is long.
 std::string heading(const std::string& name) {
   const int columns = columns_of(name);
@@ -58,11 +56,10 @@ std::vector<ModeTable::Row> rows_of(const Archive& archive, const std::vector<Us
     if (!all_decays && dynamics.decays.size() > 1) dynamics.decays.resize(1);
     std::vector<std::string> times;
     for (const Decay& decay : dynamics.decays) times.push_back(decay_words(decay));
-    ModeTable::Row row{
-        used.mode,
-        {heading(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
-         (used.at_least ? "over " : "") + seconds(used.stay_s), no_decays ? "-" : per_sample_words(dynamics.decays),
-         no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
+    ModeTable::Row row{used.mode,
+                       {heading(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
+                        stay_words(used), no_decays ? "-" : per_sample_words(dynamics.decays),
+                        no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
     const std::vector<std::string> gains = gain_cells(dynamics, open);
     row.cells.insert(row.cells.end(), gains.begin(), gains.end());
     rows.push_back(std::move(row));
@@ -161,6 +158,10 @@ UsedMode with_stay(const Archive& archive, Index mode, double use, const Diagnos
 }
 
 }  // namespace
+
+std::string stay_words(const UsedMode& mode) {
+  return std::isnan(mode.stay_s) ? "-" : fmt::format("{}{:.3g} s", mode.at_least ? "over " : "", mode.stay_s);
+}
 
 std::vector<UsedMode> used_modes(const Archive& archive) {
   const Bank& bank = *archive.bank;

@@ -25,6 +25,8 @@ struct UsedMode {
   double stay_s = 0.0;
   bool at_least = false;
 };
+/// "6.61 s", "over 60 s"; "-" where it was never entered.
+std::string stay_words(const UsedMode& mode);
 /// Most used first; where nothing was scored by weight.
 std::vector<UsedMode> used_modes(const Archive& archive);
 

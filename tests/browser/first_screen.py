@@ -82,6 +82,15 @@ class FirstScreen(PageTest):
         here = screen.replace(str(session.made["demo"]), "ARCHIVE").replace(str(session.modebank.program), "modebank")
         self.assertIn("".join(told.split()), "".join(here.replace("`", "").split()))
 
+    def test_tables_of_modes_agree_with_the_first_screen(self):
+        self.open_run("demo")
+        first = session.browser.run("""
+            const table = document.querySelector('#screen-modes table'), names = [...table.querySelectorAll('th')].map((th) => th.textContent);
+            return [...table.querySelectorAll('tbody tr')].map((tr) => Object.fromEntries([...tr.children].map((td, i) => [names[i], td.textContent])));""")
+        rows = [row for row in self.table("Modes, most used first") if row["Mode"][0] != "baseline"]
+        told = [(row["Mode"][0], row["Used"][0], row["Stay"][0]) for row in rows]
+        self.assertEqual(told, [tuple(row[name].replace("\u00a0", " ") for name in ("mode", "used", "stay")) for row in first])
+
     def test_it_is_painted_before_the_rest_is_read(self):
         script = session.browser.cdp("Page.addScriptToEvaluateOnNewDocument", source="""
             new PerformanceObserver(() => {

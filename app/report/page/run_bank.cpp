@@ -77,7 +77,7 @@ json mode_row(const Archive& archive, const Bank& bank, Index k) {
 }
 
 void add_diagnosis(json& row, const DiagnosticsRow& diagnosis, double dt_s) {
-  row["stay"] = number(diagnosis.dwell * dt_s);
+  row["stay_seen"] = number(diagnosis.dwell * dt_s);
   row["usage"] = number(diagnosis.usage, fmt::format("{:.3f}", diagnosis.usage));
   row["samples"] = count(diagnosis.samples);
   row["stay_model"] = number(diagnosis.dwell_model * dt_s);
@@ -197,6 +197,7 @@ nlohmann::json bank_section(const Archive& archive) {
   for (const UsedMode& mode : used) {
     json& row = modes[static_cast<std::size_t>(mode.mode)];
     row["use"] = number(mode.use, fmt::format("{:.1f} %", 100 * mode.use));
+    row["stay"] = number(mode.stay_s, stay_words(mode));  // as on the first screen
   }
   return {{"modes", modes},
           {"baseline", archive.baseline ? mode_row(archive, *archive.baseline, 0) : json()},

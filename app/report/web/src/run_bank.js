@@ -23,7 +23,7 @@ function wordColumns(bank) {
   return [
     which,
     {name: 'Used', of: (row) => row.use},
-    ...(seen ? [{name: 'Stay [s]', of: (row) => row.stay}] : []),
+    ...(seen ? [{name: 'Stay', of: (row) => row.stay}] : []),
     {name: 'Time constants', of: (row) => row.decays},
     ...gains(bank),
     ...list('motion', bank.motion_names),

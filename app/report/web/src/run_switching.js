@@ -26,7 +26,7 @@ function stayTable(bank) {
   return table(
       [
         {name: 'Mode', text: true, of: (row) => modeCell(row.mode), swatch: (row) => modeColour(row.mode)},
-        {name: 'Stay seen [s]', of: (row) => row.stay},
+        {name: 'Stay seen [s]', of: (row) => row.stay_seen},
         {name: 'Stay by the matrix [s]', of: (row) => row.stay_model},
       ],
       bank.order.map((k) => bank.modes[k]),
@@ -61,7 +61,7 @@ function guard(bank) {
 
 export function switching(bank) {
   if (bank.modes.length < 2) return note('One mode: it has nothing to switch to.');
-  const nodes = nodesOf(bank), stays = bank.modes.some((row) => row.stay);
+  const nodes = nodesOf(bank), stays = bank.modes.some((row) => row.stay_seen);
   const folded = bank.order.length > bank.told;
   return [
     guard(bank),
