@@ -1,4 +1,5 @@
 """What the page of a run shows before any scrolling, and that its words are explained."""
+import colorsys
 import subprocess
 
 import h5py
@@ -90,6 +91,20 @@ class FirstScreen(PageTest):
         rows = [row for row in self.table("Modes, most used first") if row["Mode"][0] != "baseline"]
         told = [(row["Mode"][0], row["Used"][0], row["Stay"][0]) for row in rows]
         self.assertEqual(told, [tuple(row[name].replace("\u00a0", " ") for name in ("mode", "used", "stay")) for row in first])
+
+    def test_modes_of_one_label_share_a_hue(self):
+        self.open_run("many_modes")
+        shades = {}
+        for name, colour in session.browser.run(session.BYTES + """
+                return [...document.querySelectorAll('#picture .legend li')].filter((li) => li.textContent.startsWith('mode'))
+                    .map((li) => [li.textContent.split(': ').at(-1), bytes(getComputedStyle(li.firstChild).backgroundColor)]);"""):
+            if not name.startswith("mode"):
+                shades.setdefault(name, []).append(colorsys.rgb_to_hls(*(byte / 255 for byte in colour))[0])
+        self.assertGreater(max(map(len, shades.values())), 1)
+        for hues in shades.values():
+            self.assertLess(max(hues) - min(hues), 0.02)
+        firsts = sorted(hues[0] for hues in shades.values())
+        self.assertGreater(min(b - a for a, b in zip(firsts, firsts[1:])), 0.05)
 
     def test_it_is_painted_before_the_rest_is_read(self):
         script = session.browser.cdp("Page.addScriptToEvaluateOnNewDocument", source="""

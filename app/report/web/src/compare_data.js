@@ -3,13 +3,14 @@ import {controls, note} from './elements.js';
 import {INK} from './look.js';
 import {section} from './page.js';
 import {colours, dashes, letters, modeColours, pairLegend, symbols} from './pair.js';
+import {inNaturalOrder} from './run_names.js';
 import {inputRows, nisRow, probabilityRow, stateRow} from './time_rows.js';
 import {runChoice, timeControls, timePlot, TimeState} from './timeview.js';
 
 // Runs that all hold, with as many samples: the data are A's.
 function commonRuns(data) {
   if (data.verdicts.some(({runs}) => runs === 0)) return [];  // alike in name alone
-  const [a, ...others] = data.runs.map((run) => (run.data ? run.data.runs : []));
+  const [a, ...others] = data.runs.map((run) => (run.data ? inNaturalOrder(run.data.runs) : []));
   return a.flatMap((run) => {
     const same = (other) =>
         other.name === run.name && other.time.samples === run.time.samples && other.state.length === run.state.length;

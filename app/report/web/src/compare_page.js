@@ -91,7 +91,8 @@ function bankTable(bank, letter) {
     {name: 'Time constants', text: true, of: (row) => row.decays},
     ...bank.gain_names.map((name, i) => ({name: `steady gain ${name}`, of: (row) => row.gains[i]})),
   ];
-  return table(columns, bank.modes, {caption: `Modes of ${letter}`, sortable: true});
+  return table(
+      columns, bank.order.map((k) => bank.modes[k]), {caption: `Modes of ${letter}, most used first`, sortable: true});
 }
 
 // Every bank by itself: what stands side by side above leaves gains and time constants out.

@@ -2,8 +2,8 @@
 // ground, to the same colour everywhere: shade() (colour.js) for elements and SVG, onCanvas() for a canvas.
 import palette from '../palette.json';
 
-import {onGround, paletteColour, translucent, usedColour} from './colour.js';
-import {isOther, rankOf} from './mode_names.js';
+import {hueColour, onGround, paletteColour, translucent, usedColour} from './colour.js';
+import {hueOf, isOther} from './mode_names.js';
 import {dark} from './page.js';
 
 export {palette, translucent};
@@ -25,8 +25,12 @@ export const canvasLook = () => ({
   mark: dark() ? '#e8eaee26' : '#16181d24',
 });
 
-// A mode's colour is by its use, so that the modes that matter differ; the ninth and later ones are "others".
+// Modes of one label share a hue, and the most used labels have the first ones; modes that are hardly used are grey.
+export function modeColour(k) {
+  if (isOther(k)) return palette.unclustered;
+  const {hue, turn} = hueOf(k);
+  return hueColour(palette, hue, turn);
+}
 export const rankColour = (rank) => usedColour(palette, rank);
-export const modeColour = (k) => rankColour(isOther(k) ? Infinity : rankOf(k));
 export const componentColour = (k) => paletteColour(palette, k);
 export const filterColour = (name) => palette.filters[name] || INK;

@@ -2,6 +2,7 @@
 // their modes have numbers alone.
 let names = [];
 let ranks = [];
+let hues = [];
 let toldCount = Infinity;
 
 /**
@@ -11,14 +12,23 @@ let toldCount = Infinity;
 export function nameModes(list, order = [], told = Infinity) {
   names = list;
   ranks = [];
+  hues = [];
   toldCount = told;
+  const taken = new Map();  // how many modes have the label so far
+  const labels = [];
   order.forEach((mode, rank) => {
     ranks[mode] = rank;
+    const label = list[mode] || `mode ${mode}`, turn = taken.get(label) || 0;
+    if (!turn) labels.push(label);
+    hues[mode] = {hue: labels.indexOf(label), turn};
+    taken.set(label, turn + 1);
   });
 }
 
 /** How many modes are used more. */
 export const rankOf = (k) => (ranks[k] === undefined ? k : ranks[k]);
+/** Its hue, which modes of the same label share, and how many more used modes of that label there are. */
+export const hueOf = (k) => hues[k] || {hue: rankOf(k), turn: 0};
 /** Whether a mode is among those that are hardly used and taken as one. */
 export const isOther = (k) => rankOf(k) >= toldCount;
 

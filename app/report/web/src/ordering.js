@@ -1,4 +1,5 @@
 // How cells sort: numbers by value, words as people order them, what is not known last in either direction.
+import {naturally} from './run_names.js';
 
 // A cell is a word, a number or what C++ formatted: {v: exact value, t: text}.
 export const plainValue = (cell) => (cell && typeof cell === 'object' ? cell.v : cell);
@@ -8,7 +9,7 @@ const isKnown = (v) => v !== null && v !== undefined && v !== '';
 // Of two known values: negative where x comes first.
 function compareKnown(x, y) {
   const p = Number(x), q = Number(y);
-  if (Number.isNaN(p) || Number.isNaN(q)) return String(x).localeCompare(String(y), 'en', {numeric: true});
+  if (Number.isNaN(p) || Number.isNaN(q)) return naturally(x, y);
   return p - q;
 }
 

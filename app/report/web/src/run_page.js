@@ -10,6 +10,7 @@ import {pageData} from './page_data.js';
 import {drawBank} from './run_bank.js';
 import {dataPlot} from './run_data.js';
 import {drawFilter} from './run_filter.js';
+import {inNaturalOrder} from './run_names.js';
 import {drawOrigin} from './run_origin.js';
 import {drawSelection} from './run_selection.js';
 import {drawVerdict} from './run_verdict.js';
@@ -106,6 +107,7 @@ async function drawRest() {
     drawOrigin(data.origin);
     return;
   }
+  runs.runs = inNaturalOrder(runs.runs);
   const filters = Object.keys(runs.runs[0].filters), state = new TimeState(runs.runs), options = filterOptions(filters);
   const picker = pickers(state, filters, options);
   drawData(runs, state, options, picker);

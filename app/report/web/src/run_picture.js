@@ -1,5 +1,6 @@
 // The data in little, drawn on a plain canvas so that it is seen first: the first state in the colour of the most
 // probable mode, the modes as a strip, and beneath it what is known of the ground.
+import {endOf} from './chart_layout.js';
 import {mixed} from './colour.js';
 import {h, legend} from './elements.js';
 import {roleNames} from './filters.js';
@@ -7,9 +8,11 @@ import {groundNow, INK, inkNow, modeColour, onCanvas, palette} from './look.js';
 import {modeTitle, rankOf} from './mode_names.js';
 import {dark, onTheme} from './page.js';
 import {segments, ticks} from './picture_layout.js';
+import {inNaturalOrder} from './run_names.js';
 
 const strip_px = 13, gap_px = 4, above_px = 18, left_px = 66, apart_px = 6;
-const least_px = 60;  // of a run's width: below it there is no room for its times
+const least_name_px = 40;  // of a run's name, which is made narrower where its run is
+const least_px = 60;       // of a run's width: below it there is no room for its times
 
 // Greys, so that no label looks like a mode: the share of ink, and the colour as it is now and in the legend.
 const inkShare = (k, count) => 0.12 + (0.58 * k) / Math.max(1, count - 1);
@@ -90,7 +93,8 @@ function drawNames(pen, picture, at) {
   pen.restore();
   pen.textAlign = 'left';
   for (const {run, x, width} of at.places) {
-    if (pen.measureText(run.name).width <= Math.max(width, 40)) pen.fillText(run.name, x, 8, width);
+    const room = Math.max(width, least_name_px);
+    pen.fillText(endOf(run.name, room, (text) => pen.measureText(text).width), x, 8, width);
     pen.textAlign = 'right';
     if (width > least_px) pen.fillText(`${Number(run.seconds.toPrecision(3))} s`, x + width, at.bottom + 12);
     pen.textAlign = 'left';
@@ -144,7 +148,8 @@ function key(picture, modes) {
 }
 
 /** Into `place`: the picture of the verdict's section, anew whenever its size or the theme changes. */
-export function drawPicture(place, {picture, role, modes}) {
+export function drawPicture(place, {picture: given, role, modes}) {
+  const picture = {...given, runs: inNaturalOrder(given.runs)};
   const text = described(picture, role);
   const canvas = h('canvas', {class: 'picture', role: 'img', 'aria-label': text});
   const caption = h('figcaption', {class: 'caption'});

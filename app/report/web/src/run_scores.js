@@ -2,6 +2,7 @@
 import {details, h} from './elements.js';
 import {roleNames, roleOf, shortNames} from './filters.js';
 import {filterColour} from './look.js';
+import {naturally, shortName} from './run_names.js';
 import {table} from './table.js';
 
 const whose = {
@@ -20,7 +21,7 @@ const number = (name, key) => ({name, of: (row) => row[key]});
 const scoreColumns = (filter) =>
     [whose,
      {name: 'Runs', text: true, of: (row) => roleOf(row.role)},
-     {name: 'Run', text: true, of: (row) => (row.run === '*' ? 'all' : row.run)},
+     {name: 'Run', text: true, of: (row) => (row.run === '*' ? 'all' : {t: shortName(row.run), v: row.run})},
      number('Samples', 'samples'),
      number('Log score [nats]', 'log_score'),
      number(filter.rmse_name, 'rmse'),
@@ -76,8 +77,15 @@ const freeRunColumns = (filter) =>
 export const freeRunTable = (filter) =>
     table(freeRunColumns(filter), filter.free_runs, {caption: 'Free run, all runs together', sortable: true});
 
+// Filters and roles as C++ has them, the runs of each in natural order.
+function inOrder(scores) {
+  const groups = [...new Set(scores.map(({filter, role}) => `${filter} ${role}`))];
+  const place = ({filter, role}) => groups.indexOf(`${filter} ${role}`);
+  return [...scores].sort((a, b) => place(a) - place(b) || naturally(a.run, b.run));
+}
+
 export function drawScores(filter) {
-  const of = (wanted) => filter.scores.filter((row) => (row.run === '*') === wanted);
+  const of = (wanted) => inOrder(filter.scores.filter((row) => (row.run === '*') === wanted));
   const scores = (wanted, caption) => table(scoreColumns(filter), of(wanted), {caption, sortable: true});
   const trueOnes = 'Is the stated uncertainty true (95 % intervals in brackets)';
   const ahead = {caption: 'Predictions several samples ahead', sortable: true};

@@ -140,9 +140,10 @@ export function inputRows(runs) {
 
 // The likeliest modes at sample k, the likeliest first.
 async function modeEntries(filter, k, colourOf) {
+  const byUse = filter.probability.map((_, mode) => mode).sort((a, b) => rankOf(a) - rankOf(b));
   const shares = await Promise.all(
       filter.probability.map((signal, mode) => told(signal, k, {name: modeTitle(mode), colour: colourOf(mode)})));
-  if (k < 0) return shares.length <= 2 * told_modes ? shares : [];
+  if (k < 0) return shares.length <= 2 * told_modes ? byUse.map((mode) => shares[mode]) : [];
   return shares.filter(({value}) => value.low > 0.005).sort((a, b) => b.value.low - a.value.low).slice(0, told_modes);
 }
 

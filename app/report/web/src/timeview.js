@@ -1,6 +1,7 @@
 // Plots over time that share one run and one stretch of time, and what leads them.
 import {choice, h} from './elements.js';
 import {roleOf} from './filters.js';
+import {shortName} from './run_names.js';
 
 export {timePlot} from './time_plot.js';
 export {TimeState} from './time_state.js';
@@ -47,5 +48,7 @@ export function timeControls(state) {
 
 // A drop-down of the runs.
 export function runChoice(state) {
-  return choice('Run', state.runs.map((run) => `${run.name} (${roleOf(run.role)})`), state.run, (i) => state.select(i));
+  return choice(
+      'Run', state.runs.map((run) => `${shortName(run.name)} (${roleOf(run.role)})`), state.run,
+      (i) => state.select(i));
 }

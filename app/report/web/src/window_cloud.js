@@ -1,6 +1,6 @@
 // Local models as points of a cloud: their groups, the Gaussians behind those, what is shown of them. Draws nothing.
 import {part} from './ellipse.js';
-import {modeCell, modeTitle} from './mode_names.js';
+import {modeCell, modeTitle, rankOf} from './mode_names.js';
 
 /**
  * @typedef {{run: Int32Array, begin: Float64Array, end: Float64Array, label: Int32Array|null, mode: Int32Array|null,
@@ -46,7 +46,7 @@ export class WindowCloud {
     return list ? list[i] : -1;
   }
 
-  // [group, its window numbers]: components or modes in order, windows without one first.
+  // [group, its window numbers]: components in order, modes by use, windows without one first.
   groups() {
     const lists = new Map();
     for (let i = 0; i < this.count; ++i) {
@@ -54,7 +54,8 @@ export class WindowCloud {
       if (!lists.has(key)) lists.set(key, []);
       lists.get(key).push(i);
     }
-    return [...lists.entries()].sort((a, b) => a[0] - b[0]);
+    const place = (key) => (key >= 0 && this.by === 'mode' ? rankOf(key) : key);
+    return [...lists.entries()].sort(([a], [b]) => place(a) - place(b));
   }
 
   groupName(key) {

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {test} from 'node:test';
 
-import {mixed, onGround, paletteColour, shade, translucent, usedColour} from '../src/colour.js';
+import {hueColour, mixed, onGround, paletteColour, shade, translucent, usedColour} from '../src/colour.js';
 
 const palette = JSON.parse(readFileSync(new URL('../palette.json', import.meta.url), 'utf8'));
 
@@ -40,4 +40,12 @@ test('the eight most used modes have a colour of their own, the others one toget
   assert.equal(ranks[0], palette.modes[0]);
   assert.equal(usedColour(palette, 8), palette.unclustered);
   assert.equal(usedColour(palette, 54), palette.unclustered);
+});
+
+test('eight modes of one label have eight colours, the most used one the label’s own', () => {
+  for (let hue = 0; hue < 8; ++hue) {
+    const colours = Array.from({length: 8}, (_, turn) => hueColour(palette, hue, turn));
+    assert.equal(colours[0], palette.modes[hue]);
+    assert.equal(new Set(colours).size, 8);
+  }
 });
