@@ -195,14 +195,16 @@ std::vector<Command> commands_to_use() {
       {"Use",
        "export",
        {"ARCHIVE --to FORM", "needs one archive", 1, 1},
-       "the bank for other programs: json, mat, c, casadi, ros2, or a table as csv",
-       "Every form is x[k+1] = A x[k] + B u[k] + c: json one page; mat for MATLAB and Octave; c a C99 filter without "
+       "the bank for other programs: json, regimes, mat, c, casadi, ros2, or a table as csv",
+       "Every form is x[k+1] = A x[k] + B u[k] + c: json one page; regimes its Q, R, transitions and gates for a "
+       "filter "
+       "with a motion model of its own; mat for MATLAB and Octave; c a C99 filter without "
        "heap; casadi Python text for MPC; ros2 parameter files, one per mode. Refused where the verdict on its "
        "uncertainty is overconfident or underconfident.",
        "modebank export robot.h5 --to c -o tracker.c",
        {"track.filter"},
        {as_json(),
-        {"to", "FORM", "json, mat, c, casadi, ros2 or csv", &CommandLine::to},
+        {"to", "FORM", "json, regimes, mat, c, casadi, ros2 or csv", &CommandLine::to},
         output("FILE", "file, or folder of ros2"),
         force("also where the verdict speaks against it"),
         {"table", "PATH", "csv: which table of the archive", &CommandLine::table},

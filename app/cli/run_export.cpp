@@ -77,6 +77,11 @@ json export_json(const CommandLine& line) {
                     [&] { return to_json(read_bank(line)); });
 }
 
+json export_regimes(const CommandLine& line) {
+  return write_text(line, form_by_front("an export of regimes", "\"modebank regimes\"", 64),
+                    [&] { return to_regimes(read_bank(line)); });
+}
+
 json export_casadi(const CommandLine& line) {
   return write_text(line, bank_form(), [&] { return to_casadi(read_bank(line)); });
 }
@@ -173,9 +178,9 @@ json export_ros2(const CommandLine& line) {
   return {{"written", written}};
 }
 
-const std::map<std::string, json (*)(const CommandLine&)> forms{{"c", export_c},     {"casadi", export_casadi},
-                                                                {"csv", export_csv}, {"json", export_json},
-                                                                {"mat", export_mat}, {"ros2", export_ros2}};
+const std::map<std::string, json (*)(const CommandLine&)> forms{
+    {"c", export_c},     {"casadi", export_casadi},   {"csv", export_csv},  {"json", export_json},
+    {"mat", export_mat}, {"regimes", export_regimes}, {"ros2", export_ros2}};
 
 /// Options that belong to one form.
 void check_form_options(const CommandLine& line) {
@@ -192,9 +197,9 @@ void check_form_options(const CommandLine& line) {
 int run_export(const CommandLine& line) {
   const auto form = forms.find(line.to);
   if (form == forms.end())
-    throw ConfigurationError(
-        fmt::format("export needs one of the forms json, mat, c, casadi, ros2 and csv{}: modebank export {} --to json",
-                    line.to.empty() ? "" : ", not " + line.to, line.files.front()));
+    throw ConfigurationError(fmt::format(
+        "export needs one of the forms json, regimes, mat, c, casadi, ros2 and csv{}: modebank export {} --to json",
+        line.to.empty() ? "" : ", not " + line.to, line.files.front()));
   check_form_options(line);
   json result = form->second(line);
   result["form"] = line.to;

@@ -91,6 +91,10 @@ ExportedBank exported_bank(const Archive& archive, const OpenArchive& file, cons
   add_verdict(archive, exported);
   add_channels(archive.recording.value_or(Recording()), exported);
   exported.open = open_parameters(archive, bank->structure);
+  if (filter == "bank") {
+    exported.use.resize(bank->modes.size());
+    for (const UsedMode& used : used_modes(archive)) exported.use[static_cast<std::size_t>(used.mode)] = used.use;
+  }
   for (std::size_t j = 0; j < bank->modes.size(); ++j) {
     const std::string name = filter == "bank" ? name_of_mode(archive.mode_names, static_cast<Index>(j)) : "";
     exported.mode_names.push_back(name.empty() ? fmt::format("mode {}", j) : name);

@@ -30,12 +30,13 @@ struct ExportedBank {
   double coverage_95 = 0.0;
   std::string finding;  ///< whether runs ask for modes of motion; may be empty
   Bank bank;
-  std::vector<Channel> measurements;                          ///< n_y
-  std::vector<Channel> states;                                ///< n, lagged ones among them
-  std::vector<Channel> inputs;                                ///< m, lagged ones among them
-  std::vector<Channel> recorded_inputs;                       ///< u as it is recorded
-  double input_lag_s = 0.0;                                   ///< inputs were taken this much earlier than recorded
-  std::vector<std::string> mode_names;                        ///< K
+  std::vector<Channel> measurements;     ///< n_y
+  std::vector<Channel> states;           ///< n, lagged ones among them
+  std::vector<Channel> inputs;           ///< m, lagged ones among them
+  std::vector<Channel> recorded_inputs;  ///< u as it is recorded
+  double input_lag_s = 0.0;              ///< inputs were taken this much earlier than recorded
+  std::vector<std::string> mode_names;   ///< K
+  std::vector<double> use;               ///< K, mean probability on judged runs; empty of competitors
   std::vector<std::string> parameter_names, parameter_units;  ///< p, of the modes' theta
   std::vector<ModeErrors> errors;                             ///< K
   std::vector<bool> open;                                     ///< p, what the training runs leave open; or empty

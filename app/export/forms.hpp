@@ -16,6 +16,12 @@ inline constexpr const char* export_schema_version = "2.0";
 
 std::string to_json(const ExportedBank& bank);
 
+/// Version of the regimes' page, counted like export_schema_version.
+inline constexpr const char* regimes_schema_version = "1.0";
+
+/// Q and R of the measured states, transitions and gates: what a filter with a motion model of its own can use.
+std::string to_regimes(const ExportedBank& bank);
+
 /// MATLAB's MAT-file of version 5, written under this name as replace_file does.
 void write_mat(const ExportedBank& bank, const std::filesystem::path& file);
 

@@ -1,102 +1,36 @@
-#include <fmt/format.h>
-
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "app/export/forms.hpp"
-#include "io/archive/bank/units.hpp"
+#include "app/export/json_parts.hpp"
 
 namespace modebank::app {
 namespace {
 
-using ordered = nlohmann::ordered_json;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What is not known (NaN) becomes null.
-ordered vector_json(const VectorXd& v) {
-  ordered list = ordered::array();
-  for (const double value : v) list.push_back(value);
-  return list;
-}
-
-ordered matrix_json(const MatrixXd& M) {
-  ordered rows = ordered::array();
-  for (Index i = 0; i < M.rows(); ++i) rows.push_back(vector_json(M.row(i).transpose()));
-  return rows;
-}
-
-Unit units_of(const std::vector<Channel>& channels) {
-  Unit units;
-  for (const Channel& channel : channels) units.push_back(channel.unit);
-  return units;
-}
-
-ordered rows_of(const Unit& units, Index rows, Index cols) {
-  ordered list = ordered::array();
-  for (Index i = 0; i < rows; ++i) {
-    ordered row = ordered::array();
-    for (Index j = 0; j < cols; ++j) row.push_back(units[static_cast<std::size_t>(i * cols + j)]);
-    list.push_back(row);
-  }
-  return list;
-}
-
-/// A matrix, its standard errors where there are any, and what its entries are measured in (empty: nobody stated it).
-ordered quantity(const MatrixXd& value, const MatrixXd& error, const Unit& units) {
-  ordered result = {{"value", matrix_json(value)}};
-  result["standard_error"] = error.size() == value.size() ? matrix_json(error) : ordered(nullptr);
-  result["unit"] = rows_of(units, value.rows(), value.cols());
-  return result;
-}
-
-ordered channels_json(const std::vector<Channel>& channels) {
-  ordered list = ordered::array();
-  for (const Channel& channel : channels) list.push_back({{"name", channel.name}, {"unit", channel.unit}});
-  return list;
-}
-
-ordered verdict_json(const ExportedBank& bank) {
-  const bool judged = !bank.judged_on.empty();
-  return {{"answer", judged ? ordered(name_of(bank.verdict)) : ordered("not judged")},
-          {"judged_on", judged ? ordered(bank.judged_on) : ordered(nullptr)},
-          {"share_in_95_band", judged ? ordered(bank.coverage_95) : ordered(nullptr)},
-          {"text", bank.verdict_text()},
-          {"finding", bank.finding}};
-}
-
-ordered source_json(const ExportedBank& bank) {
-  return {{"archive", bank.archive},
-          {"sha256", bank.sha256},
-          {"filter", bank.filter},
-          {"created", bank.provenance.created},
-          {"modebank_version", bank.provenance.modebank_version},
-          {"config_hash", bank.provenance.config_hash},
-          {"data_hash", bank.provenance.data_hash}};
-}
-
 /// `remark_of`: of a position; empty where the value may be taken as it stands.
 template <class RemarkOf>
-ordered parameters_json(const VectorXd& values, const VectorXd& errors, const std::vector<std::string>& names,
-                        const std::vector<std::string>& units, RemarkOf remark_of) {
-  ordered list = ordered::array();
+OrderedJson parameters_json(const VectorXd& values, const VectorXd& errors, const std::vector<std::string>& names,
+                            const std::vector<std::string>& units, RemarkOf remark_of) {
+  OrderedJson list = OrderedJson::array();
   for (Index i = 0; i < values.size(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     list.push_back({{"name", names[at]},
                     {"value", values(i)},
-                    {"standard_error", errors.size() == values.size() ? ordered(errors(i)) : ordered(nullptr)},
+                    {"standard_error", errors.size() == values.size() ? OrderedJson(errors(i)) : OrderedJson(nullptr)},
                     {"unit", at < units.size() ? units[at] : ""}});
     if (const std::string remark = remark_of(i); !remark.empty()) list.back()["remark"] = remark;
   }
   return list;
 }
 
-ordered mode_json(const ExportedBank& exported, Index k) {
+OrderedJson mode_json(const ExportedBank& exported, Index k) {
   const auto at = static_cast<std::size_t>(k);
   const Mode& mode = exported.bank.modes[at];
   const ModeErrors& errors = exported.errors[at];
   const Unit states = units_of(exported.states), inputs = units_of(exported.inputs);
-  ordered result = {{"index", k}, {"name", exported.mode_names[at]}, {"share_of_windows", mode.weight}};
+  OrderedJson result = {{"index", k}, {"name", exported.mode_names[at]}, {"share_of_windows", mode.weight}};
   result["A"] = quantity(exported.A(k), errors.A, ratios(states, states));
   result["B"] = quantity(mode.model.B, errors.B, ratios(states, inputs));
   result["c"] = quantity(mode.model.c, errors.c, states);
@@ -118,19 +52,19 @@ ordered mode_json(const ExportedBank& exported, Index k) {
   return result;
 }
 
-ordered transition_json(const ExportedBank& exported) {
+OrderedJson transition_json(const ExportedBank& exported) {
   const Bank& bank = exported.bank;
-  ordered result = {
+  OrderedJson result = {
       {"meaning", transition_meaning},
       {"T", matrix_json(bank.transition.matrix())},
       {"standard_error",
-       bank.transition_standard_error.size() > 0 ? matrix_json(bank.transition_standard_error) : ordered(nullptr)},
+       bank.transition_standard_error.size() > 0 ? matrix_json(bank.transition_standard_error) : OrderedJson(nullptr)},
       {"initial_probability", vector_json(bank.initial_probability)}};
   if (bank.transition_logit.empty()) {
     result["logit"] = nullptr;
     return result;
   }
-  ordered features = ordered::array();
+  OrderedJson features = OrderedJson::array();
   for (const auto* channels : {&exported.states, &exported.inputs})
     for (const Channel& channel : *channels) features.push_back(channel.name);
   result["logit"] = {
@@ -139,18 +73,18 @@ ordered transition_json(const ExportedBank& exported) {
       {"features", features},
       {"weights", matrix_json(bank.transition_logit.weights)},
       {"standard_error",
-       bank.transition_weight_error.size() > 0 ? matrix_json(bank.transition_weight_error) : ordered(nullptr)},
+       bank.transition_weight_error.size() > 0 ? matrix_json(bank.transition_weight_error) : OrderedJson(nullptr)},
       {"reference", vector_json(bank.transition_logit.reference)}};
   return result;
 }
 
-ordered filter_json(const ExportedBank& exported) {
+OrderedJson filter_json(const ExportedBank& exported) {
   const Bank& bank = exported.bank;
-  ordered result = {{"variant", name_of(exported.options.variant)},
-                    {"noise", name_of(exported.options.noise)},
-                    {"noise_forgetting", bank.noise_adaptation.forgetting},
-                    {"noise_prior_samples", bank.noise_adaptation.prior_samples}};
-  result["quantum"] = bank.quantum.size() > 0 ? vector_json(bank.quantum) : ordered(nullptr);
+  OrderedJson result = {{"variant", name_of(exported.options.variant)},
+                        {"noise", name_of(exported.options.noise)},
+                        {"noise_forgetting", bank.noise_adaptation.forgetting},
+                        {"noise_prior_samples", bank.noise_adaptation.prior_samples}};
+  result["quantum"] = bank.quantum.size() > 0 ? vector_json(bank.quantum) : OrderedJson(nullptr);
   result["noise_factor"] = nullptr;
   if (!bank.noise_factor.empty())
     result["noise_factor"] = {{"directions", matrix_json(bank.noise_factor.directions)},
@@ -173,7 +107,7 @@ std::string to_json(const ExportedBank& exported) {
   const Bank& bank = exported.bank;
   const LinearStructure& s = bank.structure;
   const Unit outputs = units_of(exported.measurements);
-  ordered page = {{"format", "modebank export"}, {"schema_version", export_schema_version}};
+  OrderedJson page = {{"format", "modebank export"}, {"schema_version", export_schema_version}};
   page["verdict"] = verdict_json(exported);
   page["source"] = source_json(exported);
   page["equation"] = exported_equation;
@@ -190,9 +124,9 @@ std::string to_json(const ExportedBank& exported) {
   page["R"] = quantity(bank.R, bank.R_standard_error, outer(outputs));
   page["transition"] = transition_json(exported);
   page["filter"] = filter_json(exported);
-  page["modes"] = ordered::array();
+  page["modes"] = OrderedJson::array();
   for (Index k = 0; k < bank.mode_count(); ++k) page["modes"].push_back(mode_json(exported, k));
-  return page.dump(1, ' ', false, ordered::error_handler_t::replace) + "\n";
+  return page.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 }  // namespace modebank::app

@@ -257,7 +257,7 @@ TEST_F(Robustness, P8NoOutputTakesThePlaceOfWhatIsReadOrOfAnotherForm) {
   for (const std::string& mine : {log, archive(), page}) refuses(check, mine, form);
   refuses({"report", archive(), "-o"}, archive(), read);
   for (const std::string& mine : {log, config()}) refuses({"report", archive(), "-o"}, mine, form);
-  for (const char* to : {"json", "casadi", "mat"}) {
+  for (const char* to : {"json", "regimes", "casadi", "mat"}) {
     refuses({"export", archive(), "--force", "--to", to, "-o"}, archive(), read);
     for (const std::string& mine : {log, config(), page})
       refuses({"export", archive(), "--force", "--to", to, "-o"}, mine, form);
@@ -291,6 +291,7 @@ TEST_F(Robustness, P8AnOutputIsReplacedByItsLike) {
       {"predict", archive(), "--data.inputs", log, "--samples", "5", "-o", file("predicted.csv").string()},
       {"report", archive(), "-o", file("page.html").string()},
       {"export", archive(), "--force", "--to", "json", "-o", file("a.json").string()},
+      {"export", archive(), "--force", "--to", "regimes", "-o", file("regimes.json").string()},
       {"export", archive(), "--force", "--to", "casadi", "-o", file("a.py").string()},
       {"export", archive(), "--force", "--to", "mat", "-o", file("a.mat").string()},
       {"export", archive(), "--force", "--to", "c", "-o", file("a.c").string()},

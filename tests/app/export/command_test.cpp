@@ -178,7 +178,7 @@ TEST_F(Export, WritesFilesWholeOrNotAtAll) {
 TEST_F(Export, RefusesABankWhoseUncertaintyIsFoundFalse) {
   for (const Calibration verdict : {Calibration::overconfident, Calibration::underconfident}) {
     judge(verdict);
-    for (const std::string form : {"json", "mat", "c", "casadi", "ros2"}) {
+    for (const std::string form : {"json", "regimes", "mat", "c", "casadi", "ros2"}) {
       const ProgramResult result = exported(form, {"-o", file("refused.c").string()});
       EXPECT_EQ(result.status, 1) << form;
       EXPECT_THAT(result.err, HasSubstr(std::string(name_of(verdict))));

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "app/export/exported_bank.hpp"
+#include "io/archive/bank/units.hpp"
+
+/// Members that the exported JSON pages share.
+namespace modebank::app {
+
+/// Members stay in the order in which they are written.
+using OrderedJson = nlohmann::ordered_json;
+
+/// What is not known (NaN) becomes null.
+OrderedJson vector_json(const Eigen::VectorXd& v);
+OrderedJson matrix_json(const Eigen::MatrixXd& M);
+
+Unit units_of(const std::vector<Channel>& channels);
+OrderedJson channels_json(const std::vector<Channel>& channels);
+
+/// A matrix, its standard errors (null without any), and the units of its entries (empty where nobody stated them).
+OrderedJson quantity(const Eigen::MatrixXd& value, const Eigen::MatrixXd& error, const Unit& units);
+
+OrderedJson verdict_json(const ExportedBank& bank);
+OrderedJson source_json(const ExportedBank& bank);
+
+}  // namespace modebank::app
