@@ -42,9 +42,9 @@ Resumed resume(AnyFilter& filter, const std::string& file, const std::string& id
   } catch (const std::invalid_argument& error) {
     throw DataError(file + ": " + error.what());
   }
-  if (snapshot.samples.samples == 0) return {not_a_number, {}};
+  if (snapshot.samples.samples == 0) return {not_a_number, 0, {}};
   if (!std::isfinite(snapshot.samples.time_s)) throw DataError(file + ": the last sample has no time");
-  return {snapshot.samples.time_s, snapshot.samples.inputs.col(0)};  // the newest
+  return {snapshot.samples.time_s, snapshot.samples.samples, snapshot.samples.inputs.col(0)};  // the newest
 }
 
 /// kf is the global model alone, whatever the bank.
@@ -81,7 +81,8 @@ namespace {
 OpenedFilter open_bank(const OpenArchive& archive, const std::string& which, const FilterOptions& options) {
   Bank bank = load_bank(archive, which);
   auto filter = any_filter(bank, options);
-  return {std::move(bank), options, std::move(filter)};
+  const Eigen::Index lags = std::max(bank.structure.state_lags, bank.structure.first_transition() + 1);
+  return {std::move(bank), options, lags, std::move(filter)};
 }
 
 OpenedFilter open_one(const OpenArchive& archive, const std::string& which, const Config& config) {
@@ -94,12 +95,14 @@ OpenedFilter open_combined(const OpenArchive& archive, const Config& config) {
   const CombinedMembers members = combined_members(archive, 1);
   std::vector<std::unique_ptr<AnyFilter>> filters;
   std::optional<OpenedFilter> bank;
+  Eigen::Index lags = 0;
   for (const std::string& name : members.names) {
     OpenedFilter opened = open_one(archive, name, config);
     filters.push_back(std::move(opened.filter));
+    lags = std::max(lags, opened.lags);
     if (!bank) bank = std::move(opened);
   }
-  return {combined_frame(bank->bank), bank->options,
+  return {combined_frame(bank->bank), bank->options, lags,
           std::make_unique<CombinedFilter>(std::move(filters), members.weights)};
 }
 

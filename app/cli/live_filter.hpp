@@ -10,9 +10,11 @@
 
 namespace modebank::app {
 
-/// Where a filter goes on: the time of the last sample it knows, NaN without samples, and that sample's inputs.
+/// Where a filter goes on: the time of the last sample it knows, NaN without samples, how many it has had since it
+/// started anew, and the last one's inputs.
 struct Resumed {
   double time_s;
+  Eigen::Index samples;
   Eigen::VectorXd input;
 };
 
@@ -21,10 +23,12 @@ struct Resumed {
 void save(AnyFilter& filter, const std::string& file, const std::string& identity);
 Resumed resume(AnyFilter& filter, const std::string& file, const std::string& identity);
 
-/// The filter that the configuration asks for. `bank`: whose sizes and period it has.
+/// The filter that the configuration asks for. `bank`: whose sizes and period it has; `lags`: samples that it needs to
+/// start.
 struct OpenedFilter {
   Bank bank;
   FilterOptions options;
+  Eigen::Index lags;
   std::unique_ptr<AnyFilter> filter;
 };
 /// Throws ConfigurationError for filters that are no bank: `what` is done with banks alone.

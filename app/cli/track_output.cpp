@@ -1,8 +1,10 @@
 #include "app/cli/track_output.hpp"
 
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "ident/base/printable.hpp"
 #include "io/files/csv_field.hpp"
@@ -12,6 +14,13 @@ namespace modebank::app {
 namespace {
 
 using Eigen::Index;
+
+/// In the order of the columns.
+constexpr std::array<std::pair<const char*, bool ValidityFlags::*>, 4> flag_names{
+    {{"warming_up", &ValidityFlags::warming_up},
+     {"input_beyond_training", &ValidityFlags::input_beyond_training},
+     {"unlike_any_mode", &ValidityFlags::unlike_any_mode},
+     {"stamp_late", &ValidityFlags::stamp_late}}};
 
 void number(fmt::memory_buffer& out, double value, const char* unknown) {
   if (std::isfinite(value))
@@ -43,7 +52,9 @@ void EstimateWriter::header(fmt::memory_buffer& out) const {
   for (const std::string& s : states_)
     for (const char* what : {"_predicted", "_lower", "_upper", "", "_sd"})
       fmt::format_to(to, ",{}", csv_field(s + what));
-  fmt::format_to(to, ",nis,log_density,alarm,mode");
+  fmt::format_to(to, ",nis,log_density,alarm");
+  for (const auto& [name, flag] : flag_names) fmt::format_to(to, ",{}", name);
+  fmt::format_to(to, ",mode");
   for (Index j = 0; j < modes_; ++j) fmt::format_to(to, ",p{}", j);
   if (lines_.forecast) fmt::format_to(to, ",now");
   for (const std::string& s : states_)
@@ -70,7 +81,7 @@ void EstimateWriter::signal(std::size_t state, std::initializer_list<double> val
 }
 
 void EstimateWriter::line(const std::string& run, double time_s, const FilterEstimate& e, const LiveVerdict& verdict,
-                          const Forecast* forecast, fmt::memory_buffer& out) const {
+                          const ValidityFlags& flags, const Forecast* forecast, fmt::memory_buffer& out) const {
   auto to = std::back_inserter(out);
   const bool as_json = lines_.json;
   const auto named = [&](const char* name, double value) {
@@ -88,7 +99,10 @@ void EstimateWriter::line(const std::string& run, double time_s, const FilterEst
   }
   named("nis", e.nis);
   named("log_density", e.log_density);
-  fmt::format_to(to, fmt::runtime(as_json ? ",\"alarm\":{},\"mode\":{}" : ",{:d},{}"), verdict.alarm, likeliest(e));
+  fmt::format_to(to, fmt::runtime(as_json ? ",\"alarm\":{}" : ",{:d}"), verdict.alarm);
+  for (const auto& [name, flag] : flag_names)
+    as_json ? fmt::format_to(to, ",\"{}\":{}", name, flags.*flag) : fmt::format_to(to, ",{:d}", flags.*flag);
+  fmt::format_to(to, fmt::runtime(as_json ? ",\"mode\":{}" : ",{}"), likeliest(e));
   if (as_json) fmt::format_to(to, ",\"probability\":[");
   for (Index j = 0; j < modes_; ++j) {
     if (!as_json || j > 0) fmt::format_to(to, ",");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/validity_flags.hpp"
 #include "filter/step/alarm.hpp"
 #include "filter/step/bank_filter.hpp"
 
@@ -32,7 +33,7 @@ class EstimateWriter {
   void header(fmt::memory_buffer& out) const;
   /// `forecast`: where lines have one.
   void line(const std::string& run, double time_s, const FilterEstimate& estimate, const LiveVerdict& verdict,
-            const Forecast* forecast, fmt::memory_buffer& out) const;
+            const ValidityFlags& flags, const Forecast* forecast, fmt::memory_buffer& out) const;
 
  private:
   std::vector<std::string> states_;

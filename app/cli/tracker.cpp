@@ -38,6 +38,7 @@ Tracker::Tracker(const OpenArchive& archive, const Config& config, OpenedFilter 
       opened_(std::move(opened)),
       judge_(bank_),
       forecast_judge_(judge_),
+      validity_(load_input_range(archive), opened_.lags, bank_.dt_s),
       reader_(config.data),
       identity_(identity_of(archive, config, opened_.options)),
       samples_(alignment),
@@ -52,6 +53,7 @@ void Tracker::go_on() {
   const Resumed resumed = resume(filter_, config_.track.resume, identity_);
   if (std::isnan(resumed.time_s)) return;
   resumed_s_ = stepped_s_ = resumed.time_s;
+  validity_.go_on(resumed.samples, resumed.time_s);
   last_s_ = resumed.time_s - alignment_.reach_s();
   reader_.remember(resumed.input);
   samples_.go_on_after(resumed.time_s);
@@ -59,6 +61,12 @@ void Tracker::go_on() {
       "goes on after the sample at {} s ({}); send what follows {}, and drop what was written of later "
       "samples: they are estimated again",
       resumed.time_s, config_.track.resume, *last_s_ < resumed.time_s ? fmt::format("{} s", *last_s_) : "it"));
+}
+
+void Tracker::restart() {
+  filter_.restart();
+  samples_.restart();
+  validity_.restart();
 }
 
 void Tracker::follow_lines() {
@@ -145,8 +153,7 @@ void Tracker::follow_runs(const std::vector<Trajectory>& runs, bool named) {
   bool goes_on = resumed_s_.has_value();
   for (const Trajectory& run : runs) {
     if (!std::exchange(goes_on, false)) {
-      filter_.restart();
-      samples_.restart();
+      restart();
       last_s_.reset();
       before_leap_.reset();
     }
@@ -217,7 +224,7 @@ void Tracker::take_sample(const TimedSample& sample) {
   if (!comes_in_time(sample.time_s)) return;
   before_leap_.reset();
   if (last_s_ && filter_.started() && is_gap(*last_s_, sample.time_s)) {
-    before_leap_ = BeforeLeap{*last_s_, samples_};
+    before_leap_ = BeforeLeap{*last_s_, samples_, validity_};
     filter_.remember();
     samples_.restart();
   }
@@ -242,8 +249,7 @@ void Tracker::correct_first(double time_s) {
   first_->time_s = time_s;
   first_->rest_s = 0.0;
   last_s_ = time_s;
-  filter_.restart();
-  samples_.restart();
+  restart();
   samples_.push(*first_);
   const TimedSample* const ready = samples_.next();
   if (ready == nullptr) return;
@@ -270,13 +276,13 @@ bool Tracker::comes_in_time(double time_s) {
                             *last_s_, time_s, before_leap_->time_s));
     filter_.go_back();
     samples_ = before_leap_->samples;
+    validity_ = before_leap_->validity;
     return true;
   }
   if (*last_s_ - time_s > static_cast<double>(longest_gap_steps) * bank_.dt_s) {
     messages_.say_once(place_,
                        fmt::format("time goes back from {} s to {} s: the filter starts anew", *last_s_, time_s));
-    filter_.restart();
-    samples_.restart();
+    restart();
     last_s_.reset();
     resumed_s_.reset();
     return true;
@@ -304,20 +310,20 @@ void Tracker::step(const TimedSample& sample) {
   if (was_started && estimate.steps == 0)
     messages_.say_once(place_, fmt::format("{} s without a sample: the filter starts anew", since_s));
   if (watchdog_.on()) watchdog_.took(sample.time_s, estimate.mode_probability);
-  write(sample, estimate);
+  write(sample, estimate, validity_.judge(sample.time_s, sample.input, estimate, filter_.started()));
   const auto interval = static_cast<std::size_t>(config_.track.checkpoint_interval);
   if (++estimates_; interval > 0 && estimates_ % interval == 0 && !config_.track.checkpoint.empty())
     checkpoint_due_ = true;
 }
 
-void Tracker::write(const TimedSample& sample, const FilterEstimate& estimate) {
+void Tracker::write(const TimedSample& sample, const FilterEstimate& estimate, const ValidityFlags& flags) {
   if (!config_.track.forecast)
-    return writer_->line(run_, sample.time_s, estimate, judge_.judge(estimate), nullptr, out_);
+    return writer_->line(run_, sample.time_s, estimate, judge_.judge(estimate), flags, nullptr, out_);
   made_ = estimate;  // the filter forecasts in its place
   const double now_s = std::max(sample.time_s, samples_.newest_s());
   const bool ahead = now_s > sample.time_s && filter_.started();
   const Forecast forecast{now_s, forecast_judge_.judge(ahead ? filter_.forecast(now_s, sample.input) : made_)};
-  writer_->line(run_, sample.time_s, made_, judge_.judge(made_), &forecast, out_);
+  writer_->line(run_, sample.time_s, made_, judge_.judge(made_), flags, &forecast, out_);
 }
 
 }  // namespace modebank::app

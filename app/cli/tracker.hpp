@@ -15,6 +15,7 @@
 #include "app/cli/track_output.hpp"
 #include "app/cli/track_thinning.hpp"
 #include "app/cli/track_watchdog.hpp"
+#include "app/cli/validity_flags.hpp"
 #include "app/config/config.hpp"
 #include "filter/step/alarm.hpp"
 #include "filter/step/feed/aligned_samples.hpp"
@@ -42,6 +43,7 @@ class Tracker {
   struct BeforeLeap {
     double time_s;
     AlignedSamples samples;
+    ValidityJudge validity;
   };
 
   const Config& config_;
@@ -49,6 +51,7 @@ class Tracker {
   const Bank& bank_ = opened_.bank;
   AnyFilter& filter_ = *opened_.filter;
   LiveJudge judge_, forecast_judge_;
+  ValidityJudge validity_;
   FilterEstimate made_;  ///< the last estimate, while the filter forecasts from it
   SampleReader reader_;
   std::optional<EstimateWriter> writer_;
@@ -70,6 +73,7 @@ class Tracker {
   bool thinning_told_ = false, checkpoint_due_ = false, checkpoint_fails_ = false;
 
   void go_on();
+  void restart();
   LineStream::Got next(std::string_view& line);
   void take_lines(std::vector<std::string>& lines);
   void take_last_line(const std::string& line);
@@ -85,7 +89,7 @@ class Tracker {
   bool flush();
   void save() const;
   void keep();
-  void write(const TimedSample& sample, const FilterEstimate& estimate);
+  void write(const TimedSample& sample, const FilterEstimate& estimate, const ValidityFlags& flags);
 };
 
 }  // namespace modebank::app
