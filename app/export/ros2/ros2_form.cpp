@@ -23,9 +23,17 @@ std::string error_text(const Estimate& estimate) {
   return fmt::format("+- {:.2g}{}", estimate.error, doubt.empty() ? "" : ": " + doubt);
 }
 
+/// Whether the standard error exceeds the value.
+bool is_vague(const Estimate& estimate) { return std::abs(estimate.value) < estimate.error; }
+
+/// Whether a robot may be given the value.
+bool is_told(const Estimate& estimate) { return estimate.known() && !is_vague(estimate); }
+
 /// A key where the bank determines its value, else a comment with the reason.
 std::string key_line(const char* key, const Estimate& estimate, const std::string& unit, const std::string& reason) {
   if (!estimate.known()) return fmt::format("    # {}: not determined: {}\n", key, comment_text(reason));
+  if (is_vague(estimate))
+    return fmt::format("    # {}: not determined: {:.6g} {}{}\n", key, estimate.value, error_text(estimate), unit);
   return fmt::format("    {}: {}  # {}{}\n", key, yaml_number(estimate.value), error_text(estimate), unit);
 }
 
@@ -40,6 +48,8 @@ std::string twist_covariance(const RobotNumbers& numbers) {
   const Estimate &forward = numbers.forward_variance, &yaw = numbers.yaw_variance;
   if (!forward.known() && !yaw.known())
     return "    # twist_covariance_diagonal: not determined: neither speed is a state that settles\n";
+  if (!is_told(forward) && !is_told(yaw))
+    return key_line("twist_covariance_diagonal", yaw.known() ? yaw : forward, yaw.known() ? " of wz" : " of vx", "");
   std::string text = "    # Of vx, vy, vz, wx, wy, wz about their steady values, P = A P A' + Q:";
   if (forward.known()) text += fmt::format(" vx [(m/s)^2] {};", error_text(forward));
   if (yaw.known()) text += fmt::format(" wz [(rad/s)^2] {};", error_text(yaw));
@@ -47,8 +57,8 @@ std::string twist_covariance(const RobotNumbers& numbers) {
   if (!forward.known()) text += ": the forward speed is not among the states";
   if (!yaw.known()) text += ": the yaw rate is not among the states";
   return text + fmt::format("\n    twist_covariance_diagonal: [{}, 0.0, 0.0, 0.0, 0.0, {}]\n",
-                            yaml_number(forward.known() ? forward.value : 0.0),
-                            yaml_number(yaw.known() ? yaw.value : 0.0));
+                            yaml_number(is_told(forward) ? forward.value : 0.0),
+                            yaml_number(is_told(yaw) ? yaw.value : 0.0));
 }
 
 std::string diff_drive(const RobotNumbers& numbers, const RobotChannels& channels, const RobotSizes& sizes) {
@@ -117,17 +127,22 @@ std::string process_noise(const ExportedBank& exported, Index mode, const RobotC
       "    # process_noise_covariance = Q / dt_s. Q is what the bank's model leaves unexplained, wheel speeds known; a "
       "filter\n    # that takes velocities for constant needs more where they change. All else is the project's "
       "default.\n";
+  /// Whether the entry is set: a vague one stays at the default.
   const auto set = [&](Index a, Index b, Index of_a, Index of_b, const char* name) {
-    if (of_a < 0 || of_b < 0) return;
-    noise(a, b) = noise(b, a) = Q(of_a, of_b) / exported.bank.dt_s;
-    const std::string error =
-        error_text({noise(a, b), errors ? of.Q_standard_error(of_a, of_b) / exported.bank.dt_s : not_a_number});
-    text += fmt::format("    # {}: Q {:.6g} / dt_s {:.6g} s = {:.6g} {}\n", name, Q(of_a, of_b), exported.bank.dt_s,
-                        noise(a, b), error);
+    if (of_a < 0 || of_b < 0) return false;
+    const Estimate entry{Q(of_a, of_b) / exported.bank.dt_s,
+                         errors ? of.Q_standard_error(of_a, of_b) / exported.bank.dt_s : not_a_number};
+    text += fmt::format("    # {}: Q {:.6g} / dt_s {:.6g} s = {:.6g} {}{}\n", name, Q(of_a, of_b), exported.bank.dt_s,
+                        entry.value, error_text(entry), is_vague(entry) ? ", and the default stays" : "");
+    if (is_vague(entry)) return false;
+    noise(a, b) = noise(b, a) = entry.value;
+    return true;
   };
-  set(filter_vyaw, filter_vyaw, channels.yaw_rate, channels.yaw_rate, "vyaw [(rad/s)^2/s]");
-  set(filter_vx, filter_vx, channels.forward_speed, channels.forward_speed, "vx [(m/s)^2/s]");
-  set(filter_vx, filter_vyaw, channels.forward_speed, channels.yaw_rate, "vx and vyaw [(m/s)(rad/s)/s]");
+  const bool yaw = set(filter_vyaw, filter_vyaw, channels.yaw_rate, channels.yaw_rate, "vyaw [(rad/s)^2/s]");
+  const bool forward = set(filter_vx, filter_vx, channels.forward_speed, channels.forward_speed, "vx [(m/s)^2/s]");
+  if (yaw && forward)
+    set(filter_vx, filter_vyaw, channels.forward_speed, channels.yaw_rate, "vx and vyaw [(m/s)(rad/s)/s]");
+  if (!yaw && !forward) return text + "    # process_noise_covariance: not determined\n\n";
   return text + "    process_noise_covariance: [\n" + noise_rows(noise) + "\n";
 }
 

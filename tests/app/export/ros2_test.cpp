@@ -136,6 +136,30 @@ TEST(ExportedRos2, SaysWhatIsMissing) {
   EXPECT_THAT(spinning, HasSubstr("give --wheel_radius_m"));
 }
 
+/// A value whose standard error exceeds it is a comment with both numbers, and lists keep the release's default there.
+TEST(ExportedRos2, LeavesOutWhatItsErrorExceeds) {
+  MODEBANK_NEEDS_YAML();
+  const Robot robot;
+  ExportedBank vague = bank_of(robot, true);
+  Mode& mode = vague.bank.modes[0];
+  mode.standard_error.setConstant(10.0);  // gains are of order one
+  mode.Q_standard_error = Eigen::Matrix2d{{1e-6, 0.0}, {0.0, 2.0 * robot.forward_noise}};
+  const std::string text = to_ros2(vague, {1.0, 0.0}).at(0).second;
+  for (const std::string key : {"wheel_separation_multiplier", "left_wheel_radius_multiplier", "model_delay_wz"})
+    EXPECT_THAT(text, testing::ContainsRegex("# " + key + ": not determined: .* its standard error exceeds it"));
+  EXPECT_THAT(text, HasSubstr("its standard error exceeds it, and the default stays"));
+  const json file = read_yaml(text);
+  EXPECT_FALSE(file.contains("controller_server"));
+  const json noise = file.at("ekf_filter_node").at("ros__parameters").at("process_noise_covariance");
+  EXPECT_NEAR(noise[11 * 15 + 11], robot.yaw_noise / robot.dt_s, 1e-12);
+  EXPECT_EQ(noise[6 * 15 + 6], 0.025) << "the project's default";
+  EXPECT_EQ(noise[6 * 15 + 11], 0.0);
+  mode.Q_standard_error(0, 0) = 2.0 * robot.yaw_noise;
+  const std::string nothing = to_ros2(vague, {1.0, 0.0}).at(0).second;
+  EXPECT_THAT(nothing, HasSubstr("# process_noise_covariance: not determined"));
+  EXPECT_TRUE(read_yaml(nothing).is_null()) << nothing;
+}
+
 /// sd(separation) = separation^2 / 2 sd(G_R - G_L) where B alone is uncertain.
 TEST(ExportedRos2, StatesErrorsByTheDeltaMethod) {
   const Robot robot;
