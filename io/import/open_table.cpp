@@ -49,9 +49,33 @@ constexpr std::array formats{
            }},
 };
 
+/// Lines of Python that read a file into frames and run the chain; docs/howto/any_reader.md has them, too.
+constexpr std::string_view px4_lines = R"(
+from pyulog import ULog
+import pandas, modebank
+log = {d.name: pandas.DataFrame(d.data) for d in ULog("FILE").data_list}
+frames = {"flight": (log["actuator_motors"], log["vehicle_angular_velocity"])}
+archive = modebank.run(frames, state="xyz[2]", input=["control[0]", "control[1]"], time="timestamp",
+                       **{"data.time_unit": "us", "data.split": "blocks 10"}))";
+constexpr std::string_view ardupilot_lines = R"(
+from pymavlink import mavutil
+import pandas, modebank
+log = mavutil.mavlink_connection("FILE")
+rows = [m.to_dict() for m in iter(lambda: log.recv_match(type=["IMU", "RCOU"]), None)]
+imu, motors = (pandas.DataFrame([r for r in rows if r["mavpackettype"] == name]) for name in ("IMU", "RCOU"))
+archive = modebank.run({"flight": (motors, imu)}, state="GyrZ", input=["C1", "C3"], time="TimeUS", **{"data.split": "blocks 10"}))";
+constexpr std::string_view parquet_lines = R"(
+import pandas, modebank
+frame = pandas.read_parquet("FILE")
+archive = modebank.run({"drive": frame}, state="wz", input=["left", "right"], time="time", **{"data.split": "blocks 10"}))";
+constexpr std::string_view arrow_lines = R"(
+import pandas, modebank
+frame = pandas.read_feather("FILE")
+archive = modebank.run({"drive": frame}, state="wz", input=["left", "right"], time="time", **{"data.split": "blocks 10"}))";
+
 /// A format that is not read, by the bytes it begins with.
 struct Foreign {
-  std::string_view magic, name, advice;
+  std::string_view magic, name, advice, python = {};
 };
 
 constexpr std::array foreign{
@@ -62,11 +86,11 @@ constexpr std::array foreign{
     Foreign{"Octave-1-"sv, "in Octave's binary format",
             "octave --eval \"s = load('{0}'); save('-v7', '{0}.mat', '-struct', 's')\""},
     Foreign{"PAR1"sv, "an Apache Parquet file",
-            "python3 -c \"import pandas; pandas.read_parquet('{0}').to_csv('{0}.csv')\""},
+            "python3 -c \"import pandas; pandas.read_parquet('{0}').to_csv('{0}.csv')\"", parquet_lines},
     Foreign{"ARROW1"sv, "an Apache Arrow file",
-            "python3 -c \"import pandas; pandas.read_feather('{0}').to_csv('{0}.csv')\""},
+            "python3 -c \"import pandas; pandas.read_feather('{0}').to_csv('{0}.csv')\"", arrow_lines},
     Foreign{"FEA1"sv, "an Apache Arrow file",
-            "python3 -c \"import pandas; pandas.read_feather('{0}').to_csv('{0}.csv')\""},
+            "python3 -c \"import pandas; pandas.read_feather('{0}').to_csv('{0}.csv')\"", arrow_lines},
     Foreign{"\x80\x02"sv, "a Python pickle, which runs code when it is read", "write to_csv() where it was written"},
     Foreign{"\x80\x03"sv, "a Python pickle, which runs code when it is read", "write to_csv() where it was written"},
     Foreign{"\x80\x04"sv, "a Python pickle, which runs code when it is read", "write to_csv() where it was written"},
@@ -81,8 +105,8 @@ constexpr std::array foreign{
     Foreign{"\x28\xB5\x2F\xFD"sv, "compressed by Zstandard", "unzstd '{0}'"},
     Foreign{"\x04\x22\x4D\x18"sv, "compressed by LZ4", "unlz4 '{0}'"},
     Foreign{"\xFD\x37zXZ"sv, "compressed by xz", "unxz -k '{0}'"},
-    Foreign{"ULog\x01\x12\x35"sv, "a PX4 log", "ulog2csv '{0}' writes one CSV per topic"},
-    Foreign{"\xA3\x95"sv, "an ArduPilot log", "mavlogdump.py --format csv '{0}'"},
+    Foreign{"ULog\x01\x12\x35"sv, "a PX4 log", "ulog2csv '{0}' writes one CSV per topic", px4_lines},
+    Foreign{"\xA3\x95"sv, "an ArduPilot log", "mavlogdump.py --format csv '{0}'", ardupilot_lines},
     Foreign{"MDF     "sv, "an ASAM MDF measurement", "asammdf's export to CSV reads it"},
     Foreign{"TDSm"sv, "a National Instruments TDMS file", "nptdms's tdmsinfo and as_dataframe().to_csv() read it"},
     Foreign{"%PDF"sv, "a PDF document", "export the table as CSV"},
@@ -115,6 +139,15 @@ std::string first_bytes(const Path& path) {
   return first;
 }
 
+/// A command that converts the file, and lines of Python that read it, whose columns are examples.
+std::string advice_of(const Foreign& other, const std::string& path) {
+  std::string advice = fmt::format(fmt::runtime(other.advice), path);
+  if (other.python.empty()) return advice;
+  const std::size_t at = other.python.find("FILE");
+  return fmt::format("{}\nor, in Python with your topics and columns:{}{}{}", advice, other.python.substr(0, at), path,
+                     other.python.substr(at + std::string_view("FILE").size()));
+}
+
 std::vector<unsigned> bytes_of(std::string_view first) {
   constexpr std::size_t shown = 8;
   std::vector<unsigned> bytes;
@@ -129,7 +162,7 @@ std::shared_ptr<const TableReader> open_table(const Path& path, const FormatOpti
   for (const Foreign& other : foreign)
     if (first.starts_with(other.magic))
       throw ConfigurationError(fmt::format("{} is {}, which is not read here; {}", path.string(), other.name,
-                                           fmt::format(fmt::runtime(other.advice), path.string())));
+                                           advice_of(other, path.string())));
   refuse_octave_text(path, first);
   for (const Format& format : formats)
     if (format.probe(path, first)) return format.open(path, options);

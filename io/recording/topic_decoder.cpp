@@ -54,6 +54,8 @@ TopicDecoder choose_decoder(const Connection& connection, const KnownDefinitions
   TopicDecoder decoder;
   if (connection.encoding == Connection::Encoding::unknown) {
     decoder.problem = fmt::format("its messages are written in \"{}\", which is not read", connection.encoding_name);
+    if (connection.encoding_name == "protobuf")
+      decoder.problem += "; in Python mcap-protobuf-support reads them, and modebank.run takes its messages as a frame";
     return decoder;
   }
   std::string problem;
