@@ -161,7 +161,7 @@ TEST_F(Robustness, D15TracksLinesAreUtf8WhateverTheName) {
                                      1, app::EstimateLines{as_json, false, false});
     fmt::memory_buffer out;
     writer.header(out);
-    writer.line("", 0.5, estimate, verdict, nullptr, out);
+    writer.line("", 0.5, estimate, verdict, {}, nullptr, out);
     const std::string text = fmt::to_string(out);
     EXPECT_THAT(text, HasSubstr("gr\\"));
     EXPECT_EQ(printable(text), text);
