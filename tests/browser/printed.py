@@ -75,7 +75,7 @@ class Printed(PageTest):
             text = text.replace(old, new, 1) if old != "</body>" else new.join(text.rsplit(old, 1))
         page.write_text(text, encoding="utf-8")
         pdf = page.with_suffix(".pdf")
-        subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--enable-unsafe-swiftshader",
+        subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
                         "--no-pdf-header-footer", f"--print-to-pdf={pdf}", page.as_uri()], check=True, capture_output=True)
         return sheets_of(pdf), page
 

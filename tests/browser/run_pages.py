@@ -147,7 +147,9 @@ class RunPages(PageTest):
         begin, end = (float(word) for word in told.split(", ")[1].split(" s")[0].split(" to "))
         self.assertAlmostEqual(mark[0], begin, places=2)
         self.assertAlmostEqual(mark[1], end, places=2)
-        session.browser.wait("return document.querySelector('#data div.plot').timePlot.range[0] > 0", what="the view to follow")
+        session.browser.wait("""
+            const {range: [from, to], state} = document.querySelector('#data div.plot').timePlot, [start, end] = state.whole();
+            return to - from < end - start;""", what="the view to follow")
         shown = self.plot_range("data")
         self.assertTrue(shown[0] <= begin and end <= shown[1])
         self.assert_quiet()
@@ -174,15 +176,18 @@ class RunPages(PageTest):
             session.browser.size(1200, 900)
 
     def check_print(self):
-        """All of a figure is on the sheet."""
-        session.browser.run("""
-            addEventListener('beforeprint', () => {
-              window.printed = {widths: [...document.querySelectorAll('.chart svg')].map((plot) => plot.getBoundingClientRect().width)};
-            }, {once: true});""")
+        """It prints, and a figure that was drawn for the window is made as narrow as a sheet is, before anything draws it anew."""
         pdf = session.browser.cdp("Page.printToPDF", printBackground=True)["data"]
         self.assertGreater(len(pdf), 100_000)
-        printed = session.browser.run("return window.printed")
-        self.assertLessEqual(max(printed["widths"]), 801)
+        sheet = 700
+        widths = session.browser.run("""
+            const main = document.getElementById('main');
+            main.style.width = `${arguments[0]}px`;
+            const widths = [...document.querySelectorAll('.chart svg')].map((svg) => [svg.getBoundingClientRect().width, svg.viewBox.baseVal.width]);
+            main.style.width = '';
+            return widths;""", sheet)
+        self.assertGreater(max(drawn for _, drawn in widths), sheet)
+        self.assertLessEqual(max(shown for shown, _ in widths), sheet)
 
     def test_a_lines_colour_is_its_legends(self):
         """In light and in dark, of SVG and of canvas."""
