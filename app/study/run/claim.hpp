@@ -11,7 +11,8 @@ namespace modebank::app {
 /// A small file that names the process at work: host, number and start time of the process, and time. The file is there
 /// while the work goes on; a thread renews its time every minute. A claim is over when its process is gone on this
 /// host, or when it was not renewed for ten minutes by the folder's own clock, which is the time of a file written
-/// there: clocks of machines that share a folder differ. The next process takes it over by rename.
+/// there: clocks of machines that share a folder differ. So is one whose time lies ten minutes ahead of that clock,
+/// which was set back since. The next process takes it over by rename.
 ///
 /// Claims save work and nothing else. Two processes may both hold one after a long pause or on a file system without
 /// hard links; both then make the same result.

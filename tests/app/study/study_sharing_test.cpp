@@ -227,6 +227,16 @@ TEST_F(Claims, OfOtherMachinesLastTenMinutesByTheFoldersClock) {
   EXPECT_TRUE(Claim::take(path()));
 }
 
+/// The folder's clock was an hour ahead when the other machine wrote its claim, and was set right since.
+TEST_F(Claims, FromAClockThatWasSetBackEndToo) {
+  end(holder());
+  rewrite("host", "another machine");
+  age(30.0 - Claim::lasts_s);
+  EXPECT_FALSE(Claim::take(path()));
+  age(-3600.0);
+  EXPECT_TRUE(Claim::take(path()));
+}
+
 TEST_F(Claims, OfALivingProcessThatDoesNotRenewEndToo) {
   const pid_t other = holder();
   age(Claim::lasts_s + 1.0);
