@@ -47,7 +47,7 @@ TEST_F(Help, OfEveryKeySaysWhenToTouchIt) {
   }
   const std::string help = modebank({"help", "data.split"}).out;
   EXPECT_NE(help.find("When to touch it: when there is one long run"), std::string::npos) << help;
-  EXPECT_NE(help.find("It changes the stage data"), std::string::npos) << help;
+  EXPECT_NE(help.find("changes the stage data and those that follow"), std::string::npos) << help;
 }
 
 /// An option is declared in the table alone: commands that share its name share the place of its value.
