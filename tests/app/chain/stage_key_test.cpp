@@ -84,18 +84,18 @@ class StageKey : public ::testing::Test {
 
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
   Config configured(const KeyValues& keys) const { return load_config(file("base.ini"), keys); }
-  /// Little of what takes long and has no key.
-  static ChainOptions quick(const Config& config) {
+  /// Little of what takes long and has no key: as much as of the base, whatever the key that is tried.
+  static ChainOptions quick(const Config& config, const Config& base) {
     ChainOptions options = chain_options(config);
     options.bank.em.folds = 2;
-    options.bank.em.max_iterations = config.bank.modes == 2 ? 6 : 2;
+    options.bank.em.max_iterations = base.bank.modes == 2 ? 6 : 2;
     options.scoring.free_run.paths = 10;
     return options;
   }
-  Recorder recorded(const Config& config) const {
+  Recorder recorded(const Config& config, const Config& base) const {
     Recorder recorder(file("part.h5"));
     const Listener silent;
-    Chain(recorder, silent).run(quick(config), Stage::bank_scores, {});
+    Chain(recorder, silent).run(quick(config, base), Stage::bank_scores, {});
     return recorder;
   }
 
@@ -261,7 +261,7 @@ TEST_P(StageKeyPart, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
   std::vector<Recorder> before;
   for (const KeyValues& keys : bases) {
     configs.push_back(configured(keys));
-    before.push_back(recorded(configs.back()));
+    before.push_back(recorded(configs.back(), configs.back()));
   }
   const std::vector<Option> keys = keys_of(GetParam());
   std::vector<Case> cases = cases_of(keys, configs);
@@ -271,7 +271,7 @@ TEST_P(StageKeyPart, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
       const std::string value = c.key == "data.root" ? file(c.value).string() : c.value;
       find_option(c.key)->set(config, value);
       validate(config);
-      const Recorder now = recorded(config);
+      const Recorder now = recorded(config, configs[c.base]);
       for (std::size_t stage = 0; stage < stage_count; ++stage) {
         const bool other = now.contents[stage] != before[c.base].contents[stage];
         if (other) c.first = std::min(c.first, stage);
