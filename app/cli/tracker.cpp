@@ -254,7 +254,8 @@ void Tracker::correct_first(double time_s) {
   const TimedSample* const ready = samples_.next();
   if (ready == nullptr) return;
   if (has_left) {
-    filter_.step(ready->time_s, ready->input, ready->measurement);
+    const FilterEstimate& estimate = filter_.step(ready->time_s, ready->input, ready->measurement);
+    validity_.judge(ready->time_s, ready->input, estimate, filter_.started());
     return;
   }
   out_.resize(*first_at_);

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "io/archive/archive.hpp"
 #include "tests/app/cli/track_fixture.hpp"
 
 namespace modebank::test {
@@ -61,8 +60,8 @@ TEST_F(TrackFlags, TheStartAndTenPredictionsWarmUp) {
 TEST_F(TrackFlags, EachSampleHasItsOwn) {
   std::vector<std::string> sent = samples(12);
   const double limit = largest_input();
-  sent.push_back(fmt::format("1.2,0.01,{},0.1", limit));
-  sent.push_back(fmt::format("1.3,0.01,{},0.1", limit + 1e-9));
+  sent.push_back(fmt::format("1.2,,{},0.1", limit));
+  sent.push_back(fmt::format("1.3,,{},0.1", limit + 1e-9));
   sent.push_back("1.4,100,0.1,0.1");
   sent.push_back("1.5,,0.1,0.1");
   sent.push_back("1.64,,0.1,");     // 1.4 steps later; the input is the last known one
