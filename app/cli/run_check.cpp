@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/chain/stages.hpp"
 #include "app/cli/check/check_output.hpp"
 #include "app/cli/check/check_suggestions.hpp"
 #include "app/cli/commands.hpp"
@@ -44,13 +43,6 @@ class ScoringLog : public Listener {
   void progress(const std::string& line) const override { spdlog::info("{}", line); }
 };
 
-/// Lags that are to be found are found first: what is suggested is tried with them.
-std::optional<FoundStructure> structure_of(const ChainOptions& options) {
-  const std::optional<StructureInputs> inputs = chain_inputs(options).structure;
-  if (!inputs) return std::nullopt;
-  return search_structure(import_data(options.data).recording, *inputs, ScoringLog());
-}
-
 nlohmann::json structure_json(const FoundStructure& found) {
   nlohmann::json scores = nlohmann::json::array();
   for (const StructureScore& s : found.scores)
@@ -85,14 +77,13 @@ Suggestions tell(const CommandLine& line, const Config& config, const DataCheck&
   const std::vector<std::string> findings = findings_of(check, config);
   print_text(line, check_text(check, findings));
   const bool usable = check.unusable.empty(), scored = usable && !line.findings;
-  ChainOptions options = chain_options(config);
-  const std::optional<FoundStructure> found = scored ? structure_of(options) : std::nullopt;
+  const ChainOptions options = chain_options(config);
+  const std::optional<FoundStructure> found = scored ? find_structure(options, ScoringLog()) : std::nullopt;
   if (found) {
-    static_cast<LearningOptions&>(options) = with_structure(options, *found);
     const int width = standard_output().width;
     print_text(line, "\n" + wrapped(structure_text(*found, !config.data.input.empty(), width), width));
   }
-  const Suggestions suggestions = scored ? suggest(options, check, ScoringLog()) : Suggestions{};
+  const Suggestions suggestions = scored ? suggest(with_found(options, found), check, {}, ScoringLog()) : Suggestions{};
   if (scored) print_text(line, suggestions_text(suggestions, config));
   if (line.json) {
     page = check_json(check, findings);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -13,5 +15,8 @@ struct ChainOptions : LearningOptions {
   DataOptions data = {};
   std::vector<std::string> mode_names = {};  ///< of the bank; they change no number
 };
+
+/// Refinement's starts from random stretches of runs: three for every ten restarts of the mixture.
+inline std::ptrdiff_t refinement_restarts(int restarts) { return std::lround(0.3 * restarts); }
 
 }  // namespace modebank

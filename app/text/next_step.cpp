@@ -54,8 +54,6 @@ bool is_uncertain_wrongly(const Situation& s) {
   return s.bank.verdict == Calibration::overconfident || s.bank.verdict == Calibration::underconfident;
 }
 
-constexpr int many_restarts = 20;  // advised once: what does not help then never does
-
 /// Whether a bank that is the mixture's own has few; refinement has starts of its own.
 bool has_few_agreeing_restarts(const Situation& s) {
   if (!s.archive.mixture_makes_bank() || std::atoi(s.setting("mixture.restarts").c_str()) >= many_restarts)

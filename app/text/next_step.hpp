@@ -7,6 +7,9 @@
 
 namespace modebank::app {
 
+/// Restarts that are advised, or tried, once: what does not help then never does.
+inline constexpr int many_restarts = 20;
+
 /// Resolved keys and their values, as the archive's configuration has them.
 using Settings = std::map<std::string, std::string>;
 

@@ -45,9 +45,7 @@ void keep_root(const Config& config, const std::filesystem::path& output, std::v
 void put_suggested(const Suggestions& s, const Config& config, std::vector<KeyEdit>& edits) {
   for (const Trial& trial : s.trials) {
     if (!trial.accepted) continue;
-    const std::string why =
-        fmt::format("modebank check: {:+.3f} +- {:.3f} nats per sample on {} training runs left out; {}",
-                    trial.gain.gain, trial.gain.standard_error, s.runs, reason_text(trial));
+    const std::string why = "modebank check: " + gain_reason(s, trial);
     for (const auto& [key, value] : changed_keys(config, trial.from, trial.to)) put({key, {value}, why}, edits);
   }
 }

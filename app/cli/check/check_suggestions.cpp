@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/check/check_output.hpp"
@@ -18,6 +19,8 @@ Config with(Config config, const Settings& settings) {
   const ChainOptions options = with_settings(chain_options(config), settings);
   config.data = options.data;
   config.window = options.window;
+  config.bank.measurement_variance = options.bank.measurement_variance;
+  config.mixture.selection.em.restarts = options.mixture.selection.em.restarts;
   return config;
 }
 
@@ -32,7 +35,18 @@ std::string gain_text(const PairedGain& gain) {
   return fmt::format("{:+.3f} +- {:.3f}", gain.gain, gain.standard_error);
 }
 
+std::string runs_text(const Suggestions& s) {
+  return s.whole_runs ? fmt::format("{} training runs left out in turn", s.runs)
+                      : fmt::format("stretches of {} training run{} left out in turn", s.runs, s.runs == 1 ? "" : "s");
+}
+
 }  // namespace
+
+std::string gain_reason(const Suggestions& suggestions, const Trial& trial) {
+  return trial.unscored.empty() ? fmt::format("{} nats per sample on {}; {}", gain_text(trial.gain),
+                                              runs_text(suggestions), reason_text(trial))
+                                : fmt::format("not scored: {}", trial.unscored);
+}
 
 std::string reason_text(const Trial& trial) {
   switch (trial.change) {
@@ -44,6 +58,11 @@ std::string reason_text(const Trial& trial) {
       return "the inputs act at other times than their stamps say";
     case Change::length:
       return length_reason(trial.advice);
+    case Change::noise:
+      return fmt::format("at rest ({:.1f} s of the training runs) the state scatters by {:.2g}", trial.rest.duration_s,
+                         std::sqrt(trial.rest.variance));
+    case Change::restarts:
+      return "more random starts of mixture and bank";
     case Change::loss:
       break;
   }
@@ -51,11 +70,6 @@ std::string reason_text(const Trial& trial) {
 }
 
 namespace {
-
-std::string runs_text(const Suggestions& s) {
-  return s.whole_runs ? fmt::format("{} training runs left out in turn", s.runs)
-                      : fmt::format("stretches of {} training run{} left out in turn", s.runs, s.runs == 1 ? "" : "s");
-}
 
 std::string accepted_text(const Suggestions& s, const Config& config) {
   std::string text;
@@ -79,9 +93,13 @@ json gain_json(const PairedGain& gain) {
 }  // namespace
 
 KeyValues changed_keys(const Config& config, const Settings& from, const Settings& to) {
-  const Config before = with(config, from), after = with(config, to);
+  Config stated = config;  // numbers in place of those that follow from the structure
+  if (from.window_length != to.window_length) stated.structure.length = LagChoice::number;
+  if (from.window_step != to.window_step) stated.structure.step = LagChoice::number;
+  const Config before = with(stated, from), after = with(stated, to);
   KeyValues keys;
-  for (const char* key : {"data.rate_hz", "data.lag_s", "window.length", "window.step", "window.loss"})
+  for (const char* key : {"data.rate_hz", "data.lag_s", "window.length", "window.step", "window.loss",
+                          "bank.measurement_variance", "mixture.restarts"})
     if (const Option* option = find_option(key); option->get(before) != option->get(after))
       keys.emplace_back(key, option->get(after));
   return keys;

@@ -16,6 +16,9 @@ KeyValues changed_keys(const Config& config, const Settings& from, const Setting
 /// Why a change was tried.
 std::string reason_text(const Trial& trial);
 
+/// Its gain, by which runs, and why it was tried; or why it has no gain.
+std::string gain_reason(const Suggestions& suggestions, const Trial& trial);
+
 /// What is suggested, with its gains, and what was tried in vain.
 std::string suggestions_text(const Suggestions& suggestions, const Config& config);
 nlohmann::json suggestions_json(const Suggestions& suggestions, const Config& config);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "app/chain/stage_inputs.hpp"
 #include "app/cli/check/left_out.hpp"
+#include "app/text/next_step.hpp"
 #include "filter/learn/left_out/rule.hpp"
 #include "modebank/base/error.hpp"
 
@@ -26,8 +28,8 @@ CheckOptions check_options(const ChainOptions& options) {
 /// The way through the trials. Predictions of all that was accepted are kept, those of the present settings first.
 class Search {
  public:
-  Search(const ChainOptions& options, const DataCheck& check, const Listener& listener)
-      : options_(options), check_(check), listener_(listener), plan_(plan_left_out(check)) {
+  Search(const ChainOptions& options, const DataCheck& check, const SuggestionScope& scope, const Listener& listener)
+      : options_(options), check_(check), scope_(scope), listener_(listener), plan_(plan_left_out(check)) {
     found_.present = found_.suggested = settings_of(options);
     found_.runs = std::ssize(plan_.runs);
     found_.whole_runs = !plan_.parts.empty();
@@ -40,10 +42,12 @@ class Search {
       found_.unscored = held_.front().problem;
       return found_;
     }
-    try_rate();
-    try_lag();
-    try_length();
-    try_loss();
+    if (scope_.has(Change::rate)) try_rate();
+    if (scope_.has(Change::lag)) try_lag();
+    if (scope_.has(Change::length)) try_length();
+    if (scope_.has(Change::loss)) try_loss();
+    if (scope_.has(Change::noise)) try_noise();
+    if (scope_.has(Change::restarts)) try_restarts();
     judge_together();
     return found_;
   }
@@ -51,6 +55,7 @@ class Search {
  private:
   const ChainOptions& options_;
   DataCheck check_;  ///< of the data as accepted so far
+  const SuggestionScope& scope_;
   const Listener& listener_;
   LeftOutPlan plan_;
   double common_s_ = 0.0;
@@ -75,19 +80,29 @@ class Search {
 
   /// Whether refinement has random starts, which take half of the time or more.
   bool has_random_starts() const {
-    return options_.bank.em.restarts > 0 && chain_inputs(options_).bank.bank.refine == Refine::em;
+    return !scope_.one_motion && options_.bank.em.restarts > 0 && chain_inputs(options_).bank.bank.refine == Refine::em;
+  }
+
+  /// Settings that few searches change.
+  std::string other_words(const Settings& settings) const {
+    std::string words;
+    if (settings.measurement_variance != found_.present.measurement_variance)
+      words += fmt::format(", measurement variance {:.3g}", *settings.measurement_variance);
+    if (settings.restarts != found_.present.restarts) words += fmt::format(", {} restarts", settings.restarts);
+    return words;
   }
 
   LeftOut predict(const Settings& settings, bool random_starts) const {
     const Stopwatch watch;
     ChainOptions options = with_settings(options_, settings);
     if (!random_starts) options.bank.em.restarts = 0;
+    if (scope_.one_motion) options.mixture.selection.components = {1};
     LeftOut left_out = predict_left_out(options, plan_, common_s_);
     listener_.progress(
-        fmt::format("check: rate {}, lag {}, length {}, loss {} scored on {} training runs left out in {:.2f} s",
+        fmt::format("tried: rate {}, lag {}, length {}, loss {}{} scored on {} training runs left out in {:.2f} s",
                     settings.rate_hz > 0.0 ? fmt::format("{:g} Hz", settings.rate_hz) : "as recorded",
                     settings.lag_auto ? "auto" : fmt::format("{:g} s", settings.lag_s), settings.window_length,
-                    name_of(settings.loss), plan_.runs.size(), watch.seconds()));
+                    name_of(settings.loss), other_words(settings), plan_.runs.size(), watch.seconds()));
     return left_out;
   }
 
@@ -99,7 +114,7 @@ class Search {
   }
 
   void attempt(Change change, const Settings& to, const Advice& advice) {
-    Trial trial{change, held(), to, advice, {}, {}, false};
+    Trial trial{change, held(), to, advice, {}, {}, false, rest_noise(check_)};
     LeftOut said = predict(to, false);
     judge(said, held_.back(), trial);
     if (trial.accepted) confirm(std::move(said), trial);
@@ -114,11 +129,14 @@ class Search {
       trial.unscored = "too few predictions of the same samples to compare";
   }
 
+  void start_whole() {
+    if (whole_.empty()) whole_.push_back(has_random_starts() ? predict(found_.present, true) : held_.front());
+  }
+
   /// What gained without random starts must gain with them: else it made up for an optimum that `run` does not end in.
   void confirm(LeftOut said, Trial& trial) {
-    const bool again = has_random_starts();
-    if (whole_.empty()) whole_.push_back(again ? predict(found_.present, true) : held_.front());
-    LeftOut whole = again ? predict(trial.to, true) : said;
+    start_whole();
+    LeftOut whole = has_random_starts() ? predict(trial.to, true) : said;
     judge(whole, whole_.back(), trial);
     if (!trial.accepted) return;
     held() = trial.to;
@@ -130,7 +148,12 @@ class Search {
     if (wanted_hz() == held().rate_hz || wanted_hz() > highest_rate_hz || !has_times()) return;
     Settings to = held();
     to.rate_hz = wanted_hz();
-    DataCheck then = checked(to, to.lag_s);
+    DataCheck then;
+    try {
+      then = checked(to, to.lag_s);
+    } catch (const std::runtime_error& error) {  // blocks that are too short for windows of that rate
+      return found_.trials.push_back({Change::rate, held(), to, check_.advice, {}, error.what(), false});
+    }
     if (then.advice.length.length > 0) to.window_length = then.advice.length.length;
     to.window_step = std::max<Index>(1, std::lround(static_cast<double>(to.window_step) * wanted_hz() / present_hz()));
     Advice advice = then.advice;
@@ -165,6 +188,31 @@ class Search {
     if (check_.advice.loss.tails.transitions > 0 && to.loss != held().loss) attempt(Change::loss, to, check_.advice);
   }
 
+  /// The state's scatter at rest in place of an R that is learned. Drift needs states that are measured exactly.
+  void try_noise() {
+    const RestNoise rest = rest_noise(check_);
+    if (held().measurement_variance || !(rest.variance > 0.0) || options_.bank.em.drift != Drift::none) return;
+    Settings to = held();
+    to.measurement_variance = std::stod(fmt::format("{:.2e}", rest.variance));
+    attempt(Change::noise, to, check_.advice);
+  }
+
+  /// Random starts are what is tried, so it is judged with them at once.
+  void try_restarts() {
+    using app::many_restarts;
+    if (held().restarts >= many_restarts || !has_random_starts()) return;
+    Trial trial{Change::restarts, held(), held(), check_.advice, {}, {}, false};
+    trial.to.restarts = many_restarts;
+    start_whole();
+    LeftOut whole = predict(trial.to, true);
+    judge(whole, whole_.back(), trial);
+    if (trial.accepted) {
+      held() = trial.to;
+      whole_.push_back(std::move(whole));
+    }
+    found_.trials.push_back(std::move(trial));
+  }
+
   void judge_together() {
     for (auto last = found_.trials.rbegin(); last != found_.trials.rend(); ++last) {
       if (!last->accepted) continue;
@@ -179,27 +227,9 @@ class Search {
 
 }  // namespace
 
-Settings settings_of(const ChainOptions& options) {
-  return {options.data.rate_hz,  options.data.lag_auto, options.data.lag_s,
-          options.window.length, options.window.step,   options.window.loss};
-}
-
-ChainOptions with_settings(ChainOptions options, const Settings& settings) {
-  options.data.rate_hz = settings.rate_hz;
-  options.data.lag_auto = settings.lag_auto;
-  options.data.lag_s = settings.lag_s;
-  options.window.length = settings.window_length;
-  options.window.step = settings.window_step;
-  options.window.loss = settings.loss;
-  return options;
-}
-
-bool Suggestions::any() const {
-  return std::any_of(trials.begin(), trials.end(), [](const Trial& trial) { return trial.accepted; });
-}
-
-Suggestions suggest(const ChainOptions& options, const DataCheck& check, const Listener& listener) {
-  return Search(options, check, listener).run();
+Suggestions suggest(const ChainOptions& options, const DataCheck& check, const SuggestionScope& scope,
+                    const Listener& listener) {
+  return Search(options, check, scope, listener).run();
 }
 
 }  // namespace modebank
