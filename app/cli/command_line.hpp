@@ -21,6 +21,7 @@ struct CommandLine {
   bool schema = false, markdown = false, repair = false, findings = false, apply = false, yes = false;
   std::string output, run, table, to;
   std::string form = "increment";
+  std::string effort = "normal";
   double wheel_separation_m = 0.0, wheel_radius_m = 0.0;  ///< 0: not given
 };
 

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <filesystem>
+
 #include "app/cli/command_line.hpp"
 #include "app/cli/result.hpp"
+#include "app/config/config.hpp"
 
 namespace modebank::app {
 
@@ -10,6 +13,8 @@ int run_command(const CommandLine& line);
 
 int run_pipeline(const CommandLine& line);    ///< run, identify, cluster, evaluate
 Result do_pipeline(const CommandLine& line);  ///< the same without printing
+/// The same for a valid configuration that stands in `file`, or is to stand there.
+Result do_configured(const CommandLine& line, const Config& config, const std::filesystem::path& file);
 int run_init(const CommandLine& line);
 int run_demo(const CommandLine& line);
 int run_check(const CommandLine& line);

@@ -13,8 +13,6 @@
 #include "app/config/path_text.hpp"
 #include "filter/learn/chain/training_check.hpp"
 #include "ident/fit/fit_windows.hpp"
-#include "io/files/replace_file.hpp"
-#include "io/files/temporary_file.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
 
@@ -22,20 +20,6 @@ namespace modebank::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A file while it lives.
-struct TrialFile {
-  fs::path path;
-  TrialFile(const fs::path& beside, const std::string& text) : path(temporary_path(beside)) {
-    replace_file(path, {text});
-  }
-  ~TrialFile() {
-    std::error_code ignored;
-    fs::remove(path, ignored);
-  }
-  TrialFile(const TrialFile&) = delete;
-  TrialFile& operator=(const TrialFile&) = delete;
-};
 
 void import_and_cut(const Config& config) {
   DataOptions data = data_options_of(config);
@@ -90,9 +74,8 @@ std::vector<Remedy> remedies() {
 }  // namespace
 
 std::string refusal(const Proposal& proposal, const fs::path& target) {
-  const TrialFile file(target, configuration_text(proposal, "modebank init"));
   try {
-    const Config config = load_config(file.path, {});
+    const Config config = config_of_text(configuration_text(proposal, "modebank init"), target, {});
     validate(config);
     import_and_cut(config);
   } catch (const std::runtime_error& error) {

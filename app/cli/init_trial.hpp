@@ -8,8 +8,7 @@
 namespace modebank::app {
 
 /// Why `run` would refuse the configuration before it fits anything: it is read, its data are imported and cut into
-/// windows. Empty where it would not. `target`: the configuration's file, in whose folder it is tried. The lag is not
-/// estimated.
+/// windows. Empty where it would not. `target`: the configuration's file. The lag is not estimated.
 std::string refusal(const Proposal& proposal, const std::filesystem::path& target);
 
 /// Leaves out keys that the program no longer has, and quotes values that a line would cut or trim.

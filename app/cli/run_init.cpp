@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <boost/algorithm/string/trim.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -9,6 +8,7 @@
 
 #include "app/cli/commands.hpp"
 #include "app/cli/init_trial.hpp"
+#include "app/cli/log/log_sets.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/configuration_output.hpp"
@@ -24,29 +24,6 @@
 namespace modebank::app {
 namespace {
 
-/// Of the inputs' files, beside where the program is called: pro_*.csv gives pro.ini.
-std::string default_name(const std::vector<FileSet>& sets) {
-  const FileSet& first = sets.front();
-  std::string stem =
-      (first.pattern.empty() ? first.files.front() : std::filesystem::path(first.pattern)).stem().string();
-  stem = stem.substr(0, stem.find('*'));
-  while (!stem.empty() && (stem.back() == '_' || stem.back() == '-' || stem.back() == '.')) stem.pop_back();
-  return (stem.empty() ? "log" : stem) + ".ini";
-}
-
-/// Of data.inputs and data.states, which are lists of patterns: what would read as something else in them.
-void refuse_unnameable(const std::vector<FileSet>& sets) {
-  for (const FileSet& set : sets)
-    for (const std::filesystem::path& file : set.files) {
-      const std::string name = file.filename().string();
-      if (name_holds_controls(name) || boost::trim_copy(name) != name || name.find_first_of("#,*") != std::string::npos)
-        throw ConfigurationError(
-            fmt::format("{}: no configuration can name it: it holds a comma, a '#', a '*', a blank at an end or a "
-                        "control character; rename it",
-                        printable_name(file.string())));
-    }
-}
-
 /// Whether someone can answer.
 bool is_asked(const CommandLine& line) {
   return !line.yes && !line.json && isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1;
@@ -55,12 +32,9 @@ bool is_asked(const CommandLine& line) {
 }  // namespace
 
 int run_init(const CommandLine& line) {
-  const std::vector<FileSet> sets = file_sets(line.files);
-  refuse_unnameable(sets);
-  const std::string target = line.output.empty() ? default_name(sets) : line.output;
-  std::vector<std::filesystem::path> sources;
-  for (const FileSet& set : sets) sources.insert(sources.end(), set.files.begin(), set.files.end());
-  check_configuration_output("-o", target, sources, line.force);
+  const std::vector<FileSet> sets = nameable_sets(line.files);
+  const std::string target = line.output.empty() ? name_after(sets) + ".ini" : line.output;
+  check_configuration_output("-o", target, files_of(sets), line.force);
   std::vector<SurveyedFile> surveyed;
   for (const FileSet& set : sets) surveyed.push_back(survey_set(set));
   print_text(line, survey_text(sets, surveyed));

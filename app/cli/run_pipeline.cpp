@@ -12,6 +12,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
 #include "app/cli/kept_stages.hpp"
+#include "app/cli/log/run_log.hpp"
 #include "app/cli/progress_meter.hpp"
 #include "app/cli/summary_json.hpp"
 #include "app/config/option_table.hpp"
@@ -152,9 +153,8 @@ Result execute(const CommandLine& line, const Config& config, StageSource& sourc
 
 }  // namespace
 
-Result do_pipeline(const CommandLine& line) {
-  const Config config = load_valid_config(line.files.front(), line.overrides);
-  check_request(line.command, config, line.files.front());
+Result do_configured(const CommandLine& line, const Config& config, const std::filesystem::path& file) {
+  check_request(line.command, config, file);
   refuse_learning_options(line, config);
   if (line.dry_run) return dry_run(config, {config.archive.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
@@ -165,6 +165,16 @@ Result do_pipeline(const CommandLine& line) {
   }
   StoredStages earlier = earlier_stages(config, line.command);
   return execute(line, config, earlier);
+}
+
+Result do_pipeline(const CommandLine& line) {
+  if (line.command == "run" && names_logs(line.files)) return do_run_log(line);
+  if (std::find(line.given.begin(), line.given.end(), "effort") != line.given.end())
+    throw ConfigurationError("--effort: a configuration has its decisions already; it is for logs: modebank run LOG");
+  if (line.files.size() != 1)
+    throw ConfigurationError(
+        fmt::format("{} needs one configuration file, or logs: modebank {} CONFIG", line.command, line.command));
+  return do_configured(line, load_valid_config(line.files.front(), line.overrides), line.files.front());
 }
 
 int run_pipeline(const CommandLine& line) { return print_result(line, do_pipeline(line)); }

@@ -119,9 +119,6 @@ std::string nearest_key_hint(const std::string& key) {
   return did_you_mean(name, keys);
 }
 
-namespace {
-
-/// A log by its name, or because it holds bytes that no text has.
 bool looks_like_log(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
   boost::to_lower(ending);
@@ -133,19 +130,23 @@ bool looks_like_log(const std::filesystem::path& path) {
   return first.find('\0') != std::string::npos;
 }
 
-}  // namespace
-
 Config load_config(const std::filesystem::path& path, const KeyValues& overrides, Origins* origins) {
   std::ifstream stream(path);
   if (stream && looks_like_log(path))
-    throw ConfigurationError(fmt::format(
-        "{0} is no configuration. If it is a log, `modebank init {0}` looks into it and writes one", path.string()));
+    throw ConfigurationError(
+        fmt::format("{0} is not a configuration; of a log `modebank run {0}` makes a model, and `modebank init {0}` a "
+                    "configuration",
+                    path.string()));
   if (!stream || std::filesystem::is_directory(path))
     throw ConfigurationError(fmt::format("{}: cannot read this configuration file", path.string()));
+  return config_of_text({std::istreambuf_iterator<char>(stream), {}}, path, overrides, origins);
+}
+
+Config config_of_text(const std::string& bytes, const std::filesystem::path& path, const KeyValues& overrides,
+                      Origins* origins) {
   Config config;
   Origins found;
   std::map<std::string, int> seen;
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
   if (!is_utf8(bytes)) spdlog::warn("{}: {}", path.string(), read_as_windows_1252);
   for (const FileEntry& entry : parse_lines(bytes, path.string())) {
     const std::string where = fmt::format("{}:{}", path.string(), entry.line);

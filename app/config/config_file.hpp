@@ -22,6 +22,13 @@ using Origins = std::map<std::string, std::string>;
 /// naming line, key and, for an unknown key, the nearest known one.
 Config load_config(const std::filesystem::path& path, const KeyValues& overrides, Origins* origins = nullptr);
 
+/// Reads a text as load_config reads the file `path`, in which it stands or is to stand.
+Config config_of_text(const std::string& bytes, const std::filesystem::path& path, const KeyValues& overrides,
+                      Origins* origins = nullptr);
+
+/// Whether a file is a log by its name, or because it holds bytes that no text has.
+bool looks_like_log(const std::filesystem::path& path);
+
 /// The [data] and [filter] keys and the seed of a configuration that an archive holds, then the overrides. Keys that
 /// this version does not know are left out.
 Config stored_config(const std::string& resolved, const KeyValues& overrides);

@@ -11,9 +11,7 @@
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
-namespace {
 
-/// Sections and keys alone, one of which is known.
 bool is_configuration(const std::filesystem::path& path) {
   constexpr std::uintmax_t largest = 1 << 22;
   if (std::filesystem::file_size(path) > largest) return false;
@@ -24,8 +22,6 @@ bool is_configuration(const std::filesystem::path& path) {
     return false;
   }
 }
-
-}  // namespace
 
 void check_configuration_output(const std::string& option, const std::filesystem::path& path,
                                 const std::vector<std::filesystem::path>& sources, bool force) {

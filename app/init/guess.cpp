@@ -193,7 +193,7 @@ const SurveyedChannel& channel_at(const std::vector<SurveyedFile>& files, const 
 Guess guess_roles(const std::vector<SurveyedFile>& files) {
   std::vector<Candidate> all = candidates_of(files);
   if (all.empty()) {
-    throw DataError(fmt::format("{}: no channel moves: nothing can be a state{}",
+    throw DataError(fmt::format("{}: no channel moves, and a state needs numbers that change: nothing can be a state{}",
                                 files.empty() ? "" : files.front().path.string(), why_nothing_moves(files)));
   }
   Guess guess;

@@ -60,10 +60,10 @@ TEST_F(InitCommand, AsksOnATerminal) {
   EXPECT_THAT(read_file(ini), HasSubstr("state = wz"));
 }
 
-TEST_F(InitCommand, IsWhatRunAsksForWhenGivenALog) {
+TEST_F(InitCommand, IsWhatOtherCommandsAskForWhenGivenALog) {
   write("one.csv", csv_run(50, 1));
   const std::string log = file("one.csv").string();
-  for (const char* command : {"run", "check"}) {
+  for (const char* command : {"identify", "check"}) {
     const ProgramResult result = modebank({command, log});
     EXPECT_EQ(result.status, 2);
     EXPECT_THAT(result.err, HasSubstr("modebank init " + log));

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "app/cli/command_line.hpp"
+#include "app/init/file_sets.hpp"
+
+namespace modebank::app {
+
+/// The three files of `run LOG`.
+struct LogOutputs {
+  std::filesystem::path configuration, archive, page;
+
+  std::vector<std::filesystem::path> all() const { return {configuration, archive, page}; }
+};
+
+/// Named after archive.output, else after the logs, in the current folder.
+LogOutputs log_outputs(const CommandLine& line, const std::vector<FileSet>& sets);
+
+/// Throws ConfigurationError where one of them exists and --force was not given, cannot be written, is one of the
+/// logs, or is a file of another form.
+void check_log_outputs(const CommandLine& line, const LogOutputs& outputs, const std::vector<FileSet>& sets);
+
+}  // namespace modebank::app

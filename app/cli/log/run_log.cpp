@@ -1,0 +1,175 @@
+#include "app/cli/log/run_log.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <boost/algorithm/string/trim.hpp>
+#include <filesystem>
+#include <set>
+
+#include "app/cli/commands.hpp"
+#include "app/cli/init_trial.hpp"
+#include "app/cli/log/decisions.hpp"
+#include "app/cli/log/log_configuration.hpp"
+#include "app/cli/log/log_outputs.hpp"
+#include "app/cli/log/log_sets.hpp"
+#include "app/cli/log/log_text.hpp"
+#include "app/cli/progress_meter.hpp"
+#include "app/config/configuration_output.hpp"
+#include "app/config/option_table.hpp"
+#include "app/init/init_json.hpp"
+#include "app/init/survey_set.hpp"
+#include "app/report/page/run_page.hpp"
+#include "app/report/page/write_page.hpp"
+#include "io/files/replace_file.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_log(const fs::path& path) {
+  if (fs::is_directory(path)) return true;
+  if (path.extension() == ".ini" || !fs::is_regular_file(path)) return false;
+  return looks_like_log(path) || !is_configuration(path);
+}
+
+/// Keys that the logs, or the way there, decide.
+void refuse_keys(const KeyValues& overrides) {
+  for (const auto& [key, value] : overrides)
+    for (const char* const decided :
+         {"data.root", "data.inputs", "data.states", "data.truth", "archive.input", "archive.bank"})
+      if (key == decided)
+        throw ConfigurationError(fmt::format(
+            "--{}: the logs that `modebank run LOG...` names decide that; write a configuration for it: modebank init "
+            "LOG...",
+            key));
+}
+
+/// One data set has one kind of files, or two instruments' files of the same runs.
+void refuse_other_columns(const std::vector<FileSet>& sets, const Guess& guess) {
+  std::set<std::size_t> used;
+  for (const auto* places : {&guess.states, &guess.inputs})
+    for (const ChannelPlace& place : *places) used.insert(place.file);
+  const FileSet &states = sets[guess.states.front().file],
+                &inputs = guess.inputs.empty() ? states : sets[guess.inputs.front().file];
+  const bool other_runs =
+      states.files.size() != inputs.files.size() ||
+      (states.files.size() > 1 && !states.pattern.empty() && !inputs.pattern.empty() && states.runs != inputs.runs);
+  const auto refuse = [](const FileSet& a, const FileSet& b) {
+    throw ConfigurationError(fmt::format(
+        "{} and {} have different columns, and are not two instruments of the same runs: name logs of one kind, or "
+        "for each run both files",
+        a.files.front().string(), b.files.front().string()));
+  };
+  if (other_runs) refuse(states, inputs);
+  for (std::size_t i = 0; i < sets.size(); ++i)
+    if (used.count(i) == 0) refuse(states, sets[i]);
+}
+
+/// Keys of the command line, as the configuration is to have them.
+void take_data_keys(const KeyValues& overrides, Proposal& proposal) {
+  for (const auto& [key, value] : overrides) {
+    if (!key.starts_with("data.")) continue;
+    const std::string name = key.substr(5), stated = boost::trim_copy(value);
+    proposal.drop(name + "_unit");
+    proposal.set(name, stated.empty() ? " " : stated, "from the command line");
+  }
+}
+
+void take_other_keys(const KeyValues& overrides, LogConfiguration& configuration) {
+  for (const auto& [key, value] : overrides)
+    if (!key.starts_with("data.") && key != "archive.output")
+      configuration.set(key, boost::trim_copy(value), "from the command line");
+}
+
+/// The logs as they are before anything is fitted.
+struct LookedInto {
+  std::vector<FileSet> sets;
+  std::vector<SurveyedFile> surveyed;
+  Guess guess;
+};
+
+LookedInto look_into(std::vector<FileSet> sets) {
+  LookedInto logs{std::move(sets), {}, {}};
+  for (const FileSet& set : logs.sets) logs.surveyed.push_back(survey_set(set));
+  logs.guess = guess_roles(logs.surveyed);
+  refuse_other_columns(logs.sets, logs.guess);
+  return logs;
+}
+
+LogConfiguration configure(const CommandLine& line, const LookedInto& logs, const fs::path& target) {
+  const fs::path folder = fs::absolute(target).lexically_normal().parent_path();
+  Proposal proposal = propose(logs.sets, logs.surveyed, logs.guess, folder.string());
+  take_data_keys(line.overrides, proposal);
+  state_values(proposal);
+  make_it_run(proposal, target);
+  LogConfiguration configuration(std::move(proposal), line.typed);
+  take_other_keys(line.overrides, configuration);
+  return configuration;
+}
+
+class DecidingLog : public Listener {
+ public:
+  void progress(const std::string& text) const override { spdlog::info("{}", text); }
+};
+
+std::vector<std::string> decide_more(const CommandLine& line, Effort effort, const LogOutputs& outputs,
+                                     LogConfiguration& configuration) {
+  if (line.dry_run) return {};
+  const Config config = configuration.config(outputs.configuration, outputs.archive);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
+  const ProgressMeter meter(!line.quiet);
+  return decide(config, effort, line.overrides, configuration, DecidingLog());
+}
+
+void write_page_of(const Archive& archive, const LogOutputs& outputs, const CommandLine& line) {
+  report::Written written{[](const std::string&) {}, {}};
+  report::write_page(
+      final_target(outputs.page),
+      report::run_page(archive, outputs.archive.filename().string(), stored_config("", line.overrides).report),
+      written);
+}
+
+std::string files_text(const LogOutputs& outputs) {
+  return fmt::format("{:<10}{} opens in a browser; {} has every decision, and `modebank run` repeats it\n", "files",
+                     outputs.page.string(), outputs.configuration.string());
+}
+
+}  // namespace
+
+bool names_logs(const std::vector<std::string>& files) { return std::any_of(files.begin(), files.end(), is_log); }
+
+Result do_run_log(const CommandLine& line) {
+  const Effort effort = effort_of(line.effort);
+  refuse_keys(line.overrides);
+  std::vector<FileSet> sets = nameable_sets(line.files);
+  const LogOutputs outputs = log_outputs(line, sets);
+  check_log_outputs(line, outputs, sets);
+  const LookedInto logs = look_into(std::move(sets));
+  LogConfiguration configuration = configure(line, logs, outputs.configuration);
+  print_text(line, taken_text(logs.sets, logs.surveyed, logs.guess, configuration.proposal()));
+  const std::vector<std::string> decided = decide_more(line, effort, outputs, configuration);
+  for (const std::string& sentence : decided) print_text(line, paragraph("decided", sentence));
+  Result result =
+      do_configured(line, configuration.config(outputs.configuration, outputs.archive), outputs.configuration);
+  if (line.dry_run) return result;
+  const OpenArchive opened(outputs.archive);
+  const Archive archive = read_archive(opened, Evaluations::in_file);
+  write_page_of(archive, outputs, line);
+  explain_found(archive, configuration);
+  replace_file(final_target(outputs.configuration), {configuration.text()});
+  const std::vector<std::string> robot = robot_advice(logs.guess, archive);
+  for (const std::string& advice : robot) result.text += paragraph("robot", advice);
+  result.text += files_text(outputs);
+  result.members.update(init_json(logs.surveyed, configuration.proposal()));
+  result.members["decisions"] = decided;
+  result.members["robot"] = robot;
+  result.members["written"] = {outputs.configuration.string(), outputs.archive.string(), outputs.page.string()};
+  return result;
+}
+
+}  // namespace modebank::app
