@@ -75,9 +75,11 @@ def predicted(given, archive, name, first, steps):
 def errors_of(given, archive, named, every, turning):
     """Heading errors [degrees] by predictor and seconds, and the wheels' factor and delay."""
     with h5py.File(archive) as file:
-        bank, state, u = dict(file["bank"].attrs), file["data/state"][:, 0], turning(file["data/input"][:])
+        of_filters = [dict(file[group].attrs) for group in file if "dt_s" in file[group].attrs]
+        state, u = file["data/state"][:, 0], turning(file["data/input"][:])
         training, held_out = ([(name, state[at], u[at]) for name, at in rows_of_runs(file, role).items()] for role in ("train", "test"))
-    dt, lags = bank["dt_s"], max(bank["state_lags"], bank["input_lags"] + bank["input_delay"])
+    dt = of_filters[0]["dt_s"]
+    lags = max(max(a["state_lags"], a["input_lags"] + a["input_delay"]) for a in of_filters)
     factor, delay = wheels_of([(u, y) for _, y, u in training])
     errors = collections.defaultdict(list)
     for moment in np.arange(0, max(len(y) for _, y, _ in held_out) * dt - SECONDS[0], every):
