@@ -94,16 +94,15 @@ std::vector<Command> commands_to_identify() {
        "run",
        {"CONFIG | LOG...", "needs one configuration file, or logs", 1, any_number},
        "the whole chain, from log to verdict: writes an archive and prints a summary",
-       "Reads the runs, fits windows, clusters them, learns a bank of modes and judges it on held-out runs against "
-       "models that one would use instead. Given logs, it takes what `init` proposes, decides more settings on "
-       "training "
-       "runs that are left out, and writes NAME.ini with every decision, the archive NAME.h5 and the page NAME.html "
-       "into the current folder; it asks nothing.",
+       "Fits windows, clusters them, learns a bank of modes and judges it on held-out runs against simpler models. "
+       "From "
+       "logs it writes NAME.ini, NAME.h5 and NAME.html into the current folder: `init` proposes a configuration, and "
+       "training runs that are left out decide more of it.",
        "modebank run robot.bag",
        chain_keys,
        {as_json(),
         dry_run(),
-        force("replace an archive of other data; with logs, replace files that exist"),
+        force("replace an archive of other data, with logs all files"),
         {"effort", "quick | normal | thorough", "how many settings are tried on logs (normal)", &CommandLine::effort}},
        run_pipeline},
       {"Identify",

@@ -132,7 +132,17 @@ TEST_F(StudySharing, TheStoreRemovesAndFollowsNothingOfOthers) {
   std::filesystem::create_symlink("../linked.h5", file("cache") / ("bank-" + key + ".h5"));
   const auto before = std::filesystem::last_write_time(file("elsewhere/linked.h5"));
   StageStore store(file("cache"), {.worth_a_file_s = 0.0, .limit_mb = 0.3});
-  store.provide(Stage::bank, key, {[] {}, [] { return Archive{}; }, [](Archive&&) { FAIL(); }});
+  const auto give = [] {
+    Archive part;
+    part.structure = FoundStructure{};
+    part.structure->state_lags = 7;
+    return part;
+  };
+  const auto take = [](Archive&& part) {
+    ASSERT_TRUE(part.structure);  // what was given, nothing of the link
+    EXPECT_EQ(part.structure->state_lags, 7);
+  };
+  store.provide(Stage::bank, key, {[] {}, give, take});
   TrialRunner runner(file("cache"), 0.3, 0.0);
   for (const char* length : {"10", "11", "12", "13", "14", "15"})
     runner.run(configured({{"window.length", length}, {"filter.smooth", "false"}}), "");
