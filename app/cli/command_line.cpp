@@ -45,8 +45,10 @@ po::options_description describe_options(const std::map<std::string, CommandOpti
     else
       add(name, po::value(&(line.*target)));
   };
-  for (const auto& [name, option] : options)
+  for (const auto& entry : options) {
+    const CommandOption& option = entry.second;
     std::visit([&](const auto& target) { bind(option.name.c_str(), target); }, option.target);
+  }
   add("words", po::value<std::vector<std::string>>());
   for (const Option& option : option_table())
     add(option.key.c_str(), po::value<std::vector<std::string>>()->composing());  // given twice, the last wins

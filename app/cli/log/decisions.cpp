@@ -15,14 +15,14 @@ namespace {
 
 /// A change that is tried, and the key by which a user decides it instead.
 struct Decision {
-  Change change;
   const char* key;
+  Change change;
   Effort from;  ///< the least effort that tries it
 };
 constexpr Decision decisions[]{
-    {Change::lag, "data.lag_s", Effort::normal},      {Change::noise, "bank.measurement_variance", Effort::normal},
-    {Change::rate, "data.rate_hz", Effort::thorough}, {Change::length, "window.length", Effort::thorough},
-    {Change::loss, "window.loss", Effort::thorough},  {Change::restarts, "mixture.restarts", Effort::thorough},
+    {"data.lag_s", Change::lag, Effort::normal},      {"bank.measurement_variance", Change::noise, Effort::normal},
+    {"data.rate_hz", Change::rate, Effort::thorough}, {"window.length", Change::length, Effort::thorough},
+    {"window.loss", Change::loss, Effort::thorough},  {"mixture.restarts", Change::restarts, Effort::thorough},
 };
 
 SuggestionScope scope_of(Effort effort, const KeyValues& stated) {

@@ -48,7 +48,8 @@ std::string channels_text(const Proposal& proposal, const std::string& key) {
   std::vector<std::string> derived;
   for (const ProposedKey& each : proposal.keys) {
     const std::string name = each.value.substr(0, each.value.find_first_of(" ="));
-    if (each.key == "derive" && !each.value.empty() && fmt::format(", {},", text).find(" " + name + ",") != text.npos)
+    if (each.key == "derive" && !each.value.empty() &&
+        fmt::format(", {},", text).find(" " + name + ",") != std::string::npos)
       derived.push_back(each.value);
   }
   return derived.empty() ? text : fmt::format("{} ({})", text, fmt::join(derived, "; "));
