@@ -140,7 +140,7 @@ std::string output_key(const Command& command) {
   return {};
 }
 
-/// What it has in place of an option that it does not read.
+/// The key that takes the place of an option that the command does not read.
 std::string instead_of(const Command& command, const std::string& option) {
   const std::string key = option == "output" ? output_key(command) : "";
   return key.empty() ? "" : fmt::format("--{} PATH says where it writes; ", key);

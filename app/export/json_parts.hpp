@@ -13,7 +13,7 @@ namespace modebank::app {
 /// Members stay in the order in which they are written.
 using OrderedJson = nlohmann::ordered_json;
 
-/// What is not known (NaN) becomes null.
+/// An unknown number (NaN) becomes null.
 OrderedJson vector_json(const Eigen::VectorXd& v);
 OrderedJson matrix_json(const Eigen::MatrixXd& M);
 

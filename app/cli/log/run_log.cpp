@@ -134,7 +134,7 @@ void write_page_of(const Archive& archive, const LogOutputs& outputs, const Comm
       written);
 }
 
-std::string files_text(const LogOutputs& outputs) {
+std::string written_text(const LogOutputs& outputs) {
   return fmt::format("{:<10}{} opens in a browser; {} has every decision, and `modebank run` repeats it\n", "files",
                      outputs.page.string(), outputs.configuration.string());
 }
@@ -164,7 +164,7 @@ Result do_run_log(const CommandLine& line) {
   replace_file(final_target(outputs.configuration), {configuration.text()});
   const std::vector<std::string> robot = robot_advice(logs.guess, archive);
   for (const std::string& advice : robot) result.text += paragraph("robot", advice);
-  result.text += files_text(outputs);
+  result.text += written_text(outputs);
   result.members.update(init_json(logs.surveyed, configuration.proposal()));
   result.members["decisions"] = decided;
   result.members["robot"] = robot;
