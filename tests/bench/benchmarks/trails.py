@@ -8,7 +8,7 @@ from forecasts import TEN, configurations, named, run, scores, size
 PROTOCOL = """Each set begins with its [data] section alone, and each option that `next` says to repeat with is added until `next` names none. The best is the highest log score and the least RMSE
 of all filters, of this trail and of the shipped configuration on the same runs. `named`: the filter to predict with, chosen by training runs; `least error`: the one that is named where errors count."""
 SHIPPED = {"ICE, one half": "husky_ice", "FLOORING, one half": "flooring", "DRIVE, one half": "drive_husky", "DART, one half": "dart", "tanks, one half": "cascaded_tanks",
-           "robot arm": "robot_arm", "buck converter": "buck_converter", "Husky bag": "husky_outdoor", "hybrid, deadzone": "hybrid"}
+           "robot arm": "robot_arm", "buck converter": "buck_converter", "Husky bag": "husky_outdoor"}
 MOST_STEPS = 6
 
 
