@@ -10,8 +10,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Rows assigned so far, with the dual prices that keep every reduced cost nonnegative. Column K is a stand-in at which
-/// each search begins.
+/// The rows assigned so far, with dual prices that keep every reduced cost nonnegative. Column K is a placeholder at
+/// which each search starts.
 class Assigner {
  public:
   explicit Assigner(const Eigen::MatrixXd& cost)
@@ -21,7 +21,7 @@ class Assigner {
         column_price_(Eigen::VectorXd::Zero(size_ + 1)),
         row_of_(Eigen::VectorX<Index>::Constant(size_ + 1, -1)) {}
 
-  /// Gives `row` a column along the cheapest path of exchanges (Dijkstra on reduced costs).
+  /// Assigns a column to `row` along the cheapest path of exchanges (Dijkstra on reduced costs).
   void add(Index row) {
     Eigen::VectorXd distance = Eigen::VectorXd::Constant(size_, infinity);
     Eigen::VectorX<Index> previous = Eigen::VectorX<Index>::Constant(size_, size_);

@@ -5,8 +5,8 @@
 
 namespace modebank {
 
-/// For every row the column assigned to it, one to one, such that the sum of the chosen values is largest. `values`
-/// K x K, finite. Shortest augmenting paths (Jonker & Volgenant 1987, Computing 38), K^3 operations.
+/// Assigns one column to each row, one to one, so that the sum of the chosen values is largest. `values` is K x K and
+/// finite. Shortest augmenting paths (Jonker & Volgenant 1987, Computing 38), K^3 operations.
 std::vector<Eigen::Index> best_assignment(const Eigen::MatrixXd& values);
 
 }  // namespace modebank

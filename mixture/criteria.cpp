@@ -73,8 +73,7 @@ Index best_candidate(const std::vector<Candidate>& candidates, Criterion criteri
 
 namespace {
 
-/// Differences of held-out scores by less than this many standard errors are chance: of up to twelve candidates the
-/// best is compared.
+/// Smaller differences of held-out scores, in standard errors, count as chance: the score is the best of up to twelve.
 constexpr double standard_errors = 2.0;
 
 std::string disagreement(const std::vector<Candidate>& candidates, const Candidate& selected) {

@@ -8,28 +8,27 @@
 
 namespace modebank {
 
-/// - sum over the points of w log max_k r: what it costs the likelihood that points are assigned outright [nats]. Zero
-/// where no point is doubtful. With a noise component that counts as a class.
+/// Cost in log-likelihood of assigning each point to one component: - sum over points of w log max_k r [nats]. Zero if
+/// no point is doubtful. A noise component counts as a class.
 double classification_cost(const GaussianMixture& mixture, const PointSet& points);
 
-/// Fills bic (Schwarz 1978), aic (Akaike 1974), icl (Biernacki, Celeux & Govaert 2000) and bic_naive of a row from its
-/// log_likelihood, parameters and effective_samples (method: section 3):
-/// BIC = -2 (N_eff / N) log L + q log N_eff,  AIC = -2 (N_eff / N) log L + 2 q,  ICL = BIC + 2 (N_eff / N) cost;
-/// bic_naive is BIC with N in place of N_eff. N is the points' total weight, `cost` the classification_cost.
+/// Fills the criteria of a row from its log_likelihood, parameters and effective_samples (method: section 3). BIC = -2
+/// (N_eff / N) log L + q log N_eff (Schwarz 1978), AIC = -2 (N_eff / N) log L + 2 q (Akaike 1974), ICL = BIC + 2 (N_eff
+/// / N) cost (Biernacki, Celeux & Govaert 2000). bic_naive is BIC with N in place of N_eff. N is the points' total
+/// weight, `cost` the classification_cost.
 void fill_criteria(Candidate& candidate, double total_weight, double cost);
 
-/// What the criterion says of a row, lower is better for every criterion.
+/// Value of a row under the criterion; lower is better for every criterion.
 double badness(const Candidate& candidate, Criterion criterion);
 
-/// Position of the best row by the criterion: the first on a tie, rows that are not finite left out; -1 if none is
-/// left. A row that rests on the covariance floor has a likelihood that the floor chose: it comes after all that do
-/// not.
+/// Position of the best row by the criterion: the first on a tie, ignoring rows that are not finite; -1 if none is
+/// left. Rows that rest on the covariance floor come after all others, because the floor determined their likelihood.
 Eigen::Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion);
 
-/// What the table says against trusting the selected row: restarts that disagree, the covariance floor, the range's
-/// edge, runs left out that are described better by another number by more than two standard errors, fits that did not
-/// converge. One sentence each. (That criteria differ says nothing: AIC asks for more components than BIC nearly
-/// always.)
+/// Reasons against trusting the selected row, one sentence each: restarts that disagree, the covariance floor, the edge
+/// of the range, fits that did not converge. Also: another number describes left-out runs better by more than two
+/// standard errors. Disagreement of criteria does not count, because AIC nearly always chooses more components than
+/// BIC.
 std::vector<std::string> selection_warnings(const std::vector<Candidate>& candidates);
 
 }  // namespace modebank

@@ -1,4 +1,4 @@
-// The installed face of clustering: plain vectors outside, Eigen inside.
+// The public API of clustering: converts between plain vectors and Eigen.
 #include "ident/base/door.hpp"
 
 #include <cmath>

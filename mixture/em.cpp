@@ -20,9 +20,9 @@ using Eigen::Index;
 
 namespace {
 
-/// Covariances of squared coordinates beyond this cannot be represented.
+/// Larger coordinates have squares, and so covariances, beyond double precision.
 constexpr double largest_coordinate = 1e150;
-/// Below this the floor is lost in the rounding of a covariance's largest eigenvalue.
+/// A smaller floor would vanish in the rounding of a covariance's largest eigenvalue.
 constexpr double smallest_floor = 1e-10;
 
 void check(const EmOptions& options) {
@@ -58,14 +58,14 @@ void order_by_weight(GaussianMixture& mixture) {
 
 void to_physical(const ScaledCloud& cloud, EmResult& result) {
   result.mixture = cloud.scale.to_physical(result.mixture);
-  if (cloud.noise.present()) {  // to the last bit
+  if (cloud.noise.present()) {  // the box keeps its exact bits
     result.mixture.noise.lower = cloud.noise.lower;
     result.mixture.noise.upper = cloud.noise.upper;
   }
   result.log_likelihood += cloud.points.total_weight() * cloud.scale.log_jacobian();
 }
 
-/// A start in scaled units that obeys the options: their covariance type and floor.
+/// A start in scaled units with the covariance type and floor of the options.
 GaussianMixture usable_start(const GaussianMixture& start, const ScaledCloud& cloud, const EmOptions& options) {
   GaussianMixture scaled = cloud.scale.to_scaled(start);
   scaled.type = options.covariance;

@@ -20,7 +20,8 @@ bool failed(const WindowFits& fits, Index window) { return fits.status(window) =
 
 bool full_rank(const WindowFits& fits, Index window) { return fits.rank(window) == fits.parameter_count(); }
 
-/// Whether there are windows of full rank worth two independent ones per feature: fewer determine no component.
+/// Whether the full-rank windows are worth at least two independent windows per feature. Fewer would not determine a
+/// component.
 bool enough_of_full_rank(const WindowFits& fits, Index features) {
   Index count = 0;
   for (Index window = 0; window < fits.count(); ++window)
@@ -28,7 +29,7 @@ bool enough_of_full_rank(const WindowFits& fits, Index features) {
   return count * fits.step >= 2 * features * fits.length;
 }
 
-/// The choice that automatic stands for.
+/// The window choice that `automatic` means for these windows.
 WindowChoice resolved(const WindowFits& fits, WindowChoice choice, WindowErrors errors, Index features) {
   if (choice != WindowChoice::automatic) return choice;
   if (errors == WindowErrors::include) return WindowChoice::all;
@@ -43,12 +44,12 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-/// As many features as are clustered.
+/// Number of features that are clustered.
 Index features_kept(FeatureSet features, Index all) {
   return features == FeatureSet::automatic ? std::min<Index>(all, most_features) : all;
 }
 
-/// Median standard deviation of the clustered windows' errors; 0 where it is not known.
+/// Median standard deviation of the clustered windows' errors; 0 where it is unknown.
 Eigen::VectorXd typical_error(const WindowFits& fits, const std::vector<Index>& windows, Index features) {
   const Index p = fits.parameter_count();
   Eigen::VectorXd result = Eigen::VectorXd::Zero(features);
@@ -64,7 +65,7 @@ Eigen::VectorXd typical_error(const WindowFits& fits, const std::vector<Index>& 
   return result;
 }
 
-/// Clouds window by window, as the options ask for them.
+/// Builds a cloud window by window, as the options require.
 class CloudBuilder {
  public:
   CloudBuilder(const WindowFits& fits, FeatureSet features, const std::vector<Channel>& states, WindowErrors errors)
@@ -85,7 +86,7 @@ class CloudBuilder {
 
   Index features() const { return point_.size(); }
 
-  /// Leaves out a window whose point or error is not finite.
+  /// Adds a window; skips it if its point or error is not finite.
   void add(Index window) {
     const Index p = fits_.parameter_count();
     theta_ = fits_.parameters.col(window);
@@ -130,7 +131,7 @@ class CloudBuilder {
   Eigen::MatrixXd error_, covariance_;
 };
 
-/// Variance of values that are drawn in to their 5 % and 95 % quantiles, of some where they are many.
+/// Variance of the values clamped to their 5 % and 95 % quantiles. Large sets are thinned.
 double central_variance(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& all) {
   constexpr Index enough = 20'000;
   constexpr double tail = 0.05;

@@ -16,7 +16,7 @@ struct FeatureCloud {
   Eigen::MatrixXd points;             ///< F x N, physical units
   Eigen::MatrixXd covariances;        ///< F*F x N, of the points' errors; empty unless asked for
   Eigen::VectorXd typical_error;      ///< F, median standard deviation of the windows' errors; 0: unknown
-  std::vector<Eigen::Index> windows;  ///< N, which window each point is
+  std::vector<Eigen::Index> windows;  ///< N, window of each point
   std::vector<Eigen::Index> runs;     ///< N, run of that window
 
   PointSet point_set() const { return PointSet(points, detail::no_weights, covariances, typical_error); }
@@ -25,32 +25,36 @@ struct FeatureCloud {
 /// Whether the cloud carries the windows' own covariances (error-aware clustering).
 enum class WindowErrors { ignore, include };
 
-/// Failed fits and non-finite windows are left out. With errors, points are what the windows' data alone say: a prior
-/// is taken off again (otherwise clustering would count it once per window), as far as data determine a direction by 5
-/// % at least. A point's covariance is then that of theta, and 2 / (L - rank / n) for the logarithm of a noise variance
-/// (delta method: an estimate of sigma^2 on nu degrees of freedom has variance 2 sigma^4 / nu under Gaussian noise),
-/// uncorrelated with theta; windows whose covariance is not finite (rank deficient without a prior: their theta is no
-/// measurement) are left out.
+/// The cloud of the clustered windows, without failed fits and non-finite windows.
+///
+/// With errors, a point is the estimate from the window's data alone: the prior is taken off, because clustering would
+/// count it once per window. This works in directions where data have at least 5 % of the information. The point's
+/// covariance is that of theta. The logarithm of a noise variance has variance 2 / (L - rank / n), uncorrelated with
+/// theta (delta method: an estimate of sigma^2 on nu degrees of freedom has variance 2 sigma^4 / nu under Gaussian
+/// noise). Windows with a non-finite covariance are left out: rank deficient and without a prior, their theta measures
+/// nothing.
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
                            const std::vector<Channel>& states, StraddlingWindows straddling = StraddlingWindows::keep,
                            WindowErrors errors = WindowErrors::ignore);
-/// The same as the options say; with FeatureSet::automatic the cloud has most_features features at most.
+/// make_features with the choices of the options. FeatureSet::automatic gives at most most_features features.
 FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options);
 
 /// Whether one-lag fits of the windows are clustered in place of `fits`.
 bool clusters_one_lag(const WindowFits& fits, FeatureSet features);
 
-/// The cloud in the features of these names alone, in their order. Throws std::invalid_argument for one that it lacks.
+/// The cloud restricted to the named features, in the order of the names. Throws std::invalid_argument for a name that
+/// the cloud lacks.
 FeatureCloud in_features(FeatureCloud cloud, const std::vector<std::string>& names);
 
-/// Names of the `most` features that vary most beyond their errors, in the cloud's order: by the variance of the points
-/// between their 5 % and 95 % quantiles over the typical error's. Features of unknown error come last.
+/// Names of the `most` features that vary most beyond their errors, in the cloud's order. Measure: variance of the
+/// points between their 5 % and 95 % quantiles, over the variance of the typical error. Features of unknown error come
+/// last.
 std::vector<std::string> most_varied(const FeatureCloud& cloud, Eigen::Index most);
 
-/// The windows that are not clustered because their data do not determine all parameters, but belong to a component as
-/// far as data say: with their errors, which are large in the other directions. Empty without a prior (their theta is
-/// then no estimate) and where all windows are clustered. Of these the mixture says how probable each component is.
-/// `names`: the features of the cloud that is clustered; empty: all.
+/// Windows that are not clustered, because their data do not determine all parameters, but that get a membership. Their
+/// errors are large in the undetermined directions. For each the mixture states how probable each component is. Empty
+/// without a prior (their theta is then no estimate), and if all windows are clustered. `names`: features of the
+/// clustered cloud; empty: all.
 FeatureCloud assigned_features(const WindowFits& fits, const std::vector<Channel>& states,
                                const ClusterOptions& options, const std::vector<std::string>& names = {});
 

@@ -18,7 +18,7 @@ using Eigen::Index;
 
 namespace {
 
-/// Besides check_sizes: what no mixture has. Weights may sum to anything, as those of a part of a mixture do.
+/// Checks the values of a mixture, beyond check_sizes. Weights may have any sum, as those of a part of a mixture do.
 void check_numbers(const GaussianMixture& mixture) {
   if (!mixture.means.allFinite() || !mixture.weights.allFinite() || mixture.weights.minCoeff() < 0.0)
     throw std::invalid_argument("mixture with a mean or weight that is not finite, or a negative weight");
@@ -27,7 +27,7 @@ void check_numbers(const GaussianMixture& mixture) {
         fmt::format("mixture whose noise component has the weight {}, which is no probability", mixture.noise.weight));
 }
 
-/// Evaluates a mixture block by block. With errors in units in which the mixture's numbers are near one.
+/// Evaluates a mixture block by block. With errors it uses units in which the mixture's numbers are near one.
 class BlockEvaluation {
  public:
   BlockEvaluation(const GaussianMixture& mixture, const PointSet& set)
@@ -39,7 +39,7 @@ class BlockEvaluation {
         memory_(factored_),
         stage_(points_.stage()) {}
 
-  /// visit(first, count): the kernels' memory then holds points first to first + count - 1.
+  /// Calls visit(first, count) after the kernels' memory holds points first to first + count - 1.
   template <class Visit>
   void each(Visit visit) {
     const em::Components components = factored_.components();
@@ -129,7 +129,8 @@ bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType ty
   }
   Eigen::MatrixXd excess = covariance;
   excess.diagonal().array() -= floor;
-  // Positive definite after the floor is taken off: every eigenvalue is above it, and no decomposition is needed.
+  // If the matrix minus the floor is positive definite, every eigenvalue is above the floor. Then no decomposition is
+  // needed.
   if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(excess).info() == Eigen::Success) return false;
   const auto [values, vectors] = symmetric_eigen(covariance);
   covariance = vectors * values.cwiseMax(floor).asDiagonal() * vectors.transpose();

@@ -20,7 +20,7 @@ namespace {
 
 constexpr Index most_groups = 5;
 
-/// The runs that have points, in run order.
+/// The runs that contain points, in run order.
 std::vector<Index> distinct(std::vector<Index> runs) {
   std::sort(runs.begin(), runs.end());
   runs.erase(std::unique(runs.begin(), runs.end()), runs.end());

@@ -5,7 +5,8 @@
 
 namespace modebank {
 
-/// A mixture as programs get it, and back. The way back throws std::invalid_argument where its parts do not fit.
+/// Converts a mixture to the public API's type. The reverse conversion throws std::invalid_argument if its parts do not
+/// fit.
 mixture::Mixture outside(const GaussianMixture& mixture);
 GaussianMixture inside(const mixture::Mixture& mixture);
 

@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// One component of a mixture on its own.
+/// One component of a mixture.
 struct Component {
   double weight;
   Eigen::VectorXd mean;
@@ -16,41 +16,41 @@ struct Component {
 Component component_of(const GaussianMixture& mixture, Eigen::Index k);
 void put(const Component& component, Eigen::Index k, GaussianMixture& mixture);
 
-/// Components i and j as one of the same weight, mean and covariance (its diagonal for diagonal mixtures).
+/// Merges components i and j into one of the same weight, mean and covariance (its diagonal for diagonal mixtures).
 Component merged(const GaussianMixture& mixture, Eigen::Index i, Eigen::Index j);
 
-/// A pair i < j and what merging it costs.
+/// A pair i < j and the cost of merging it.
 struct Merge {
   Eigen::Index first, second;
-  double loss;  ///< expected mean log-likelihood per unit weight, at most [nats]
+  double loss;  ///< upper bound of the loss in mean log-likelihood per unit weight [nats]
 };
 
-/// What merging i and j costs, given log |P_i| and log |P_j|: the bound of Runnalls 2007, "Kullback-Leibler approach to
-/// Gaussian mixture reduction", IEEE Trans. Aerospace and Electronic Systems 43(3), eq. 16:
-///   ((w_i + w_j) log |P_ij| - w_i log |P_i| - w_j log |P_j|) / 2.
+/// Cost of merging i and j, given log |P_i| and log |P_j|. It is the bound of Runnalls 2007, "Kullback-Leibler approach
+/// to Gaussian mixture reduction", IEEE Trans. Aerospace and Electronic Systems 43(3), eq. 16:
+/// ((w_i + w_j) log |P_ij| - w_i log |P_i| - w_j log |P_j|) / 2.
 double merge_loss(const GaussianMixture& mixture, Eigen::Index i, Eigen::Index j, double log_determinant_i,
                   double log_determinant_j);
 
-/// All pairs, the least merge_loss first.
+/// All pairs in increasing order of merge_loss.
 std::vector<Merge> merges_by_loss(const GaussianMixture& mixture);
 
-/// Greedy reduction of a mixture: the pair of least merge_loss becomes one component (merged), again and again
-/// (Runnalls 2007, section V). A merged component stays in the earlier one's place, and of
-/// pairs that cost the same the first goes first. Time K^2 at first and per merge.
+/// Greedy reduction of a mixture: repeatedly merges the pair of least merge_loss (Runnalls 2007, section V). A merged
+/// component takes the earlier one's place. Of pairs with equal cost the first is merged. Time K^2 initially and per
+/// merge.
 class Reduction {
  public:
   explicit Reduction(GaussianMixture mixture);
 
   Eigen::Index components() const { return std::ssize(alive_); }
 
-  /// Places, among the components as they were before, of the merged one and of the one that it absorbed.
+  /// Positions of the merged component and of the absorbed one, among the components before the merge.
   struct Pair {
     Eigen::Index into, absorbed;
   };
-  /// Needs two components.
+  /// Merges the closest pair. Requires at least two components.
   Pair merge_closest();
 
-  /// What is left, in order.
+  /// The remaining components, in order.
   GaussianMixture mixture() const;
 
  private:
@@ -58,9 +58,9 @@ class Reduction {
   double loss(Eigen::Index i, Eigen::Index j) const;
 
   GaussianMixture mixture_;
-  Eigen::MatrixXd loss_;  // of i < j
+  Eigen::MatrixXd loss_;  // pairs i < j
   std::vector<double> log_determinants_;
-  std::vector<Eigen::Index> alive_;  // in order
+  std::vector<Eigen::Index> alive_;  // positions that are left, in order
 };
 
 }  // namespace modebank

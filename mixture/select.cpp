@@ -29,7 +29,7 @@ using Eigen::Index;
 namespace {
 
 constexpr Index affordable_heldout = 20000;  // points
-/// Points that stand for more than most_compared, at a tenth of the cost of 700,000.
+/// Number of points that stand for a cloud of more than most_compared. Costs a tenth of comparing 700,000.
 constexpr Index compared_part = 50'000;
 
 struct FittedCandidate {
@@ -38,7 +38,7 @@ struct FittedCandidate {
   HeldoutScore heldout = {};
 };
 
-/// What all candidates share.
+/// The inputs that all candidates share.
 struct Task {
   const PointSet& points;
   const SampleDesign& design;
@@ -48,13 +48,13 @@ struct Task {
   double total_weight;
   Index distinct_points;
 
-  /// Depends on the candidate's size, not on its place in the table: other candidates do not change it.
+  /// The seed depends on the candidate's size, not on its place in the table, so other candidates do not change it.
   std::uint64_t seed_of(Index components) const {
     return derive_seed(seed, "mixture", static_cast<std::uint64_t>(components));
   }
 };
 
-/// The number of different points with weight, counted no further than `enough`.
+/// The number of distinct points of positive weight; counting stops at `enough`.
 Index count_distinct(const PointSet& set, Index enough) {
   std::vector<Index> found;
   for (Index i = 0; i < set.count() && std::ssize(found) < enough; ++i) {
@@ -65,7 +65,7 @@ Index count_distinct(const PointSet& set, Index enough) {
   return std::ssize(found);
 }
 
-/// The candidate numbers in increasing order, once each.
+/// The candidate numbers in increasing order, without duplicates.
 std::vector<Index> sorted_components(const SelectionOptions& options) {
   std::vector<Index> components = options.components;
   std::sort(components.begin(), components.end());
@@ -117,7 +117,7 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
   return {std::move(fit.mixture), row};
 }
 
-/// The largest candidates take longest and start first.
+/// Runs the largest candidates first, because they take longest.
 template <class Do>
 void for_each_from_the_largest(Index count, Do action) {
   WorkCounter counter("candidates", static_cast<std::size_t>(count));
@@ -163,7 +163,7 @@ std::vector<FittedCandidate> fit_all(const Task& task, const std::vector<Index>&
   return fitted;
 }
 
-/// The points that candidates are compared on where there are too many: one of each of equal shares, in order.
+/// A sample of a large cloud for comparing candidates: one point from each of equal shares, in order.
 std::optional<PointPart> part_to_compare(const PointSet& points, std::uint64_t seed, std::vector<Index>& positions) {
   if (points.count() <= most_compared) return {};
   std::mt19937_64 generator = make_generator(seed, "compared points");
@@ -171,7 +171,7 @@ std::optional<PointPart> part_to_compare(const PointSet& points, std::uint64_t s
   return PointPart(points, positions);
 }
 
-/// The design of a part: as many independent samples as all points are worth, since neighbours share theirs.
+/// The sample design of a part. It is worth as many independent samples as all points, because neighbours share theirs.
 SampleDesign design_of(const SampleDesign& all, const std::vector<Index>& positions) {
   SampleDesign part{std::min(all.effective_samples, static_cast<double>(positions.size())), {}};
   for (const Index i : positions)
@@ -179,7 +179,7 @@ SampleDesign design_of(const SampleDesign& all, const std::vector<Index>& positi
   return part;
 }
 
-/// The mixture that a part chose, fitted to all points from there.
+/// Fits to all points, starting from the mixture that was chosen on a part.
 GaussianMixture fitted_to_all(const PointSet& points, const GaussianMixture& chosen, EmOptions options) {
   options.restarts = 1;
   options.split_merge = 0;

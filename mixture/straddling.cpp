@@ -8,7 +8,7 @@ namespace {
 using Eigen::Index;
 constexpr double significance = 0.99;
 
-/// Windows between a window's start and that of its nearest neighbour without a shared transition.
+/// Number of windows between a window and the nearest one that shares no transition with it.
 Index neighbour_offset(const WindowFits& fits) { return (fits.length + fits.step - 1) / fits.step; }
 
 bool same_run(const WindowFits& fits, Index a, Index b) {
@@ -20,7 +20,7 @@ bool same_run(const WindowFits& fits, Index a, Index b) {
 std::vector<bool> straddling_windows(const WindowFits& fits) {
   std::vector<bool> straddling(static_cast<std::size_t>(fits.count()), false);
   const auto unknowns = static_cast<double>(fits.parameter_count()) / static_cast<double>(fits.structure.states);
-  const double freedom = static_cast<double>(fits.length) - unknowns;  // per state
+  const double freedom = static_cast<double>(fits.length) - unknowns;  // degrees of freedom per state
   if (freedom <= 0.0) return straddling;
   const double threshold = fisher_quantile(significance, freedom, freedom);
   const Index offset = neighbour_offset(fits);

@@ -6,11 +6,11 @@
 
 namespace modebank {
 
-/// Which windows straddle a switch of mode, M flags. A window that holds two modes fits neither: its residual variance
-/// is significantly larger than that of both its neighbours, the nearest windows of its run that share no transition
-/// with it and lie before and after. Significant: ratio above the 99 % quantile of F(L - q, L - q), in any state.
-/// Windows without a neighbour on both sides, and windows of L <= q, are never flagged. Assumes that modes last for two
-/// windows or more.
+/// Flags the windows (M) that contain a switch of mode. A window that holds two modes fits neither. Its residual
+/// variance is then significantly larger than that of both neighbours: the nearest windows before and after it in its
+/// run that share no transition with it. Significant: ratio above the 99 % quantile of F(L - q, L - q), in any state.
+/// Windows that lack a neighbour on one side, and windows of L <= q, are never flagged. Assumes that modes last at
+/// least two windows.
 std::vector<bool> straddling_windows(const WindowFits& fits);
 
 }  // namespace modebank

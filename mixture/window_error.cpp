@@ -13,12 +13,12 @@ namespace {
 
 constexpr double least_information = 0.05;
 
-/// Information of the data along orthonormal directions, in units of the prior.
+/// Information of the data along orthonormal directions, in units of the prior's information.
 struct DataInformation {
   Eigen::MatrixXd directions;
   Eigen::ArrayXd along;
 
-  /// Share of the data in what is known of each direction, no less than least_information.
+  /// Share of the data in the posterior information of each direction, at least least_information.
   Eigen::ArrayXd share(double weighed) const { return (1.0 - 1.0 / (1.0 + weighed * along)).max(least_information); }
 };
 
@@ -29,14 +29,14 @@ DataInformation information_of(const Eigen::MatrixXd& posterior) {
   return {vectors, ((1.0 - variance) / variance).max(0.0)};
 }
 
-/// The block of one state's parameters.
+/// The part that concerns one state's parameters.
 DataInformation block_of(const DataInformation& all, Index first, Index size) {
   const Eigen::MatrixXd rows = all.directions.middleRows(first, size);
   const auto [values, vectors] = symmetric_eigen(rows * all.along.matrix().asDiagonal() * rows.transpose());
   return {vectors, values.array().max(0.0)};
 }
 
-/// What an offset from the prior's mean was before the prior pulled at it.
+/// Offset from the prior's mean before the prior pulled the estimate towards it.
 Eigen::VectorXd unpulled(const DataInformation& data, double weighed, const Eigen::VectorXd& offset) {
   return data.directions * ((data.directions.transpose() * offset).array() / data.share(weighed)).matrix();
 }
@@ -65,7 +65,7 @@ void take_off_prior(const WindowFits& fits, Index window, Eigen::VectorXd& theta
     offset.segment(i * size, size) = unpulled(shared ? data : block_of(data, i * size, size), weighed, part);
   }
   theta = mean + offset.cwiseProduct(sd);
-  // Of a posterior variance c data alone say c / (1 - c).
+  // If the posterior variance is c (in units of the prior), the data alone give variance c / (1 - c).
   const Eigen::ArrayXd variance = 1.0 / ((1.0 + data.along) * data.share(1.0));
   const Eigen::MatrixXd root = sd.asDiagonal() * data.directions;
   covariance = root * variance.matrix().asDiagonal() * root.transpose();

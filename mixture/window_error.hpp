@@ -6,20 +6,21 @@
 
 namespace modebank {
 
-/// What a window's data alone say of theta: the posterior without the prior (mean the global model, standard deviations
-/// prior_sd), as estimate and covariance. A direction of which data have less than 5 % of the say is treated as if they
-/// had it, so that it gets an error of 20 prior variances rather than an infinite one.
+/// Removes the prior (mean: the global model, standard deviations prior_sd) from a window's theta and covariance; what
+/// is left is the estimate of the window's data alone. Directions in which data have less than 5 % of the information
+/// count as 5 %: their variance is 20 prior variances, not infinite.
 ///
-/// In units of the prior, information D of the data makes a posterior covariance C = (D + I)^-1, so D = C^-1 - I; the
-/// offset from the prior's mean was (W + I)^-1 W times what data say, with W the information that the fit weighed
-/// against the prior: that of state i is weighed_information(i) times its block of D, because robust estimates are
-/// weighed by sigma and stated by the variance of their residuals.
+/// In units of the prior, data information D gives the posterior covariance C = (D + I)^-1, so D = C^-1 - I. The
+/// posterior offset from the prior's mean is (W + I)^-1 W times the data's offset. W is the information that the fit
+/// weighed against the prior: for state i weighed_information(i) times its block of D. The two differ because robust
+/// estimates are weighed by sigma, and their covariance uses the residuals' variance.
 void take_off_prior(const WindowFits& fits, Eigen::Index window, Eigen::VectorXd& theta, Eigen::MatrixXd& covariance);
 
-/// Whether take_off_prior can: not of a sandwich covariance, which is no posterior.
+/// Whether take_off_prior applies. It does not for a sandwich covariance, which is not a posterior.
 bool prior_comes_off(const WindowFits& fits, Eigen::Index window);
 
-/// Variance of the logarithm of a noise variance that L transitions leave over after `rank` / n parameters.
+/// Variance of the logarithm of a noise variance that is estimated from L transitions after fitting `rank` / n
+/// parameters.
 double log_variance_error(const WindowFits& fits, Eigen::Index window);
 
 }  // namespace modebank

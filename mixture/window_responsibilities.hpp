@@ -9,24 +9,23 @@
 
 namespace modebank {
 
-/// Posterior component probabilities of all windows, K x M, NaN where a window is neither clustered nor
-/// assigned. Either stored (as
-/// read from an archive) or worked out anew, block by block, whenever they are looked at, so that they take no memory
-/// of K x M; both give the same bits.
+/// Posterior component probabilities of all windows, K x M; NaN where a window is neither clustered nor assigned. They
+/// are either stored (as read from an archive) or recomputed block by block on each reading, which saves K x M memory.
+/// Both give the same bits.
 class WindowResponsibilities {
  public:
   WindowResponsibilities() = default;
   WindowResponsibilities(Eigen::MatrixXd stored) : stored_(std::move(stored)), windows_(stored_.cols()) {}
-  /// Of the windows of two clouds, those that were clustered and those that are assigned afterwards; each must be in
-  /// increasing order, among `windows`. Throws std::invalid_argument otherwise.
+  /// Responsibilities of two clouds: the clustered windows and those assigned afterwards. Each cloud must be in
+  /// increasing order and within `windows`. Throws std::invalid_argument otherwise.
   WindowResponsibilities(GaussianMixture mixture, FeatureCloud clustered, FeatureCloud assigned, Eigen::Index windows);
 
   Eigen::Index components() const;
   Eigen::Index windows() const { return windows_; }
-  /// Windows first to first + count - 1, K x count.
+  /// Probabilities of windows first to first + count - 1, K x count.
   Eigen::MatrixXd block(Eigen::Index first, Eigen::Index count) const;
   Eigen::MatrixXd all() const { return block(0, windows_); }
-  /// Those of component `absorbed` added to those of `into`; later components move up.
+  /// Adds the probabilities of component `absorbed` to those of `into`; later components move up.
   WindowResponsibilities merged(Eigen::Index into, Eigen::Index absorbed) &&;
 
  private:
@@ -36,15 +35,15 @@ class WindowResponsibilities {
   };
   Eigen::MatrixXd stored_;
   std::shared_ptr<const Source> source_;
-  Eigen::MatrixXd sums_;  ///< merged components x fitted ones, of ones and zeros; empty: none are merged
+  Eigen::MatrixXd sums_;  ///< merged components x fitted ones, entries one or zero; empty: nothing is merged
   Eigen::Index windows_ = 0;
 
   Eigen::Index fitted() const { return source_ ? source_->mixture.components() : stored_.rows(); }
   Eigen::MatrixXd fitted_block(Eigen::Index first, Eigen::Index count) const;
 };
 
-/// Writes the most probable component of every window of the cloud into `labels` (M); -1: more probably noise than any
-/// component.
+/// Writes the most probable component of every window of the cloud into `labels` (M); -1 if noise is more probable than
+/// any component.
 void label_windows(const GaussianMixture& mixture, const FeatureCloud& cloud, Eigen::VectorXi& labels);
 
 }  // namespace modebank

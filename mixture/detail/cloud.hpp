@@ -16,7 +16,7 @@
 
 namespace modebank {
 
-/// Doubles aligned to 64 bytes, the widest vector; zero at first unless made `unset`.
+/// Doubles aligned to 64 bytes, the widest vector. Initialised to zero unless made by `unset`.
 class AlignedBuffer {
  public:
   AlignedBuffer() = default;
@@ -38,7 +38,7 @@ class AlignedBuffer {
   std::unique_ptr<double, Delete> data_;
 };
 
-/// A copy of some of the points, with all that is known of them.
+/// A copy of some points with their weights, errors and runs.
 struct PointPart {
   Eigen::MatrixXd points;
   Eigen::VectorXd weights;
@@ -56,33 +56,33 @@ struct PointPart {
 using BlockColumn = Eigen::Array<double, block_size, 1>;
 using BlockColumns = Eigen::Array<double, block_size, Eigen::Dynamic>;
 
-/// Weighted points in scaled units in blocks of fixed length, one column per feature within a block (structure of
-/// arrays), so that every loop over points is vectorised. The last block is filled up with points of weight zero. Small
-/// clouds are copied; large ones are laid out block by block whenever they are read, so that they need no second copy
-/// in memory, and are the same to the last bit. Refers to the points it is made of, except those for starts.
+/// Weighted points in scaled units, in blocks of fixed length. Within a block each feature is one column (structure of
+/// arrays), so that every loop over points is vectorised. The last block is padded with points of weight zero. Small
+/// clouds are copied. Large ones are laid out block by block on each reading, with the same bits, and need no second
+/// copy in memory. Refers to the points that it is made of, except when made for starts.
 class PointBlocks {
  public:
   /// Clouds of more than `most_copied` bytes are not copied.
   PointBlocks(const PointSet& set, const FeatureScale& scale, std::ptrdiff_t most_copied = std::ptrdiff_t{32} << 20);
 
   Eigen::Index features() const { return features_; }
-  Eigen::Index count() const { return count_; }  ///< N, without the filling
+  Eigen::Index count() const { return count_; }  ///< N, without padding
   Eigen::Index blocks() const { return (count_ + block_size - 1) / block_size; }
   double total_weight() const { return total_weight_; }
   bool has_errors() const { return has_errors_; }
-  /// Number of points of `block` that are not filling.
+  /// Number of points in `block` without padding.
   Eigen::Index points_in(Eigen::Index block) const { return std::min(block_size, count_ - block * block_size); }
 
-  /// Memory that a block is laid out in where the cloud is not copied.
+  /// Memory for laying out a block of a cloud that is not copied.
   AlignedBuffer stage() const { return AlignedBuffer::unset(copied_ ? 0 : block_doubles()); }
   em::Block block(Eigen::Index block, AlignedBuffer& stage) const;
 
-  /// At most `most` points to choose a start from, copied: all, or evenly spread ones from a random first on; weights
-  /// fall with the error variances: w / (1 + mean of S_ff over the features). Those have none of their own
-  /// (std::logic_error).
+  /// A copy of at most `most` points for choosing a start: all, or evenly spread ones beginning at a random one.
+  /// Weights fall with the error variances: w / (1 + mean of S_ff over the features). Such a copy refers to no points,
+  /// so calling this on it throws std::logic_error.
   PointBlocks for_starts(Eigen::Index most, std::mt19937_64& generator) const;
 
-  // Of copied clouds only.
+  // For copied clouds only.
   /// block_size x F.
   Eigen::Map<const BlockColumns> points(Eigen::Index block) const { return {data(block), block_size, features_}; }
   Eigen::Map<const BlockColumn> weights(Eigen::Index block) const {
@@ -91,12 +91,12 @@ class PointBlocks {
 
  private:
   Eigen::Index error_columns() const { return has_errors() ? features_ * (features_ + 1) / 2 : 0; }
-  /// Points, weights, errors.
+  /// Doubles per block: points, weights, errors.
   Eigen::Index block_doubles() const { return (features_ + 1 + error_columns()) * block_size; }
   const double* data(Eigen::Index block) const;
   void lay_out(Eigen::Index block, double* to) const;
 
-  std::optional<PointSet> set_;  ///< none: the points that this was made of are gone
+  std::optional<PointSet> set_;  ///< empty once the original points are gone
   FeatureScale scale_;
   Eigen::Index features_;
   Eigen::Index count_;
@@ -110,7 +110,7 @@ class PointBlocks {
 struct ScaledCloud {
   FeatureScale scale;
   PointBlocks points;
-  UniformNoise noise;  ///< physical units; absent unless asked for
+  UniformNoise noise;  ///< physical units; absent unless requested
 
   ScaledCloud(const PointSet& set, const EmOptions& options)
       : scale(FeatureScale::of(set, options.covariance_floor)), points(set, scale) {
@@ -120,7 +120,7 @@ struct ScaledCloud {
     noise.weight = noise_start;
   }
 
-  /// Gives a mixture in scaled units the noise component that was asked for, and no other.
+  /// Sets the noise component of a mixture in scaled units to the requested one, or to none.
   void set_noise(GaussianMixture& scaled) const {
     const double kept = scaled.noise.weight > 0.0 ? scaled.noise.weight : noise.weight;
     GaussianMixture box = scaled;

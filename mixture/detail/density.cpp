@@ -16,10 +16,11 @@ using Eigen::Index;
 
 namespace {
 
-/// Components of which the origin is not further away [standard deviations]: squares about it lose three digits.
+/// A component is central if the origin is at most this far from its mean [standard deviations]. Squares about the
+/// origin then lose at most three digits.
 constexpr double central_distance = 32.0;
 
-/// `diagonal`: so is W.
+/// Packs W for the kernels. `diagonal`: W is diagonal.
 void pack(const Eigen::MatrixXd& W, const Eigen::VectorXd& mean, em::Packing packing, bool diagonal,
           std::vector<double>& out) {
   constexpr Index tile = 4;
@@ -44,7 +45,7 @@ void pack(const Eigen::MatrixXd& W, const Eigen::VectorXd& mean, em::Packing pac
   }
 }
 
-/// Sums about the origin become those about `mean`.
+/// Converts sums about the origin into sums about `mean`.
 void to_sums_about(const Eigen::VectorXd& mean, bool diagonal, Eigen::Ref<Eigen::VectorXd> sums) {
   const Index F = mean.size();
   const Eigen::VectorXd about_origin = sums.segment(1, F);

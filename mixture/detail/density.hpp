@@ -10,10 +10,10 @@
 
 namespace modebank {
 
-/// A mixture with its covariances factored once, as the vector kernels read it, and the kernels that suit it.
+/// A mixture in the layout of the vector kernels, its covariances factored once, with the matching kernels.
 class FactoredMixture {
  public:
-  /// Kernels for points with or without errors. Throws NotPositiveDefinite naming the first component whose
+  /// Chooses kernels for points with or without errors. Throws NotPositiveDefinite that names the first component whose
   /// covariance is not positive definite.
   FactoredMixture(const GaussianMixture& mixture, bool errors);
 
@@ -21,8 +21,8 @@ class FactoredMixture {
   const em::Kernels& kernels() const { return kernels_; }
   bool has_noise() const { return noise_; }
   double log_noise() const { return log_noise_; }  ///< log of weight times density of the noise component
-  /// Kernels with errors sum in units of W, others about the origin where that does: turns a component's sums in place
-  /// into those of r, r d and r d d' (em::Kernels).
+  /// Converts a component's sums in place into sums of r, r d and r d d' (em::Kernels). Kernels with errors sum in
+  /// units of W, others about the origin for central components.
   void to_plain_sums(Eigen::Index component, Eigen::Ref<Eigen::VectorXd> sums) const;
 
  private:
@@ -34,11 +34,11 @@ class FactoredMixture {
   Eigen::Index stride_ = 0;
   std::vector<double> whitening_;
   std::unique_ptr<bool[]> central_;
-  std::vector<Eigen::MatrixXd> cholesky_;  ///< lower factors; with errors only
+  std::vector<Eigen::MatrixXd> cholesky_;  ///< lower factors; only with errors
   Eigen::VectorXd log_constants_;
 };
 
-/// Memory that kernels work in, and the lane sums of a pass.
+/// Working memory of the kernels, and the lane sums of a pass.
 class KernelScratch {
  public:
   explicit KernelScratch(const FactoredMixture& mixture);
@@ -62,7 +62,7 @@ class KernelScratch {
   double* noise_;
 };
 
-/// Stands for the logarithm of a zero weight.
+/// Replaces the logarithm of a zero weight.
 inline constexpr double log_zero = -1e300;
 
 }  // namespace modebank

@@ -15,9 +15,10 @@ namespace {
 
 constexpr double rounding_share = 1e-13;
 constexpr double smallest_scale = 1e-150;
-/// Standard deviations: at most 2.5 % of the points cannot dominate a standard deviation from nearer.
+/// In standard deviations of the bulk. At most 2.5 % of the points cannot dominate the standard deviation if they are
+/// nearer.
 constexpr double far_out = 6.0;
-/// Sums of sums of this many terms lose less to rounding.
+/// Number of terms per partial sum; sums of partial sums lose less to rounding.
 constexpr Index chunk = 4096;
 
 bool counts(const PointSet& set, Index i) { return set.weights.size() == 0 || set.weights(i) > 0.0; }
@@ -25,7 +26,7 @@ bool counts(const PointSet& set, Index i) { return set.weights.size() == 0 || se
 template <int F>
 using Row = Eigen::Array<double, F, 1>;
 
-/// Calls visit(weight, x) for all points that count, flush() after every chunk of them.
+/// Calls visit(weight, x) for each point of positive weight, and flush() after every chunk.
 template <int F, class Visit, class Flush>
 void each_point(const PointSet& set, Visit visit, Flush flush) {
   const Index features = set.features();
@@ -37,7 +38,7 @@ void each_point(const PointSet& set, Visit visit, Flush flush) {
   }
 }
 
-/// The first pass over the points that count.
+/// The first pass over the points of positive weight.
 struct Extent {
   double weight = 0.0;
   Eigen::ArrayXd lower, upper, mean;
@@ -65,7 +66,7 @@ Extent extent_of(const PointSet& set) {
   return {weight_sum, lower, upper, sum / weight_sum};
 }
 
-/// The second: variances in units of 1 / `inverse_unit`.
+/// The second pass: variances in units of 1 / `inverse_unit`.
 template <int F>
 Eigen::ArrayXd variances_of(const PointSet& set, const Extent& extent, const Eigen::ArrayXd& inverse_unit) {
   const Row<F> unit = inverse_unit, mean = extent.mean;
@@ -79,7 +80,7 @@ Eigen::ArrayXd variances_of(const PointSet& set, const Extent& extent, const Eig
   return sum / extent.weight;
 }
 
-/// action(std::integral_constant<int, F>()), F features where they are few.
+/// Calls action(std::integral_constant<int, F>()), with F known at compile time for few features.
 template <class Action>
 auto with_features(Index features, Action action) {
   switch (features) {
@@ -96,13 +97,13 @@ auto with_features(Index features, Action action) {
   }
 }
 
-/// Where the bulk of a feature's values lies.
+/// Centre and width of the bulk of a feature's values.
 struct Bulk {
   double median = 0.0, deviation = 0.0;
 };
 
-/// From the weighted quantiles at 2.5, 50 and 97.5 %, which in a normal distribution lie 3.92 standard deviations
-/// apart. Of large clouds every second, third, ... point is enough.
+/// The bulk from the weighted quantiles at 2.5, 50 and 97.5 %; the outer two are 3.92 standard deviations apart in a
+/// normal distribution. Large clouds are thinned evenly.
 Bulk bulk_of(const PointSet& set, Index feature) {
   constexpr Index most_points = 131072;
   const Index stride = 1 + (set.count() - 1) / most_points;
@@ -124,15 +125,15 @@ Bulk bulk_of(const PointSet& set, Index feature) {
   return {quantile(0.5), (quantile(0.975) - quantile(0.025)) / 3.92};
 }
 
-/// The variances of a component that holds all points lie between the floor and the feature's variance: these must not
-/// differ by more than double precision can hold.
+/// The smallest allowed unit. A component that holds all points has variances between the floor and the feature's
+/// variance; their ratio must fit double precision.
 double smallest_unit(double sd, double floor) {
   constexpr double most_ratio = 1e13;
   return sd / std::sqrt(most_ratio * floor);
 }
 
-/// A few points so far out that they are what the standard deviation measures would leave all others within the floor
-/// of each other; then the bulk sets the unit.
+/// Takes the bulk's unit if a few far outliers determine the standard deviation. With that standard deviation as the
+/// unit, all other points would lie within the floor of each other.
 void resist_outliers(const PointSet& set, Index feature, double floor, FeatureScale& scale) {
   constexpr double dominated = 20.0;
   const Bulk bulk = bulk_of(set, feature);
@@ -165,7 +166,7 @@ FeatureScale FeatureScale::of(const PointSet& set, double floor) {
   const Index features = set.features();
   const Extent extent = with_features(features, [&](auto F) { return extent_of<F()>(set); });
   const Eigen::ArrayXd magnitude = extent.lower.abs().max(extent.upper.abs());
-  // Near the magnitude, so that squares neither overflow nor underflow.
+  // A unit near the magnitude, so that squares neither overflow nor underflow.
   const Eigen::ArrayXd inverse_unit = magnitude.unaryExpr(
       [](double value) { return value > smallest_scale ? std::ldexp(1.0, -std::ilogb(value)) : 1.0; });
   const Eigen::ArrayXd deviation =

@@ -16,15 +16,15 @@ using Eigen::Index;
 
 namespace {
 
-/// Components of less weight are on their way out; their logarithms would lead the others astray.
+/// Components of less weight are about to vanish; their logarithms would mislead the extrapolation of the others.
 constexpr double least_weight = 1e-9;
 
-/// On the estimate of what EM still gains, before a climb is given up.
+/// Safety factor on the estimate of what EM can still gain. A climb is given up only beyond it.
 constexpr double margin = 10.0;
 
-/// A mixture as a vector without constraints, logarithms of weights and Cholesky factors with logarithms on the
-/// diagonal, and the size that a unit of each entry has (the square root of the complete data's Fisher information,
-/// conditional standard deviations in place of a full whitening).
+/// A mixture as an unconstrained vector: logarithms of the weights, and Cholesky factors with logarithms on the
+/// diagonal. `scale` has the size of one unit of each entry: the square root of the complete data's Fisher information.
+/// Conditional standard deviations take the place of a full whitening.
 struct Coordinates {
   Eigen::VectorXd values, scale;
 };
@@ -57,10 +57,11 @@ std::optional<Coordinates> coordinates_of(const GaussianMixture& mixture) {
   return result;
 }
 
-/// Logarithms and coordinates (in units of a point's error) beyond these are no mixture of the points.
+/// Larger logarithms and coordinates (in units of a point's error) describe no mixture of the points.
 constexpr double largest_logarithm = 300.0, largest_coordinate_in_errors = 1e8;
 
-/// Back; `pattern` tells type and noise component. Nothing where an entry is no usable number.
+/// Inverse of the mapping to coordinates. `pattern` gives covariance type and noise component. Empty if an entry is out
+/// of range or not a number.
 std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const GaussianMixture& pattern,
                                           const EmOptions& options) {
   if (!(values.array().abs().maxCoeff() < largest_coordinate_in_errors)) return {};
@@ -94,20 +95,21 @@ std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const G
   return result;
 }
 
-/// Squared extrapolation (Varadhan & Roland 2008, Scand. J. Stat. 35, section 6: SQUAREM, step length S3) from two
-/// successive steps of EM. As there, the longest step grows where it was reached and shrinks where it led down.
+/// Squared extrapolation from two successive EM steps: SQUAREM with step length S3 (Varadhan & Roland 2008, Scand. J.
+/// Stat. 35, section 6). As in the paper, the longest allowed step grows when it was reached and shrinks when the
+/// likelihood fell.
 class Extrapolation {
  public:
   void forget() { before_.reset(); }
-  /// How many times its last but one step EM would still go, where the latest `next` could tell: steps shrink by the
-  /// factor 1 - 1 / steps_left.
+  /// Estimated distance to the limit of EM, in lengths of its last but one step. The steps are taken to shrink by the
+  /// factor 1 - 1 / steps_left. Empty if the latest `next` could not estimate it.
   std::optional<double> steps_left() const { return steps_left_; }
   void shorten() {
     forget();
     longest_ = std::max(shortest, longest_ / growth);
   }
 
-  /// EM went from `from` to `to`. Where to go on after two such steps in a row.
+  /// Records that EM went from `from` to `to`. After two such steps in a row returns the extrapolated point.
   std::optional<Eigen::VectorXd> next(const std::optional<Coordinates>& from, const std::optional<Coordinates>& to) {
     const std::optional<Coordinates> before = std::exchange(before_, from);
     steps_left_.reset();
@@ -116,7 +118,7 @@ class Extrapolation {
     const Eigen::VectorXd step = from->values - before->values, bend = to->values - from->values - step;
     const double size = before->scale.cwiseProduct(step).norm() / before->scale.cwiseProduct(bend).norm();
     steps_left_ = std::max(1.0, size);
-    if (!(size > 1.0)) return {};  // what EM does itself
+    if (!(size > 1.0)) return {};  // EM itself takes this step
     const double length = std::min(size, longest_);
     if (length == longest_) longest_ *= growth;
     forget();
@@ -139,7 +141,7 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
   result.log_likelihood = -std::numeric_limits<double>::infinity();
   Extrapolation extrapolation;
   GaussianMixture trial = std::move(start);
-  std::optional<GaussianMixture> plain;  // what EM itself made, where `trial` is extrapolated
+  std::optional<GaussianMixture> plain;  // result of the EM step; set where `trial` is extrapolated
   while (true) {
     interruption_point();
     const bool last = result.iterations == options.max_iterations;
@@ -152,7 +154,7 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
       continue;
     }
     result.log_likelihood = moments.log_likelihood;
-    // Only what EM itself gains says how near its end is.
+    // Only the gain of a plain EM step measures how near the optimum is.
     result.converged = !plain && gain < least_gain;
     if (result.converged || last) break;
     if (steps == Steps::extrapolated) result.mixture = trial;
@@ -161,7 +163,7 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
     plain.reset();
     if (steps == Steps::plain) continue;
     const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(trial));
-    // One geometric series would gain at most half of gain * steps; several together more than the fastest of them
+    // One geometric series gains at most half of gain * steps. Several series together gain more than the fastest one
     // shows.
     if (const auto left = extrapolation.steps_left();
         left && result.log_likelihood + margin * gain * *left < hopeless_below)

@@ -1,4 +1,4 @@
-// EM on points with error covariances (extreme deconvolution: Bovy, Hogg & Roweis 2011), point by point.
+// EM on points with error covariances (extreme deconvolution: Bovy, Hogg & Roweis 2011), one point at a time.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -9,18 +9,18 @@
 namespace modebank::em {
 namespace {
 
-/// Where an error is so large in one direction that less than this share of T's diagonal is left in another, rounding
-/// decides; such a point counts as unknown there, too.
+/// Smallest usable pivot of T, as a share of its diagonal. Below it, an error is so large in one direction that
+/// rounding hides the others; the point then counts as unknown there, too.
 constexpr double smallest_pivot_ratio = 1e-12;
-/// Squared distances beyond this, or not a number, count as this, so that no density is ever NaN.
+/// Cap on squared distances that are larger or NaN, so that no density is NaN.
 constexpr double largest_error_distance = 2e300;
 
 Index moments_of(Index features, bool diagonal) { return diagonal ? features : features * (features + 1) / 2; }
 
-/// One point x with the error covariance S, seen from one component at a time in coordinates in which the component's
-/// covariance is the identity: there the point's covariance is T = I + W S W', all eigenvalues of which are at least
-/// one, so its factorisation cannot break down. With y = W (x - mu) and z = T^-1 y the point without its error has
-/// expectation z and covariance I - T^-1 (eq. 15).
+/// One point x with error covariance S, relative to one component at a time. Coordinates are scaled so that the
+/// component's covariance is I. The point's covariance is then T = I + W S W'. All eigenvalues of T are at least one,
+/// so its factorisation cannot break down. With y = W (x - mu) and z = T^-1 y, the error-free point has mean z and
+/// covariance I - T^-1 (eq. 15).
 class PointWithError {
  public:
   PointWithError(Index features, bool diagonal) : diagonal_(diagonal), x_(features), S_(features, features) {}
@@ -48,7 +48,8 @@ class PointWithError {
     return (distance < largest_error_distance ? distance : largest_error_distance) + pivots_.array().log().sum();
   }
 
-  /// z, then z z' + I - T^-1, its lower triangle by rows or its diagonal, of the component that `exponent` met.
+  /// Computes z, then z z' + I - T^-1 (lower triangle by rows, or the diagonal) for the component of the last call of
+  /// `exponent`.
   void expect(double* z, double* second) {
     const Index n = x_.size();
     Eigen::Map<Eigen::VectorXd> expected(z, n);

@@ -8,22 +8,24 @@
 
 namespace modebank {
 
-/// A mixture that has what two mixtures of the same K, features and type agree on, and of the rest what differs most:
-/// the components of both at half their weight, the two closest merged (reduction.hpp) until K are left. Mixtures that
-/// are the same give themselves. Time K^2 per merge.
+/// Combines two mixtures of the same K, features and type. It keeps the components on which both agree, and of the rest
+/// those that differ most. Method: takes all 2 K components at half their weight and merges the two closest
+/// (reduction.hpp) until K are left. Two equal mixtures give the same mixture. Time K^2 per merge.
 GaussianMixture cross(const GaussianMixture& a, const GaussianMixture& b);
 
-/// The best optimum of options.restarts restarts, in the points' units, with the number of restarts that agree with it.
+/// The best optimum of options.restarts restarts, in the points' units, and the number of restarts that agree with it.
 ///
-/// 1. Every restart climbs from its start to near an optimum and tries split-and-merge moves out of it, on its own.
-/// 2. Unless moves are turned off, the best is crossed with each of the others (`cross`); that start climbs as well
-///    and takes the other's place where it ends higher: a generation of genetic EM (Pernkopf & Bouchaffra 2005, IEEE
-///    Trans. Pattern Anal. Mach. Intell. 27, 1344-1348).
-/// 3. The best is followed to the tolerance. Of the others only those that may still reach it are, as far as it takes
-///    to tell (see `iterate`); so are restarts whose place a crossing took: agreement is counted among what each
-///    restart found by itself, because whatever is crossed with the best resembles it.
-/// Restarts run in parallel; what they are compared with is settled between the steps, so that the result does not
-/// depend on threads.
+/// 1. Each restart climbs from its start to near an optimum and tries split-and-merge moves, independently of the
+/// others.
+/// 2. Unless moves are off, the best is crossed with each other restart (`cross`). The result climbs, too, and replaces
+/// that restart if it ends higher. This is one generation of genetic EM (Pernkopf & Bouchaffra 2005, IEEE Trans.
+/// Pattern Anal. Mach. Intell. 27, 1344-1348).
+/// 3. The best is followed to the tolerance. Others are followed only while they may still reach the best (see
+/// `iterate`). Restarts replaced by a crossing are followed, too: agreement counts what each restart found by itself,
+/// because a crossing resembles the best.
+///
+/// Restarts run in parallel. Comparisons happen between the steps, so the result does not depend on the number of
+/// threads.
 EmResult best_of_restarts(const PointBlocks& points, const std::function<GaussianMixture(int)>& start_of,
                           const EmOptions& options, std::uint64_t seed);
 

@@ -22,7 +22,7 @@ namespace {
 constexpr Index moves_are_ranked_on = 1500;  // points
 constexpr int partial_iterations = 10, move_iterations = 15;
 constexpr int most_move_rounds = 20;
-/// A gain below this per unit weight is the same optimum [nats].
+/// Optima whose log-likelihoods per unit weight differ by less count as the same [nats].
 constexpr double least_gain = 1e-5;
 
 GaussianMixture pair_of(const GaussianMixture& mixture, Index k) {
@@ -34,7 +34,7 @@ GaussianMixture pair_of(const GaussianMixture& mixture, Index k) {
   return pair;
 }
 
-/// The moments of a Gaussian's halves on either side of a plane through its mean across its longest axis.
+/// Splits a Gaussian by the plane through its mean across its longest axis; each half keeps its moments.
 GaussianMixture halves(const GaussianMixture& mixture, Index k) {
   const auto [values, vectors] = symmetric_eigen(mixture.covariances[static_cast<std::size_t>(k)]);
   const Index longest = mixture.features() - 1;
@@ -47,7 +47,7 @@ GaussianMixture halves(const GaussianMixture& mixture, Index k) {
   return pair;
 }
 
-/// For clouds with a dense centre and heavier tails than a Gaussian's.
+/// Splits a component into a dense core and a wide shell, for clouds with heavier tails than a Gaussian's.
 GaussianMixture core_and_shell(const GaussianMixture& mixture, Index k) {
   constexpr double core = 0.1, shell = 1.9;  // variances; their mean is the component's
   GaussianMixture pair = pair_of(mixture, k);
@@ -61,7 +61,7 @@ void raise_all(GaussianMixture& mixture, const EmOptions& options) {
     raise_to_floor(covariance, options.covariance_floor, options.covariance);
 }
 
-/// The better of both ways of splitting, with its gain over one component per unit weight of the whole mixture.
+/// The better of the two ways of splitting, with its gain over one component per unit weight of the whole mixture.
 SplitMergeMove best_split(const GaussianMixture& mixture, Index k, const Eigen::MatrixXd& points,
                           const Eigen::VectorXd& memberships, EmOptions options) {
   SplitMergeMove move;
@@ -105,8 +105,8 @@ std::vector<SplitMergeMove> split_merge_moves(const GaussianMixture& mixture, co
   for (Index k = 0; k < mixture.components(); ++k) {
     const SplitMergeMove split = best_split(mixture, k, points, memberships.row(k), options);
     if (split.parts.components() == 0) continue;
-    // The cheapest merges come first: of one split no more than `most` can be among the best, nor are more kept (there
-    // are K^3 / 2 in all).
+    // Merges are sorted by cost, so each split needs at most its first `most` merges. K^3 / 2 combinations exist in
+    // all.
     std::size_t kept = 0;
     for (const Merge& merge : merges) {
       if (kept == most) break;
@@ -136,7 +136,7 @@ GaussianMixture apply(const SplitMergeMove& move, const GaussianMixture& mixture
 
 namespace {
 
-/// The cloud that moves are ranked on, and what the present mixture makes of it.
+/// The sample of the cloud on which moves are ranked, with the present mixture's densities.
 struct Ranking {
   Eigen::MatrixXd points;       // F x n
   Eigen::MatrixXd memberships;  // K x n
@@ -148,8 +148,8 @@ struct Ranking {
   }
 };
 
-/// EM of the three components that a move touches, the others' density and the three's common weight held (partial EM:
-/// Ueda et al. 2000, section 3.2). Returns the change of the mean log-likelihood on the cloud.
+/// Partial EM (Ueda et al. 2000, section 3.2): updates the three components that a move touches. The density of the
+/// others and the common weight of the three are held. Returns the change of the mean log-likelihood on the cloud.
 double settle(const Ranking& ranking, const SplitMergeMove& move, const EmOptions& options, GaussianMixture& mixture) {
   const std::vector<Index> touched{move.merged, move.absorbed, move.split};
   const PointBlocks points(PointSet(ranking.points), FeatureScale::identity(ranking.points.rows()));
@@ -184,8 +184,8 @@ struct Trial {
   double gain;
 };
 
-/// Where the moves lead that still gain once partial EM has settled them, the best first. (Points with errors: the
-/// cloud does not know them, so its word is not taken.)
+/// The mixtures after those moves that still gain once partial EM has settled them, the best first. For points with
+/// errors the gain is not used, because the cloud has no errors.
 std::vector<Trial> promising(const Ranking& ranking, const GaussianMixture& mixture, bool errors,
                              const EmOptions& options) {
   std::vector<Trial> trials;

@@ -17,9 +17,9 @@ using Eigen::Index;
 
 namespace {
 
-/// Starts are chosen from this many points at most.
+/// Largest number of points from which a start is chosen.
 constexpr Index start_points = 50000;
-/// Squared distances beyond this (points so far out that squares overflow) count as this.
+/// Cap on squared distances, which overflow for points far out.
 constexpr double largest_distance = 1e200;
 
 BlockColumn squared_distances(const PointBlocks& points, Index block, const double* center) {
@@ -59,7 +59,7 @@ Eigen::VectorXd point(const PointBlocks& points, Index index) {
   return points.points(index / block_size).row(index % block_size).matrix();
 }
 
-/// Cluster of every point, block_size x blocks; what filling points say does not matter.
+/// Cluster of every point, block_size x blocks. Entries of padding points are arbitrary.
 using Labels = Eigen::Array<Index, block_size, Eigen::Dynamic>;
 
 /// Nearest centre of every point, the lower index on a tie.
@@ -76,7 +76,8 @@ Labels assign(const PointBlocks& points, const Eigen::MatrixXd& centers) {
   return labels;
 }
 
-/// Weighted means of the clusters; an empty one keeps its centre. Returns the clusters' weights.
+/// Moves the centres to the weighted means of their clusters; an empty cluster keeps its centre. Returns the clusters'
+/// weights.
 Eigen::VectorXd recenter(const PointBlocks& points, const Labels& labels, Eigen::MatrixXd& centers) {
   const Index features = centers.rows();
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(1 + features, centers.cols());
@@ -117,9 +118,9 @@ std::vector<Eigen::MatrixXd> scatter(const PointBlocks& points, const Labels& la
   return sums;
 }
 
-/// The moments of clusters as a start for EM. Each cluster's covariance is drawn towards the pooled within-cluster one
-/// with the strength of F + 1 mean-weight points (and its weight towards 1/K with one), so an empty or one-point
-/// cluster is a usable start. An empty cluster stays at its column of `centers` (F x K).
+/// A start for EM from the moments of clusters. Each covariance is shrunk towards the pooled within-cluster covariance
+/// with the strength of F + 1 points of mean weight, and each weight towards 1/K with the strength of one point. So an
+/// empty or one-point cluster gives a usable start. An empty cluster stays at its column of `centers` (F x K).
 GaussianMixture mixture_of_clusters(const PointBlocks& points, const Labels& labels, Eigen::MatrixXd centers,
                                     const EmOptions& options) {
   GaussianMixture start;

@@ -9,17 +9,17 @@
 
 namespace modebank {
 
-/// Start number `restart` of EM over a cloud, a random_start on 50,000 points at most. Depends on components, restart
-/// and seed alone.
+/// Start number `restart` of EM over a cloud: a random_start on at most 50,000 points. The result depends on
+/// components, restart and seed alone.
 GaussianMixture make_start(const ScaledCloud& cloud, Eigen::Index components, int restart, const EmOptions& options,
                            std::uint64_t seed);
 
-/// Components at points drawn by weight, with the moments of the points nearest to each. Points should be in units of
-/// equal importance. Fewer distinct points than components gives coinciding components.
+/// A start with components at points drawn by weight, each with the moments of its nearest points. Points should be in
+/// units of equal importance. With fewer distinct points than components, some components coincide.
 GaussianMixture random_start(const PointBlocks& points, Eigen::Index components, const EmOptions& options,
                              std::mt19937_64& generator);
 
-/// At most `most` of the points with weight, evenly spread over their order, F x n.
+/// At most `most` of the points of positive weight, evenly spread over their order, F x n.
 Eigen::MatrixXd sample_points(const PointBlocks& points, Eigen::Index most, std::mt19937_64& generator);
 
 }  // namespace modebank

@@ -1,4 +1,4 @@
-// Vectors, and what a block's log densities become. Included once per instruction set (Highway's
+// Vector types, and the normalisation of a block's log densities. Included once per instruction set (Highway's
 // foreach_target.h).
 #if defined(MODEBANK_EM_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_EM_LANES_INL
@@ -23,8 +23,8 @@ HWY_INLINE V load(const double* from) { return hn::Load(D(), from); }
 HWY_INLINE void store(V value, double* to) { hn::Store(value, D(), to); }
 HWY_INLINE void add_to(double* sum, V value) { store(hn::Add(load(sum), value), sum); }
 
-/// Squared distances beyond this (points so far out that squares overflow, or not a number where the parts of a
-/// distance overflow with different signs) count as this, so that no density is ever NaN.
+/// Cap on squared distances, so that no density is NaN. It replaces squares that overflow, and NaN where parts of a
+/// distance overflow with different signs.
 inline constexpr double largest_distance = 2e300;
 
 HWY_INLINE V bounded(V distance) {
@@ -32,8 +32,9 @@ HWY_INLINE V bounded(V distance) {
   return hn::IfThenElse(hn::Lt(distance, largest), distance, largest);
 }
 
-/// scratch.relative holds log densities of `rows` components and scratch.log_density their largest; turns the former
-/// into densities relative to the largest, and the latter into the log density of the mixture.
+/// Normalises log densities. On entry scratch.relative has the log densities of `rows` components and
+/// scratch.log_density their largest. On return `relative` has densities relative to the largest, and log_density the
+/// log density of the mixture.
 HWY_INLINE void normalise(int rows, const Scratch& scratch) {
   const Exp exp;
   const Log log;
@@ -51,7 +52,7 @@ HWY_INLINE void normalise(int rows, const Scratch& scratch) {
   for (Index n = 0; n < block_size; n += L) add_to(scratch.log_density + n, log(load(scratch.sum + n)));
 }
 
-/// The noise component's row comes after those of the Gaussians.
+/// Adds the row of the noise component, which follows the rows of the Gaussians.
 HWY_INLINE int add_noise(const Components& components, const Block& block, const Scratch& scratch) {
   if (!block.noise) return components.count;
   double* row = scratch.relative + components.count * block_size;
@@ -63,7 +64,7 @@ HWY_INLINE int add_noise(const Components& components, const Block& block, const
   return components.count + 1;
 }
 
-/// What densities are relative to where that is one number for a whole block: no log density lies above it.
+/// An upper bound of all log densities in a block, so that one shift serves the whole block.
 HWY_INLINE double largest_log_constant(const Components& components) {
   double largest = components.log_constants[0];
   for (int k = 1; k < components.count; ++k)
@@ -71,8 +72,8 @@ HWY_INLINE double largest_log_constant(const Components& components) {
   return largest;
 }
 
-/// Ends what densities relative to exp(shift) began: adds the noise component and turns their sums into log densities.
-/// False where a point is too far from all components (or the noise too dense) for one shift to do.
+/// Completes densities relative to exp(shift): adds the noise component and converts the sums into log densities. False
+/// if a point is too far from all components (or the noise too dense) for one common shift.
 HWY_INLINE bool finish_shifted(const Components& components, const Block& block, double shift, const Scratch& scratch) {
   const V least = splat(1e-150), most = splat(1e150), by = splat(shift);
   const Exp exp;
@@ -92,7 +93,7 @@ HWY_INLINE bool finish_shifted(const Components& components, const Block& block,
   return hn::AllTrue(D(), sound);
 }
 
-/// Adds log-likelihood and noise of a block to the first two of the lane sums; leaves weight / sum in scratch.sum.
+/// Adds log-likelihood and noise of a block to the first two lane sums. Leaves weight / sum in scratch.sum.
 HWY_INLINE void begin_sums(const Components& components, const Block& block, const Scratch& scratch) {
   V likelihood = load(scratch.lanes), noise = load(scratch.lanes + L);
   const double* row = scratch.relative + components.count * block_size;

@@ -1,4 +1,4 @@
-// EM on up to four features: everything about a component stays in registers. Included once per instruction set.
+// EM on up to four features: all values of a component stay in registers. Included once per instruction set.
 #if defined(MODEBANK_EM_SMALL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_EM_SMALL_INL
 #undef MODEBANK_EM_SMALL_INL
@@ -11,17 +11,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::em::HWY_NAMESPACE {
 
-/// Vectors of points that are computed side by side.
+/// Number of vectors of points that are computed side by side.
 inline constexpr int abreast = 4;
 static_assert(block_size % (abreast * L) == 0);
 
-/// What a component's log density is made of, in every lane: the squared distance |A x + b|^2, in units of log2.
+/// The constants of a component's log density in every lane: the squared distance |A x + b|^2, in units of log2.
 template <int F, bool diagonal>
 struct Ellipsoid {
   static constexpr int seconds = diagonal ? F : F * (F + 1) / 2;
   V mean[F], A[seconds], b[F];
 
-  /// Component `k`. Packing::affine.
+  /// Loads component `k` in the layout Packing::affine.
   HWY_INLINE Ellipsoid(const Components& components, int k) {
     const double* packed = components.whitening + k * components.stride;
     for (int i = 0; i < F; ++i) mean[i] = splat(components.means[k * F + i]);
@@ -29,7 +29,7 @@ struct Ellipsoid {
     for (int i = 0; i < F; ++i) b[i] = splat(packed[seconds + i]);
   }
 
-  /// Row i of A, its product with x; plus `y`, where given.
+  /// Row i of A times x, plus `y` if given.
   HWY_INLINE V row(int i, const V (&x)[F], const V* y) const {
     const int first = diagonal ? i : i * (i + 1) / 2, column = diagonal ? i : 0;
     V sum = y ? hn::MulAdd(A[first], x[column], *y) : hn::Mul(A[first], x[column]);
@@ -38,7 +38,7 @@ struct Ellipsoid {
     return sum;
   }
 
-  /// `log2_density` less the squared distance of a vector of points.
+  /// `log2_density` minus the squared distance of a vector of points.
   template <bool central>
   HWY_INLINE V log2_density(const double* points, V log2_density) const {
     V x[F];
@@ -59,7 +59,7 @@ template <int F, bool diagonal>
 struct Small {
   static constexpr int seconds = Ellipsoid<F, diagonal>::seconds;
   static constexpr int entries = 1 + F + seconds;
-  /// Central components whose sums are gathered together: as many as there are registers for.
+  /// Number of central components whose sums are computed together: as many as fit in registers.
   static constexpr int together = L == 8 ? (entries > 12       ? 1
                                             : 24 / entries > 4 ? 4
                                                                : 24 / entries)
@@ -102,7 +102,7 @@ struct Small {
         log2_densities<true>(ellipsoid, block.points, constant, out);
       else
         log2_densities<false>(ellipsoid, block.points, constant, out);
-      // A loop of its own: the processor holds short chains of several vectors at once, but not one long one.
+      // A separate loop: the processor overlaps several short dependency chains, but not one long chain.
       for (Index n = 0; n < block_size; n += abreast * L) {
         V density[abreast];
         for (int v = 0; v < abreast; ++v) density[v] = load(out + n + v * L);
@@ -124,7 +124,7 @@ struct Small {
     normalise(add_noise(components, block, scratch), scratch);
   }
 
-  /// The sums of a component about its mean.
+  /// Adds a component's sums about its mean.
   static HWY_INLINE void add_component(const double* mean_values, const double* points, const double* relative,
                                        const double* scale, double* lanes) {
     V mean[F], d[F], sum[entries];
@@ -144,7 +144,7 @@ struct Small {
     for (int i = 0; i < entries; ++i) store(sum[i], lanes + i * L);
   }
 
-  /// One column per entry of what a point adds to the sums of a component of density one.
+  /// Fills one column per sum: the contribution of each point to a component of density one.
   static HWY_INLINE void moments(const double* points, const double* scale, double* columns) {
     for (Index n = 0; n < block_size; n += L) {
       const V s = load(scale + n);
@@ -160,7 +160,7 @@ struct Small {
     }
   }
 
-  /// The sums of central components, about the origin.
+  /// Adds the sums of central components about the origin.
   template <int count>
   static HWY_INLINE void add_central(const double* columns, const int* components, const Scratch& scratch) {
     V sum[count][entries];

@@ -1,4 +1,4 @@
-// EM on any number of features: products of matrices in tiles of registers. Included once per instruction set.
+// EM on any number of features: matrix products in tiles of registers. Included once per instruction set.
 #if defined(MODEBANK_EM_TILES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_EM_TILES_INL
 #undef MODEBANK_EM_TILES_INL
@@ -13,12 +13,12 @@ namespace modebank::em::HWY_NAMESPACE {
 
 /// Rows of W per tile (Packing::tiles).
 inline constexpr int tile = 4;
-/// Rows of a tile of second moments; AVX-512 has the registers for four.
+/// Rows per tile of second moments; AVX-512 has registers for four.
 inline constexpr int moment_rows = L == 8 ? 4 : 2;
 
 HWY_INLINE int padded(int features) { return (features + tile - 1) / tile * tile; }
 
-/// x - mu_k of a block, with columns of zeros up to a whole number of tiles.
+/// x - mu_k of a block, padded with zero columns to a whole number of tiles.
 HWY_INLINE void all_offsets(const Components& components, int k, const double* points, double* out) {
   const int F = components.features;
   for (int i = 0; i < F; ++i) {
@@ -35,7 +35,7 @@ HWY_INLINE void put_log_density(int k, Index n, V distance, V constant, const Sc
   store(k == 0 ? density : hn::Max(load(scratch.log_density + n), density), scratch.log_density + n);
 }
 
-/// Four rows of W (x - mu), two vectors of points at a time.
+/// Computes four rows of W (x - mu), two vectors of points at a time.
 HWY_INLINE void full_log_density(const Components& components, int k, const double* offsets, const Scratch& scratch) {
   const int F = components.features;
   const V constant = splat(components.log_constants[k]);
@@ -82,7 +82,7 @@ HWY_INLINE void diagonal_log_density(const Components& components, int k, const 
   }
 }
 
-/// One tile of sum r d d': `rows` holds r d of its rows.
+/// Adds one tile of sum r d d'; `rows` holds r d of the tile's rows.
 HWY_INLINE void add_moment_tile(int F, int row, int column, const double* rows, const double* offsets, double* lanes) {
   V sum[moment_rows][tile];
   for (int i = 0; i < moment_rows; ++i)
@@ -103,7 +103,7 @@ HWY_INLINE void add_moment_tile(int F, int row, int column, const double* rows, 
     }
 }
 
-/// `work`: offsets, r, then r d of the rows of a tile.
+/// Adds second moments. `work` holds the offsets, r, then r d of the rows of a tile.
 HWY_INLINE void add_full_moments(int F, double* work, double* lanes) {
   const double *offsets = work, *r = work + padded(F) * block_size;
   double* rows = work + (padded(F) + 1) * block_size;
