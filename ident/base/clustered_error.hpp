@@ -5,7 +5,8 @@
 
 namespace modebank {
 
-/// Standard error of the ratio sum(sums) / sum(samples) over G clusters that differ in size; 0 of fewer than two.
+/// Standard error of the ratio sum(sums) / sum(samples) over G clusters of different sizes; 0 for fewer than two
+/// clusters.
 inline double clustered_error(const Eigen::VectorXd& sums, const Eigen::VectorXd& samples) {
   const auto G = static_cast<double>(sums.size());
   if (G < 2.0) return 0.0;

@@ -2,10 +2,9 @@
 
 #include <Eigen/Dense>
 
-/// Eigen's inner loops for dense matrices of doubles, compiled once, in compiled_eigen.cpp: in a file that multiplies
-/// and solves they are a third of what a compiler has to do. The precompiled headers begin with this one, so that
-/// nobody needs to include it; who does not have it compiles the loops himself, as everybody does with another Eigen
-/// than the one whose internals these are.
+/// Eigen's inner loops for dense matrices of doubles, compiled once in compiled_eigen.cpp. They take a third of the
+/// compile time of a file that multiplies and solves. The precompiled headers begin with this header, so no file
+/// includes it. A file without it compiles the loops itself, as does every file with another version of Eigen.
 #if EIGEN_WORLD_VERSION == 3 && EIGEN_MAJOR_VERSION == 4 && EIGEN_MINOR_VERSION == 0
 #ifndef MODEBANK_EIGEN_TEMPLATE
 #define MODEBANK_EIGEN_TEMPLATE extern template
@@ -28,7 +27,7 @@ template <class Matrix, int MatrixOrder, class Vector, int Version>
 using MatrixByVector =
     general_matrix_vector_product<Index, double, Matrix, MatrixOrder, false, double, Vector, false, Version>;
 
-// A matrix by a matrix.
+// Matrix times matrix.
 MODEBANK_EIGEN_TEMPLATE void gebp_kernel<double, double, Index, Out, Doubles::mr, Doubles::nr, false,
                                          false>::operator()(const Out&, const double*, const double*, Index, Index,
                                                             Index, double, Index, Index, Index, Index);
@@ -56,7 +55,7 @@ MODEBANK_EIGEN_PRODUCT(RowMajor, ColMajor);
 MODEBANK_EIGEN_PRODUCT(RowMajor, RowMajor);
 #undef MODEBANK_EIGEN_PRODUCT
 
-// A matrix by a vector.
+// Matrix times vector.
 #define MODEBANK_EIGEN_PRODUCT(Matrix, Order, Vector, Version)                      \
   MODEBANK_EIGEN_TEMPLATE void MatrixByVector<Matrix, Order, Vector, Version>::run( \
       Index, Index, const Matrix&, const Vector&, double*, Index, double)
@@ -67,7 +66,7 @@ MODEBANK_EIGEN_PRODUCT(RowsIn, RowMajor, ColumnsIn, 1);
 MODEBANK_EIGEN_PRODUCT(RowsIn, RowMajor, RowsIn, 1);
 #undef MODEBANK_EIGEN_PRODUCT
 
-// A triangular matrix by a matrix, and solved for one.
+// Triangular matrix times matrix, and its solve.
 #define MODEBANK_EIGEN_PRODUCT(Mode, TriangleOrder)                                                                  \
   MODEBANK_EIGEN_TEMPLATE void                                                                                       \
   product_triangular_matrix_matrix<double, Index, Mode, true, TriangleOrder, false, ColMajor, false, ColMajor,       \
@@ -96,7 +95,7 @@ MODEBANK_EIGEN_SOLUTION(OnTheRight, Upper, RowMajor);
 
 }  // namespace internal
 
-// Factorisations that ident/base/linalg.hpp does not have to itself; constructors of a matrix go through these.
+// Factorisations that ident/base/linalg.hpp does not instantiate alone; constructors from a matrix use these.
 MODEBANK_EIGEN_TEMPLATE LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);
 MODEBANK_EIGEN_TEMPLATE LLT<Ref<MatrixXd>>& LLT<Ref<MatrixXd>>::compute(const EigenBase<MatrixXd>&);
 MODEBANK_EIGEN_TEMPLATE LDLT<MatrixXd>& LDLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);

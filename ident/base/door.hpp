@@ -9,7 +9,7 @@
 
 namespace modebank {
 
-/// Turns every refusal of an argument into the std::invalid_argument that the installed interface promises.
+/// Converts every rejected argument into std::invalid_argument, the exception of the public API.
 template <class Call>
 auto at_the_door(Call&& call) {
   try {

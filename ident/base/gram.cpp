@@ -1,4 +1,4 @@
-// Sums of outer products in tiles of registers, block after block of rows.
+// Sums of outer products in register tiles, one block of rows after the other.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ident/base/gram.cpp"
 #include "ident/base/gram.hpp"
@@ -19,8 +19,8 @@ using V = hn::Vec<D>;
 
 inline constexpr std::ptrdiff_t tile = 4;
 
-/// Adds to the lower tiles of `sums` (side x side, by columns) what `count` rows of `block` give, whose columns lie
-/// `stride` apart and end in zeros up to a multiple of the lanes.
+/// Adds the outer products of `count` rows of `block` to the lower tiles of `sums` (side x side, column-major). Columns
+/// of `block` lie `stride` apart and are zero-padded to a multiple of the vector length.
 void add_block(const double* block, std::ptrdiff_t stride, std::ptrdiff_t count, std::ptrdiff_t side, double* sums) {
   const D d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
@@ -52,7 +52,8 @@ namespace gram {
 
 HWY_EXPORT(add_block);
 
-/// `add_block` for this processor. Highway finds a function that is built for one processor only by its bare name.
+/// Calls `add_block` for this processor. Highway requires an unqualified name for a function that is built for one
+/// processor only.
 void dispatch(const double* block, std::ptrdiff_t stride, std::ptrdiff_t count, std::ptrdiff_t side, double* sums) {
   HWY_DYNAMIC_DISPATCH(add_block)(block, stride, count, side, sums);
 }
@@ -62,7 +63,8 @@ void dispatch(const double* block, std::ptrdiff_t stride, std::ptrdiff_t count, 
 Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
                               const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& root) {
   using Eigen::Index;
-  constexpr Index block_rows = 256, tile = gram::HWY_NAMESPACE::tile;  // 20 columns stay in the first cache
+  // 20 columns of a block fit into the first-level cache
+  constexpr Index block_rows = 256, tile = gram::HWY_NAMESPACE::tile;
   const Index q = left.cols(), columns = q + right.cols();
   const Index side = (columns + tile - 1) / tile * tile;
   const auto block = hwy::AllocateAligned<double>(static_cast<std::size_t>(side * block_rows));

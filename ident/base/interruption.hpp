@@ -4,8 +4,9 @@
 
 namespace modebank {
 
-/// While it lives, long computations that this thread calls pass `hook` now and then: what it throws ends them. Worker
-/// threads do not call it; an exception in this one ends their share, too (oneTBB cancels the rest of a loop).
+/// During its lifetime, long computations called by this thread call `hook` from time to time; an exception from it
+/// ends them. Worker threads do not call it. An exception in this thread also ends their work, because oneTBB cancels
+/// the rest of a loop.
 class Interruptible {
  public:
   explicit Interruptible(std::function<void()> hook);
@@ -18,7 +19,7 @@ class Interruptible {
   const std::function<void()>* outer_;
 };
 
-/// For loops that may take seconds: calls this thread's hook, if there is one.
+/// Calls this thread's hook, if there is one. For loops that may take seconds.
 void interruption_point();
 
 }  // namespace modebank

@@ -4,8 +4,8 @@
 
 namespace modebank {
 
-/// Sum over k of later(k) earlier(k - lag) of two series of N values about their means, the numerator of their
-/// correlation at that lag; 0 from N on.
+/// Numerator of the correlation of two series of N values at one lag: the sum over k of later(k) earlier(k - lag), both
+/// about their means. 0 for lag >= N.
 template <class Later, class Earlier>
 double lagged_product(const Later& later, const Earlier& earlier, Eigen::Index lag) {
   const Eigen::Index pairs = later.size() - lag;

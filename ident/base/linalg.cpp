@@ -22,9 +22,10 @@ VectorXd solve_least_squares(const MatrixXd& A, const VectorXd& b) {
 }
 
 VectorXd singular_values(const MatrixXd& square) {
-  constexpr Eigen::Index large = 24;  // of 60 columns Jacobi's rotations take eight times as long
+  constexpr Eigen::Index large = 24;  // Jacobi rotations take eight times as long with 60 columns
   if (square.cols() >= large) return Eigen::BDCSVD<MatrixXd>(square).singularValues();
-  return Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner>(square).singularValues();  // a QR is for other shapes
+  // square: no QR preconditioner is needed
+  return Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner>(square).singularValues();
 }
 
 ThinQr thin_qr(const MatrixXd& X) {
@@ -63,7 +64,7 @@ namespace {
 
 using Product = std::function<VectorXd(const VectorXd&)>;
 
-/// A linear map as Spectra takes it.
+/// Wraps a linear map in the interface that Spectra requires.
 class MapOfProducts {
  public:
   using Scalar = double;
@@ -120,7 +121,7 @@ MatrixXd Cholesky::whiten(const MatrixXd& B) const { return factor_.matrixL().so
 
 std::optional<MatrixXd> definite_inverse(const MatrixXd& M) {
   const Cholesky factor(M);
-  // The factorisation stops at the pivot that fails, and would solve with what it has.
+  // The factorisation stops at the first failing pivot; solving with it would give a wrong result.
   if (!factor.definite()) return std::nullopt;
   return factor.inverse();
 }

@@ -5,11 +5,11 @@
 
 namespace modebank {
 
-/// The known name with the smallest edit distance (Levenshtein 1966) to `name`, or that `name` abbreviates; empty when
-/// none is within a third of its length (at least 2 edits). For messages that say what the user may have meant.
+/// The known name nearest to `name` by edit distance (Levenshtein 1966), or the one that `name` abbreviates. Empty if
+/// none is within a third of its length (at least 2 edits). For messages with suggestions.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& known);
 
-/// ", did you mean NAME?", or nothing when no known name is near.
+/// ", did you mean NAME?", or empty if no known name is near.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace modebank

@@ -5,11 +5,11 @@
 
 namespace modebank {
 
-/// What stands where a number could not be computed; archives store it as it is.
+/// Marks a number that could not be computed; archives store it unchanged.
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// a < b, where NaN, of what failed, is below every number: the best of several is then never one that failed while
-/// another did not.
+/// a < b, with NaN (a failed computation) below every number. So a failed candidate is never the best of several while
+/// another succeeded.
 inline bool is_below(double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; }
 
 }  // namespace modebank

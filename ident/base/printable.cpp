@@ -8,7 +8,7 @@ namespace modebank {
 
 namespace {
 
-/// U+2028 .. U+202E and U+2066 .. U+2069, each three bytes of UTF-8: what makes a line read otherwise than it is.
+/// U+2028 .. U+202E and U+2066 .. U+2069, three bytes of UTF-8 each. They break or reorder a displayed line.
 const char* misleading(std::string_view text) {
   constexpr std::string_view first_bytes = "\xe2\x80", second_bytes = "\xe2\x81";
   constexpr const char* first[]{"\\u2028", "\\u2029", "\\u202a", "\\u202b", "\\u202c", "\\u202d", "\\u202e"};
@@ -32,7 +32,7 @@ std::string shown(std::string_view text, bool lines, Bytes bytes) {
   };
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    // U+0080 .. U+009F, which terminals obey as well, are two bytes of UTF-8.
+    // U+0080 .. U+009F are two bytes of UTF-8; terminals interpret them as control characters, too.
     const bool second_set =
         c == '\xc2' && i + 1 < text.size() && (static_cast<unsigned char>(text[i + 1]) & 0xe0) == 0x80;
     if (const char* const escaped = misleading(text.substr(i))) {

@@ -7,14 +7,15 @@
 
 namespace modebank {
 
-/// The text as a terminal may be given it, in UTF-8: control characters but line ends and tabs, and bytes that are no
-/// UTF-8, as \x1b.
+/// The text made safe for a terminal, in UTF-8. Control characters (except line ends and tabs) and bytes that are not
+/// UTF-8 become escapes such as \x1b.
 std::string printable(std::string_view text);
 
-/// A name as a line of a log, a table or a job script can hold it: line ends and tabs too are shown as \x0a.
+/// A name made safe for one line of a log, a table or a job script: `printable`, with line ends and tabs escaped, too
+/// (\x0a).
 std::string printable_name(std::string_view text);
 
-/// Whether a text holds what printable, or printable_name, shows otherwise, bytes that are no UTF-8 aside.
+/// Whether `printable` or printable_name would escape a character of the text. Bytes that are not UTF-8 do not count.
 bool holds_controls(std::string_view text);
 bool name_holds_controls(std::string_view text);
 

@@ -8,15 +8,17 @@
 
 namespace modebank {
 
-/// The one source of randomness: every use derives its generator from the configured seed, the use's name and an index,
-/// so results do not depend on threads or on the order of work (FNV-1a of the name, mixed by SplitMix64, Steele 2014).
+/// Seed of one use of randomness, derived from the configured seed, the use's name and an index. All random generators
+/// start from it, so results do not depend on threads or the order of work. FNV-1a of the name, mixed by SplitMix64
+/// (Steele 2014).
 std::uint64_t derive_seed(std::uint64_t seed, std::string_view use, std::uint64_t index = 0);
 
 inline std::mt19937_64 make_generator(std::uint64_t seed, std::string_view use, std::uint64_t index = 0) {
   return std::mt19937_64(derive_seed(seed, use, index));
 }
 
-/// One position of each of `count` equal shares of 0 .. size - 1, in order; fewer where shares are shorter than one.
+/// Draws one position from each of `count` equal shares of 0 .. size - 1, in order. Fewer if shares are shorter than
+/// one.
 std::vector<std::ptrdiff_t> one_of_each_share(std::ptrdiff_t size, std::ptrdiff_t count, std::mt19937_64& generator);
 
 }  // namespace modebank

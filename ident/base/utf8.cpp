@@ -8,7 +8,7 @@ namespace modebank {
 
 namespace {
 
-/// Code points of the bytes 0x80 to 0x9F, after the Unicode Consortium's CP1252.TXT; other bytes are Latin-1's.
+/// Code points of the bytes 0x80 to 0x9F by the Unicode Consortium's CP1252.TXT. Other bytes equal Latin-1.
 constexpr std::array<std::uint16_t, 32> windows_1252{0x20AC, 0x0081, 0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021,
                                                      0x02C6, 0x2030, 0x0160, 0x2039, 0x0152, 0x008D, 0x017D, 0x008F,
                                                      0x0090, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022, 0x2013, 0x2014,
@@ -16,7 +16,7 @@ constexpr std::array<std::uint16_t, 32> windows_1252{0x20AC, 0x0081, 0x201A, 0x0
 
 bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
 
-/// Bytes of ASCII at the beginning, eight at a time: nearly every log is of them alone.
+/// Number of leading ASCII bytes, tested eight at a time. Nearly all logs are pure ASCII.
 std::size_t ascii_bytes(std::string_view text) {
   constexpr std::uint64_t high_bits = 0x8080808080808080;
   std::size_t at = 0;

@@ -7,15 +7,15 @@
 
 namespace modebank {
 
-/// How far a loop is.
+/// Progress of a loop.
 struct WorkDone {
-  std::string what;  ///< that it counts: "windows"
+  std::string what;  ///< unit of the count: "windows"
   std::size_t done = 0, all = 0;
-  double seconds = 0.0;  ///< since it began
+  double seconds = 0.0;  ///< seconds since the loop began
 };
 
-/// Counts off a loop that may take seconds, for whoever shows how it goes on. Of counters that live at once the first
-/// is the one that is seen: loops within it, and other computations beside it, count unseen. Any thread may count.
+/// Counts the progress of a loop that may take seconds, for display. Of several counters at one time only the first is
+/// displayed; nested loops and parallel computations count without display. Thread-safe.
 class WorkCounter {
  public:
   WorkCounter(std::string what, std::size_t all);
@@ -25,7 +25,7 @@ class WorkCounter {
 
   void add(std::size_t count = 1) { done_ += count; }
 
-  /// What is counted now; nothing between loops.
+  /// The progress of the displayed counter; empty between loops.
   static std::optional<WorkDone> seen();
 
  private:

@@ -12,13 +12,13 @@ namespace modebank {
 
 namespace {
 
-/// Four digits, so that the ratio of two such rates is whole to a thousandth.
+/// Rounds to four digits, so that the ratio of two such rates is a whole number within a thousandth.
 double rounded(double value) {
   const double per_unit = std::pow(10.0, 3.0 - std::floor(std::log10(value)));
   return std::round(value * per_unit) / per_unit;  // 0.4588 prints so; 4588 * 0.0001 does not
 }
 
-/// The rate next to `wanted_hz` that a lower one goes into, or that goes into a higher one: at least twice.
+/// The rate nearest to `wanted_hz` among rate_hz / 2, rate_hz / 3, ...
 double slower(double rate_hz, double wanted_hz) {
   return rounded(rate_hz / std::max(2.0, std::round(rate_hz / wanted_hz)));
 }
@@ -58,7 +58,7 @@ LengthAdvice advise_length(const std::vector<Trajectory>& runs, const LinearStru
     DeficientWindows sum;
     for (const Trajectory& run : runs) {
       const DeficientWindows one = count_deficient_windows(run, length, structure, windows_per_run);
-      // Each run weighs by its length, however few of its windows were looked at.
+      // Each run has the weight of its length, even if only few of its windows were examined.
       const double scale = one.windows > 0
                                ? static_cast<double>(run.transitions() - length + 1) / static_cast<double>(one.windows)
                                : 0.0;

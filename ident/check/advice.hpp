@@ -11,46 +11,48 @@ namespace modebank {
 /// Distribution of the one-step errors of one robust model over all runs.
 struct TailCheck {
   Eigen::Index transitions = 0;
-  double beyond_four = 0.0;   ///< share beyond 4 robust standard deviations (normal: 6.3e-5)
-  double beyond_eight = 0.0;  ///< share beyond 8
+  double beyond_four = 0.0;   ///< share of errors beyond 4 robust standard deviations (normal: 6.3e-5)
+  double beyond_eight = 0.0;  ///< share of errors beyond 8
 };
 TailCheck check_tails(const Recording& recording, const LinearStructure& structure);
 
 struct LengthAdvice {
   Eigen::Index length = 0;
-  double deficient = 0.0;  ///< share of rank-deficient windows at that length
-  bool enough = false;     ///< whether at most a fifth are
+  double deficient = 0.0;  ///< share of rank-deficient windows of that length
+  bool enough = false;     ///< whether at most a fifth of the windows is rank deficient
 };
-/// Shortest of a ladder of lengths (at least 8 transitions per regressor) at which at most a fifth of the windows is
-/// rank deficient; when none is, the shortest within 0.1 of the least share. Lengths that half of the runs cannot hold
-/// are not considered.
+/// Shortest length (of a fixed series, at least 8 transitions per regressor) at which at most a fifth of the windows is
+/// rank deficient. If there is none, the shortest within 0.1 of the smallest share. Lengths that half of the runs
+/// cannot hold are ignored.
 LengthAdvice advise_length(const std::vector<Trajectory>& runs, const LinearStructure& structure);
 
 struct LossAdvice {
   Loss loss = Loss::huber;
   TailCheck tails;
 };
-/// trivial below 0.1 % beyond 4 robust standard deviations, tukey above 1 % beyond 8 (gross errors), else huber.
+/// Recommends a loss: trivial if fewer than 0.1 % of the errors lie beyond 4 robust standard deviations, tukey if more
+/// than 1 % lie beyond 8 (gross errors), else huber.
 LossAdvice advise_loss(const Recording& recording, const LinearStructure& structure);
 
-/// Why a rate is suggested.
+/// Reason for a suggested rate.
 enum class RateReason { keep, jitter, repeats, too_fast, too_slow };
 
 struct RateFacts {
   double inputs_hz = 0.0;  ///< median rate
   double states_hz = 0.0;
-  double jitter = 0.0;           ///< of the inputs' intervals, in median ones
-  double repeated = 0.0;         ///< share of repeated values of a measured input; 0 when inputs are commands
-  double time_constant_s = 0.0;  ///< of the response; 0: unknown
+  double jitter = 0.0;           ///< standard deviation of the inputs' intervals, as a share of the median interval
+  double repeated = 0.0;         ///< share of repeated values of a measured input; 0 for commands
+  double time_constant_s = 0.0;  ///< time constant of the response; 0: unknown
 };
 struct RateAdvice {
-  double rate_hz = 0.0;  ///< for data.rate_hz; 0: keep the inputs' own times
+  double rate_hz = 0.0;  ///< value for data.rate_hz; 0: keep the inputs' own times
   RateReason reason = RateReason::keep;
 };
-/// Two to thirty samples per time constant are fine; faster data are brought to ten, slower ones to five as long as
-/// the states are sampled fast enough for it. Jitter above a fifth of a period asks for resampling at the median rate;
-/// an encoder that repeats at least 30 % of its samples for the rate of its changes. The rate is a whole multiple or
-/// fraction of the inputs' own, so that what is predicted at both can be compared at the same instants.
+/// Recommends a sample rate. Two to thirty samples per time constant are good. Faster data are reduced to ten; slower
+/// data are raised to five if the states are sampled fast enough. With jitter above a fifth of a period, resampling at
+/// the median rate is recommended. For an encoder that repeats at least 30 % of its samples, the rate of its changes is
+/// recommended. The rate is a whole multiple or fraction of the inputs' rate, so that predictions at both rates can be
+/// compared at the same instants.
 RateAdvice advise_rate(const RateFacts& facts);
 
 }  // namespace modebank

@@ -9,44 +9,45 @@
 
 namespace modebank {
 
-/// An input counts as zero, or still, within this share of its largest value.
+/// An input up to this share of its largest value counts as zero (still).
 inline constexpr double still_share = 0.005;
 
-/// Samples of `states` at rest: every input in force there is within `still_level` (per input, m) of zero, and so it
-/// was a sample before, and every state repeats its value. None without inputs: nothing then separates rest from a
-/// measurement that is too coarse.
+/// Flags the samples of `states` at rest. All inputs then and one sample earlier are within `still_level` (per input,
+/// m) of zero, and every state repeats its value. Without inputs no sample is flagged, because rest looks the same as a
+/// coarse measurement.
 std::vector<bool> resting_samples(const Stream& states, const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Samples of `inputs` at which all inputs are within `still_level` of zero, as they were a sample before.
+/// Flags the samples of `inputs` at which all inputs are within `still_level` of zero, then and one sample earlier.
 std::vector<bool> still_samples(const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Share of known samples equal to the one before, among those that `at_rest` leaves; 0 where it leaves none.
+/// Share of known samples equal to the previous one, ignoring samples flagged in `at_rest`; 0 if none remains.
 double repeats_in_motion(const Eigen::VectorXd& values, const std::vector<bool>& at_rest);
 
-/// Commands of one run: stillness and constancy.
+/// Stillness and constancy of the commands of one run.
 struct CommandCheck {
   double still = 0.0;               ///< share of input samples with every input within `still_level` of zero
-  double longest_constant_s = 0.0;  ///< longest time in which no input changes while one is not still
-  double changes = 0.0;             ///< share of input samples that differ from the one before
+  double longest_constant_s = 0.0;  ///< longest time without a change of any input while at least one is not still
+  double changes = 0.0;             ///< share of input samples that differ from the previous one
 };
-/// `still_level`: per input (m).
+/// Checks the inputs of one run. `still_level`: per input (m).
 CommandCheck check_commands(const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Mean and standard deviation of each state while all inputs have been still for settle_s, over rests of at least
-/// 1 s; NaN where there is none.
+/// Mean and standard deviation of each state at rest: after all inputs have been still for settle_s, in rests of at
+/// least 1 s. NaN if there is none.
 struct RestCheck {
   double duration_s = 0.0;
   Eigen::VectorXd mean, sd;  ///< n
 };
 RestCheck check_rest(const Stream& states, const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Order of persistent excitation (Ljung 1999, def. 13.2): largest d <= most for which the inputs and their first d - 1
-/// delays, each in units of its root mean square, have a second-moment matrix with no eigenvalue below 1e-4.
+/// Order of persistent excitation (Ljung 1999, def. 13.2). It is the largest d <= most for which the second-moment
+/// matrix of the inputs and their first d - 1 delays has all eigenvalues above 1e-4. Each input is in units of its root
+/// mean square.
 inline constexpr Eigen::Index most_excitation_order = 10;
 Eigen::Index excitation_order(const Eigen::MatrixXd& inputs, Eigen::Index most = most_excitation_order);
 
-/// Share of windows of `length` transitions whose regressors are rank deficient, of at most `most_windows` evenly
-/// spread ones; NaN for none.
+/// Share of windows of `length` transitions with rank-deficient regressors, from at most `most_windows` evenly spread
+/// ones; NaN without windows.
 struct DeficientWindows {
   Eigen::Index windows = 0, deficient = 0;
   double share() const;

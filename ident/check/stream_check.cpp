@@ -36,7 +36,7 @@ void check_intervals(const VectorXd& time_s, SamplingCheck& check) {
   }
 }
 
-/// Whether all levels lie on a lattice of spacing near `spacing`, which is refined on the way up.
+/// Whether all levels lie on a lattice with a spacing near `spacing`. The spacing is refined from level to level.
 bool on_lattice(const std::vector<double>& levels, double& spacing) {
   constexpr double tolerance = 0.1, allowed_misses = 0.01;
   double products = 0.0, squares = 0.0;
@@ -55,7 +55,7 @@ bool on_lattice(const std::vector<double>& levels, double& spacing) {
   return static_cast<double>(misses) <= allowed_misses * static_cast<double>(levels.size()) && squares > 0.0;
 }
 
-/// Largest spacing of a lattice that holds all levels (increasing); 0: none that is visible.
+/// Largest spacing of a lattice that contains all levels (in increasing order); 0 if none is visible.
 double quantum_of(const std::vector<double>& levels) {
   constexpr double visible = 1e-3;  // of the range
   constexpr int most_divisions = 6;
@@ -70,9 +70,10 @@ double quantum_of(const std::vector<double>& levels) {
   return 0.0;
 }
 
-/// Values that differ by more than rounding in the file, increasing.
+/// Distinct values in increasing order; values that differ only by rounding in the file count as one.
 std::vector<double> levels_of(std::vector<double> values) {
-  constexpr double rounding = 1e-9, ulps = 4.0;  // of the range; of the values, which may be far from zero (stamps)
+  // rounding: share of the range; ulps: relative to the values, which may be far from zero (stamps)
+  constexpr double rounding = 1e-9, ulps = 4.0;
   std::sort(values.begin(), values.end());
   const double largest = std::max(std::abs(values.front()), std::abs(values.back()));
   const double same =
@@ -83,7 +84,8 @@ std::vector<double> levels_of(std::vector<double> values) {
   return levels;
 }
 
-/// Whether a signal takes few levels, the ends of its range as often as those inside: its values are chosen.
+/// Whether a signal takes few levels, and the ends of its range as often as the levels inside. Such values are chosen
+/// by an operator, not limited.
 bool is_of_few_levels(const std::vector<double>& known) {
   constexpr std::size_t most_levels = 10;
   constexpr double pressed = 3.0;
@@ -153,7 +155,7 @@ ChannelCheck check_channel(const VectorXd& values) {
     if (known_values(k) == known_values(k - 1)) ++repeats;
   if (known.size() > 1) check.repeated = static_cast<double>(repeats) / static_cast<double>(known.size() - 1);
   check.two_level = has_two_levels(known_values);
-  // A switch may be on for one sample.
+  // A two-level signal may be on for one sample; that is not an outlier.
   check.outliers = check.two_level ? 0 : spikes(known_values, check.quantum);
   return check;
 }
@@ -162,7 +164,7 @@ bool has_two_levels(const VectorXd& values) {
   constexpr double near = 0.1, least_near = 0.99, least_share = 0.02;
   std::vector<double> known = finite_values(values);
   if (known.empty()) return false;
-  // Between quantiles, so that a glitch does not count as a level.
+  // Uses quantiles, so that a glitch does not count as a level.
   const auto quantile = [&known](double share) {
     const auto at = known.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(known.size() - 1));
     std::nth_element(known.begin(), at, known.end());
@@ -205,20 +207,20 @@ Index spikes(const VectorXd& values, double quantum) {
 
 namespace {
 
-/// Least numbers of values at an end of the range where they pile up.
+/// Thresholds for a pile-up of values at an end of the range.
 struct PileUp {
-  double least_share;  ///< of all values
-  double ratio;        ///< to those next to it
-  double errors;       ///< standard errors by which that is exceeded
+  double least_share;  ///< smallest share of all values
+  double ratio;        ///< smallest ratio to the number of neighbouring values
+  double errors;       ///< standard errors by which the ratio must be exceeded
 };
 
-/// Values, each of which lasts for `held` samples in the mean: so many tell as much as one that is drawn anew.
+/// Values that are repeated for `held` samples on average. That many samples count as one independent value.
 struct Held {
   std::vector<double> values;
   double held = 1.0;
 };
 
-/// Whether the values v with end - outer < sign * v <= end are more than those of the width `next` below them.
+/// Whether more values v lie in end - outer < sign * v <= end than in the range of width `next` below it.
 bool piles_up(const Held& of, double sign, double end, double outer, double next, const PileUp& least) {
   const std::vector<double>& values = of.values;
   const auto between = [&](double from, double to) {
@@ -230,7 +232,7 @@ bool piles_up(const Held& of, double sign, double end, double outer, double next
          top - least.ratio * below > least.errors * std::sqrt(of.held * (top + least.ratio * least.ratio * below));
 }
 
-/// Adds the values of a run to `all`, and those that do not repeat the one before to `fresh`.
+/// Appends all values of a run to `all`, and those that differ from the previous one to `fresh`.
 void gather(const VectorXd& run, std::vector<double>& all, std::vector<double>& fresh) {
   const std::vector<double> known = finite_values(run);
   all.insert(all.end(), known.begin(), known.end());

@@ -5,12 +5,12 @@
 
 namespace modebank {
 
-/// A run as programs hand it over, of n states and m inputs, in our own form. Throws std::invalid_argument naming the
-/// run when its sizes do not fit or its times do not increase.
+/// Converts a run of n states and m inputs from the public API's type. Throws std::invalid_argument that names the run
+/// if its sizes do not fit or its times do not increase.
 Trajectory to_trajectory(const RecordedRun& run, Index states, Index inputs);
 
-/// All runs, in their order. Throws as to_trajectory does, and for names that are not as many as the first run has
-/// signals.
+/// Converts all runs in their order. Throws as to_trajectory does, and if the number of names differs from the number
+/// of signals.
 Recording to_recording(const RecordedRuns& runs);
 
 }  // namespace modebank

@@ -6,8 +6,7 @@
 
 namespace modebank {
 
-/// What is known of the runs of a recording sample by sample, as the ground they drove on: positions in `names`, -1
-/// where nothing is known.
+/// Labels of each sample of the runs, such as the kind of ground: positions in `names`, -1 where unknown.
 struct RunLabels {
   std::vector<std::string> names;
   std::vector<Eigen::VectorXi> of_runs;  ///< in the recording's order, one value per sample

@@ -21,8 +21,8 @@ using Eigen::VectorXd;
 
 double last(const VectorXd& time_s) { return time_s(time_s.size() - 1); }
 
-/// Differences of times below this are rounding: of decimal stamps, of k / rate and of t - lag. A millionth of the mean
-/// period, but never below what a double resolves at these times (epoch seconds: 2.4e-7).
+/// Differences of times below this are rounding of decimal stamps, of k / rate or of t - lag. It is a millionth of the
+/// mean period, but at least the resolution of a double at these times (epoch seconds: 2.4e-7).
 double time_tolerance(const VectorXd& time_s) {
   constexpr double share_of_period = 1e-6, units_in_last_place = 4.0;
   const double largest = std::max(std::abs(time_s(0)), std::abs(last(time_s)));
@@ -31,19 +31,19 @@ double time_tolerance(const VectorXd& time_s) {
   return std::max(resolution, share_of_period * (last(time_s) - time_s(0)) / static_cast<double>(time_s.size() - 1));
 }
 
-/// Moves `sample`, the position of the last sample at or before an earlier time, on to `time`; -1: before all samples.
+/// Advances `sample`, the position of the last sample at or before an earlier time, to `time`; -1: before all samples.
 Index advance(const VectorXd& samples, Index sample, double time) {
   while (sample + 1 < samples.size() && samples(sample + 1) <= time) ++sample;
   return sample;
 }
 
-/// Times of a grid, but for what lies deep in a gap of a stream, where nothing is known: the cost of a pause is
-/// bounded, however long. Shorter gaps stay whole.
+/// The times of a grid without those deep inside a gap of a stream, where no data exist. So a pause has a bounded cost,
+/// however long. Shorter gaps stay complete.
 class Grid {
  public:
   Grid(double first, double end, double rate_hz) : first_(first), end_(end), rate_hz_(rate_hz) {}
 
-  /// Leaves out what lies in the long gaps of a stream whose sample at s acts at acts_at(s).
+  /// Removes the times in the long gaps of a stream. The sample of time s acts at acts_at(s).
   template <class ActsAt>
   void skip_gaps(const VectorXd& stream_s, ActsAt acts_at) {
     samples_ = std::max(samples_, stream_s.size());
@@ -74,12 +74,13 @@ class Grid {
   }
 
  private:
-  static constexpr double rounding = 1e-6;  // of a period: keeps an end that k / rate_hz just misses
-  static constexpr double longest_gap = 1000.0, margin = 100.0;  // periods; filters start anew after 50 of the model's
-  /// A grid is finer than its streams by less: their times count something else than seconds, or the rate is wrong.
+  static constexpr double rounding = 1e-6;  // of a period; keeps an end that k / rate_hz narrowly misses
+  // periods; filters restart after 50 periods of the model
+  static constexpr double longest_gap = 1000.0, margin = 100.0;
+  /// Limits of a grid in relation to its streams. Beyond them the times are not seconds, or the rate is wrong.
   static constexpr Index most_times = 1'000'000, most_per_sample = 1000;
   double first_, end_, rate_hz_;
-  Index samples_ = 0;  ///< of the longest stream
+  Index samples_ = 0;  ///< samples of the longest stream
   std::vector<std::pair<double, double>> gaps_;
 
   [[noreturn]] void refuse(double time) const {
@@ -122,7 +123,7 @@ MatrixXd average_ending(const Stream& stream, const VectorXd& time_s, double ste
   const VectorXd starts_s = time_s.array() - step_s;
   const MatrixXd first = interpolate(stream, starts_s), end = interpolate(stream, time_s);
   MatrixXd result(end.rows(), end.cols());
-  Index next = 0;  // the stream's first sample behind the step's start
+  Index next = 0;  // first sample of the stream after the step's start
   for (Index k = 0; k < time_s.size(); ++k) {
     while (next < t.size() && t(next) <= starts_s(k)) ++next;
     double from_s = starts_s(k);
@@ -178,7 +179,7 @@ double step_scatter(const std::vector<const VectorXd*>& times_s) {
 
 void blank_gaps(const VectorXd& stream_time_s, const VectorXd& time_s, MatrixXd& values) {
   const double longest = gap_periods * median_period_s(stream_time_s);
-  Index j = 0;  // the stream's first sample at or after time_s(k)
+  Index j = 0;  // first sample of the stream at or after time_s(k)
   for (Index k = 0; k < time_s.size(); ++k) {
     while (j < stream_time_s.size() && stream_time_s(j) < time_s(k)) ++j;
     const bool between = j > 0 && j < stream_time_s.size() && stream_time_s(j) != time_s(k);
@@ -199,7 +200,7 @@ MatrixXd hold_mid_transition(const Stream& inputs, const VectorXd& time_s, const
 }
 
 VectorXd joint_times(const VectorXd& states_time_s, const VectorXd& inputs_time_s, const JoinTimes& options) {
-  // t - lag(t) = s at t = s + lag on the states' clock.
+  // On the states' clock, sample s acts at t = s + lag, because t - lag(t) = s.
   const auto acts_at = [&](double s) {
     return options.drift == 0.0 ? s + options.lag_s
                                 : (s + options.lag_s - options.drift * options.reference_s) / (1.0 - options.drift);
@@ -213,7 +214,7 @@ VectorXd joint_times(const VectorXd& states_time_s, const VectorXd& inputs_time_
     return grid.times();
   }
   if (options.lag_s == 0.0 && options.drift == 0.0) return times_within(inputs_time_s, first, end);
-  const double rounding = time_tolerance(inputs_time_s);  // t - lag_s must not lose a sample by it
+  const double rounding = time_tolerance(inputs_time_s);  // rounding of t - lag_s must not lose a sample
   return times_within(inputs_time_s, std::max(states_time_s(0), first - rounding),
                       std::min(last(states_time_s), end + rounding));
 }

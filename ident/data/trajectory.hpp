@@ -14,13 +14,14 @@ using Eigen::Index;
 
 struct Channel {
   std::string name;
-  std::string unit;       ///< empty when nobody stated it
-  bool averaged = false;  ///< brought to a lower rate by means over its steps (AveragedColumns), else picked
+  std::string unit;       ///< empty if unknown
+  bool averaged = false;  ///< reduced to a lower rate by means over its steps (AveragedColumns); else by picking
+                          ///< samples
 };
 
 std::vector<std::string> names_of(const std::vector<Channel>& channels);
 
-/// Median interval (the upper one of an even count) between successive times, over all series; 0 without any.
+/// Median interval between successive times over all series (the upper of two middle ones); 0 without intervals.
 double median_period_s(const std::vector<const Eigen::VectorXd*>& times_s);
 double median_period_s(const Eigen::VectorXd& time_s);
 
@@ -31,24 +32,24 @@ struct EnumNames<Role> {
   static constexpr Names<2> values{"train", "test"};
 };
 
-/// One recorded run of N samples. Signals are stored one sample per column, so column k of `state` is x[k].
+/// One recorded run of N samples. Signals have one sample per column, so column k of `state` is x[k].
 struct Trajectory {
   std::string run;  ///< name of the run
   Role role = Role::train;
   Eigen::VectorXd time_s;           ///< N, strictly increasing
   Eigen::MatrixXd state;            ///< n x N, as measured
   Eigen::MatrixXd input;            ///< m x N
-  Eigen::MatrixXd truth;            ///< n x N true state, or empty
-  double lag_s = 0.0;               ///< lag that was applied to the inputs
-  std::int64_t time_origin_ns = 0;  ///< since 1970 where stamps were: what time_s counts from
-  std::string file = {};            ///< that its inputs were read from; empty where there was none
-  /// N or empty (all one). weight(k) belongs to the transition that ends in sample k, whose error it multiplies the
-  /// loss of; weight(0) is unused. At least 0, finite; 0 leaves the transition out. Only ratios matter: every fit
-  /// divides by the mean over its transitions.
+  Eigen::MatrixXd truth;            ///< n x N, true state; may be empty
+  double lag_s = 0.0;               ///< lag applied to the inputs
+  std::int64_t time_origin_ns = 0;  ///< ns since 1970 at time_s = 0, if the log has stamps
+  std::string file = {};            ///< file of its inputs; empty if there was none
+  /// Sample weights, N or empty (all one). weight(k) multiplies the loss of the error of the transition that ends in
+  /// sample k; weight(0) is unused. Finite and at least 0; 0 leaves the transition out. Only ratios matter, because
+  /// every fit divides by the mean over its transitions.
   Eigen::VectorXd weight;
-  /// Signals that a program keeps where they are, n and m rows of N columns: in place of `state` and `input`, which
-  /// then are empty. Windows of linear models with one-step residuals read them through states() and inputs(); nothing
-  /// else may be handed such a run.
+  /// Signals stored by the calling program: n and m rows of N columns. They replace `state` and `input`, which are then
+  /// empty. Windows of linear models with one-step residuals read them through states() and inputs(). No other function
+  /// accepts such a run.
   struct Kept {
     const double *state = nullptr, *input = nullptr;
     Index states = 0, inputs = 0, samples = 0;
@@ -69,16 +70,17 @@ struct Trajectory {
   Index transitions() const { return samples() > 0 ? samples() - 1 : 0; }
 };
 
-/// All runs of one study object: same channels, same order, sorted by run name.
+/// All runs of one study object with the same channels in the same order, sorted by run name.
 struct Recording {
   std::vector<Channel> states;  ///< n
   std::vector<Channel> inputs;  ///< m
   std::vector<Trajectory> runs;
-  Eigen::VectorXd quantum = {};  ///< n, of what states are multiples [state unit]; 0: continuous; empty: all are
+  Eigen::VectorXd quantum = {};  ///< n, spacing of the possible values of each state [state unit]; 0: continuous;
+                                 ///< empty: all are continuous
 
   Index state_count() const { return static_cast<Index>(states.size()); }
   Index input_count() const { return static_cast<Index>(inputs.size()); }
-  /// Transitions of all runs that have the role.
+  /// Number of transitions in all runs of this role.
   Index transitions(Role role) const {
     Index sum = 0;
     for (const Trajectory& run : runs) sum += run.role == role ? run.transitions() : 0;

@@ -6,15 +6,15 @@
 
 namespace modebank {
 
-/// A stretch of `length` consecutive transitions (length + 1 samples) of one run; the length is common to all windows.
+/// `length` consecutive transitions (length + 1 samples) of one run; all windows have the same length.
 struct Window {
   Index run = 0;    ///< position in Recording::runs
   Index start = 0;  ///< first sample
 };
 
-/// All windows of the training runs by their index, without a list of them: run by run from transition `first` on,
-/// advanced by `step` transitions; none crosses the border of a run. Runs with fewer than `first + length` transitions
-/// have no window. THE place where windows are formed.
+/// All windows of the training runs by index, without storing a list. Windows start at transition `first` of each run
+/// and advance by `step`; none crosses the border of a run. Runs with fewer than `first + length` transitions have no
+/// window. This class alone decides where windows are.
 class WindowPlan {
  public:
   /// Throws std::invalid_argument unless length >= 1 and step >= 1.
@@ -27,9 +27,9 @@ class WindowPlan {
   struct Range {
     Index first = 0;  ///< index of the first window
     Index count = 0;
-    Window window;  ///< the first one
+    Window window;  ///< the first window
   };
-  /// Windows first .. first + count - 1, in ranges of at most `longest`.
+  /// Windows first .. first + count - 1 as ranges of at most `longest` windows.
   std::vector<Range> ranges(Index first, Index count, Index longest) const;
 
  private:

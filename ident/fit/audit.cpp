@@ -12,17 +12,18 @@ namespace modebank {
 namespace {
 
 constexpr Index least_audit = 200;
-constexpr Index audit_share = 1000;       ///< one window in so many
+constexpr Index audit_share = 1000;       ///< one window in this many is audited
 constexpr double negligible_cost = 1e-9;  ///< per sample
 
-/// A window's problem and what is to be minimised in it.
+/// The data of a window and its objective.
 struct Objective {
   const LinearWindows::WindowData& data;
   const WhitenedProblem& problem;
   const RobustLoss& loss;
   const ParameterPrior* prior;
 
-  /// Residuals are taken from the transitions, not from the whitened problem, so that no basis stands between.
+  /// Residuals come from the transitions, not from the whitened problem, so that the audit does not depend on the
+  /// basis.
   RobustTerms terms(const Eigen::VectorXd& theta) const {
     const Transitions& t = data.transitions;
     const Index q = t.regressors.cols(), n = t.increments.cols(), L = t.count();
@@ -85,7 +86,7 @@ bool add_to_audit(const AuditedWindow& window, WindowAudit& audit) {
   const bool rejected =
       !(window.cost <= WindowAudit::tolerance) || !(window.gradient <= WindowAudit::gradient_tolerance);
   audit.replaced += rejected ? 1 : 0;
-  // A lower minimum of a loss with several is no disagreement about a minimum.
+  // A loss with several minima may have a lower one; finding it is not a failed minimisation.
   audit.lower += window.cost < -WindowAudit::tolerance ? 1 : 0;
   return rejected;
 }

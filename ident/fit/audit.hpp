@@ -6,25 +6,25 @@
 
 namespace modebank {
 
-/// Indices of the windows that an audit of M checks, increasing: one at random in each of min(M, max(200, M / 1000))
-/// strata.
+/// Indices of the audited windows of M, increasing: one random window from each of min(M, max(200, M / 1000)) strata.
 std::vector<Index> audited_windows(Index M, std::uint64_t seed);
 
-/// What one window says of the batch solver's theta and of that of Ceres alone (minimise_by_ceres_alone), both judged
-/// by the objective that Ceres has minimised.
+/// Comparison of the batch solver's theta with that of Ceres alone (minimise_by_ceres_alone) in one window, both judged
+/// by Ceres' objective.
 struct AuditedWindow {
   bool compared = false;
-  double cost = 0.0;  ///< of the batch solution above that of Ceres, relative; negative where it is lower. Differences
-                      ///< below 1e-9 per sample (residuals of some 1e-5 of their standard deviation) are rounding
-  double gradient = 0.0;        ///< scaled_gradient in the batch solution
-  double ceres_gradient = 0.0;  ///< in Ceres'
-  double parameter = 0.0;  ///< largest difference of a parameter, in its standard error; says nothing of who is right
+  double cost = 0.0;  ///< relative excess of the batch solution's cost over that of Ceres; negative if lower.
+                      ///< Differences below 1e-9 per sample (residuals of about 1e-5 standard deviations) are rounding
+  double gradient = 0.0;        ///< scaled_gradient at the batch solution
+  double ceres_gradient = 0.0;  ///< scaled_gradient at Ceres' solution
+  double parameter = 0.0;  ///< largest difference of a parameter, in standard errors; does not tell which solver is
+                           ///< right
 };
 
 AuditedWindow audit_window(const LinearWindows& windows, const Window& window, const ParameterPrior* prior,
                            const LocalModel& fit);
 
-/// Adds a compared window; returns whether the batch solution is no minimum by its cost or its gradient, and has to be
+/// Adds a compared window. Returns whether the batch solution is not a minimum (by cost or gradient) and must be
 /// replaced.
 bool add_to_audit(const AuditedWindow& window, WindowAudit& audit);
 

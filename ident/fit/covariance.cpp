@@ -10,7 +10,7 @@ namespace modebank {
 
 namespace {
 
-/// Below this reciprocal condition G counts as singular.
+/// G counts as singular if its reciprocal condition number is smaller.
 constexpr double least_correlation_rcond = 1e-10;
 
 Eigen::MatrixXd undefined(const WhitenedProblem& problem) {
@@ -26,7 +26,7 @@ auto sample_rows(const WhitenedProblem& problem, Index k) {
   return problem.J.middleRows(k * problem.states, problem.states);
 }
 
-/// f of the header: sum of the samples' leverages, per state (a state's columns are zero in the other states' rows).
+/// The header's f: sum of the samples' leverages per state (a state's columns are zero in the other states' rows).
 Eigen::ArrayXd determined_by_data(const WhitenedProblem& problem) {
   Eigen::ArrayXd f = Eigen::ArrayXd::Zero(problem.states);
   for (Index k = 0; k < problem.samples; ++k)
@@ -34,7 +34,7 @@ Eigen::ArrayXd determined_by_data(const WhitenedProblem& problem) {
   return f;
 }
 
-/// The diagonals of psi' (influence_slope), L x n.
+/// Diagonals of psi' (influence_slope), L x n.
 Eigen::ArrayXXd slopes(const CovarianceInput& in) {
   const auto r = in.terms.samples(in.problem.states);
   return (r.square().colwise() * (2.0 * in.terms.curvature.array())).colwise() + in.terms.weight.array();
@@ -44,7 +44,7 @@ Eigen::VectorXd weights_of_samples(const WhitenedProblem& problem) {
   return problem.weight.size() > 0 ? problem.weight : Eigen::VectorXd::Ones(problem.samples);
 }
 
-/// G^-1 of the header; zero (no information) where the mean slope of psi is not positive.
+/// The header's G^-1; zero (no information) if the mean slope of psi is not positive.
 Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
   const Index L = in.problem.samples, n = in.problem.states;
   const auto r = in.terms.samples(n);
@@ -70,7 +70,7 @@ Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
   return inverse_sd.asDiagonal() * correlation.inverse() * inverse_sd.asDiagonal();
 }
 
-/// (sum J_k' G_inverse J_k + P)^-1 in z; NaN where that is not definite.
+/// (sum J_k' G_inverse J_k + P)^-1 in coordinates z; NaN if it is not definite.
 Eigen::MatrixXd from_information(const WhitenedProblem& problem, const Eigen::MatrixXd& G_inverse) {
   Eigen::MatrixXd information = prior_information(problem);
   if (problem.states == 1) {
@@ -84,7 +84,7 @@ Eigen::MatrixXd from_information(const WhitenedProblem& problem, const Eigen::Ma
       .value_or(Eigen::MatrixXd::Constant(information.rows(), information.cols(), not_a_number));
 }
 
-/// The influence of sample k had it been left out: (I - h_k)^-1 psi_k.
+/// Influence of sample k with that sample left out: (I - h_k)^-1 psi_k.
 Eigen::VectorXd left_out_influence(const CovarianceInput& in, Index k, const Eigen::MatrixXd& H_inverse,
                                    const Eigen::MatrixXd& slope) {
   const Index n = in.problem.states;

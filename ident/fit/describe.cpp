@@ -12,7 +12,7 @@ namespace modebank {
 
 namespace {
 
-/// Noise variance per state as fit_window states it.
+/// Noise variance of each state in the definition of fit_window.
 Eigen::VectorXd noise_variance(const SolvedWindow& s) {
   const auto L = static_cast<double>(s.problem.samples);
   const bool short_window = L <= s.unknowns_per_state;
@@ -32,7 +32,7 @@ Eigen::VectorXd sample_weights(const WhitenedProblem& problem) {
   return problem.weight.size() > 0 ? problem.weight : Eigen::VectorXd::Ones(problem.samples);
 }
 
-/// Residuals of state i in units of sigma, each times the root of its sample weight.
+/// Residuals of state i in units of sigma, each times the square root of its sample weight.
 auto residuals_of(const WhitenedProblem& problem, const RobustTerms& terms, Index i) {
   using Strided = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>;
   return Strided(terms.residual.data() + i, problem.samples, Eigen::InnerStride<>(problem.states));
@@ -68,7 +68,7 @@ double price_of_a_parameter(const WhitenedProblem& problem, const RobustTerms& t
     const double square = terms.sample(k, problem.states).squaredNorm();
     psi_square += terms.weight(k) * terms.weight(k) * square;
     const double trace = static_cast<double>(problem.states) * terms.weight(k) + 2.0 * terms.curvature(k) * square;
-    slope += problem.sample_weight(k) * trace;  // of the influence's slope
+    slope += problem.sample_weight(k) * trace;  // of the influence function's slope
   }
   return slope > 0.0 ? psi_square / slope : not_a_number;
 }
@@ -77,7 +77,7 @@ double price_of_a_parameter(const WhitenedProblem& problem, const RobustTerms& t
 
 Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem& problem, const RobustTerms& terms,
                           const Eigen::VectorXd& sigma) {
-  const Eigen::ArrayXd root = sample_weights(problem).cwiseSqrt();  // the rows carry it already
+  const Eigen::ArrayXd root = sample_weights(problem).cwiseSqrt();  // the rows already contain it
   const Eigen::ArrayXd omega = terms.weight;
   Eigen::VectorXd result(problem.states);
   for (Index i = 0; i < problem.states; ++i) {
@@ -110,7 +110,8 @@ LocalModel describe_fit(const SolvedWindow& s, const Eigen::VectorXd& theta) {
   fit.covariance = theta_covariance(input, s.covariance).topLeftCorner(p, p);
   if (s.prior) fit.weighed_information = weighed_information(input, s.covariance);
   fit.noise_variance = noise_variance(s);
-  if (!fit.theta.allFinite() || !fit.noise_variance.allFinite()) return failed_fit(p, s.problem.states);  // overflow
+  // overflow in the fit
+  if (!fit.theta.allFinite() || !fit.noise_variance.allFinite()) return failed_fit(p, s.problem.states);
   fit.information = information(fit.covariance, s.prior);
   fit.inlier_fraction = (s.terms.weight.array() >= inlier_weight).cast<double>().mean();
   fit.r_squared = r_squared(s.transitions, s.problem, s.terms, s.scale.sigma);

@@ -1,4 +1,4 @@
-// The installed face of window fits: plain vectors outside, Eigen inside.
+// The public API of window fits: converts between plain vectors and Eigen.
 #include "ident/base/door.hpp"
 
 #include "ident/data/public_recording.hpp"

@@ -11,27 +11,27 @@
 
 namespace modebank {
 
-/// Fits one window as a robust Ceres problem: residual r_k = (x[k+1] - x[k] - [A B c] phi_k) / sigma, one loss per
-/// sample on |r_k|^2 over its n states. Assumes independent residuals of standard deviation `sigma` (n entries, the
-/// state's unit) apart from outliers. `prior` may be null. Rank deficiency is a status of the result, never an
-/// exception, and takes precedence over iteration_limit. Transitions that hold a NaN or infinity are left out, L counts
-/// the others. Status failed (theta NaN): no transition is left, or numbers overflow.
+/// Fits one window as a robust Ceres problem. The residual is r_k = (x[k+1] - x[k] - [A B c] phi_k) / sigma, with one
+/// loss per sample on |r_k|^2 over its n states. Residuals other than outliers are assumed independent, with standard
+/// deviation `sigma` (n entries, the state's unit). `prior` may be null. Transitions with a NaN or infinity are left
+/// out; L counts the others. Rank deficiency is a status, not an exception, and takes precedence over iteration_limit.
+/// Status failed (theta NaN): no transition is left, or numbers overflow.
 ///
-/// Sample weights w_k (Trajectory::weight) multiply the losses: the fit minimises sum w_k rho(|r_k|^2), w_k divided by
-/// their mean over the window, so that a common factor changes nothing, not even against the prior. Least squares: the
-/// noise variance of transition k is taken as noise_variance / w_k, as statsmodels' WLS does. rank and condition are
-/// those of the regressors times sqrt(w_k), robust_scale weighs its medians.
+/// Sample weights w_k (Trajectory::weight) multiply the losses: the fit minimises sum w_k rho(|r_k|^2). They are
+/// divided by their mean over the window, so a common factor has no effect, not even against the prior. With least
+/// squares, the noise variance of transition k is noise_variance / w_k, as in statsmodels' WLS. rank and condition are
+/// those of the regressors times sqrt(w_k). robust_scale uses weighted medians.
 ///
-/// noise_variance: sigma^2 sum w_k r_k^2 / [(L - rank) kappa], w_k = rho' the robust weight and kappa = E[w z^2] for
-/// Gaussian z, which makes it consistent for the variance of Gaussian noise (rank: of one state's regressors). Not
-/// above L = q: sum of squared residuals about the posterior / L. Never below the square of `sigma_floor` (n entries,
-/// or empty: none), nor is the residual variance of the `model` covariance. Throws std::invalid_argument for a range
+/// noise_variance: sigma^2 sum w_k r_k^2 / [(L - rank) kappa] with the robust weight w_k = rho' and the rank of one
+/// state's regressors. kappa = E[w z^2] for Gaussian z makes it consistent for the variance of Gaussian noise. For L <=
+/// q: sum of squared residuals about the posterior / L. Lower bound: the square of `sigma_floor` (n entries, or empty:
+/// none), which also bounds the residual variance of the `model` covariance. Throws std::invalid_argument for a range
 /// outside the run or sizes and signs that do not fit.
 LocalModel fit_window(const Trajectory& run, Index start, const LinearStructure& structure, const FitOptions& options,
                       const Eigen::VectorXd& sigma, const ParameterPrior* prior,
                       const Eigen::VectorXd& sigma_floor = {});
 
-/// What all windows of one fit have in common. Immutable, shared by threads.
+/// Data shared by all windows of one fit. Immutable, shared by threads.
 struct Estimator {
   LinearStructure structure;
   RobustLoss loss;
@@ -42,11 +42,11 @@ struct Estimator {
 
 Estimator make_estimator(const LinearStructure& structure, const FitOptions& options);
 
-/// The fit behind fit_window, on transitions that are already stacked and decomposed (at excitation_tolerance).
+/// The fit behind fit_window, for transitions already stacked and decomposed (at excitation_tolerance).
 LocalModel fit_transitions(const Transitions& transitions, const Decomposition& decomposition,
                            const Estimator& estimator, const NoiseScale& scale, const ParameterPrior* prior);
 
-/// theta of fit_transitions alone, without its uncertainty; NaN when the fit failed.
+/// theta of fit_transitions without its uncertainty; NaN if the fit failed.
 Eigen::VectorXd fit_theta(const Transitions& transitions, const Decomposition& decomposition,
                           const Estimator& estimator, const NoiseScale& scale, const ParameterPrior* prior);
 

@@ -47,13 +47,13 @@ void check_options(const FitOptions& options, Index parameters) {
     require(value > 0.0 && std::isfinite(value), "prior_sd", std::to_string(value), "positive");
 }
 
-/// What stream_windows hands over at a time.
+/// Number of windows per call of the sink of stream_windows.
 constexpr Index streamed_windows = 65536;
-/// The default prior is made from so many windows at most, drawn in blocks.
+/// Largest number of windows for the default prior; they are drawn in blocks.
 constexpr Index prior_windows = 200000;
 constexpr Index prior_block = 64;
 
-/// The windows that the default prior is made from.
+/// The ranges of windows for the default prior.
 std::vector<WindowPlan::Range> prior_ranges(const WindowPlan& plan, Index longest, std::uint64_t seed) {
   const Index M = plan.count(), blocks = prior_windows / prior_block;
   if (M <= prior_windows) return plan.ranges(0, M, longest);
@@ -69,10 +69,10 @@ std::vector<WindowPlan::Range> prior_ranges(const WindowPlan& plan, Index longes
   return ranges;
 }
 
-/// Ceres' windows are jobs of their own.
+/// Windows solved by Ceres are separate jobs.
 Index longest_range(const BatchWindows* batch) { return batch ? BatchWindows::longest_range : 1; }
 
-/// The linear structure of a model, and the general one where it is not fitted as a linear regression.
+/// The linear structure of a model, and the motion model if it is not fitted as a linear regression.
 struct ModelChoice {
   LinearStructure structure;
   std::shared_ptr<const MotionModel> motion;  ///< null: linear
@@ -86,11 +86,11 @@ ModelChoice choose_model(const Recording& recording, const FitOptions& options) 
   return choice;
 }
 
-/// All windows of a recording, to be fitted range by range.
+/// Fits all windows of a recording, range by range.
 class Fitting {
  public:
-  /// `motion`: null for linear models; must outlive it, as recording and options must. `first`: no window of a run
-  /// begins before this transition, or before its regressors lie inside the run.
+  /// `motion`: null for linear models. It, the recording and the options must outlive this object. `first`: earliest
+  /// transition at which a window may begin; windows also begin no earlier than their regressors allow.
   Fitting(const Recording& recording, const FitOptions& options, const LinearStructure& structure,
           const MotionModel* motion, Index first = 0)
       : plan_(recording, options.length, options.step, std::max(first, structure.first_transition())) {
@@ -119,7 +119,7 @@ class Fitting {
   Index count() const { return plan_.count(); }
   const WindowFits& common() const { return common_; }
 
-  /// Windows first .. first + count - 1 into the columns of `fits`.
+  /// Fits windows first .. first + count - 1 into the columns of `fits`.
   void fit(Index first, Index count, WindowFits& fits) {
     if (!counter_) counter_.emplace("windows", static_cast<std::size_t>(plan_.count()));
     fits.resize(count);
@@ -134,7 +134,7 @@ class Fitting {
  private:
   const ParameterPrior* prior() const { return prior_ ? &*prior_ : nullptr; }
 
-  /// What the options say of all windows.
+  /// Fills the fields that the options determine for all windows.
   void describe(const FitOptions& options, const LinearStructure& structure, const MotionModel* motion) {
     if (plan_.count() == 0)
       throw DataError("no training run has the " + std::to_string(options.length) + " transitions of a window");
@@ -146,7 +146,7 @@ class Fitting {
     common_.loss = options.loss;
   }
 
-  /// theta of windows fitted without prior, one per column; NaN where the rank is deficient.
+  /// theta of windows fitted without prior, one per column; NaN where rank deficient.
   Eigen::MatrixXd unregularised_fits() {
     const auto batch = linear_ ? BatchWindows::make(*linear_, plan_.count(), nullptr) : nullptr;
     const auto ranges = prior_ranges(plan_, longest_range(batch.get()), fitter_->options().seed);
@@ -187,7 +187,7 @@ class Fitting {
     }
   }
 
-  /// Counts who solved how many of these windows, and checks a sample of the batch solver's.
+  /// Counts which solver solved these windows, and checks a sample of the batch solver's results.
   void audit(Index first, Index count, WindowFits& fits) {
     common_.audit.batch += std::count(fits.by_batch.begin(), fits.by_batch.end(), 1);
     const auto begin = std::lower_bound(audited_.begin(), audited_.end(), first),
@@ -218,7 +218,7 @@ class Fitting {
   std::unique_ptr<BatchWindows> batch_;
   std::vector<Index> audited_;
   std::atomic<Index> by_ceres_ = 0;
-  std::optional<WorkCounter> counter_;  ///< from the first window on
+  std::optional<WorkCounter> counter_;  ///< counts from the first window on
 };
 
 WindowFits collect(Fitting&& fitting) {

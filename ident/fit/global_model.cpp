@@ -14,7 +14,7 @@
 namespace modebank {
 
 std::vector<Index> open_columns(const Eigen::MatrixXd& X, const Decomposition& d) {
-  constexpr double rounding = 1e-6;  // of a squared length: far below any part that a dependence has
+  constexpr double rounding = 1e-6;  // of a squared length; far below any real dependence
   const Index q = d.basis.rows();
   std::vector<Index> open;
   if (d.rank() == q) return open;
@@ -30,7 +30,7 @@ std::vector<Index> open_columns(const Eigen::MatrixXd& X, const Decomposition& d
 
 namespace {
 
-/// S (x) (X'X)^+ for theta row-major; NaN where the transitions leave it open.
+/// S (x) (X'X)^+ for theta row-major; NaN where the transitions do not determine theta.
 Eigen::MatrixXd least_squares_covariance(const Eigen::MatrixXd& X, const Decomposition& d,
                                          const Eigen::MatrixXd& residual_square_sum, Index N) {
   const Index q = d.basis.rows(), n = residual_square_sum.rows(), rank = d.rank();
@@ -47,8 +47,8 @@ Eigen::MatrixXd least_squares_covariance(const Eigen::MatrixXd& X, const Decompo
   return covariance;
 }
 
-/// All training transitions turned into few rows of the same least-squares problem: the triangle of a QR decomposition
-/// that takes block after block (so that a long recording needs no copy of itself), and their count.
+/// Reduces all training transitions to a few rows of the same least-squares problem, and counts them. A QR
+/// decomposition takes block after block, so a long recording is not copied.
 std::pair<Transitions, Index> reduce(const Recording& recording, const LinearStructure& structure) {
   const Index q = structure.regressors(), n = structure.states;
   Eigen::MatrixXd triangle(0, q + n);
@@ -63,7 +63,8 @@ std::pair<Transitions, Index> reduce(const Recording& recording, const LinearStr
 }
 
 constexpr int motion_iterations = 1000;
-constexpr int scale_passes = 3;  // of the motion model's fit, each with the residuals' standard deviations of the last
+// fits of the motion model; each weighs states by the residuals' standard deviations of the previous one
+constexpr int scale_passes = 3;
 
 /// Root mean square per state.
 Eigen::VectorXd root_mean_square(const Eigen::VectorXd& r, Index n) {

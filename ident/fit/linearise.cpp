@@ -11,7 +11,8 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 constexpr double difference_share = 1e-6;  // of a parameter's size
-constexpr double least_size = 1e-2;  // that a parameter near zero is taken to have: 2e-8 of a derivative is rounding
+// assumed size of a parameter near zero; gives a derivative a rounding error of 2e-8
+constexpr double least_size = 1e-2;
 
 Eigen::VectorXd linear_theta(const MotionModel& model, const Eigen::VectorXd& theta, const OperatingPoint& at) {
   const Index n = model.states(), m = model.inputs(), p = model.parameter_count();

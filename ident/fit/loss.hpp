@@ -11,22 +11,22 @@ class LossFunction;
 
 namespace modebank {
 
-/// Tuning constant, in units of sigma, that gives 95 % efficiency under Gaussian noise in one state (Holland & Welsch
-/// 1977; softlone and arctan solved from the same condition; 1 for trivial).
+/// Tuning constant in units of sigma for 95 % efficiency under Gaussian noise in one state (Holland & Welsch 1977).
+/// softlone and arctan satisfy the same condition; trivial has 1.
 double default_loss_scale(Loss loss);
 
-/// rho and its derivatives at s = |r|^2, r in units of sigma.
+/// rho and its derivatives at s = |r|^2, with r in units of sigma.
 struct LossValue {
   double rho = 0.0;
   double weight = 0.0;     ///< rho'(s), the weight of iteratively reweighted least squares; 1 at s = 0
   double curvature = 0.0;  ///< rho''(s)
 };
 
-/// A Ceres loss with its tuning constant c in units of sigma. Immutable, shared by all windows and threads.
-/// arctan is rho(s) = c^2 atan(s / c^2) (Ceres' own argument is c^2 there), so that c is a residual for every loss.
+/// A Ceres loss with its tuning constant c in units of sigma. Immutable, shared by all windows and threads. arctan is
+/// rho(s) = c^2 atan(s / c^2), where Ceres' own argument is c^2; so c is a residual for every loss.
 class RobustLoss {
  public:
-  /// scale 0: default_loss_scale. Throws std::invalid_argument for a negative or non-finite scale.
+  /// `scale` 0: default_loss_scale. Throws std::invalid_argument for a negative or non-finite scale.
   RobustLoss(Loss loss, double scale);
   ~RobustLoss();
   RobustLoss(RobustLoss&&) noexcept;
@@ -36,7 +36,7 @@ class RobustLoss {
   Loss kind() const { return kind_; }
   double scale() const { return scale_; }
   bool convex() const { return kind_ == Loss::trivial || kind_ == Loss::huber || kind_ == Loss::softlone; }
-  /// For ceres::Problem::AddResidualBlock, which takes it non-const; never changed by Ceres.
+  /// For ceres::Problem::AddResidualBlock, whose parameter is not const. Ceres does not change it.
   ceres::LossFunction* ceres_function() const { return function_.get(); }
 
  private:
@@ -45,8 +45,8 @@ class RobustLoss {
   std::unique_ptr<ceres::LossFunction> function_;
 };
 
-/// E[rho'(|z|^2) |z|^2] / n for z ~ N(0, I_n): what the weighted mean square of Gaussian residuals in units of sigma
-/// tends to, hence the factor that makes it a consistent variance estimate (1 for trivial).
+/// E[rho'(|z|^2) |z|^2] / n for z ~ N(0, I_n), the limit of the weighted mean square of Gaussian residuals in units of
+/// sigma. Dividing by it gives a consistent variance estimate (1 for trivial).
 double gaussian_consistency(const RobustLoss& loss, Eigen::Index states);
 
 }  // namespace modebank

@@ -16,16 +16,16 @@ namespace modebank {
 
 namespace {
 
-/// Whitened residuals beyond this are a numerical accident: their squares would overflow.
+/// Larger whitened residuals are numerical accidents; their squares would overflow.
 constexpr double largest_residual = 1e100;
-/// Ceres stops when the cost gains less than this share: first near enough for Newton's steps to do the rest, and where
-/// they do not, as far as the cost can be told apart.
+/// Relative cost change at which Ceres stops. The first tolerance is near enough for Newton steps; if these fail, the
+/// second goes to the precision of the cost.
 constexpr double near_tolerance = 1e-4;
 constexpr double far_tolerance = 1e-14;
-/// Below this share of b the influence psi no longer scales a gradient: stationary_gradient of it is rounding error.
+/// If psi is below this share of b, it no longer scales a gradient: stationary_gradient of it is rounding error.
 constexpr double least_influence = 1e-5;
-/// Near the optimum what a step should gain is rounding error, and Ceres calls it invalid; the trust region shrinks,
-/// and Ceres is to end there as at any small step, not as a failure.
+/// Near the optimum the expected gain of a step is rounding error, and Ceres calls the step invalid. The trust region
+/// then shrinks, and the search should end as after any small step, not as a failure.
 constexpr int most_invalid_steps = 50;
 constexpr double cost_rounding = 1e-13;
 constexpr int max_newton_steps = 60;
@@ -39,7 +39,7 @@ ceres::Problem::Options problem_options() {
   return options;
 }
 
-/// Where Ceres ends: relative change of the cost, gradient, relative step.
+/// Termination of Ceres: relative change of the cost, gradient, relative step.
 struct Tolerances {
   double function, gradient = 1e-14, parameter = 1e-12;
 };
@@ -47,12 +47,12 @@ constexpr Tolerances tightest{1e-16, 1e-16, 1e-16};
 
 ceres::Solver::Options solver_options(const Tolerances& tolerances, int max_iterations) {
   ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;  // safe: J has orthonormal columns
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;  // safe, because J has orthonormal columns
   options.max_num_iterations = max_iterations;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
-  options.jacobi_scaling = false;             // the columns are of unit norm already
-  options.initial_trust_region_radius = 1e8;  // start with full steps: the problem is convex or starts near its optimum
+  options.jacobi_scaling = false;             // the columns already have unit norm
+  options.initial_trust_region_radius = 1e8;  // begin with full steps: the problem is convex or starts near its optimum
   options.function_tolerance = tolerances.function;
   options.gradient_tolerance = tolerances.gradient;
   options.max_num_consecutive_invalid_steps = most_invalid_steps;
@@ -64,7 +64,8 @@ FitStatus search(const WhitenedProblem& problem, const RobustLoss& loss, const T
                  int max_iterations, Eigen::VectorXd& z) {
   ceres::Problem ceres_problem(problem_options());
   const auto add = [&](Index first, Index count, ceres::LossFunction* function) {
-    ceres_problem.AddResidualBlock(new LinearResidual(problem, first, count), function, z.data());  // Ceres owns it
+    // Ceres owns the block
+    ceres_problem.AddResidualBlock(new LinearResidual(problem, first, count), function, z.data());
   };
   std::vector<WeightedLoss> weighted;
   for (const double weight : problem.weight) weighted.emplace_back(*loss.ceres_function(), weight);
@@ -82,14 +83,15 @@ bool stationary(const WhitenedProblem& problem, const RobustTerms& terms) {
   return scaled_gradient(problem, terms) <= stationary_gradient;
 }
 
-/// -H^-1 g; without rho'' where the second derivative is not positive definite. Empty where even that is not.
+/// -H^-1 g; without rho'' if the second derivative is not positive definite. Empty if that matrix is not, either.
 Eigen::VectorXd newton_step(const WhitenedProblem& problem, const RobustTerms& terms, const Eigen::VectorXd& g) {
   Cholesky factor(hessian(problem, terms));
   if (!factor.definite()) factor.factorise(weighted_information(problem, terms));
   return factor.definite() ? Eigen::VectorXd(-factor.solve(g)) : Eigen::VectorXd();
 }
 
-/// Newton steps, halved until the objective no longer grows, until z is stationary (true) or nothing is gained.
+/// Newton steps, halved until the objective does not increase. Returns true once z is stationary, false if no step
+/// gains.
 bool polish(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd& z) {
   RobustTerms terms = evaluate(problem, loss, z);
   for (int i = 0; i < max_newton_steps; ++i) {
@@ -109,7 +111,7 @@ bool polish(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::Vecto
   return stationary(problem, terms);
 }
 
-/// Whether the numbers can be squared.
+/// Whether the squares of all numbers are finite.
 bool sound(const WhitenedProblem& problem) {
   return problem.b.cwiseAbs().maxCoeff() < largest_residual && problem.J.allFinite();
 }
@@ -196,7 +198,7 @@ Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max
     minimum.status = search(problem, loss, {tolerance}, max_iterations, minimum.z);
     if (minimum.status != FitStatus::converged || polish(problem, loss, minimum.z)) return finite_or_failed(minimum);
   }
-  minimum.status = FitStatus::iteration_limit;  // Ceres gains nothing, and yet this is no stationary point
+  minimum.status = FitStatus::iteration_limit;  // no further gain from Ceres, yet the point is not stationary
   return finite_or_failed(minimum);
 }
 

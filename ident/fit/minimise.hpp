@@ -7,11 +7,11 @@
 
 namespace modebank {
 
-/// Residuals of a whitened problem at z and the loss' derivatives there. psi_k = weight_k r_k is the influence of
-/// sample k (Huber 1981). Of a sample with weight w all are those of its rows, which carry sqrt(w): r_k is sqrt(w)
-/// times the sample's residual.
+/// Residuals of a whitened problem at z, and the loss's derivatives. psi_k = weight_k r_k is the influence of sample k
+/// (Huber 1981). For a sample of weight w all values refer to its rows, which contain sqrt(w): r_k is sqrt(w) times the
+/// sample's residual.
 struct RobustTerms {
-  Eigen::VectorXd residual;   ///< all rows of b - J z
+  Eigen::VectorXd residual;   ///< b - J z, all rows
   Eigen::VectorXd weight;     ///< L, rho'(|r_k|^2 / w)
   Eigen::VectorXd curvature;  ///< L, rho''(|r_k|^2 / w) / w
 
@@ -26,37 +26,37 @@ struct RobustTerms {
 };
 
 RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, const Eigen::VectorXd& z);
-/// The same at given residuals (all rows).
+/// RobustTerms for given residuals (all rows).
 RobustTerms evaluate_at(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd residual);
 
 /// The objective 1/2 sum w rho(|r_k|^2 / w) + 1/2 |prior rows|^2.
 double half_cost(const WhitenedProblem& problem, const RobustLoss& loss, const RobustTerms& terms);
-/// Its gradient in z.
+/// Gradient of half_cost by z.
 Eigen::VectorXd gradient(const WhitenedProblem& problem, const RobustTerms& terms);
-/// Its exact second derivative.
+/// Exact second derivative of half_cost.
 Eigen::MatrixXd hessian(const WhitenedProblem& problem, const RobustTerms& terms);
-/// The second derivative without rho'', as iteratively reweighted least squares takes it: never indefinite.
+/// The second derivative without rho'', as in iteratively reweighted least squares; never indefinite.
 Eigen::MatrixXd weighted_information(const WhitenedProblem& problem, const RobustTerms& terms);
 
-/// How far from a minimum (the Karush-Kuhn-Tucker condition of a problem without bounds): the gradient's norm relative
-/// to that of psi and the prior's rows, of which it is a projection, or to 1e-5 |b| where psi is smaller still and the
-/// gradient rounding error. Free of units.
+/// Distance from a minimum, without units: the norm of the gradient relative to that of psi and the prior's rows, whose
+/// projection the gradient is. If psi is below 1e-5 |b|, the gradient is rounding error, and 1e-5 |b| is the reference.
+/// (Karush-Kuhn-Tucker condition without bounds.)
 double scaled_gradient(const WhitenedProblem& problem, const RobustTerms& terms);
 
-/// The minimiser, and how the search for it ended: converged, iteration_limit or failed.
+/// The minimiser and the status of the search: converged, iteration_limit or failed.
 struct Minimum {
   Eigen::VectorXd z;
   FitStatus status = FitStatus::failed;
 };
 
-/// THE definition of a linear window's fit, and what solves it where the batch solver does not: Ceres' trust region
-/// search, one residual block and loss per sample, from the least-squares solution (non-convex losses: from the Huber
-/// optimum) until the cost changes by less than 1e-4 of itself; then Newton steps with the exact second derivative to a
-/// scaled gradient of stationary_gradient, because Ceres drops rho'' where it is negative and so gains only a constant
-/// factor per step near the optimum. Deterministic and silent.
+/// Defines the fit of a linear window, and solves it unless the batch solver does. Ceres' trust region search with one
+/// residual block and loss per sample starts from the least-squares solution (non-convex losses: from the Huber
+/// optimum). It ends when the relative cost change is below 1e-4. Newton steps with the exact second derivative follow,
+/// to a scaled gradient of stationary_gradient. They are needed because Ceres drops a negative rho'' and then converges
+/// only linearly. Deterministic, without output.
 Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max_iterations);
 
-/// Ceres alone from the same start, at tolerances of 1e-16: what audits compare with.
+/// Ceres alone from the same start, at tolerances of 1e-16; the reference of audits.
 Minimum minimise_by_ceres_alone(const WhitenedProblem& problem, const RobustLoss& loss);
 
 }  // namespace modebank

@@ -18,8 +18,8 @@ namespace modebank {
 
 namespace {
 
-/// Samples first .. first + count - 1 as a Ceres cost function: residuals in units of sigma, times the roots of their
-/// weights. All that it refers to must outlive it.
+/// Samples first .. first + count - 1 as a Ceres cost function: residuals in units of sigma, times the square roots of
+/// their weights. All referenced objects must outlive it.
 class SampleResidual final : public ceres::CostFunction {
  public:
   SampleResidual(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, Index first, Index count)
@@ -51,7 +51,7 @@ class SampleResidual final : public ceres::CostFunction {
   Index first_, count_;
 };
 
-/// (theta - m) / sd. The prior must outlive it.
+/// The prior's residual (theta - m) / sd. The prior must outlive it.
 class PriorResidual final : public ceres::CostFunction {
  public:
   explicit PriorResidual(const ParameterPrior& prior) : prior_(prior) {
@@ -72,13 +72,13 @@ class PriorResidual final : public ceres::CostFunction {
   const ParameterPrior& prior_;
 };
 
-/// Near the optimum what a step should gain is rounding error, and Ceres calls the step invalid; the trust region
-/// shrinks until the step is small, which is to end the search as convergence.
+/// Near the optimum the expected gain of a step is rounding error, and Ceres calls such steps invalid. The trust region
+/// then shrinks until the step is small, which should end the search as converged.
 constexpr int most_invalid_model_steps = 50;
 
 ceres::Solver::Options model_solver_options(int iterations) {
   ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;  // does not square the condition
+  options.linear_solver_type = ceres::DENSE_QR;  // does not square the condition number
   options.max_num_iterations = iterations;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
@@ -98,7 +98,8 @@ void set_bounds(const MotionModel& model, ceres::Problem& problem, Eigen::Vector
   }
 }
 
-/// A loss is a sample's, so that each sample is a block; least squares take one block of all.
+/// Minimises by Ceres. Ceres applies the loss to one residual block, so each sample is a block; plain least squares use
+/// one block for all.
 FitStatus ceres_search(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, const RobustLoss& loss,
                        const ParameterPrior* prior, int iterations, Eigen::VectorXd& theta) {
   ceres::Problem::Options problem_options;
@@ -132,7 +133,7 @@ Eigen::VectorXd within_bounds(const MotionModel& model, Eigen::VectorXd theta) {
   return theta;
 }
 
-/// Residuals and derivatives of a fit at its solution, in units of sigma, times the roots of the sample weights.
+/// Residuals and derivatives of a fit at its solution, in units of sigma, times the square roots of the sample weights.
 struct LinearisedFit {
   Eigen::VectorXd r;
   RowMajorJacobian J;
@@ -154,7 +155,7 @@ LinearisedFit linearise(const ModelResiduals& residuals, const Eigen::VectorXd& 
   return fit;
 }
 
-/// The whitened problem whose solution z = 0 is the fit's.
+/// The whitened problem that has its solution, the fit, at z = 0.
 WhitenedProblem whiten_at(const LinearisedFit& fit, const ModelResiduals& residuals, const Eigen::VectorXd& at,
                           const Decomposition& excitation, const ParameterPrior* prior) {
   const Index rows = fit.r.size(), u = at.size(), p = prior ? prior->mean.size() : 0;

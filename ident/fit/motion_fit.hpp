@@ -9,7 +9,7 @@
 
 namespace modebank {
 
-/// What all windows of one fit of a motion model have in common. Immutable, shared by threads.
+/// The data shared by all windows of one motion-model fit. Immutable, shared by threads.
 struct ModelEstimator {
   RobustLoss loss;
   double consistency = 1.0;  ///< gaussian_consistency of the loss
@@ -19,24 +19,24 @@ struct ModelEstimator {
 
 ModelEstimator make_model_estimator(const MotionModel& model, const FitOptions& options);
 
-/// theta at the end of a search, and how it ended: converged, iteration_limit or failed.
+/// theta at the end of a search, and its status: converged, iteration_limit or failed.
 struct ModelMinimum {
   Eigen::VectorXd theta;
   FitStatus status = FitStatus::failed;
 };
 
-/// How minimise_model works, in words.
+/// Description of minimise_model for reports.
 inline constexpr char minimise_model_method[] = "Ceres to a relative change of the cost of 1e-16";
 
-/// Minimises 1/2 sum w_k rho(|r_k / sigma|^2) + 1/2 |(theta - m) / sd|^2 by Ceres within the parameters' bounds from
-/// `start`, w_k the sample weights of `residuals`. Non-convex losses start from the Huber optimum. `sigma`: n positive
-/// entries; `prior` may be null.
+/// Minimises 1/2 sum w_k rho(|r_k / sigma|^2) + 1/2 |(theta - m) / sd|^2 by Ceres from `start`, within the parameters'
+/// bounds. w_k are the sample weights of `residuals`. Non-convex losses start from the Huber optimum. `sigma`: n
+/// positive entries; `prior` may be null.
 ModelMinimum minimise_model(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, const RobustLoss& loss,
                             const ParameterPrior* prior, int max_iterations, const Eigen::VectorXd& start);
 
-/// fit_window for any model: the fields of LocalModel have the meaning they have there, with the predictions'
-/// derivatives by theta in the place of the regressors, taken at the solution. Their rank and condition are those of
-/// all unknowns. With p parameters for n states the residuals lose p / n degrees of freedom per state.
+/// fit_window for any model. The fields of LocalModel have the same meaning; the predictions' derivatives by theta at
+/// the solution replace the regressors. Rank and condition are those of all unknowns. With p parameters for n states
+/// the residuals lose p / n degrees of freedom per state.
 LocalModel fit_model(const ModelResiduals& residuals, const ModelEstimator& estimator, const Eigen::VectorXd& sigma,
                      const Eigen::VectorXd& sigma_floor, const ParameterPrior* prior, const Eigen::VectorXd& start);
 

@@ -20,36 +20,36 @@ std::vector<Stretch> training_stretches(const Recording& recording);
 
 using RowMajorJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Residuals measured - predicted of a model over stretches of runs, each sample predicted from the measured one
-/// before: n rows per sample, in the state's unit. Samples that are not finite have no residual. Refers to model and
+/// Residuals measured - predicted of a model over stretches of runs; each sample is predicted from the previous
+/// measured one. n rows per sample, in the state's unit. Samples that are not finite are skipped. Refers to model and
 /// runs, which must outlive it.
 class ModelResiduals {
  public:
-  /// `weights`: what multiplies the loss of each transition of the stretches, in their order; empty: the runs' sample
-  /// weights, divided by their mean, or one for all. Samples of weight zero have no residual.
+  /// `weights`: factors of each transition's loss, in the order of the stretches. Empty: the runs' sample weights
+  /// divided by their mean, or one for all. Samples of weight zero are skipped.
   ModelResiduals(const MotionModel& model, const std::vector<Stretch>& stretches, const Eigen::VectorXd& weights = {});
 
   const MotionModel& model() const { return model_; }
   Index states() const { return model_.states(); }
-  Index samples() const { return static_cast<Index>(transitions_.size()); }  ///< with a residual
+  Index samples() const { return static_cast<Index>(transitions_.size()); }  ///< number of samples with a residual
   Index rows() const { return samples() * states(); }
   Index unknowns() const { return model_.parameter_count(); }
   double weight(Index sample) const { return weights_.size() > 0 ? weights_(sample) : 1.0; }
   const Eigen::VectorXd& weights() const { return weights_; }  ///< empty: all one
-  /// Increments, which the model explains, one row per sample times the root of its weight.
+  /// Increments to be explained by the model, one row per sample, times the square root of its weight.
   Eigen::MatrixXd responses() const;
 
   /// r (rows) and, if not null, the predictions' derivatives by theta (rows x unknowns): dr = -J d(theta).
   void evaluate(const double* theta, Eigen::VectorXd& r, RowMajorJacobian* J) const;
-  /// The same for samples first .. first + count - 1, into count n numbers and, if not null, count n rows of J.
+  /// `evaluate` for samples first .. first + count - 1, into count n numbers and, if not null, count n rows of J.
   void evaluate(const double* theta, Index first, Index count, double* r, double* J) const;
 
  private:
   void take_run_weights(const std::vector<double>& weights);
 
   const MotionModel& model_;
-  std::vector<MotionModel::Transition> transitions_;  ///< those that are finite
-  Eigen::VectorXd weights_;                           ///< of those; empty without
+  std::vector<MotionModel::Transition> transitions_;  ///< the finite transitions
+  Eigen::VectorXd weights_;                           ///< one weight per finite transition; empty without weights
 };
 
 }  // namespace modebank

@@ -9,8 +9,8 @@
 
 namespace modebank {
 
-/// Rows first .. first + count - 1 of r(z) = b - J z as a Ceres cost function with its (constant) analytic Jacobian -J.
-/// The problem must outlive it.
+/// Rows first .. first + count - 1 of r(z) = b - J z as a Ceres cost function with its constant Jacobian -J. The
+/// problem must outlive it.
 class LinearResidual final : public ceres::CostFunction {
  public:
   LinearResidual(const WhitenedProblem& problem, Index first, Index count) : problem_(&problem), first_(first) {
@@ -32,7 +32,8 @@ class LinearResidual final : public ceres::CostFunction {
   Index first_;
 };
 
-/// w rho(s / w): the loss of a sample whose rows carry the root of its weight w. The wrapped loss must outlive it.
+/// w rho(s / w): the loss of a sample whose rows contain the square root of its weight w. The wrapped loss must outlive
+/// it.
 class WeightedLoss final : public ceres::LossFunction {
  public:
   WeightedLoss(const ceres::LossFunction& loss, double weight) : loss_(&loss), weight_(weight) {}

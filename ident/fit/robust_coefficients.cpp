@@ -12,8 +12,9 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double least_share_of_rms = 1e-3;  // of the errors' root mean square, for more than half of them may be zero
-constexpr double least_normal_scale = 1e-150;  // its square is still a normal number
+// of the errors' root mean square, because more than half of the errors may be zero
+constexpr double least_share_of_rms = 1e-3;
+constexpr double least_normal_scale = 1e-150;  // its square is still a normal floating-point number
 
 }  // namespace
 

@@ -7,10 +7,10 @@
 
 namespace modebank {
 
-/// Coefficients of a regression of one response by the loss and the scale of a window's fit; empty where that fails.
-/// Regressors of deficient rank count for what they determine.
+/// Coefficients of a regression of one response, with the loss and scale of a window fit; empty if the fit fails.
+/// Rank-deficient regressors determine what they can.
 Eigen::VectorXd robust_coefficients(const Transitions& transitions, const FitOptions& options);
-/// Least squares where that fails.
+/// robust_coefficients, or least squares if that fails.
 Eigen::VectorXd robust_or_least_squares(const Transitions& transitions, const FitOptions& options);
 
 }  // namespace modebank

@@ -20,7 +20,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double normal_third_quartile = 0.674489750196081743;  // Phi^-1(3/4)
-constexpr double fit_tolerance = 1e-12;                         // of the scale; rounding is some decades below
+// relative to the scale; rounding is some decades smaller
+constexpr double fit_tolerance = 1e-12;
 constexpr int max_iterations = 1000;
 
 double uncentred_scale(const VectorXd& residuals) { return median(residuals.cwiseAbs()) / normal_third_quartile; }
@@ -28,7 +29,7 @@ double uncentred_scale(const VectorXd& residuals) { return median(residuals.cwis
 Transitions one_response(const Transitions& all, Index i) {
   Transitions one = all;
   one.increments = all.increments.col(i);
-  one.weight.resize(0);  // rows count as they are
+  one.weight.resize(0);  // rows count unweighted
   return one;
 }
 
@@ -39,7 +40,7 @@ struct ResponseFit {
   bool converged = false;
 };
 
-/// Of a problem at scale 1; where its rank is deficient, of what the regressors determine.
+/// Standard errors for a problem of scale 1. If it is rank deficient: those of the determined directions.
 VectorXd standard_errors(const WhitenedProblem& problem, const RobustLoss& loss, const VectorXd& residuals,
                          double scale) {
   const Index q = problem.basis.rows(), rank = problem.unknowns();
@@ -55,7 +56,7 @@ VectorXd standard_errors(const WhitenedProblem& problem, const RobustLoss& loss,
   return scale * (problem.basis * covariance(determined) * problem.basis.transpose()).diagonal().cwiseSqrt();
 }
 
-/// Steps of reweighted least squares on one problem whose scale moves along.
+/// Reweighted least squares on one problem; the scale is updated in every step.
 ResponseFit fit_response(const Transitions& transitions, const Decomposition& design) {
   const WhitenedProblem problem = whiten(transitions, design, VectorXd::Ones(1), nullptr);
   const RobustLoss loss(Loss::huber, default_loss_scale(Loss::huber));

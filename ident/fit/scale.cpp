@@ -13,7 +13,7 @@ namespace modebank {
 
 namespace {
 constexpr double floor_share = 1e-3;
-constexpr double least_scale = 1e-150;  // its square is still a normal number
+constexpr double least_scale = 1e-150;  // its square is still a normal floating-point number
 }  // namespace
 
 double median(Eigen::VectorXd values) {
@@ -30,12 +30,12 @@ double normalised_mad(const Eigen::VectorXd& values) {
 
 namespace {
 
-/// Smallest value up to which lies half of the weight; the mean of it and the next where that half is exact.
+/// Smallest value at which the cumulative weight reaches half; the mean of it and the next value if it is exactly half.
 double weighted_median(const Eigen::VectorXd& values, const Eigen::VectorXd& weights) {
   std::vector<Index> order(static_cast<std::size_t>(values.size()));
   std::iota(order.begin(), order.end(), Index{0});
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values(a) < values(b); });
-  constexpr double rounding = 1e-12;  // of sums of weights that are equal in exact arithmetic
+  constexpr double rounding = 1e-12;  // relative, for sums of weights that are equal in exact arithmetic
   const double half = 0.5 * weights.sum();
   double below = 0.0;
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -72,7 +72,7 @@ Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition
 Eigen::VectorXd scale_floor(const Recording& recording, const LinearStructure& structure,
                             const Eigen::VectorXd& global_noise_variance) {
   Eigen::VectorXd floor = floor_share * global_noise_variance.cwiseSqrt();
-  Eigen::VectorXd norm = Eigen::VectorXd::Zero(floor.size());  // of the states
+  Eigen::VectorXd norm = Eigen::VectorXd::Zero(floor.size());  // norm of each state
   Index count = 0;
   for_each_training_block(recording, structure, [&](const Transitions& block) {
     count += block.count();

@@ -6,30 +6,30 @@
 
 namespace modebank {
 
-double median(Eigen::VectorXd values);  ///< mean of the two middle ones for an even count; NaN for none
+double median(Eigen::VectorXd values);  ///< mean of the two middle values for an even count; NaN if empty
 
-/// 1.4826 times the median absolute deviation from the median: consistent for the standard deviation of a Gaussian.
+/// 1.4826 times the median absolute deviation from the median; consistent for a Gaussian's standard deviation.
 double normalised_mad(const Eigen::VectorXd& values);
 
-/// The same of a sample in which value i stands for weights(i) > 0 values.
+/// normalised_mad of a sample in which value i counts weights(i) > 0 times.
 double normalised_mad(const Eigen::VectorXd& values, const Eigen::VectorXd& weights);
 
-/// Residual standard deviations and what no estimate of them may fall below, n each.
+/// Residual standard deviations and their lower bounds, n each.
 struct NoiseScale {
   Eigen::VectorXd sigma;
   Eigen::VectorXd floor;
 };
 
-/// Residual standard deviation per state from least-squares residuals r (N x n, not multiplied by roots of weights)
-/// that cost each state `lost` degrees of freedom: normalised_mad, with the sample weights where there are some (N, or
-/// none), times sqrt(N / (N - lost)). NaN where N <= lost.
+/// Residual standard deviation per state: normalised_mad times sqrt(N / (N - lost)). r are least-squares residuals (N x
+/// n, without weights applied) that cost each state `lost` degrees of freedom. Sample weights (N, or empty) enter the
+/// medians. NaN if N <= lost.
 Eigen::VectorXd robust_scale(const Eigen::Ref<const Eigen::MatrixXd>& r, const Eigen::VectorXd& weights, double lost);
 
-/// The same of a linear regression.
+/// robust_scale of a linear regression.
 Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition& decomposition);
 
-/// What no sigma may fall below, per state: 1e-3 of the global residual standard deviation. Noise-free data keep a
-/// floor at the states' rounding error, and constant zero data one of 1, so that whitened residuals stay finite.
+/// Lower bound of sigma per state: 1e-3 of the global residual standard deviation. Noise-free data keep a bound at the
+/// states' rounding error, and constant zero data a bound of 1, so that whitened residuals stay finite.
 Eigen::VectorXd scale_floor(const Recording& recording, const LinearStructure& structure,
                             const Eigen::VectorXd& global_noise_variance);
 

@@ -7,14 +7,14 @@
 
 namespace modebank {
 
-/// Row-major, so that the rows of one sample lie together.
+/// Row-major, so that the rows of one sample are contiguous.
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// A window's fit in whitened form: theta = origin + basis z, residuals r(z) = b - J z in units of sigma (or of the
-/// prior's sd). Rows k n .. k n + n - 1 belong to sample k and share one loss; the rows after them are the prior's and
-/// are quadratic. J has orthonormal columns and z = 0 is the least-squares solution (J'b = 0), whatever the data's
-/// units. A sample of weight w has its rows of J and b multiplied by sqrt(w) and the loss w rho(|r_k|^2 / w), which is
-/// w times the loss of its residual.
+/// A window's fit in whitened form: theta = origin + basis z, with residuals r(z) = b - J z in units of sigma (or of
+/// the prior's sd). Rows k n .. k n + n - 1 belong to sample k and share one loss. The rows after the samples belong to
+/// the prior and are quadratic. J has orthonormal columns, and z = 0 is the least-squares solution (J'b = 0), in any
+/// units of the data. For a sample of weight w, its rows of J and b are multiplied by sqrt(w). Its loss is w
+/// rho(|r_k|^2 / w), which is w times the loss of its residual.
 struct WhitenedProblem {
   Index samples = 0;  ///< L
   Index states = 0;   ///< n
@@ -31,8 +31,8 @@ struct WhitenedProblem {
   Eigen::VectorXd theta(const Eigen::VectorXd& z) const { return origin + basis * z; }
 };
 
-/// Without a prior z spans the excited directions of `decomposition` (of the regressors), and theta has minimum norm;
-/// with one it spans all of theta. `sigma` n positive entries; `prior` may be null.
+/// Whitens a window's problem. Without a prior, z spans the excited directions of `decomposition` (of the regressors)
+/// and theta has minimum norm. With a prior, z spans all of theta. `sigma`: n positive entries; `prior` may be null.
 WhitenedProblem whiten(const Transitions& transitions, const Decomposition& decomposition, const Eigen::VectorXd& sigma,
                        const ParameterPrior* prior);
 

@@ -12,35 +12,35 @@
 
 namespace modebank {
 
-/// Everything that the fits of all windows of a recording share, and the fit of one of them through Ceres. Refers to
-/// recording, options and global model, which must outlive it. Safe to use from several threads.
+/// The data shared by the fits of all windows of a recording, and the fit of one window through Ceres. Refers to
+/// recording, options and global model, which must outlive it. Thread-safe.
 class WindowFitter {
  public:
   virtual ~WindowFitter() = default;
 
   virtual LocalModel fit(const Window& window, const ParameterPrior* prior) const = 0;
-  /// theta without prior; NaN where the rank is deficient or the fit failed.
+  /// theta without prior; NaN if rank deficient or failed.
   virtual Eigen::VectorXd unregularised_theta(const Window& window) const = 0;
 
-  /// Who solves a window to what tolerance, in words.
+  /// Solver and tolerance in words, for reports.
   virtual std::string method() const;
 
   const Recording& recording() const { return recording_; }
   const FitOptions& options() const { return options_; }
   const GlobalModel& global() const { return global_; }
-  const Eigen::VectorXd& floor() const { return floor_; }  ///< n, least sigma
+  const Eigen::VectorXd& floor() const { return floor_; }  ///< n, smallest sigma
   const Trajectory& run_of(const Window& window) const { return recording_.runs[static_cast<std::size_t>(window.run)]; }
-  /// sigma of a whole run; a run too short to tell has the global one.
+  /// sigma of a whole run; the global sigma if the run is too short to estimate it.
   const Eigen::VectorXd& run_scale(Index run) const;
 
  protected:
-  /// `floor` as scale_floor makes it.
+  /// `floor`: from scale_floor.
   WindowFitter(const Recording& recording, const FitOptions& options, const GlobalModel& global, Eigen::VectorXd floor);
 
-  /// robust_scale of a run's least-squares residuals; NaN where it is too short to tell.
+  /// robust_scale of a run's least-squares residuals; NaN if the run is too short.
   virtual Eigen::VectorXd scale_of(const Trajectory& run) const = 0;
-  /// sigma as the options say: `own`, the scale of the window's own residuals, where they ask for it, the window has
-  /// `enough` of them and it is finite; else the run's.
+  /// sigma as the options require: `own` (scale of the window's residuals) if they ask for it, the window has `enough`
+  /// samples and the scale is finite. Otherwise the run's.
   Eigen::VectorXd window_sigma(const Window& window, bool enough, const std::function<Eigen::VectorXd()>& own) const;
 
  private:
@@ -56,7 +56,7 @@ class WindowFitter {
   std::unique_ptr<RunScale[]> run_scale_;
 };
 
-/// Windows of models that are linear in their parameters.
+/// Window fits of models that are linear in their parameters.
 class LinearWindows final : public WindowFitter {
  public:
   LinearWindows(const Recording& recording, const FitOptions& options, const LinearStructure& structure,
@@ -65,13 +65,13 @@ class LinearWindows final : public WindowFitter {
   const Estimator& estimator() const { return estimator_; }
   const LinearStructure& structure() const { return estimator_.structure; }
 
-  /// A window's data on the way to its fit.
+  /// The data of one window, prepared for its fit.
   struct WindowData {
     Transitions transitions;
     Decomposition decomposition;
     NoiseScale scale;
   };
-  /// Transitions with a NaN or infinity are left out; nothing when none is left.
+  /// The window's transitions without those that hold a NaN or infinity; empty if none is left.
   std::optional<WindowData> load(const Window& window) const;
 
   LocalModel fit(const Window& window, const ParameterPrior* prior) const override;
@@ -83,7 +83,7 @@ class LinearWindows final : public WindowFitter {
   Estimator estimator_;
 };
 
-/// Windows of any motion model; searches start at the global model.
+/// Window fits of any motion model; searches start at the global model.
 class MotionWindows final : public WindowFitter {
  public:
   MotionWindows(const Recording& recording, const FitOptions& options, const MotionModel& model,
@@ -95,7 +95,7 @@ class MotionWindows final : public WindowFitter {
 
  private:
   Eigen::VectorXd scale_of(const Trajectory& run) const override;
-  /// robust_scale of the residuals of least squares that weighs the states by `sigma`; NaN when there are too few.
+  /// robust_scale of least-squares residuals, with states weighed by `sigma`; NaN for too few samples.
   Eigen::VectorXd least_squares_scale(const ModelResiduals& residuals, const Eigen::VectorXd& sigma) const;
 
   const MotionModel& model_;

@@ -11,11 +11,11 @@
 namespace modebank {
 namespace {
 
-constexpr double significance = 0.99;       // of each of the two tests
-constexpr double most_changed = 1.0 / 6.0;  // of the windows
+constexpr double significance = 0.99;       // level of each of the two tests
+constexpr double most_changed = 1.0 / 6.0;  // largest share of windows with a change
 constexpr Index enough_windows = 1000;
 
-/// Least squares of some transitions: sums of squared residuals, one per state, and what they are divided by.
+/// Least squares of some transitions: sums of squared residuals per state, and their degrees of freedom.
 struct Residuals {
   Eigen::ArrayXd squares;
   double freedom = 0.0;
@@ -29,7 +29,7 @@ Residuals residuals_of(const Trajectory& run, Index start, Index count, const Li
   return {left.colwise().squaredNorm().transpose().array(), static_cast<double>(t.count() - d.rank())};
 }
 
-/// Whether the motion of a window's halves differs in any state. A Bonferroni share of the level goes to each.
+/// Whether the motion of a window's two halves differs in any state, at a Bonferroni share of the level per state.
 bool changes(const Trajectory& run, Index start, Index length, const LinearStructure& one_lag) {
   const Index half = length / 2;
   const Residuals first = residuals_of(run, start, half, one_lag);
@@ -49,7 +49,7 @@ bool changes(const Trajectory& run, Index start, Index length, const LinearStruc
   return (a > above * b).any() || (b > below * a).any();
 }
 
-/// Share of the windows that hold a change, of some that share no transition.
+/// Share of windows with a change, over a sample of windows that share no transition.
 double changed_share(const Recording& recording, const LinearStructure& one_lag, Index length) {
   const WindowPlan plan(recording, length, length, one_lag.first_transition());
   const Index stride = std::max<Index>(1, plan.count() / enough_windows);
@@ -74,7 +74,8 @@ Index automatic_length(const Recording& recording, const LinearStructure& struct
     const Index length = length_of(per_regressor);
     if (length > shortest && changed_share(recording, structure.with_one_lag(), length) <= most_changed) return length;
   }
-  // Runs too short for such a window may hold one of the least length; forming windows reports where they do not.
+  // Runs too short for such a window may still hold one of the smallest length. If they do not, forming windows reports
+  // it.
   return WindowPlan(recording, shortest, 1, structure.first_transition()).count() > 0 ? shortest
                                                                                       : shortest_automatic_length;
 }

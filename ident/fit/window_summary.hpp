@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// What the windows of one fit have in common, medians over those where the value is defined (NaN where it never is).
+/// Summary of all windows of one fit: medians over the windows where a value is defined (NaN if it never is).
 struct WindowSummary {
   Eigen::VectorXd parameter;       ///< p, median theta
   Eigen::VectorXd standard_error;  ///< p, median

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The first or second half of a run, by time.
+/// The first or second half of a run in time.
 RunPair half(const RunPair& run, bool second) {
   const VectorXd& t = run.states.time_s;
   const double middle = 0.5 * (t(0) + t(t.size() - 1));
@@ -30,7 +30,7 @@ RunPair half(const RunPair& run, bool second) {
   return {run.run, run.role, part(run.states), part(run.inputs)};
 }
 
-/// Runs to leave out in turn, with their estimates.
+/// The runs that are left out in turn, with their estimates.
 std::vector<LagSubject> subjects_of(const std::vector<RunPair>& runs, double range_s) {
   std::vector<LagSubject> subjects;
   for (const RunPair& run : runs)
@@ -93,7 +93,7 @@ LagReport choose_lag(const std::vector<RunPair>& runs, const LagChoiceOptions& o
   LagReport report;
   report.scores = cross_validate_lags(subjects, options.rate_hz);
   report.correction = decide(report.scores);
-  // A single run was split for the scores only.
+  // A single run is split only for the scores.
   const bool split =
       std::count_if(runs.begin(), runs.end(), [](const RunPair& r) { return r.role == Role::train; }) == 1;
   std::vector<LagSubject> whole = subjects;

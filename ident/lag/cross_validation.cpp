@@ -21,13 +21,13 @@ using Eigen::VectorXd;
 constexpr std::size_t most_folds = 10;
 constexpr std::size_t corrections = EnumNames<LagCorrection>::values.size();
 
-/// Sums over one run that was left out.
+/// Sums over one left-out run.
 struct RunScore {
   double log_density = 0.0, square_sum = 0.0;
   Index transitions = 0;
 };
 
-/// One-step predictions of `run` between two times.
+/// Scores one-step predictions of `run` between two times.
 RunScore score(const Trajectory& run, const GlobalModel& global, const LinearStructure& structure, double first_s,
                double last_s) {
   RunScore result;
@@ -49,7 +49,7 @@ RunScore score(const Trajectory& run, const GlobalModel& global, const LinearStr
   return result;
 }
 
-/// All runs of one fold, for every correction: run by run, correction by correction.
+/// Scores of all runs of one fold for every correction, run by run, correction by correction.
 std::vector<std::vector<RunScore>> score_fold(const std::vector<LagSubject>& subjects, std::size_t fold,
                                               std::size_t folds, double rate_hz) {
   std::vector<LagSubject> kept, out;
@@ -120,7 +120,7 @@ PooledLags pool_lags(const std::vector<LagSubject>& subjects) {
       lag_error.push_back(e.lag_standard_error_s);
     }
     if (e.drift_status != LagStatus::converged || !std::isfinite(e.clock_drift_standard_error)) continue;
-    // Lag in the middle and drift are as good as uncorrelated.
+    // The lag in the middle of a run and the drift are nearly uncorrelated.
     const double before_s = e.applied_reference_s - common_start_s(s.run);
     start.push_back(e.drifting_lag_s - e.clock_drift * before_s);
     start_error.push_back(std::hypot(e.drifting_lag_standard_error_s, e.clock_drift_standard_error * before_s));

@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// A run and what was estimated on it.
+/// A run and its estimates.
 struct LagSubject {
   RunPair run;
   RunLag estimate;
@@ -19,17 +19,17 @@ struct PooledLags {
 /// Random-effects means of the usable estimates.
 PooledLags pool_lags(const std::vector<LagSubject>& subjects);
 
-/// What a correction does to a run that none of the pooled estimates came from, and to one that they came from.
-/// `start_s`: when both streams of the run have begun; drifts count from there, as no one knows a run's middle before
-/// it is over.
+/// The clock of a correction for a run that did not contribute to the pooled estimates, and for one that did.
+/// `start_s`: first time that both streams of the run cover. Drifts count from there, because the middle of a run is
+/// unknown before its end.
 InputClock held_out_clock(LagCorrection correction, const PooledLags& pooled, double start_s);
 InputClock training_clock(LagCorrection correction, const RunLag& estimate, const PooledLags& pooled, double start_s);
 
-/// States interpolated and inputs delayed by `clock`, as import joins runs under data.lag_s = auto; transitions across
-/// gaps or missing values hold NaN.
+/// Joins a run as import does under data.lag_s = auto: states interpolated, inputs delayed by `clock`. Transitions
+/// across gaps or missing values are NaN.
 Trajectory join_delayed(const RunPair& run, double rate_hz, const InputClock& clock);
 
-/// One score per correction (ident/lag/choice.hpp).
+/// Scores of all corrections, one each (ident/lag/choice.hpp).
 std::vector<LagScore> cross_validate_lags(const std::vector<LagSubject>& subjects, double rate_hz);
 
 }  // namespace modebank

@@ -15,21 +15,21 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index coarse_samples = 4000;  // enough to find the valley
-constexpr Index most_samples = 20000;   // enough to find its floor
+constexpr Index coarse_samples = 4000;  // enough to find the minimum roughly
+constexpr Index most_samples = 20000;   // enough to find the minimum exactly
 constexpr Index coarse_lags = 51;
 constexpr Index coarse_drifts = 21;
-constexpr double fastest_drift = 0.05;  // [s/s]: faster is no clock
+constexpr double fastest_drift = 0.05;  // [s/s]; clocks drift more slowly
 constexpr int halvings = 12;
 constexpr int most_moves = 400;
-constexpr double least_evidence_nats = 5.0;  // by which the best lag must beat the typical one
-constexpr double least_r_squared = 0.5;      // below, the inputs do not explain the states
+constexpr double least_evidence_nats = 5.0;  // smallest gain of the best lag over the typical one
+constexpr double least_r_squared = 0.5;      // below this the inputs do not explain the states
 constexpr double largest_error = 0.2;        // standard error as a share of the range searched
 
 struct Search {
-  double range_s;          // of lags
-  double time_constant_s;  // largest
-  double drift;            // largest
+  double range_s;          // width of the range of lags
+  double time_constant_s;  // largest one searched
+  double drift;            // largest one searched
 };
 
 bool inside(const LagPoint& p, const Search& search) {
@@ -41,7 +41,7 @@ double grid(Index i, Index count, double range) {
   return range * (2.0 * static_cast<double>(i) / static_cast<double>(count - 1) - 1.0);
 }
 
-/// 0, then doubling from half a period up to the largest.
+/// 0, then doubling values from half a period to the largest.
 std::vector<double> time_constants(const Search& search, double period_s) {
   std::vector<double> values{0.0};
   double tau = 0.5 * period_s;
@@ -54,7 +54,7 @@ std::vector<double> time_constants(const Search& search, double period_s) {
 
 struct GridResult {
   LagPoint best;
-  double typical_cost = 0.0;  // median over the lags, each at its best time constant
+  double typical_cost = 0.0;  // median over the lags, each with its best time constant
 };
 
 GridResult search_lags(const LagObjective& objective, const Search& search) {
@@ -98,8 +98,8 @@ LagPoint moved(LagPoint p, const std::array<double, 3>& direction, const LagPoin
   return p;
 }
 
-/// Pattern search (Hooke & Jeeves 1961) along the axes and along lag against time constant, whose sum is better known
-/// than either.
+/// Pattern search (Hooke & Jeeves 1961) along the axes and along lag minus time constant; their sum is determined
+/// better than either.
 LagPoint refine(const LagObjective& objective, const Search& search, LagPoint point, bool with_drift) {
   static constexpr std::array<std::array<double, 3>, 8> directions{
       {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {0, 1, 0}, {0, -1, 0}}};
@@ -126,7 +126,7 @@ LagPoint refine(const LagObjective& objective, const Search& search, LagPoint po
   return point;
 }
 
-/// Samples the residuals are worth, given their autocorrelation.
+/// Number of independent samples that the residuals are worth, given their autocorrelation.
 double effective_samples(const LagObjective::Fit& fit) {
   double numerator = 0.0, denominator = 0.0;
   const Index N = fit.samples;

@@ -8,8 +8,8 @@
 
 namespace modebank {
 
-/// How an estimate of a lag ended. not_excited: the response fits about equally well at any lag of the range, so the
-/// number means nothing; at_edge: it fits best at the end of the range searched (lags; drifts to 5 %), so the truth may
+/// Status of a lag estimate. not_excited: the response fits nearly equally well at any lag of the range, so the value
+/// is meaningless. at_edge: the best fit lies at the end of the searched range (for drifts: 5 %), so the true value may
 /// lie beyond.
 enum class LagStatus { converged, not_excited, at_edge, not_estimated };
 
@@ -19,16 +19,17 @@ struct EnumNames<LagStatus> {
 };
 
 struct LagOptions {
-  double range_s = 2.5;  ///< lags from -range_s to range_s are searched; at most a quarter of the run
+  double range_s = 2.5;  ///< lags from -range_s to range_s are searched, at most a quarter of the run
 };
 
-/// The lag of one run as a dead time, its standard errors and the rest of the model it was found with.
+/// The lag of one run as a dead time, with standard errors and the fitted response model.
 struct LagFit {
-  InputClock clock;  ///< lag at the middle of the run, and its drift (0 where it was not estimated)
+  InputClock clock;  ///< lag at the middle of the run, and its drift (0 if not estimated)
   double lag_standard_error_s = std::numeric_limits<double>::quiet_NaN();
   double drift_standard_error = std::numeric_limits<double>::quiet_NaN();
-  double time_constant_s = 0.0;  ///< of the response; 0: at its bound, the response is as fast as the samples show
-  double r_squared = 0.0;        ///< share of the states' variance explained (n > 1: 1 - geometric mean of the rest)
+  double time_constant_s = 0.0;  ///< time constant of the response; 0: at its bound, too fast for the samples
+  double r_squared = 0.0;        ///< explained share of the states' variance (n > 1: 1 - geometric mean of the
+                                 ///< unexplained shares)
   LagStatus status = LagStatus::not_estimated;
 
   bool usable() const { return status == LagStatus::converged; }
@@ -39,17 +40,18 @@ struct LagEstimate {
   LagFit drifting;  ///< with linear drift
 };
 
-/// Dead time from inputs to states, lag(t) = lag + drift (t - middle), by output error: every state is regressed on the
-/// inputs, held, delayed by lag(t) and passed through one first-order lag (time constant from 0 to the range, shared),
-/// plus a constant; inputs share one lag. All are averaged over the longer of the two sample periods, so the fit is
-/// smooth in the lag and resolves parts of a sample. Minimises the sum over states of log(1 - R^2) over the samples
-/// whose delayed inputs are known, on a grid, then by pattern search, with Huber weights against outliers.
+/// Dead time from inputs to states, lag(t) = lag + drift (t - middle), by output error. Every state is regressed on a
+/// constant and the inputs, which are held, delayed by lag(t) and filtered by one shared first-order lag (time constant
+/// from 0 to the range). All inputs share one lag. All signals are averaged over the longer sample period, so the fit
+/// is smooth in the lag and resolves fractions of a sample.
+/// The objective is the sum over states of log(1 - R^2) over the samples with known delayed inputs. It is minimised on
+/// a grid, then by pattern search, with Huber weights against outliers.
 ///
-/// The time constant takes up what a one-step model explains by A, so the dead time is what such a model needs to have
-/// removed; the delay at which the signals match best (ident/lag/track.hpp) is longer by about the time constant.
-/// Standard errors: Gauss-Newton sandwich with the autocorrelation of the scores by Newey & West (1987), bandwidth by
-/// Andrews (1991, eq. 6.2, 6.4). Missing states are bridged where short and left out where long; NaN inputs keep their
-/// last value. Streams too short or without change give not_excited, never an exception.
+/// The time constant takes the place of A in a one-step model, so the dead time is the delay to be removed for such a
+/// model. The delay of best match (ident/lag/track.hpp) is longer by about the time constant. Standard errors:
+/// Gauss-Newton sandwich with the autocorrelation of the scores by Newey & West (1987), bandwidth by Andrews (1991, eq.
+/// 6.2, 6.4). Short gaps of states are bridged, long ones left out; NaN inputs keep their last value. Streams that are
+/// too short or constant give not_excited, not an exception.
 LagEstimate estimate_lag(const Stream& states, const Stream& inputs, const LagOptions& options);
 
 }  // namespace modebank

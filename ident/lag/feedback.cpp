@@ -14,18 +14,18 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index state_lags = 3, input_lags = 5;
-constexpr Index most_rows = 50000;  // more make a t value larger and no answer clearer
+constexpr Index most_rows = 50000;  // more rows increase the t values without changing the decision
 
-/// Successive transitions that are both finite: the inputs of the later one, and innovations of both.
+/// Pairs of successive finite transitions: the inputs of the later one, and the innovations of both.
 struct InputRows {
-  MatrixXd older;       ///< N x (input lags before the newest), and a constant
+  MatrixXd older;       ///< N x (input lags before the newest, and a constant)
   MatrixXd newest;      ///< N x m
-  MatrixXd past, same;  ///< N x n innovations of the transition before, and of the same one
+  MatrixXd past, same;  ///< N x n, innovations of the previous and of the same transition
 };
 
 struct Regressors {
   MatrixXd predictors, increments, inputs;
-  std::vector<bool> follows;  ///< whether a row follows the one before it
+  std::vector<bool> follows;  ///< whether a row follows the previous one without a gap
 };
 
 Regressors stack(const Recording& recording, const LinearStructure& structure) {
@@ -80,12 +80,12 @@ InputRows input_rows(const Recording& recording, const LinearStructure& structur
   return rows;
 }
 
-/// |t| of the last `count` columns of Z in a regression of y, the largest of columns from + 0 .. from + n - 1.
+/// Largest |t| of columns from + 0 .. from + n - 1 in a regression of y on Z, out of the last `count` columns.
 double largest_t(const MatrixXd& Z, const Decomposition& d, const VectorXd& y, Index from, Index n) {
   const MatrixXd coefficients = solve(d, y);
   const VectorXd r = residuals(d, y);
   const auto freedom = static_cast<double>(Z.rows() - d.rank());
-  const MatrixXd by_row = d.basis * d.U.transpose();  // q x N: the coefficients are its product with y
+  const MatrixXd by_row = d.basis * d.U.transpose();  // q x N; its product with y gives the coefficients
   double largest = 0.0;
   for (Index j = from; j < from + n; ++j) {
     const double constant = by_row.row(j).squaredNorm() * r.squaredNorm() / freedom;

@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index most_entries = 4'000'000;
-constexpr Index rows_together = 500;  // rows that are kept or left out together
+constexpr Index rows_together = 500;  // rows that are kept or dropped together
 constexpr Index folds_of_parts = 5;
 
 LinearStructure widest_of(const Recording& recording, const StructureRanges& ranges, bool intercept) {
@@ -29,7 +29,7 @@ LinearStructure widest_of(const Recording& recording, const StructureRanges& ran
   return widest;
 }
 
-/// Finite rows of positive weight, run by run.
+/// Finite rows of positive weight, in the order of the runs.
 struct GatheredRows {
   std::vector<Transitions> blocks;
   std::vector<Index> run_of_block;
@@ -65,7 +65,7 @@ GatheredRows gather(const Recording& recording, const LinearStructure& widest) {
   return gathered;
 }
 
-/// Run of each row, in order.
+/// Run of each gathered row, in order.
 std::vector<Index> runs_of(const GatheredRows& gathered) {
   std::vector<Index> runs;
   for (std::size_t b = 0; b < gathered.blocks.size(); ++b)
@@ -73,7 +73,7 @@ std::vector<Index> runs_of(const GatheredRows& gathered) {
   return runs;
 }
 
-/// Older states become differences, columns get zero mean beside a constant, and unit root mean square.
+/// Replaces older states by differences. Columns get zero mean (if there is a constant) and unit root mean square.
 void transform(LaggedRows& rows) {
   const Index n = rows.states;
   for (Index j = rows.ranges.state_lags.high * n - 1; j >= n; --j) rows.X.col(j) = rows.X.col(j - n) - rows.X.col(j);

@@ -8,13 +8,13 @@
 
 namespace modebank {
 
-/// Numbers of lags, from low to high.
+/// A range of numbers of lags, inclusive.
 struct LagRange {
   Index low = 1, high = 1;
   bool holds(Index value) const { return value >= low && value <= high; }
 };
 
-/// The structures of a search: every combination that needs no more samples than `memory` before its first prediction.
+/// The structures of a search: every combination that needs at most `memory` samples before its first prediction.
 struct StructureRanges {
   LagRange state_lags, input_lags, input_delay;
   Index memory = 1000;
@@ -24,12 +24,12 @@ struct StructureRanges {
   }
 };
 
-/// Transitions of the training runs, the same for all structures of some ranges: those whose regressors are all
-/// measured in the same run even with the most lags. Rows stand fold by fold.
+/// The transitions of the training runs that all structures of some ranges have in common. Their regressors are
+/// measured in the same run even with the most lags. Rows are ordered by fold.
 ///
-/// Columns of X span those of the widest structure, and their leading parts those of narrower ones: the newest state,
-/// differences between successive older ones (which keep their digits where a signal is smooth), inputs from the least
-/// delay on, and a constant one. They are of unit root mean square, and of zero mean where there is a constant.
+/// The columns of X belong to the widest structure; leading parts of them belong to narrower ones. They are the newest
+/// state, differences between successive older states (accurate for smooth signals), inputs from the smallest delay on,
+/// and a constant. Columns have unit root mean square, and zero mean if there is a constant.
 struct LaggedRows {
   Index states = 1, inputs = 0;
   StructureRanges ranges;
@@ -37,21 +37,22 @@ struct LaggedRows {
   Eigen::MatrixXd X;              ///< N x q
   Eigen::MatrixXd Y;              ///< N x n, increments
   Eigen::VectorXd weight;         ///< N sample weights of mean one, or empty: all one
-  std::vector<Index> part;        ///< N, position of the run, or of the stretch of a run, that a row is of
-  std::vector<Index> fold_begin;  ///< folds + 1 positions of rows
+  std::vector<Index> part;        ///< N, index of the row's run or stretch of a run
+  std::vector<Index> fold_begin;  ///< folds + 1, first row of each fold
   Index parts = 0;
-  bool by_runs = false;  ///< parts are whole runs
-  double share = 0.0;    ///< of the rows that one lag would leave
+  bool by_runs = false;  ///< whether parts are whole runs
+  double share = 0.0;    ///< share of the rows that a one-lag model could use
 
   Index count() const { return X.rows(); }
   Index folds() const { return static_cast<Index>(fold_begin.size()) - 1; }
   double weight_of(Index row) const { return weight.size() > 0 ? weight(row) : 1.0; }
-  /// Columns of one structure.
+  /// Columns of X for one structure.
   std::vector<Index> columns(const LinearStructure& structure) const;
 };
 
-/// At least six runs are parts; fewer are cut into stretches, ten or more together. Parts are dealt to five folds. Of
-/// long recordings evenly spaced stretches of rows are taken, so that X has about four million entries at most.
+/// Makes the rows and deals their parts to five folds. Six or more runs are parts themselves; fewer runs are cut into
+/// at least ten stretches. Long recordings are thinned to evenly spaced stretches, so that X has at most about four
+/// million entries.
 LaggedRows make_lagged_rows(const Recording& recording, const StructureRanges& ranges, bool intercept);
 
 }  // namespace modebank

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 constexpr double least_unexplained = 1e-12;  // noise-free data: logarithms stay finite
 
-/// Times at `period_s` steps between two others, away from gaps of the states at `time_s`.
+/// Times at steps of `period_s` between two others, away from gaps of the states at `time_s`.
 VectorXd averaging_times(const VectorXd& time_s, double first_s, double last_s, double period_s) {
   const double longest = gap_periods * std::max(median_period_s(time_s), period_s);
   std::vector<double> times;
@@ -80,7 +80,7 @@ std::optional<LagObjective::Fit> LagObjective::fit(const LagPoint& point) const 
   const double half = 0.5 * period_s_, slack = 1e-9 * period_s_;
   const double* const begin = times.data();
   const double* const from = std::lower_bound(begin, begin + times.size(), input.first_s() + half - slack);
-  // A held input is known until the sample after its last would have come.
+  // A held input is valid for one more sample period after its last sample.
   const double* const to = std::upper_bound(from, begin + times.size(), input.last_s() + half + slack);
   Fit fit;
   fit.first = from - begin;

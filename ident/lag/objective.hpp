@@ -8,36 +8,36 @@
 
 namespace modebank {
 
-/// What is searched for: lag at the middle, drift, time constant of the response.
+/// The searched values: lag at the middle, drift, time constant of the response.
 struct LagPoint {
   double lag_s = 0.0;
   double drift = 0.0;
   double time_constant_s = 0.0;
 };
 
-/// The stream without samples that hold a missing value (states), or with the last known value there (inputs).
+/// The stream without samples that have a missing value (states), or with the last known value instead (inputs).
 Stream without_missing(const Stream& stream);
 Stream with_last_known(const Stream& stream);
 
 /// States regressed on delayed inputs as a function of the delay (ident/lag/estimate.hpp).
 class LagObjective {
  public:
-  /// Streams without missing values, of two samples at least. At most `most_samples` averages are compared.
+  /// Streams without missing values, with at least two samples each. At most `most_samples` averages are compared.
   LagObjective(const Stream& states, const Stream& inputs, Eigen::Index most_samples);
 
-  double period_s() const { return period_s_; }  ///< width of the averages, and their distance
+  double period_s() const { return period_s_; }  ///< width and spacing of the averages
   double middle_s() const { return middle_s_; }
   double span_s() const { return centres_s_.size() > 0 ? centres_s_(centres_s_.size() - 1) - centres_s_(0) : 0.0; }
   Eigen::Index samples() const { return centres_s_.size(); }
   InputClock clock(const LagPoint& point) const { return {point.lag_s, point.drift, middle_s_}; }
 
-  /// Mean over the states of log(1 - R^2); 0 where nothing is explained or less than half of the samples have an input.
+  /// Mean over the states of log(1 - R^2). 0 if nothing is explained or fewer than half of the samples have an input.
   double cost(const LagPoint& point) const;
-  /// Weights by Huber's loss from the residuals at `point`.
+  /// Updates the weights by Huber's loss of the residuals at `point`.
   void reweight(const LagPoint& point);
 
   struct Fit {
-    Eigen::Index first = 0, samples = 0;  ///< the samples whose delayed inputs are known
+    Eigen::Index first = 0, samples = 0;  ///< the samples with known delayed inputs
     Eigen::MatrixXd inputs;               ///< m x samples, delayed and filtered
     Eigen::MatrixXd coefficients;         ///< n x m
     Eigen::MatrixXd residuals;            ///< n x samples
@@ -45,7 +45,7 @@ class LagObjective {
     Eigen::VectorXd weights;              ///< samples
   };
   std::optional<Fit> fit(const LagPoint& point) const;
-  /// m x samples: the inputs at `point` for the samples of `fit`.
+  /// The inputs at `point` for the samples of `fit`, m x samples.
   Eigen::MatrixXd inputs_at(const LagPoint& point, const Fit& fit) const;
 
  private:

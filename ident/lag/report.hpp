@@ -10,8 +10,8 @@
 
 namespace modebank {
 
-/// How inputs are shifted: not at all; every run by the pooled lag; every training run by its own, held-out runs by the
-/// pooled one; the same with drifts.
+/// How inputs are shifted. none: not at all. pooled: every run by the pooled lag. per_run: every training run by its
+/// own lag, held-out runs by the pooled one. drift: like per_run, with drifts.
 enum class LagCorrection { none, pooled, per_run, drift };
 
 template <>
@@ -19,7 +19,7 @@ struct EnumNames<LagCorrection> {
   static constexpr Names<4> values{"none", "pooled", "per_run", "drift"};
 };
 
-/// One run's estimates (NaN: not made, as for held-out runs) and what was applied.
+/// One run's estimates (NaN: none, as for held-out runs) and the applied correction.
 struct RunLag {
   std::string run;
   LagStatus status = LagStatus::not_estimated;
@@ -36,27 +36,27 @@ struct RunLag {
   double match_least_s = not_a_number;
   double match_largest_s = not_a_number;
   Eigen::Index match_windows = 0;
-  double applied_lag_s = 0.0;  ///< at applied_reference_s
+  double applied_lag_s = 0.0;  ///< applied lag at applied_reference_s
   double applied_clock_drift = 0.0;
   double applied_reference_s = 0.0;
 
   InputClock applied() const { return {applied_lag_s, applied_clock_drift, applied_reference_s}; }
 };
 
-/// One candidate, scored on training runs left out in turn.
+/// One correction, scored on training runs that are left out in turn.
 struct LagScore {
   LagCorrection correction = LagCorrection::none;
   Eigen::Index transitions = 0;
   double log_score = not_a_number;            ///< nats per transition of the global model's one-step prediction
   double rmse = not_a_number;                 ///< root mean square one-step error, over all states
-  double gain = 0.0;                          ///< of log_score over `none`
-  double gain_standard_error = not_a_number;  ///< over the runs left out
+  double gain = 0.0;                          ///< gain of log_score over `none`
+  double gain_standard_error = not_a_number;  ///< over the left-out runs
 };
 
-/// What data.lag_s = auto found and did.
+/// Result of data.lag_s = auto.
 struct LagReport {
   LagCorrection correction = LagCorrection::none;
-  PooledEstimate lag;        ///< [s] dead time over the training runs
+  PooledEstimate lag;        ///< [s] dead time of the training runs
   PooledEstimate start_lag;  ///< [s] dead time at a run's start, with drift
   PooledEstimate drift;      ///< [s/s]
   std::vector<LagScore> scores;

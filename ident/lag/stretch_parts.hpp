@@ -5,15 +5,15 @@
 
 namespace modebank {
 
-/// Parts that are left out together: whole runs, or stretches of runs where these are few.
+/// Parts of the data that are left out together: whole runs, or stretches of runs if runs are few.
 struct StretchParts {
-  std::vector<Eigen::Index> part;  ///< N, position of the part that a row is of
+  std::vector<Eigen::Index> part;  ///< N, index of each row's part
   Eigen::Index count = 0;
-  bool by_runs = false;  ///< parts are whole runs
+  bool by_runs = false;  ///< whether parts are whole runs
 };
 
-/// At least six runs are parts; fewer are cut into stretches of about equal numbers of rows, ten or more together.
-/// `run`: N, position below `runs` of the run that a row is of.
+/// Divides rows into parts. Six or more runs are parts themselves; fewer runs are cut into at least ten stretches with
+/// about equal numbers of rows. `run`: N, index of each row's run, below `runs`.
 StretchParts stretch_parts(std::vector<Eigen::Index> run, Eigen::Index runs);
 
 }  // namespace modebank

@@ -9,60 +9,62 @@
 
 namespace modebank {
 
-/// Lags that a search tries first.
+/// Largest number of lags that a search tries first.
 inline constexpr std::ptrdiff_t usual_lags = 12;
 
 /// State lags, input lags, delay.
 using Lags = std::array<std::ptrdiff_t, 3>;
 
-/// Which numbers of a model with lags are searched for; the others are as FitOptions state them.
+/// Which lag numbers are searched; FitOptions give the others.
 struct SearchedLags {
   bool state = false;               ///< state_lags
   bool input = false;               ///< input_lags
   bool delay = false;               ///< input_delay
-  std::ptrdiff_t most_samples = 0;  ///< that a run may need before its first prediction; 0: any number
+  std::ptrdiff_t most_samples = 0;  ///< largest number of samples that a run may need before its first prediction; 0:
+                                    ///< no limit
   bool any() const { return state || input || delay; }
 };
 
-/// How a model with these lags and this delay predicted training runs that were left out.
+/// Scores of one structure (lags and delay) on left-out training runs.
 struct StructureScore {
   std::ptrdiff_t state_lags = 1;
   std::ptrdiff_t input_lags = 1;
   std::ptrdiff_t input_delay = 1;
-  double log_score = 0.0;            ///< all states together [nats/sample]
-  double loss = 0.0;                 ///< against the best of the table [nats/sample]
-  double loss_standard_error = 0.0;  ///< over runs, or stretches of them [nats/sample]
+  double log_score = 0.0;            ///< log score of all states together [nats/sample]
+  double loss = 0.0;                 ///< loss against the best of the table [nats/sample]
+  double loss_standard_error = 0.0;  ///< standard error over runs or stretches [nats/sample]
   Eigen::VectorXd rmse = {};         ///< n, of the one-step prediction [state unit]
-  bool chosen = false;               ///< for windows, mixture and bank
-  bool linear = false;               ///< for one linear motion: baseline, noise_only; where terms are looked for
-  bool one_motion = false;           ///< for one motion whose noise switches
-  bool drifting = false;             ///< for one motion that wanders
-  /// Causal log score of the training runs where coefficients wander [nats/sample]; NaN where this was not asked.
+  bool chosen = false;               ///< chosen for windows, mixture and bank
+  bool linear = false;               ///< chosen for the single linear models (baseline, noise_only) and the search for
+                                     ///< terms
+  bool one_motion = false;           ///< chosen for one motion whose noise switches
+  bool drifting = false;             ///< chosen for one motion whose coefficients drift
+  /// Causal log score of the training runs with drifting coefficients [nats/sample]; NaN if not computed.
   double drifting_score = std::numeric_limits<double>::quiet_NaN();
-  /// Scores of few modes, and of one motion whose noise switches, on training runs that were left out [nats/sample];
-  /// NaN as above.
+  /// Log score of a few modes and of one motion with switching noise, on left-out training runs [nats/sample]; NaN if
+  /// not computed.
   double modes_score = std::numeric_limits<double>::quiet_NaN();
   double one_motion_score = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The lags and delay that windows, mixture and bank have, those of other stages (in the table), and how sure the
-/// choice is.
+/// The lags and delay of windows, mixture and bank, those of other stages (in the table), and the evidence for the
+/// choice.
 struct FoundStructure {
   std::ptrdiff_t state_lags = 1;
   std::ptrdiff_t input_lags = 1;
   std::ptrdiff_t input_delay = 1;
-  std::ptrdiff_t samples = 0;     ///< that every structure predicted
-  std::ptrdiff_t parts = 0;       ///< runs, or stretches of runs, that standard errors are taken over
+  std::ptrdiff_t samples = 0;     ///< number of samples that every structure predicted
+  std::ptrdiff_t parts = 0;       ///< number of runs or stretches over which standard errors are computed
   bool by_runs = false;           ///< whether parts are whole runs
-  std::ptrdiff_t structures = 0;  ///< that were compared by least squares
-  /// Largest |t| of past innovations in a regression of the inputs on their own lags: large where the inputs answer to
-  /// the states. NaN without inputs or without enough samples.
+  std::ptrdiff_t structures = 0;  ///< number of structures compared by least squares
+  /// Largest |t| of past innovations in a regression of the inputs on their own lags. It is large if the inputs react
+  /// to the states. NaN without inputs or with too few samples.
   double feedback_t = 0.0;
-  double same_sample_t = 0.0;               ///< the same of the innovation of the input's own sample
-  std::string remark = {};                  ///< what kept the search from its full range; empty: nothing
-  std::vector<StructureScore> scores = {};  ///< of the finalists, the best first
+  double same_sample_t = 0.0;               ///< |t| of the innovation of the input's own sample
+  std::string remark = {};                  ///< why the search could not use its full range; empty if it could
+  std::vector<StructureScore> scores = {};  ///< scores of the finalists, the best first
 
-  /// |t| above which the inputs are said to answer to past innovations.
+  /// |t| above which the inputs are reported to react to past innovations.
   static constexpr double feedback_limit = 5.0;
   bool feedback() const { return feedback_t > feedback_limit; }
 };

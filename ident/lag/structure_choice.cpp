@@ -11,10 +11,10 @@ namespace {
 
 constexpr double least_gain_without_delay = 0.02;  // [nats/sample]
 constexpr double negligible_loss = 1e-3;           // [nats/sample]
-/// Nats of all samples together that the best of some hundred structures gains by chance.
+/// Expected chance gain of the best of about a hundred structures [nats over all samples].
 constexpr double chance_gain = 6.0;
 
-/// By falling score; equals in the order of the map.
+/// All structures by decreasing score; ties in the order of the map.
 std::vector<Lags> by_score(const ScoredStructures& all) {
   std::vector<Lags> order;
   for (const auto& [lags, forecast] : all) order.push_back(lags);
@@ -23,7 +23,7 @@ std::vector<Lags> by_score(const ScoredStructures& all) {
   return order;
 }
 
-/// Those as good as the best, by growing size, then falling score.
+/// The structures as good as the best, by increasing size, then decreasing score.
 std::vector<Lags> as_good_by_size(const ScoredStructures& all, const StructureSize& size,
                                   const Eigen::VectorXd& weight) {
   std::vector<Lags> order = by_score(all);

@@ -7,12 +7,12 @@
 #include "ident/lag/structure.hpp"
 #include "ident/lag/structure_scorer.hpp"
 
-/// How structures are compared once they are scored.
+/// Rules for comparing structures by their scores.
 namespace modebank {
 
 using ScoredStructures = std::map<Lags, LeftOutForecast>;
 
-/// Coefficients per equation, but for the constant.
+/// Number of coefficients per equation without the constant.
 struct StructureSize {
   Eigen::Index states = 1, inputs = 0;
   Eigen::Index operator()(const Lags& lags) const { return lags[0] * states + lags[1] * inputs; }
@@ -23,36 +23,36 @@ inline bool acts_later(const Lags& lags) { return lags[2] > 0; }
 
 ScoredStructures select(const ScoredStructures& all, bool (*wanted)(const Lags&));
 
-/// The highest score, the first of equals. Of those that are wanted, of which there must be one.
+/// The structure with the highest score, the first on a tie. Only wanted structures count; at least one must be wanted.
 Lags best_of(const ScoredStructures& all);
 Lags best_of(const ScoredStructures& all, bool (*wanted)(const Lags&));
 
-/// Whether structures without delay gain what they must over the others, best against best: 0.02 nats per sample, and
-/// more than the standard error of that.
+/// Whether the best structure without delay gains enough over the best one with a delay: at least 0.02 nats per sample,
+/// and more than the standard error of the gain.
 bool gains_enough(const ScoredStructures& at_once, const ScoredStructures& later, const Eigen::VectorXd& weight);
-/// The best of all structures, one without delay only where it gains enough.
+/// The best structure; one without delay only if it gains enough.
 Lags best_with_delay_rule(const ScoredStructures& all, const Eigen::VectorXd& weight);
 
-/// A loss over so many samples [nats/sample] that chance makes, or that is next to nothing.
+/// Loss per sample that is within chance for this number of samples, or negligible [nats/sample].
 double loss_by_chance(double samples);
 
-/// The loss of a structure against another [nats/sample], and its standard error over parts.
+/// The loss of one structure against another [nats/sample], with its standard error over parts.
 struct StructureLoss {
   double mean = 0.0, standard_error = 0.0;
-  double weight = 1.0;  ///< samples
-  /// Whether the mean is at most its error or loss_by_chance.
+  double weight = 1.0;  ///< number of samples
+  /// Whether the mean is at most its standard error or loss_by_chance.
   bool negligible() const;
 };
 StructureLoss loss_against(const LeftOutForecast& best, const LeftOutForecast& other, const Eigen::VectorXd& weight);
 
-/// Half of them the best, the others the smallest that lose no more than one standard error.
+/// The finalists: half of them are the best, the others the smallest that lose at most one standard error.
 std::vector<Lags> finalists_of(const ScoredStructures& all, const StructureSize& size, const Eigen::VectorXd& weight,
                                std::size_t count);
 
-/// The smallest whose loss against the best is negligible; of equally small ones the best.
+/// The smallest structure with a negligible loss against the best; the best of equally small ones.
 Lags smallest_as_good(const ScoredStructures& all, const StructureSize& size, const Eigen::VectorXd& weight);
 
-/// A row for each, the best first.
+/// One row per structure, the best first.
 std::vector<StructureScore> score_table(const ScoredStructures& all, const Lags& chosen, const Eigen::VectorXd& weight);
 
 }  // namespace modebank

@@ -13,14 +13,15 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Added to the diagonal of a Gram matrix of columns of unit root mean square, as a share of the rows: what collinear
-/// columns share is shared out among them, and nothing else moves.
+/// Ridge on the diagonal of a Gram matrix of columns with unit root mean square, as a share of the rows. It divides the
+/// effect of collinear columns among them; other coefficients do not change.
 constexpr double collinear_ridge = 1e-11;
-constexpr double exact_share = 1e-9;         // of the increments: what is predicted more closely is predicted exactly
-constexpr double least_share_of_rms = 1e-3;  // of the errors' root mean square, for more than half of them may be zero
-constexpr double least_normal_scale = 1e-150;  // its square is still a normal number
+constexpr double exact_share = 1e-9;  // of the increments; a smaller error counts as an exact prediction
+// of the errors' root mean square, because more than half of the errors may be zero
+constexpr double least_share_of_rms = 1e-3;
+constexpr double least_normal_scale = 1e-150;  // its square is still a normal floating-point number
 
-/// Rows of one response outside of rows first .. first + count - 1.
+/// Rows of one response except rows first .. first + count - 1.
 Transitions outside(const LaggedRows& rows, const std::vector<Index>& columns, Index response, Index first,
                     Index count) {
   const Index N = rows.count(), after = N - first - count;

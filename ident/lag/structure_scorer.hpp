@@ -7,29 +7,29 @@
 
 namespace modebank {
 
-/// Forecasts of one structure, which was fitted without each fold in turn.
+/// Forecasts of one structure, fitted without each fold in turn.
 struct LeftOutForecast {
-  Eigen::VectorXd of_part;  ///< sums of log densities over the rows of each part [nats]
+  Eigen::VectorXd of_part;  ///< sum of log densities over each part's rows [nats]
   Eigen::VectorXd rmse;     ///< n [state unit]
   double log_score = 0.0;   ///< [nats/sample]
 };
 
-/// Cross-validation of structures on rows that all of them share. Forecasts are scored under a Student t whose scale
-/// and degrees of freedom fit the structure's own errors, state by state.
+/// Cross-validation of structures on the same rows. Forecasts are scored under a Student t distribution. Its scale and
+/// degrees of freedom fit the structure's own errors, state by state.
 class StructureScorer {
  public:
-  /// Keeps the reference. `quantum` as in Recording.
+  /// Refers to `rows`, which must outlive it. `quantum` as in Recording.
   StructureScorer(const LaggedRows& rows, const Eigen::VectorXd& quantum);
 
-  /// Least squares from Gram matrices that are shared by all structures. Regressors of deficient rank count for what
-  /// they determine.
+  /// Scores least squares, from Gram matrices that all structures share. Rank-deficient regressors determine what they
+  /// can.
   LeftOutForecast least_squares(const LinearStructure& structure) const;
-  /// The loss and the scale of window fits, each state on its own; least squares where such a fit fails.
+  /// Scores fits with the windows' loss and scale, each state separately; least squares where such a fit fails.
   LeftOutForecast robust(const LinearStructure& structure, const FitOptions& options) const;
 
-  /// Errors of least squares of the rows left out, N x n.
+  /// Least-squares errors of the left-out rows, N x n.
   Eigen::MatrixXd least_squares_errors(const LinearStructure& structure) const;
-  /// Sample weights, or rows, of each part.
+  /// Total sample weight (or number of rows) of each part.
   const Eigen::VectorXd& part_weight() const { return part_weight_; }
 
  private:

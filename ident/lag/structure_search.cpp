@@ -19,13 +19,13 @@ namespace modebank {
 namespace {
 
 constexpr Index first_end = usual_lags, last_end = 30, end_step = 9;
-constexpr double least_share = 0.75;  // of the transitions that a range must leave
+constexpr double least_share = 0.75;  // smallest share of the transitions that a range must keep
 constexpr Index rows_per_column = 2;
 constexpr Index fewest_rows = 20;
-constexpr int most_rounds = 4;  // of a climb
+constexpr int most_rounds = 4;  // largest number of rounds of a climb
 constexpr std::size_t finalists = 10;
 
-/// The ranges that `most` allows of what is searched.
+/// The ranges of the searched numbers up to `most`.
 StructureRanges ranges_up_to(const Recording& recording, const FitOptions& window, const SearchedLags& searched,
                              const Lags& most) {
   const bool acted_on = recording.input_count() > 0;
@@ -37,7 +37,7 @@ StructureRanges ranges_up_to(const Recording& recording, const FitOptions& windo
       range(searched.input && acted_on, 1, most[1], searched.input || !acted_on ? 1 : window.input_lags),
       range(searched.delay && acted_on, 0, most[2], searched.delay || !acted_on ? 1 : window.input_delay)};
   if (searched.most_samples == 0) return ranges;
-  // Stated lags may need more samples than a free run starts from; the configuration is refused for that.
+  // Given lags may exceed what a free run can start from; the configuration is then rejected elsewhere.
   const Index stated = std::max(ranges.state_lags.low, ranges.input_lags.low + ranges.input_delay.low - 1);
   ranges.memory = std::max(searched.most_samples, stated);
   ranges.state_lags.high = std::min(ranges.state_lags.high, ranges.memory);
@@ -54,7 +54,7 @@ bool leaves_enough(const LaggedRows& rows) {
   return rows.share >= least_share && rows.count() >= rows_per_column * largest.regressors();
 }
 
-/// Least-squares scores of the structures of one set of rows, each computed once.
+/// Least-squares scores of the structures on one set of rows, each computed once.
 class StructureClimb {
  public:
   StructureClimb(LaggedRows rows, const Eigen::VectorXd& quantum) : rows_(std::move(rows)), scorer_(rows_, quantum) {}
@@ -65,7 +65,7 @@ class StructureClimb {
   const StructureScorer& scorer() const { return scorer_; }
   const ScoredStructures& seen() const { return seen_; }
 
-  /// One number at a time as long as that helps, delays not below `least_delay` nor above `most_delay`.
+  /// Changes one number at a time while that improves the score. Delays stay within least_delay and most_delay.
   void climb(Lags at, Index least_delay, Index most_delay) {
     const StructureRanges& ranges = rows_.ranges;
     const LagRange delays{std::max(least_delay, ranges.input_delay.low), std::min(most_delay, ranges.input_delay.high)};
@@ -88,8 +88,9 @@ class StructureClimb {
     }
   }
 
-  /// From the best of one kind downwards: always without the lag that is missed least, be it the oldest of the state,
-  /// or the oldest or newest of the inputs. A climb along one number may have passed by the smallest that is as good.
+  /// Starts from the best structure of one kind and removes lags one by one, each time the lag whose loss is smallest.
+  /// Candidates are the oldest state lag and the oldest and newest input lags. A climb along one number may miss the
+  /// smallest structure that is as good.
   void prune(bool (*wanted)(const Lags&)) {
     if (select(seen_, wanted).empty()) return;
     Lags at = best_of(seen_, wanted);
@@ -110,7 +111,7 @@ class StructureClimb {
 
   bool holds(const Lags& lags) const { return rows_.ranges.holds(lags[0], lags[1], lags[2]); }
 
-  /// The best of some structures, the first of equals.
+  /// The best of some structures, the first on a tie.
   Lags best(const std::vector<Lags>& line) {
     std::vector<Lags> fresh;
     std::copy_if(line.begin(), line.end(), std::back_inserter(fresh), [&](const Lags& l) { return !seen_.count(l); });
@@ -124,7 +125,7 @@ class StructureClimb {
   }
 };
 
-/// Starts of short, middle and long memory, and another.
+/// Climbs from starts of short, middle and long memory, and from `another` if given.
 void explore(StructureClimb& search, const Lags* another) {
   std::vector<Lags> starts{{1, 1, 1}, {4, 4, 1}, {8, 8, 1}};
   if (another) starts.insert(starts.begin(), *another);
@@ -141,7 +142,7 @@ void explore(StructureClimb& search, const Lags* another) {
   search.prune(&acts_at_once);
 }
 
-/// Where the best lies at an end that may move, the ends moved; else the ends as they are.
+/// The limits of a wider search: each limit at which the best structure lies moves up, if it may; the others stay.
 Lags moved_ends(const StructureClimb& search, const SearchedLags& searched, const Lags& most) {
   const Lags at = best_with_delay_rule(search.seen(), search.scorer().part_weight());
   const bool acted_on = search.rows().inputs > 0;
@@ -152,7 +153,7 @@ Lags moved_ends(const StructureClimb& search, const SearchedLags& searched, cons
   return moved;
 }
 
-/// Fits the finalists of one kind of structures by the windows' loss.
+/// Fits the finalists of one kind of structure with the windows' loss.
 ScoredStructures polish(const StructureClimb& search, const std::vector<Lags>& chosen, const FitOptions& window) {
   std::vector<LeftOutForecast> forecasts(chosen.size());
   tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t i) {
@@ -180,7 +181,7 @@ FoundStructure settle(const StructureClimb& search, const FitOptions& window) {
   return found;
 }
 
-/// As `window` has it, with the least of what is searched for.
+/// The structure of `window`, with the smallest value of each searched number.
 FoundStructure nothing_found(const StructureRanges& ranges, const std::string& remark) {
   FoundStructure found{ranges.state_lags.low, ranges.input_lags.low, std::max(Index{1}, ranges.input_delay.low)};
   if (!ranges.input_delay.holds(found.input_delay)) found.input_delay = ranges.input_delay.low;

@@ -22,7 +22,7 @@ double weighted_mean(const ArrayXd& values, const VectorXd& weight) {
   return weight.size() > 0 ? (values * weight.array()).sum() / weight.sum() : values.mean();
 }
 
-/// The squared scale that is likeliest, by expectation-maximisation with an expanded parameter (Liu, Rubin & Wu 1998).
+/// Maximum-likelihood squared scale, by expectation-maximisation with an expanded parameter (Liu, Rubin & Wu 1998).
 double fitted_square(const ArrayXd& squares, const VectorXd& weight, double degrees, double start, double least) {
   double s = start;
   for (int step = 0; step < most_steps; ++step) {

@@ -12,7 +12,7 @@ std::string lag_suffix(const LinearStructure& s, Eigen::Index lag) {
   return s.lagged() ? "_lag" + std::to_string(lag) : "";
 }
 
-/// The rows of the lagged samples: block i becomes what block i - 1 was.
+/// Fills the rows of the lagged samples: block i copies the previous block i - 1.
 void fill_companion_rows(const LinearStructure& s, Eigen::MatrixXd& A) {
   const Eigen::Index lagged = s.dimension() - s.states;
   A.bottomRows(lagged).setZero();

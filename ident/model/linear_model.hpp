@@ -7,14 +7,14 @@
 
 namespace modebank {
 
-/// Shape of the linear increment model x[k+1] = x[k] + A x[k] + B u[k] (+ c) + w[k] (Salvi et al. 2025, eq. 1) and of
-/// its extension to lags, a VARX model in increment form (Ljung 1999, section 4.2):
-///   x[k+1] = x[k] + sum_{i=1..state_lags} A_i x[k+1-i] + sum_{j=0..input_lags-1} B_j u[k+1-input_delay-j] (+ c) +
-///   w[k].
+/// Structure of the linear increment model x[k+1] = x[k] + A x[k] + B u[k] (+ c) + w[k] (Salvi et al. 2025, eq. 1),
+/// extended to lags: a VARX model in increment form (Ljung 1999, section 4.2):
+///   x[k+1] = x[k] + sum_{i=1..state_lags} A_i x[k+1-i] + sum_{j=0..input_lags-1} B_j u[k+1-input_delay-j] (+ c)
+///          + w[k].
 /// theta is the row-major vec of [A_1 A_2 ... B_0 B_1 ... (c)]: row i predicts the increment of state i. In state space
-/// the lagged samples are states of their own: z[k] = [x[k]; x[k-1]; ...] has dimension n = states * state_lags and the
-/// inputs that act on transition k are v[k] = [u[k+1-d]; u[k-d]; ...].
-/// This header is the one place where that equation stands; fits, filters and simulation call it.
+/// the lagged samples are further states: z[k] = [x[k]; x[k-1]; ...] has dimension n = states * state_lags. The inputs
+/// that act on transition k are v[k] = [u[k+1-d]; u[k-d]; ...]. Fits, filters and simulation all use this header's
+/// equation.
 struct LinearStructure {
   Eigen::Index states = 1;       ///< measured states
   Eigen::Index inputs = 0;       ///< input channels
@@ -28,16 +28,16 @@ struct LinearStructure {
   Eigen::Index regressors() const { return dimension() + acting_inputs() + (intercept ? 1 : 0); }  ///< q
   Eigen::Index parameters() const { return states * regressors(); }                                ///< p
   bool lagged() const { return state_lags != 1 || input_lags != 1 || input_delay != 1; }
-  /// Whether older samples than the newest of states and inputs predict.
+  /// Whether samples older than the newest predict.
   bool has_several_lags() const { return state_lags > 1 || input_lags > 1; }
-  /// The same with one state lag and one input lag.
+  /// The same structure with one state lag and one input lag.
   LinearStructure with_one_lag() const { return {states, inputs, intercept, 1, 1, input_delay}; }
   /// First transition of a run whose regressors lie inside the run.
   Eigen::Index first_transition() const {
     return std::max({Eigen::Index{0}, state_lags - 1, input_delay + input_lags - 2});
   }
-  /// "A", "B1", "B2", "c" for one state; "A11", "A12", "B11", ..., "c1" for several. With lags each is followed by the
-  /// samples between it and what it predicts: "A_lag1", "A_lag2", "B1_lag0".
+  /// "A", "B1", "B2", "c" for one state; "A11", "A12", "B11", ..., "c1" for several. With lags a suffix gives the
+  /// number of samples before the predicted one: "A_lag1", "A_lag2", "B1_lag0".
   std::vector<std::string> parameter_names() const;
   bool operator==(const LinearStructure&) const = default;
 };
@@ -50,8 +50,8 @@ void fill_regressor(const LinearStructure& s, const Z& z, const V& v, Phi&& phi)
   if (s.intercept) phi(s.regressors() - 1) = typename std::decay_t<Phi>::Scalar(1);
 }
 
-/// next = x + A x + B u + c (must not alias x). Sums run in the same order for fixed and dynamic sizes, so every caller
-/// gets the same numbers; nothing is allocated.
+/// next = x + A x + B u + c; `next` must not alias x. The order of summation is the same for fixed and dynamic sizes,
+/// so all callers get the same bits. No allocation.
 template <class MatrixA, class MatrixB, class VectorC, class X, class U, class Next>
 void propagate(const MatrixA& A, const MatrixB& B, const VectorC& c, const X& x, const U& u, Next& next) {
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
@@ -62,13 +62,13 @@ void propagate(const MatrixA& A, const MatrixB& B, const VectorC& c, const X& x,
   }
 }
 
-/// The matrices of one parameter vector, in state space: with lags A is in companion form.
+/// The matrices of one parameter vector in state space; A is in companion form if there are lags.
 struct LinearModel {
   Eigen::MatrixXd A;  ///< n x n, increment form: the full form is I + A
   Eigen::MatrixXd B;  ///< n x m
   Eigen::VectorXd c;  ///< n, zero without intercept
 
-  /// x[k+1] without noise.
+  /// Noise-free x[k+1].
   template <class X, class U>
   Eigen::VectorXd next(const X& x, const U& u) const {
     Eigen::VectorXd result(x.size());
@@ -79,7 +79,7 @@ struct LinearModel {
   Eigen::MatrixXd full_form() const { return A + Eigen::MatrixXd::Identity(A.rows(), A.cols()); }
 };
 
-/// theta with its companion rows, and back; pack ignores the companion rows.
+/// Converts theta to matrices with companion rows, and back; pack ignores the companion rows.
 LinearModel unpack(const LinearStructure& structure, const Eigen::VectorXd& theta);
 Eigen::VectorXd pack(const LinearStructure& structure, const LinearModel& model);
 

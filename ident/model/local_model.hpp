@@ -12,40 +12,41 @@
 
 namespace modebank {
 
-/// The fit of one window: estimate, uncertainty and how it ended, always together.
+/// The fit of one window: estimate, covariance and status.
 struct LocalModel {
   Eigen::VectorXd theta;           ///< p
-  Eigen::MatrixXd covariance;      ///< p x p of theta; NaN when rank deficient without a prior
-  Eigen::VectorXd noise_variance;  ///< n, of the one-step residuals [state unit^2]
+  Eigen::MatrixXd covariance;      ///< p x p, covariance of theta; NaN if rank deficient without a prior
+  Eigen::VectorXd noise_variance;  ///< n, variance of the one-step residuals [state unit^2]
   double condition = 0.0;  ///< ratio of singular values of the column-scaled regressor matrix, before weights and prior
-  Index rank = 0;          ///< of theta: n times the regressors' rank at relative tolerance 1e-6
+  Index rank = 0;          ///< rank of theta: n times the regressors' rank at relative tolerance 1e-6
   Eigen::VectorXd information;   ///< p, 1 - posterior variance / prior variance; NaN without a prior
   double inlier_fraction = 0.0;  ///< share of samples that keep at least half of their least-squares weight
   FitStatus status = FitStatus::failed;
   Eigen::VectorXd r_squared;  ///< n, see ident/fit/describe.hpp; empty: not computed
   double aic = 0.0;           ///< nat, see ident/fit/describe.hpp
-  Index transitions = 0;      ///< L, those that entered the fit: finite and of positive weight
-  /// n, information of the data as theta was weighed with it against the prior (the loss's curvature over sigma^2) in
-  /// units of that in `covariance`: what takes the prior off again. NaN without a prior and of a sandwich covariance.
+  Index transitions = 0;      ///< L, transitions that entered the fit: finite and of positive weight
+  /// n, information of the data against the prior (curvature of the loss over sigma^2), in units of the information in
+  /// `covariance`. It allows taking the prior off again. NaN without a prior and for a sandwich covariance.
   Eigen::VectorXd weighed_information;
-  bool solved = false;  ///< the search reached its tolerance (a deficient rank hides iteration_limit in `status`)
+  bool solved = false;  ///< whether the search reached its tolerance (`status` shows a deficient rank instead of
+                        ///< iteration_limit)
 };
 
-/// The global model: plain least squares over all training transitions.
+/// The global model: ordinary least squares over all training transitions.
 struct GlobalModel {
   Eigen::VectorXd theta;                ///< p
   Eigen::MatrixXd covariance;           ///< p x p, residual covariance / (N - q) (x) (X'X)^-1
-  Eigen::MatrixXd residual_covariance;  ///< n x n, population (divided by N)
+  Eigen::MatrixXd residual_covariance;  ///< n x n, divided by N
   Index transitions = 0;                ///< N
   Eigen::VectorXd noise_variance() const { return residual_covariance.diagonal(); }
 };
 
-/// All windows' fits, one window per column (M columns), so a million windows are a handful of arrays.
+/// All windows' fits, one window per column (M columns), so that a million windows are a few arrays.
 struct WindowFits {
   std::string model = "linear";  ///< linear, varx, or the name of a motion model
-  /// Of linear models. Of a motion model: that of its linearisations x[k+1] = x + A x + B u + c.
+  /// Structure of the linear model. For a motion model: that of its linearisations x[k+1] = x + A x + B u + c.
   LinearStructure structure;
-  std::vector<ModelParameter> model_parameters;  ///< of a motion model; empty for linear ones
+  std::vector<ModelParameter> model_parameters;  ///< parameters of a motion model; empty for linear ones
   Index length = 0;                              ///< transitions per window
   Index step = 1;                                ///< transitions between window starts
   Loss loss = Loss::huber;
@@ -61,11 +62,11 @@ struct WindowFits {
   Eigen::MatrixXd r_squared;            ///< n x M
   Eigen::VectorXd aic;                  ///< M
   Eigen::VectorXi transitions;          ///< M
-  Eigen::MatrixXd weighed_information;  ///< n x M, see LocalModel; empty: not known (older archives)
+  Eigen::MatrixXd weighed_information;  ///< n x M, see LocalModel; empty: unknown (older archives)
   Eigen::VectorXd prior_sd;             ///< p, the prior's standard deviations; empty without a prior
   GlobalModel global;
   WindowAudit audit;
-  std::vector<char> by_batch;  ///< M, 1 where the batch solver solved the window, else 0; not archived
+  std::vector<char> by_batch;  ///< M, 1 if the batch solver solved the window, else 0; not archived
 
   Index count() const { return static_cast<Index>(windows.size()); }
   Index parameter_count() const;
@@ -73,7 +74,7 @@ struct WindowFits {
   void resize(Index windows_count);
   void set(Index i, const LocalModel& fit);
   LocalModel at(Index i) const;
-  /// p x M standard errors and t values (theta / standard error), derived from parameters and covariance.
+  /// Standard errors (p x M), and t values theta / standard error, derived from parameters and covariance.
   Eigen::MatrixXd standard_errors() const;
   Eigen::MatrixXd t_values() const;
 };

@@ -9,18 +9,18 @@
 
 namespace modebank {
 
-/// Facts that a model may need beyond what it estimates.
+/// Constants that a model may need beyond its estimated parameters.
 struct ModelSettings {
   Eigen::Index states = 1;
   Eigen::Index inputs = 2;
-  double wheel_radius_m = 1.0;  ///< turns wheel speeds in rad/s into m/s; 1 for inputs that are m/s already
+  double wheel_radius_m = 1.0;  ///< converts wheel speeds from rad/s to m/s; 1 for inputs in m/s
 };
 
-/// The models in ident/models, one header each, by the header's name.
+/// The motion models of the folder ident/model/models, by name.
 std::vector<std::string> motion_model_names();
 
-/// Throws ConfigurationError for an unknown name (says which exist) and for states or inputs that the model does not
-/// have (says which it has).
+/// Throws ConfigurationError for an unknown name (the message lists the names) and for states or inputs that the model
+/// lacks (the message lists its own).
 std::shared_ptr<const MotionModel> make_motion_model(const std::string& name, const ModelSettings& settings);
 
 }  // namespace modebank

@@ -6,9 +6,9 @@ namespace modebank {
 
 namespace {
 
-/// Without the sample that a bank's lagged names end with: "[k-1]" or "[k+1]".
+/// The name without the suffix of a bank's lagged names, "[k-1]" or "[k+1]".
 std::string channel_name(const std::string& name) {
-  const std::size_t sample = std::max(name.rfind("[k-") + 1, name.rfind("[k+") + 1);  // 0: neither
+  const std::size_t sample = std::max(name.rfind("[k-") + 1, name.rfind("[k+") + 1);  // 0: no suffix
   return sample > 0 && name.back() == ']' ? name.substr(0, sample - 1) : name;
 }
 

@@ -19,7 +19,7 @@ using Eigen::ArrayXd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A series about its mean, zero where it is not finite, and its sum of squares.
+/// A centred series, zero where it is not finite, and its sum of squares.
 struct Centred {
   ArrayXd values;
   double square_sum = 0.0;
@@ -29,14 +29,14 @@ struct Centred {
     const auto known = values.isFinite();
     finite = known.count();
     const double mean = known.select(values, 0.0).sum() / static_cast<double>(std::max<Index>(finite, 1));
-    // A constant's deviations are rounding errors of its mean.
+    // Deviations of a constant series are rounding errors of its mean.
     const double constant = 1e-12 * std::abs(mean);
     values = (known && (values - mean).abs() > constant).select(values - mean, 0.0).eval();
     square_sum = values.square().sum();
   }
 };
 
-/// Correlation of a with b `lag` samples earlier, at lags 0 .. lags; NaN where one is constant.
+/// Correlation of a with b `lag` samples earlier, for lags 0 .. lags; NaN if one is constant.
 VectorXd correlations(const Centred& a, const Centred& b, Index lags) {
   const double scale = std::sqrt(a.square_sum) * std::sqrt(b.square_sum);
   if (!(scale > 0.0)) return VectorXd::Constant(lags + 1, not_a_number);
@@ -45,7 +45,7 @@ VectorXd correlations(const Centred& a, const Centred& b, Index lags) {
   return result;
 }
 
-/// P of the header from the autocorrelations of both series.
+/// The header's P, from the autocorrelations of both series.
 double bartlett_variance(const VectorXd& a, const VectorXd& b) {
   double P = 1.0;
   for (Index k = 1; k < a.size(); ++k)

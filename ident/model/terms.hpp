@@ -5,8 +5,8 @@
 
 #include "modebank/base/names.hpp"
 
-/// Terms bend a motion: functions of the regressors beside the linear ones, each with a coefficient of its own per
-/// state, so that the model stays linear in its parameters.
+/// Terms make a motion nonlinear: functions of the regressors that are added to the linear ones. Each has a coefficient
+/// per state, so the model stays linear in its parameters.
 namespace modebank {
 
 /// product: of up to three variables. magnitude: |z|. hinge: max(0, z - knot).
@@ -19,15 +19,15 @@ struct EnumNames<TermKind> {
 
 struct Term {
   TermKind kind = TermKind::product;
-  std::vector<Eigen::Index> variables;  ///< one to three of a product, which may repeat; one of the others
-  double knot = 0.0;                    ///< of a hinge, in units of its variable
+  std::vector<Eigen::Index> variables;  ///< one to three for a product (repeats allowed); else one
+  double knot = 0.0;                    ///< knot of a hinge, in units of its variable
 
   bool operator==(const Term&) const = default;
 };
 
-/// V variables and T terms of them. Variable i is z_i = clip(direction_i' phi, low_i, high_i) / unit_i, phi being the q
-/// regressors of LinearStructure: a single one of them, or a direction of the linear fit. The range is that of the
-/// training runs, beyond which products would run away.
+/// V variables and T terms of them. Variable i is z_i = clip(direction_i' phi, low_i, high_i) / unit_i. phi are the q
+/// regressors of LinearStructure. A direction is a single regressor or a direction of the linear fit. The limits are
+/// the training range, because products grow fast beyond it.
 struct MotionTerms {
   Eigen::MatrixXd direction = {};  ///< q x V
   Eigen::VectorXd low, high = {};  ///< V
@@ -39,18 +39,18 @@ struct MotionTerms {
   Eigen::Index variables() const { return direction.cols(); }
 };
 
-/// Throws std::invalid_argument naming the first thing that makes no terms of q regressors.
+/// Throws std::invalid_argument that names the first invalid part of the terms for q regressors.
 void check_terms(const MotionTerms& terms, Eigen::Index regressors);
 
-/// The variables that some term uses, and these terms.
+/// The terms `used`, with only the variables that they use.
 MotionTerms used_part(const MotionTerms& terms, const std::vector<Term>& used);
 
-/// Terms at one point. Sized at the first use; later ones allocate nothing.
+/// Evaluates terms at one point. The first use allocates; later ones do not.
 class TermValues {
  public:
   void evaluate(const MotionTerms& terms, const Eigen::Ref<const Eigen::VectorXd>& regressors);
   const Eigen::VectorXd& value() const { return value_; }  ///< T
-  const Eigen::MatrixXd& slope() const { return slope_; }  ///< T x q, derivatives; 0 through a clipped variable
+  const Eigen::MatrixXd& slope() const { return slope_; }  ///< T x q, derivatives; 0 for a clipped variable
   bool outside() const { return outside_; }                ///< whether some variable is clipped
 
  private:
@@ -59,10 +59,10 @@ class TermValues {
   bool outside_ = false;
 };
 
-/// Terms of many rows of regressors (N x q): N x T.
+/// Terms of many rows of regressors (N x q), N x T.
 Eigen::MatrixXd term_columns(const MotionTerms& terms, const Eigen::Ref<const Eigen::MatrixXd>& regressors);
 
-/// Share of the rows that lie outside the range of some variable; rows that are not finite do not count.
+/// Share of the rows outside the range of some variable; rows that are not finite do not count.
 double share_outside(const MotionTerms& terms, const Eigen::Ref<const Eigen::MatrixXd>& regressors);
 
 }  // namespace modebank

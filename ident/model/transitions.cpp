@@ -14,7 +14,7 @@ namespace modebank {
 
 namespace {
 
-/// Samples first .. first + count - 1 of one signal, one per row; NaN before the run.
+/// Copies samples first .. first + count - 1 of one signal, one per row; NaN before the run.
 void copy_signal(const Trajectory::Signals& signals, Index signal, Index first, Index count, double* out) {
   const double* const samples = signals.data() + signal;
   const Index stride = signals.rows(), outside = std::clamp(-first, Index{0}, count);
@@ -26,8 +26,7 @@ void copy_signal(const Trajectory::Signals& signals, Index signal, Index first, 
   }
 }
 
-/// Writes transitions start .. start + count - 1 of `run` to the rows from `first` on; fill_regressor, column by
-/// column.
+/// Writes transitions start .. start + count - 1 of `run` to the rows from `first` on, column by column.
 void fill_rows(const Trajectory& run, Index start, Index count, const LinearStructure& s, Index first,
                Transitions& transitions) {
   const Trajectory::Signals state = run.states(), input = run.inputs();
@@ -48,7 +47,7 @@ void fill_rows(const Trajectory& run, Index start, Index count, const LinearStru
   }
 }
 
-/// Weights of transitions start .. start + count - 1, each that of the sample it ends in.
+/// Weights of transitions start .. start + count - 1: each has the weight of its last sample.
 Eigen::VectorXd transition_weights(const Trajectory& run, Index start, Index count) {
   if (run.weight.size() == 0) return {};
   if (run.weight.size() != run.samples() || !(run.weight.array() >= 0.0).all() || !run.weight.allFinite())
@@ -60,7 +59,7 @@ Transitions allocate(Index count, const LinearStructure& structure) {
   return {Eigen::MatrixXd(count, structure.regressors()), Eigen::MatrixXd(count, structure.states)};
 }
 
-/// Norms of the columns; 1 for a zero column, which stays zero.
+/// Norms of the columns; 1 for a zero column.
 Eigen::VectorXd column_scales(const Eigen::MatrixXd& X) {
   Eigen::VectorXd scales(X.cols());
   for (Index j = 0; j < X.cols(); ++j) {
@@ -70,14 +69,14 @@ Eigen::VectorXd column_scales(const Eigen::MatrixXd& X) {
   return scales;
 }
 
-/// Largest over smallest of decreasing singular values.
+/// Ratio of the largest to the smallest of decreasing singular values.
 double condition_of(const Eigen::VectorXd& sigma) {
   const Index q = sigma.size();
   return q > 0 && sigma(q - 1) > 0.0 ? sigma(0) / sigma(q - 1) : std::numeric_limits<double>::infinity();
 }
 
-/// The common case, where no singular vectors are needed: any orthonormal basis of all directions will do, and
-/// Householder's is much cheaper. Nothing where the rank is deficient.
+/// The common case of full rank. No singular vectors are needed: any orthonormal basis of all directions serves, and
+/// Householder's is much cheaper. Empty if the rank is deficient.
 std::optional<Decomposition> decompose_full_rank(const Eigen::MatrixXd& scaled, const Eigen::VectorXd& scales,
                                                  double tolerance) {
   const Index q = scaled.cols();
@@ -92,13 +91,13 @@ std::optional<Decomposition> decompose_full_rank(const Eigen::MatrixXd& scaled, 
   return d;
 }
 
-/// basis with U S V' D basis = U, D = diag(scales), in the row space of U S V' D.
+/// The matrix `basis` with U S V' D basis = U, where D = diag(scales). It lies in the row space of U S V' D.
 Eigen::MatrixXd basis_of(const Eigen::VectorXd& scales, const Eigen::MatrixXd& V, const Eigen::VectorXd& sigma) {
   const Index q = V.rows(), rank = V.cols();
   const Eigen::MatrixXd S_inverse = sigma.cwiseInverse().asDiagonal();
   if (rank == q) return scales.cwiseInverse().asDiagonal() * V * S_inverse;
   if (rank == 0) return Eigen::MatrixXd(q, 0);
-  // The row space is the span of W = D V; the pseudo-inverse of W' is Q R^-T, which stays in it.
+  // The row space is the span of W = D V. The pseudo-inverse of W' is Q R^-T, which lies in that span.
   const ThinQr qr = thin_qr(scales.asDiagonal() * V);
   return qr.Q * solve_transposed_triangle(qr.R, S_inverse);
 }
@@ -162,7 +161,7 @@ Transitions stack_training(const Recording& recording, const LinearStructure& st
 void for_each_training_block(const Recording& recording, const LinearStructure& structure,
                              const std::function<void(const Transitions&)>& body) {
   constexpr Index block = 16384;
-  if (recording.weighted()) return body(stack_training(recording, structure));  // weights are shares of all
+  if (recording.weighted()) return body(stack_training(recording, structure));  // weights are normalised over all rows
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train) continue;
     for (Index start = 0; start < run.transitions(); start += block) {

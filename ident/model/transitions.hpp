@@ -9,9 +9,8 @@
 
 namespace modebank {
 
-/// N transitions as a linear regression, increments = regressors [A B c]' + noise. Once finite_rows has applied the
-/// sample weights, each row is multiplied by the root of its weight, so that least squares on the rows is the weighted
-/// one.
+/// N transitions as a linear regression, increments = regressors [A B c]' + noise. finite_rows applies sample weights:
+/// it multiplies each row by the square root of its weight. Least squares on the rows is then weighted least squares.
 struct Transitions {
   Eigen::MatrixXd regressors;   ///< N x q, row k is phi_k' = [z[k]' v[k]' (1)]
   Eigen::MatrixXd increments;   ///< N x n, row k is (x[k+1] - x[k])'
@@ -21,41 +20,42 @@ struct Transitions {
   bool finite() const { return regressors.allFinite() && increments.allFinite(); }
 };
 
-/// The rows that finite_rows takes.
+/// The indices of the rows that finite_rows keeps.
 std::vector<Eigen::Index> usable_rows(const Transitions& transitions);
 
-/// Transitions start .. start + count - 1 of a run, rows not yet multiplied by anything; NaN where a lagged sample lies
-/// before the run. Throws std::invalid_argument for weights that are not one per sample, negative or not finite.
+/// Stacks transitions start .. start + count - 1 of a run, without applying weights. NaN where a lagged sample lies
+/// before the run. Throws std::invalid_argument unless weights are one per sample, finite and nonnegative.
 Transitions stack_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure);
-/// The same into the first `count` rows of transitions that are large enough; allocates nothing.
+/// stack_transitions into the first `count` rows of an object that is large enough; does not allocate.
 void fill_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure,
                       Transitions& transitions);
 /// finite_rows of all transitions of the training runs.
 Transitions stack_training(const Recording& recording, const LinearStructure& structure);
-/// The rows whose entries are all finite and whose weight is not zero; weights are divided by their mean over these
-/// rows (to a mean of one, so that L transitions count as L) and applied to the rows.
+/// The rows with finite entries and nonzero weight. Their weights are divided by their mean, so that L transitions
+/// count as L, and applied to the rows.
 Transitions finite_rows(const Transitions& transitions);
-/// Takes the weights back out of rows to which finite_rows has applied them.
+/// Reverts the weighting of rows by finite_rows.
 Transitions unweighted(const Transitions& transitions);
 
-/// Runs over the same transitions in blocks of bounded size, in order; weighted ones come in one block.
+/// Visits the same transitions in order, in blocks of bounded size; weighted ones come in one block.
 void for_each_training_block(const Recording& recording, const LinearStructure& structure,
                              const std::function<void(const Transitions&)>& body);
 
-/// Relative tolerance of a rank decision on the column-scaled regressors (method: section 2).
+/// Relative tolerance of the rank of column-scaled regressors (method: section 2).
 inline constexpr double excitation_tolerance = 1e-6;
 
-/// X = U basis^+, its rank by the singular values of X with its columns scaled to unit norm. U spans the excited
-/// directions only, and coefficients beta = basis z in them have the smallest norm among all that give X beta = U z.
+/// X = U basis^+. The rank follows from the singular values of X with columns scaled to unit norm. U spans the excited
+/// directions only. Coefficients beta = basis z have the smallest norm of all with X beta = U z.
 struct Decomposition {
   Eigen::MatrixXd U;       ///< N x r, orthonormal columns
   Eigen::MatrixXd basis;   ///< q x r, X basis = U
-  double condition = 0.0;  ///< largest over smallest singular value of the scaled matrix; infinite when that is zero
+  double condition = 0.0;  ///< largest over smallest singular value of the scaled matrix; infinite if the smallest is
+                           ///< zero
 
   Index rank() const { return U.cols(); }
 };
 
-/// Singular values at or below `tolerance` times the largest count as zero. X must be finite.
+/// Decomposes X, which must be finite. Singular values up to `tolerance` times the largest count as zero.
 Decomposition decompose(const Eigen::MatrixXd& X, double tolerance);
 
 /// Minimum-norm least-squares coefficients, q x n.

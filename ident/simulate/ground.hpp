@@ -7,22 +7,23 @@
 
 namespace modebank {
 
-/// Ground of one kind under a tyre.
+/// One kind of ground under a tyre.
 struct GroundKind {
   double friction = 0.6;    ///< mu, above 0
-  double shear_m = 0.005;   ///< shear deformation modulus K [m], above 0: slip travel at which 63 % of mu N is reached
+  double shear_m = 0.005;   ///< shear deformation modulus K [m], above 0: slip travel at which the force reaches 63 %
+                            ///< of mu N
   double resistance = 0.0;  ///< motion resistance over normal load, at least 0
 };
 
-/// An endless plane of square tiles; every tile's kind is drawn on its own, all kinds equally likely. The same seed
-/// gives the same plane, and a tile's kind depends on the seed and the tile alone.
+/// An endless plane of square tiles. Each tile's kind is drawn independently, all kinds equally likely. It depends on
+/// the seed and the tile alone.
 class Ground {
  public:
-  /// Requires at least one kind; tile_m = 0: kind `everywhere` on the whole plane.
+  /// Requires at least one kind. tile_m = 0: kind `everywhere` on the whole plane.
   Ground(std::vector<GroundKind> kinds, double tile_m, int everywhere, std::uint64_t seed)
       : kinds_(std::move(kinds)), tile_m_(tile_m), everywhere_(everywhere), seed_(seed) {}
 
-  /// Position in `kinds` of what lies at (x, y) [m].
+  /// Position in `kinds` of the ground at (x, y) [m].
   int kind_at(double x_m, double y_m) const;
   const GroundKind& operator[](int kind) const { return kinds_[static_cast<std::size_t>(kind)]; }
 

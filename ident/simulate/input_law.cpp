@@ -9,7 +9,7 @@ namespace modebank {
 
 namespace {
 
-/// Share of the driven commands (neither standstill nor equal inputs) that ramp to their target instead of jumping.
+/// Share of driving commands (neither standstill nor equal inputs) that ramp to their target instead of jumping.
 constexpr double ramp_share = 0.5;
 
 Eigen::VectorXd draw_levels(const CommandOptions& options, std::mt19937_64& generator) {
@@ -19,7 +19,7 @@ Eigen::VectorXd draw_levels(const CommandOptions& options, std::mt19937_64& gene
   return levels;
 }
 
-/// New levels for all inputs every `hold` samples.
+/// Draws new levels for all inputs every `hold` samples.
 Eigen::MatrixXd held_inputs(const CommandOptions& options, Index hold, std::mt19937_64& generator) {
   Eigen::MatrixXd inputs(options.inputs, options.samples);
   for (Index k = 0; k < options.samples; k += hold)
@@ -27,7 +27,7 @@ Eigen::MatrixXd held_inputs(const CommandOptions& options, Index hold, std::mt19
   return inputs;
 }
 
-/// Geometric with the given mean, at least one sample.
+/// A geometric length with the given mean, at least one sample.
 Index draw_length(Index mean, std::mt19937_64& generator) {
   if (mean <= 1) return 1;
   boost::random::geometric_distribution<Index> further(1.0 / static_cast<double>(mean));
@@ -46,7 +46,7 @@ Command draw_command(const CommandOptions& options, std::mt19937_64& generator) 
   Command command{draw_levels(options, generator), uniform(generator) < ramp_share};
   if (kind < options.standstill_fraction + options.equal_fraction) {
     command.target.setConstant(command.target.size() > 0 ? command.target(0) : 0.0);
-    command.ramp = false;  // a ramp from unequal wheels would not be equal on its way
+    command.ramp = false;  // during a ramp from unequal wheels the wheels would stay unequal
   }
   return command;
 }

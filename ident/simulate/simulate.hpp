@@ -9,9 +9,9 @@
 
 namespace modebank {
 
-/// How inputs evolve. `white` redraws every input at every sample; `hold` redraws them every `hold_samples`; `drive`
-/// follows commands of geometric length with mean `hold_samples`: random steps and ramps, standstill and equal wheels,
-/// as a driven skid-steer robot shows them. Levels are uniform in [-input_amplitude, input_amplitude].
+/// How inputs evolve. `white`: new values at every sample. `hold`: new values every `hold_samples`. `drive`: commands
+/// like those of a skid-steer robot's driver, with random steps and ramps, standstill and equal wheels; their length is
+/// geometric with mean `hold_samples`. Levels are uniform in [-input_amplitude, input_amplitude].
 enum class InputLaw { white, hold, drive };
 
 template <>
@@ -19,10 +19,10 @@ struct EnumNames<InputLaw> {
   static constexpr Names<3> values{"white", "hold", "drive"};
 };
 
-/// What a driver does.
+/// Options of the driver's commands.
 struct CommandOptions {
   InputLaw input_law = InputLaw::drive;
-  Index hold_samples = 10;           ///< length of a command (law `drive`: its mean)
+  Index hold_samples = 10;           ///< length of a command (law `drive`: mean length)
   double input_amplitude = 0.5;      ///< commands are drawn from [-amplitude, amplitude] [input unit]
   double input_quantum = 0.0;        ///< applied inputs are rounded to multiples of this; 0: none
   double standstill_fraction = 0.1;  ///< share of commands with all inputs zero (law `drive`)
@@ -37,9 +37,10 @@ struct SimulationOptions : CommandOptions {
   std::vector<Eigen::VectorXd> modes;  ///< theta per mode, p entries each
   std::vector<double> process_sd;      ///< per mode or one for all, sqrt of the diagonal of Q [state unit]
   double measurement_sd = 0.0;         ///< sqrt of the diagonal of R [state unit]
-  Eigen::MatrixXd transition;          ///< K x K, row = from; empty: from dwell_samples, equal elsewhere
-  double dwell_samples = 0.0;  ///< mean samples in a mode, at least 1; 0: every run stays in one mode, run i in mode (i
-                               ///< / 2) mod K, so that even (training) and odd (test) runs both see every mode
+  Eigen::MatrixXd transition;          ///< K x K, row = from; empty: from dwell_samples, with equal probabilities off
+                                       ///< the diagonal
+  double dwell_samples = 0.0;     ///< mean samples in a mode, at least 1. 0: run i stays in mode (i / 2) mod K, so that
+                                  ///< even (training) and odd (held-out) runs contain every mode
   double outlier_fraction = 0.0;  ///< share of measured samples with an outlier
   double outlier_sd = 0.0;        ///< standard deviation of an outlier [state unit]
   Index runs = 12;
@@ -48,17 +49,16 @@ struct SimulationOptions : CommandOptions {
   Index states = 1;
 };
 
-/// One simulated run: what a robot would have measured, and the truth.
+/// One simulated run: measurements and truth.
 struct SimulatedRun {
-  Trajectory measured;   ///< state = measurement y, truth = x
+  Trajectory measured;   ///< state: measurement y; truth: x
   Eigen::VectorXi mode;  ///< N, the mode that drives transition k -> k+1
 };
 
-/// Runs "00", "01", ..., even ones training runs, odd ones test runs. A run starts at state zero, in a mode drawn from
-/// the chain's stationary distribution. The true system is driven by the quantised inputs; outliers are added to the
-/// measured sample. Run i depends on options, seed and i alone.
-/// Throws ConfigurationError when sizes disagree, a value is out of range, the matrix is not row-stochastic, or an
-/// unstable mode drives the state beyond all bounds.
+/// Simulates runs "00", "01", ...; even ones are training runs, odd ones are held out. A run starts at state zero, in a
+/// mode drawn from the chain's stationary distribution. The quantised inputs drive the true system; outliers are added
+/// to the measured sample. Run i depends on options, seed and i alone. Throws ConfigurationError if sizes disagree, a
+/// value is out of range, the matrix is not row-stochastic, or an unstable mode makes the state overflow.
 std::vector<SimulatedRun> simulate(const SimulationOptions& options, std::uint64_t seed);
 
 }  // namespace modebank

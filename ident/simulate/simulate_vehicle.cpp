@@ -45,7 +45,7 @@ std::vector<GroundKind> kinds_of(const VehicleOptions& o) {
   return kinds;
 }
 
-/// Friction bounds even an unstable integration, so nothing else would tell.
+/// Checks the step in advance: friction bounds even an unstable integration, so the result would not reveal it.
 void check_step(const VehicleOptions& o) {
   require_nonnegative_setting(o.step_s, "step");
   const double largest_s = Vehicle::stability_margin * Vehicle::default_step_s(o.vehicle, kinds_of(o));
@@ -92,8 +92,8 @@ void check(const VehicleOptions& o) {
   check_commands(o.commands);
 }
 
-/// Forward and turning parts of the drawn wheel speeds, mixed again with the forward part shifted and the turn scaled,
-/// in whole quanta. Only a standstill has both wheels at exactly zero.
+/// Splits drawn wheel speeds into a forward and a turning part. Recombines them with the forward part shifted and the
+/// turn scaled, in whole quanta. Both wheels are exactly zero only at standstill.
 Eigen::MatrixXd draw_commands(const VehicleOptions& o, std::mt19937_64& generator) {
   CommandOptions exact = o.commands;
   exact.input_quantum = 0.0;
@@ -126,7 +126,8 @@ void note_truth(VehicleRun& run, Index j, const VehicleState& state, const Vehic
   run.kind(j) = ground.kind_at(state[At::x], state[At::y]);
 }
 
-/// From one event, a command or a sample of the states, to the next. Wheel speeds are taken when a command comes in.
+/// Advances from one event (a command or a sample of the states) to the next. Wheel speeds are sampled when a command
+/// arrives.
 void drive(VehicleRun& run, const VehicleOptions& o, const Ground& ground, VehicleState state) {
   const Vehicle vehicle(o.vehicle, ground);
   const double step_s = o.step_s > 0.0 ? o.step_s : Vehicle::default_step_s(o.vehicle, kinds_of(o));
@@ -172,7 +173,7 @@ void measure(VehicleRun& run, const VehicleOptions& o, std::mt19937_64& noise, s
 }
 
 VehicleRun make_run(const VehicleOptions& o, std::uint64_t seed, Index i) {
-  // A generator per purpose: changing the sensors leaves the drive and the ground as they were.
+  // One generator per purpose, so that changing the sensors does not change the drive and the ground.
   const auto index = static_cast<std::uint64_t>(i);
   const auto generator = [&](std::string_view use) { return make_generator(seed, use, index); };
   auto inputs = generator("simulate.inputs"), noise = generator("simulate.measurement"),

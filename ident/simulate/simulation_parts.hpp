@@ -8,7 +8,7 @@
 
 namespace modebank {
 
-/// What the simulated systems share. The checks throw ConfigurationError naming the value.
+/// Parts shared by the simulated systems. The checks throw ConfigurationError that names the value.
 void require_setting(bool ok, const std::string& message);
 void require_nonnegative_setting(double value, const std::string& name);
 void require_fraction_setting(double value, const std::string& name);
@@ -25,7 +25,7 @@ struct Outliers {
   double fraction = 0.0, sd = 0.0;
 };
 
-/// Adds noise of the given standard deviations, one per row, to every sample (column), and an outlier to some of them.
+/// Adds noise to every sample (column), with one standard deviation per row, and outliers to some samples.
 void add_noise(Eigen::MatrixXd& samples, const Eigen::VectorXd& sd, const Outliers& outliers,
                std::mt19937_64& generator);
 

@@ -19,14 +19,14 @@ using At = VehicleState;
 
 bool is_left(std::size_t wheel) { return wheel < 2; }
 
-/// Where a wheel stands in the body frame.
+/// Position of a wheel in the body frame.
 Eigen::Vector2d wheel_position(const VehicleParameters& p, std::size_t wheel) {
   return {(wheel % 2 == 0 ? 0.5 : -0.5) * p.wheelbase_m, (is_left(wheel) ? 0.5 : -0.5) * p.track_m};
 }
 
-/// (1 - (1 - exp(-z)) / z) / z, 1/2 at zero.
+/// (1 - (1 - exp(-z)) / z) / z; 1/2 at zero.
 double mobilised_share_over_z(double z) {
-  constexpr double series_below = 1e-3;  // the next term is z^3 / 120
+  constexpr double series_below = 1e-3;  // the first neglected term is z^3 / 120
   if (z < series_below) return 0.5 - z / 6.0 + z * z / 24.0;
   return (1.0 + std::expm1(-z) / z) / z;
 }
@@ -41,7 +41,7 @@ Kinds kinds_under(const VehicleParameters& p, const Ground& ground, const Vehicl
   return kinds;
 }
 
-/// Sum over the tyres: forces on the body, yaw moment, and what each side's tyres take from its motor.
+/// Sums over the tyres: forces on the body, yaw moment, and each side's load on its motor.
 struct TyreSum {
   Eigen::Vector2d force = Eigen::Vector2d::Zero();
   double moment = 0.0, left_drive = 0.0, right_drive = 0.0;
@@ -103,7 +103,7 @@ void Vehicle::advance(VehicleState& state, const WheelCommand& command, double d
 }
 
 double Vehicle::default_step_s(const VehicleParameters& p, const std::vector<GroundKind>& kinds) {
-  double stiffest_N_s_m = 0.0;  // of all four tyres at no slip, wheels at rest
+  double stiffest_N_s_m = 0.0;  // of all four tyres without slip, wheels at rest
   for (const GroundKind& kind : kinds) {
     const double shear = kind.friction * 0.5 * p.contact_m / kind.shear_m, resistance = kind.resistance;
     stiffest_N_s_m = std::max(stiffest_N_s_m, p.mass_kg * gravity_m_s2 * (shear + resistance) / p.slip_speed_m_s);

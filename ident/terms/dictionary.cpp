@@ -19,7 +19,7 @@ constexpr int knots = 13;
 constexpr double first_quantile = 0.05, quantile_step = 0.075;
 constexpr double regressor_ridge = 1e-8;  // of the rows, on columns of unit root mean square
 
-/// Without the constant: the regressors that a linear fit of the targets takes first.
+/// The regressors (without the constant) that a forward linear fit of the targets selects first.
 std::vector<Index> leading_regressors(const LinearStructure& s, const MatrixXd& X, const MatrixXd& targets) {
   const Index q = s.regressors() - (s.intercept ? 1 : 0);
   const double N = static_cast<double>(X.rows());
@@ -50,13 +50,14 @@ std::vector<Index> leading_regressors(const LinearStructure& s, const MatrixXd& 
   return taken;
 }
 
-/// All directions, of one kind after the other, so that a cap leaves each state its most telling ones.
+/// All directions, grouped by kind, so that a limit keeps the most important ones of each state.
 std::vector<VectorXd> directions(const LinearStructure& s, const MatrixXd& fit) {
   std::vector<VectorXd> all;
   const Index n = s.dimension(), m = s.inputs;
   const auto add = [&](const VectorXd& direction) {
     const Index entries = (direction.array() != 0.0).count();
-    if (entries > 1 && std::ssize(all) < most_directions) all.push_back(direction);  // else it is a regressor
+    // a direction of one entry is a regressor
+    if (entries > 1 && std::ssize(all) < most_directions) all.push_back(direction);
   };
   const auto part = [&](Index state, Index first, Index count) {
     VectorXd direction = VectorXd::Zero(s.regressors());

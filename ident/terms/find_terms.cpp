@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index most_entries = 6'000'000;    // of all columns that are tried
+constexpr Index most_entries = 6'000'000;    // of all candidate columns
 constexpr Index fewest_rows_per_column = 5;  // of the linear model, in each fold of a half
 
 std::vector<LinearStructure> structures_of(const LinearStructure& widest) {
@@ -33,7 +33,7 @@ std::vector<LinearStructure> structures_of(const LinearStructure& widest) {
 
 Index columns_of(const SelectedTerms& selected) { return selected.structure.regressors() + selected.terms.count(); }
 
-/// The fewest columns whose loss against the best is within one standard error.
+/// The smallest number of columns whose loss against the best is within one standard error.
 std::size_t chosen_of(const std::vector<SelectedTerms>& all, const TermRows& rows) {
   const auto best = std::max_element(all.begin(), all.end(), [](const SelectedTerms& a, const SelectedTerms& b) {
     return a.log_score() < b.log_score();
@@ -51,7 +51,7 @@ VectorXd densities_of(const TermRows& on, const LinearStructure& structure, cons
   return student_densities(on.Y - design_of(on, structure, terms) * coefficients);
 }
 
-/// The gain of this structure's terms over the linear model on each half, chosen and fitted on the other.
+/// Gain of this structure's terms over the linear model on each half, chosen and fitted on the other half.
 PartGain measured_gain(const TermRows& rows, const LinearStructure& structure, const FitOptions& options) {
   std::array<VectorXd, 2> gained;
   std::array<std::vector<bool>, 2> half;

@@ -22,13 +22,14 @@ using Eigen::VectorXd;
 constexpr Index folds = 4;
 constexpr Index most_terms = 16;
 constexpr double clipped_errors = 6.0;  // in robust standard deviations
-constexpr double least_share = 0.02;    // of the errors' standard deviation: more than half of them may be zero
-constexpr double ridge = 1e-6;          // of the rows, on columns of unit root mean square
-constexpr double new_share = 1e-3;      // of a column that the columns before leave; less is none of its own
-constexpr double least_gain = 0.002;    // [nats/sample] that are worth a further term
-constexpr double exact_share = 1e-9;    // of the increments: what is predicted more closely is predicted exactly
+// of the errors' standard deviation, because more than half of the errors may be zero
+constexpr double least_share = 0.02;
+constexpr double ridge = 1e-6;        // of the rows, on columns of unit root mean square
+constexpr double new_share = 1e-3;    // smallest part of a column that is independent of the previous columns
+constexpr double least_gain = 0.002;  // smallest gain per further term [nats/sample]
+constexpr double exact_share = 1e-9;  // of the increments; a smaller error counts as an exact prediction
 constexpr double least_scale = 1e-150;
-constexpr Index patience = 3;  // steps in a row without a quarter of that end the search
+constexpr Index patience = 3;  // the search ends after this many steps in a row with less than a quarter of least_gain
 
 VectorXd robust_deviations(const MatrixXd& errors, const MatrixXd& increments) {
   VectorXd deviation(errors.cols());
@@ -40,7 +41,7 @@ VectorXd robust_deviations(const MatrixXd& errors, const MatrixXd& increments) {
   return deviation;
 }
 
-/// A regression by fold, from Gram matrices alone.
+/// Left-out regression fold by fold, from Gram matrices alone.
 class FoldedRegression {
  public:
   FoldedRegression(const MatrixXd& columns, const MatrixXd& targets, const std::vector<Index>& fold)
@@ -63,7 +64,7 @@ class FoldedRegression {
     }
   }
 
-  /// Errors of the rows left out, with these columns.
+  /// Errors of the left-out rows with these columns.
   MatrixXd errors(const std::vector<Index>& taken) const {
     MatrixXd result(static_cast<Index>(N_), cross_.cols());
     for (std::size_t f = 0; f < rows_.size(); ++f) {
@@ -76,8 +77,8 @@ class FoldedRegression {
     return result;
   }
 
-  /// By how much the squared errors of the rows left out shrink with each further column; minus infinity for columns
-  /// that those taken make up.
+  /// Decrease of the squared errors of left-out rows with each further column; minus infinity for columns that depend
+  /// linearly on those taken.
   VectorXd gains(const std::vector<Index>& taken) const {
     const Index C = gram_.cols();
     VectorXd gain = VectorXd::Zero(C);
@@ -136,7 +137,7 @@ bool stands_still(const std::vector<VectorXd>& path) {
   return lately < before + 0.25 * least_gain;
 }
 
-/// The first of the path whose loss against its best is within one standard error, or next to nothing.
+/// The first step of the path whose loss against the best is negligible or within one standard error.
 std::size_t fewest_as_good(const std::vector<VectorXd>& path, const TermRows& rows) {
   const auto best = std::max_element(path.begin(), path.end(),
                                      [](const VectorXd& a, const VectorXd& b) { return a.mean() < b.mean(); });
@@ -187,7 +188,8 @@ SelectedTerms select_terms(const TermRows& rows, const LinearStructure& structur
     targets.col(i) = (X * fit.col(i) + errors.col(i).cwiseMax(-most).cwiseMin(most)) / deviation(i);
   }
   const MotionTerms dictionary = make_dictionary(structure, X, fit, targets);
-  // Any basis of the linear regressors does, and lags of a smooth signal are nearly the same column.
+  // Any basis of the linear regressors serves. Lags of a smooth signal are nearly equal columns, so an orthonormal
+  // basis is used.
   const MatrixXd basis = decompose(X, excitation_tolerance).U;
   MatrixXd columns(X.rows(), basis.cols() + dictionary.count());
   columns << basis, term_columns(dictionary, X);

@@ -9,28 +9,29 @@
 
 namespace modebank {
 
-/// Terms that a forward selection took, the most telling first.
+/// Terms taken by a forward selection, the most important first.
 struct SelectedTerms {
   LinearStructure structure;
-  MotionTerms terms;              ///< none where the linear model predicts left-out rows as well
-  Eigen::VectorXd left_out = {};  ///< N log densities of rows that did not fit coefficients, all states together
+  MotionTerms terms;              ///< empty if the linear model predicts left-out rows as well
+  Eigen::VectorXd left_out = {};  ///< N, log density of each row left out of the coefficients' fit, all states together
   double log_score() const { return left_out.mean(); }
 };
 
-/// Terms of one structure, forward by what they gain on parts of the rows that are left out; as many as leave no more
-/// than one standard error to the best count. Coefficients come from Gram matrices without each fold; targets are
-/// those of the robust linear fit with errors clipped, so that outliers choose nothing. What is left out has chosen
-/// the terms: measured_gain judges them.
+/// Forward selection of terms of one structure by their gain on left-out parts of the rows. It keeps the fewest terms
+/// within one standard error of the best count.
+/// Coefficients come from Gram matrices without each fold. Targets are those of the robust linear fit with clipped
+/// errors, so that outliers do not choose terms. Left-out rows choose the terms, so their score is biased;
+/// measured_gain gives an unbiased one.
 SelectedTerms select_terms(const TermRows& rows, const LinearStructure& structure, const FitOptions& options);
 
-/// Coefficients of linear regressors and terms by the loss and the scale of window fits, (q + T) x n.
+/// Coefficients of linear regressors and terms, with the loss and scale of window fits, (q + T) x n.
 Eigen::MatrixXd fit_terms(const TermRows& rows, const LinearStructure& structure, const MotionTerms& terms,
                           const FitOptions& options);
 
-/// The columns of these coefficients: regressors and terms.
+/// The regression's columns: regressors and terms.
 Eigen::MatrixXd design_of(const TermRows& rows, const LinearStructure& structure, const MotionTerms& terms);
 
-/// Log density of each row's errors (N x n) under a Student t per state that fits them, all states together.
+/// Log density of each row's errors (N x n) under a fitted Student t per state, summed over the states.
 Eigen::VectorXd student_densities(const Eigen::MatrixXd& errors);
 
 }  // namespace modebank

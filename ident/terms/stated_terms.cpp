@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-/// At commas outside of parentheses.
+/// Splits at commas outside of parentheses.
 std::vector<std::string> parts_of(const std::string& text) {
   std::vector<std::string> parts(1);
   int depth = 0;

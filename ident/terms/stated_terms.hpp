@@ -8,25 +8,25 @@
 
 namespace modebank {
 
-/// A term in words: the names of its variables, which regressors have.
+/// A term as written by the user, with names of regressors as variables.
 struct StatedTerm {
   TermKind kind = TermKind::product;
-  std::vector<std::string> names;  ///< one to three of a product, which may repeat; one of the others
-  double knot = 0.0;               ///< of a hinge, in the variable's unit
+  std::vector<std::string> names;  ///< one to three for a product (repeats allowed); else one
+  double knot = 0.0;               ///< knot of a hinge, in the variable's unit
 
   bool operator==(const StatedTerm&) const = default;
 };
 
-/// Whether window.terms lists terms: any text but auto and none.
+/// Whether window.terms lists terms, that is, differs from auto and none.
 inline bool lists_terms(const std::string& choice) { return choice != "auto" && choice != "none"; }
 
-/// "vx * wz, |vx|, max(0, wz[k-1] - 0.3)", as equations print them. Throws std::invalid_argument, whose message states
-/// the part that cannot be read.
+/// Parses "vx * wz, |vx|, max(0, wz[k-1] - 0.3)", the format of printed equations. Throws std::invalid_argument that
+/// quotes the unreadable part.
 std::vector<StatedTerm> read_terms(const std::string& text);
 
-/// The same as terms of regressors (N x q) with these q names. A name without a sample means the newest one. Ranges are
-/// those of the rows, units their root mean squares. Throws DataError, which lists the names, for one that is not
-/// there.
+/// Converts the terms to terms of regressors (N x q) with these q names. A name without a sample means the newest one.
+/// Ranges are those of the rows, units their root mean squares. Throws DataError for an unknown name; the message lists
+/// the names.
 MotionTerms stated_terms(const std::vector<StatedTerm>& stated, const std::vector<std::string>& names,
                          const Eigen::MatrixXd& regressors);
 

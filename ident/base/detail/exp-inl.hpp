@@ -1,8 +1,8 @@
 // Exponentials and logarithms of vectors. Included once per instruction set (Highway's foreach_target.h).
 //
-// Why not Highway's own (hn::Exp, 1.0.3): on a Zen 4 it takes 0.90 ns a value where this takes 0.41, or 0.30 four
-// vectors at a time (AVX-512; 1.35 against 0.92 and 0.71 with AVX2), and 16 to 18 ns from argument to result against
-// 13: EM takes one per point and component, and every step of a filter waits for one.
+// Highway's own hn::Exp (1.0.3) is slower. On a Zen 4 with AVX-512 it takes 0.90 ns per value; this one takes 0.41, or
+// 0.30 for four vectors at a time. With AVX2 it takes 1.35 against 0.92 and 0.71. The latency is 16 to 18 ns against
+// 13. Speed matters: EM computes one exponential per point and component, and every step of a filter waits for one.
 #if defined(MODEBANK_EM_EXP_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_EM_EXP_INL
 #undef MODEBANK_EM_EXP_INL
@@ -23,14 +23,14 @@ using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
 using batch::HWY_NAMESPACE::splat;
 
-/// log2(e) is the sum of two doubles.
+/// log2(e) as the sum of two doubles.
 inline constexpr double log2_e = 1.4426950408889634074, log2_e_rest = 2.0355273740931033e-17;
 inline constexpr double ln_2 = 0.69314718055994530942;
 
-/// Exponentials below exp(-690) count as that: no denormal numbers, which are slow.
+/// Smaller arguments of exp are raised to this value, to avoid denormal numbers, which are slow.
 inline constexpr double smallest_log_ratio = -690.0;
 
-/// Keeps the compiler from loading a value anew at every use.
+/// Keeps the value in a register; otherwise the compiler loads it at every use.
 HWY_INLINE V in_register(V value) {
 #if HWY_TARGET == HWY_AVX3
   asm("" : "+v"(value.raw));
@@ -38,7 +38,7 @@ HWY_INLINE V in_register(V value) {
   return value;
 }
 
-/// c[0] + c[1] x + ... (Horner) of several vectors side by side, so that the processor need not wait for any.
+/// c[0] + c[1] x + ... (Horner) for several vectors side by side, which hides the latency.
 template <int terms, int count>
 HWY_INLINE void polynomial(const double (&c)[terms], const V (&x)[count], V (&sum)[count]) {
   for (int v = 0; v < count; ++v) sum[v] = splat(c[terms - 1]);
@@ -68,8 +68,8 @@ alignas(64) inline constexpr double sixteenth_powers[16] = {
     1.9152065613971474,
 };
 
-/// 2^t = 2^floor(t) 2^(i/16) 2^r: 2^(i/16) from a table in two registers, 2^r, 0 <= r < 1/16, by a minimax polynomial
-/// whose relative error is 7e-18.
+/// 2^t = 2^floor(t) 2^(i/16) 2^r. 2^(i/16) comes from a table in two registers. 2^r, 0 <= r < 1/16, is a minimax
+/// polynomial with relative error 7e-18.
 class Exp {
  public:
   HWY_INLINE Exp()
@@ -77,7 +77,7 @@ class Exp {
         high_(hn::Load(D(), sixteenth_powers + 8)),
         smallest_(splat(smallest_log_ratio * log2_e)) {}
 
-  /// exp(x), x at most 700.
+  /// exp(x) for x <= 700.
   HWY_INLINE V operator()(V x) const {
     x = hn::Max(x, splat(smallest_log_ratio));
     V t[1] = {hn::Mul(x, splat(log2_e))}, r[1];
@@ -87,7 +87,7 @@ class Exp {
     return t[0];
   }
 
-  /// t becomes 2^t; t at most 1000.
+  /// Replaces t by 2^t; t <= 1000.
   template <int count>
   HWY_INLINE void power_of_two(V (&t)[count]) const {
     V r[count];
@@ -101,7 +101,7 @@ class Exp {
 
   template <int count>
   HWY_INLINE void power(V (&t)[count], const V (&r)[count]) const {
-    // Rounded down; adding it leaves the sixteenths in the low bits of the mantissa.
+    // Rounds down. Adding this constant leaves the sixteenths in the low bits of the mantissa.
     const V rounder = splat(6755399441055744.0 / 16.0);
     constexpr double c[] = {1.0,
                             0.6931471805599344,
@@ -124,7 +124,7 @@ class Exp {
   V low_, high_, smallest_;
 };
 
-// Reciprocals of j/16, j = 12 .. 24, at j modulo 16, and the logarithms of j/16.
+// Reciprocals of j/16 for j = 12 .. 24, stored at j modulo 16, and the logarithms of j/16.
 alignas(64) inline constexpr double reciprocals[16] = {
     1.0,
     0.9411764705882353,
@@ -162,12 +162,12 @@ alignas(64) inline constexpr double logarithms_of_sixteenths[16] = {
     -0.06453852113757116,
 };
 
-/// log of x > 0, neither denormal nor beyond 1e308: x = 2^e (j/16) (1 + r), 3/4 <= j/16 <= 3/2, |r| <= 1/24, and log(1
-/// + r) / r by a minimax polynomial of error 8e-15 (which, times r, is 3e-16).
+/// log of x > 0, neither denormal nor beyond 1e308. x = 2^e (j/16) (1 + r) with 3/4 <= j/16 <= 3/2 and |r| <= 1/24.
+/// log(1 + r) / r is a minimax polynomial with error 8e-15, which is 3e-16 after the multiplication by r.
 class Log {
  public:
   HWY_INLINE V operator()(V x) const {
-    // The exponent of the mantissa that lies in [3/4, 3/2).
+    // The exponent that puts the mantissa into [3/4, 3/2).
     const V e{_mm512_getexp_pd(hn::Mul(x, splat(4.0 / 3.0)).raw)};
     const V m{_mm512_getmant_pd(x.raw, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_src)};
     const __m512i j = _mm512_castpd_si512(hn::Add(m, splat(6755399441055744.0 / 16.0)).raw);
@@ -187,17 +187,17 @@ class Log {
 
 #else
 
-/// 2^t = 2^n 2^f, n whole, 2^f by Taylor's polynomial of degree 12 on [-1/2, 1/2].
+/// 2^t = 2^n 2^f with n whole; 2^f by the Taylor polynomial of degree 12 on [-1/2, 1/2].
 class Exp {
  public:
-  /// exp(x), x at most 700.
+  /// exp(x) for x <= 700.
   HWY_INLINE V operator()(V x) const {
     x = hn::Max(x, splat(smallest_log_ratio));
     const V t = hn::Mul(x, splat(log2_e));
     return power(t, hn::MulAdd(x, splat(log2_e_rest), hn::MulSub(x, splat(log2_e), t)));
   }
 
-  /// t becomes 2^t; t at most 1000.
+  /// Replaces t by 2^t; t <= 1000.
   template <int count>
   HWY_INLINE void power_of_two(V (&t)[count]) const {
     for (int v = 0; v < count; ++v) t[v] = power(hn::Max(t[v], splat(smallest_log_ratio * log2_e)), hn::Zero(D()));
@@ -207,7 +207,7 @@ class Exp {
   static HWY_INLINE V power(V t, V rest) {
     const V rounder = splat(6755399441055744.0);  // adding it leaves n in the low bits of the mantissa
     const V shifted = hn::Add(t, rounder);
-    // In natural units: Taylor's coefficients.
+    // Scaled to the natural logarithm, so that Taylor coefficients apply.
     const V r = hn::Mul(hn::Add(hn::Sub(t, hn::Sub(shifted, rounder)), rest), splat(ln_2));
     const V r2 = hn::Mul(r, r), r4 = hn::Mul(r2, r2);
     const auto pair = [&](double a, double b) { return hn::MulAdd(r, splat(b), splat(a)); };

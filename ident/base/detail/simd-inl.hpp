@@ -21,7 +21,7 @@ HWY_INLINE V zero() { return hn::Zero(D()); }
 HWY_INLINE bool any(M mask) { return !hn::AllFalse(D(), mask); }
 HWY_INLINE M none() { return hn::FirstN(D(), 0); }
 
-/// 1 / x to the last bit or two; x neither denormal nor so large that its reciprocal is.
+/// 1 / x within one or two units in the last place. x must not be denormal, nor 1 / x.
 HWY_INLINE V reciprocal(V x) {
 #if HWY_TARGET == HWY_AVX3
   V y{_mm512_rcp14_pd(x.raw)};
@@ -33,7 +33,7 @@ HWY_INLINE V reciprocal(V x) {
 #endif
 }
 
-/// 1 / sqrt(x), likewise.
+/// 1 / sqrt(x) with the same accuracy and conditions.
 HWY_INLINE V reciprocal_root(V x) {
 #if HWY_TARGET == HWY_AVX3
   V y{_mm512_rsqrt14_pd(x.raw)};
@@ -47,16 +47,16 @@ HWY_INLINE V reciprocal_root(V x) {
 #endif
 }
 
-/// Position of (i, j), i >= j, in a packed lower triangle.
+/// Index of entry (i, j), i >= j, in a packed lower triangle.
 constexpr int at(int i, int j) { return i * (i + 1) / 2 + j; }
 
-/// A symmetric Q x Q matrix per lane, lower triangle.
+/// A symmetric Q x Q matrix per lane, stored as its lower triangle.
 template <int Q>
 struct Symmetric {
   V a[Q * (Q + 1) / 2];
 };
 
-/// L D L' of a symmetric matrix, D inverted.
+/// L D L' of a symmetric matrix, with D inverted.
 template <int Q>
 struct Ldl {
   V l[Q * (Q + 1) / 2];
@@ -67,7 +67,7 @@ struct Ldl {
 template <int Q>
 HWY_INLINE Ldl<Q> factor(const Symmetric<Q>& A, const Symmetric<Q>& reference, double least) {
   Ldl<Q> f;
-  V scaled[Q];  // l_jk d_k of the row at work
+  V scaled[Q];  // l_jk d_k of the present row
   f.ok = hn::Eq(zero(), zero());
   for (int j = 0; j < Q; ++j) {
     for (int k = 0; k < j; ++k) {
@@ -137,8 +137,8 @@ HWY_INLINE V dot(const V (&a)[Q], const V (&b)[Q]) {
   return sum;
 }
 
-/// Singular values of Q columns of Q entries by one-sided Jacobi rotations (Hestenes 1958), which finds the small ones
-/// to the accuracy of the entries. A rotation that a lane no longer needs leaves its bits alone.
+/// Singular values of Q columns of Q entries by one-sided Jacobi rotations (Hestenes 1958). Small singular values are
+/// as accurate as the entries. A lane that needs no rotation keeps its bits.
 template <int Q>
 HWY_NOINLINE void singular_values(V (&column)[Q][Q], V (&sigma)[Q]) {
   constexpr double orthogonal = 1e-15;

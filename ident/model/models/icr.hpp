@@ -10,11 +10,11 @@
 
 namespace modebank::models {
 
-/// Kinematics of a skid-steer vehicle by instantaneous centres of rotation (Martinez et al. 2005, eq. 3-8; steering
-/// efficiencies a_l, a_r: Mandow et al. 2007, eq. 6-8), here with x forward and y to the left. Seen from the body the
-/// left track turns about the point (x_v, y_l), the right one about (x_v, y_r), where the tracks' speeds v_l, v_r hold:
+/// Kinematics of a skid-steer vehicle by instantaneous centres of rotation, with x forward and y to the left (Martinez
+/// et al. 2005, eq. 3-8; steering efficiencies a_l, a_r: Mandow et al. 2007, eq. 6-8). In the body frame the left track
+/// rotates about (x_v, y_l) and the right one about (x_v, y_r). With the tracks' speeds v_l and v_r:
 ///   w = (a_r v_r - a_l v_l) / (y_l - y_r),   v_x = a_l v_l + y_l w,   v_y = -x_v w.
-/// The velocity follows the wheels at once: x[k+1] = f(u[k]). States: v_x and yaw rate w.
+/// The velocity follows the wheels without delay: x[k+1] = f(u[k]). States: v_x and yaw rate w.
 struct IcrModel {
   double wheel_radius_m = 1.0;
 
@@ -26,7 +26,7 @@ struct IcrModel {
   }
 };
 
-/// With the lateral speed measured, too: states v_x, v_y, w.
+/// IcrModel with measured lateral speed: states v_x, v_y, w.
 struct LateralIcrModel {
   IcrModel planar;
 
@@ -40,7 +40,7 @@ struct LateralIcrModel {
   }
 };
 
-/// Seen through the yaw rate alone: the distance y_l - y_r of the two centres.
+/// IcrModel with the yaw rate as its only state; its parameter is the distance y_l - y_r of the two centres.
 struct YawIcrModel {
   double wheel_radius_m = 1.0;
 

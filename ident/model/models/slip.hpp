@@ -10,8 +10,8 @@
 namespace modebank::models {
 
 /// First-order slip model of a skid-steer vehicle. The tracks run at v_l = r u_l and v_r = r u_r (r: wheel radius, u:
-/// wheel speeds) and lose the shares s_l and s_r of it to the ground; the body follows with time constant tau (Wong
-/// 2008, chapter 6, for the slip ratio; effective track: Mandow et al. 2007, section III):
+/// wheel speeds) and lose the shares s_l and s_r to slip. The body follows with time constant tau (slip ratio: Wong
+/// 2008, chapter 6; effective track: Mandow et al. 2007, section III):
 ///   v_ss = [(1 - s_l) v_l + (1 - s_r) v_r] / 2,   w_ss = [(1 - s_r) v_r - (1 - s_l) v_l] / W,
 ///   x[k+1] = x[k] + (1 - exp(-dt / tau)) (x_ss - x[k])    (exact for inputs held over the step).
 /// States: forward speed and yaw rate (m/s, rad/s). Left turns and forward motion are positive.
@@ -28,8 +28,8 @@ struct SlipModel {
   }
 };
 
-/// The same seen through the yaw rate alone, which cannot tell a slip that both sides share from a wider track: W is
-/// the track that explains the mean gain, and slip_difference d what the left side loses more than the right one:
+/// SlipModel with the yaw rate as its only state. It cannot separate a slip common to both sides from a wider track. So
+/// W is the track that explains the mean gain, and slip_difference d is the additional loss of the left side:
 ///   w_ss = [(1 + d/2) v_r - (1 - d/2) v_l] / W.
 struct YawSlipModel {
   double wheel_radius_m = 1.0;

@@ -1,4 +1,4 @@
-// The loop over a chunk of windows, a vector of them at a time, and the way of their results into memory.
+// Fits a chunk of windows, one vector of them at a time, and writes the results to memory.
 #if defined(MODEBANK_BATCH_CHUNK_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_CHUNK_INL
 #undef MODEBANK_BATCH_CHUNK_INL
@@ -26,7 +26,8 @@ HWY_INLINE View contiguous_view(const Settings& settings, const Chunk& chunk, In
   return view;
 }
 
-/// Windows that do not start one sample apart are laid side by side, one per lane; lanes beyond the last repeat it.
+/// Lays out windows that do not start one sample apart side by side, one per lane. Lanes beyond the last window repeat
+/// it.
 HWY_INLINE View transposed_view(const Settings& settings, const Chunk& chunk, Index first, double* memory) {
   const Index lanes = static_cast<Index>(hn::Lanes(D()));
   const auto transpose = [&](const double* column) {
@@ -62,14 +63,14 @@ HWY_INLINE void scatter_flags(M mask, Index count, bool (&flag)[widest]) {
   for (Index i = 0; i < count; ++i) flag[i] = lane[i] != 0.0;
 }
 
-/// Verdicts, rank and status: the numbers that are not floating.
+/// Stores verdict, rank and status, the integer results.
 template <int Q>
 HWY_INLINE void write_verdicts(const Settings& settings, const Fit<Q>& fit, Index first, Index count,
                                const Output& out) {
   const M rated = settings.prior ? fit.reached : hn::AndNot(fit.deficient, fit.reached);
   const M solved = hn::And(hn::And(fit.enough, fit.clear), rated);
   const bool plain = hn::CountTrue(D(), hn::AndNot(fit.deficient, solved)) == hn::Lanes(D());
-  if (plain && count == static_cast<Index>(hn::Lanes(D())) && !out.transitions) {  // as a rule
+  if (plain && count == static_cast<Index>(hn::Lanes(D())) && !out.transitions) {  // the usual case
     std::fill_n(out.verdict + first, count, Verdict::solved);
     if (out.rank) std::fill_n(out.rank + first, count, Q);
     if (out.status) std::fill_n(out.status + first, count, static_cast<int>(FitStatus::converged));
@@ -102,7 +103,7 @@ HWY_INLINE void write_verdicts(const Settings& settings, const Fit<Q>& fit, Inde
   }
 }
 
-/// akaike_criterion of ident/fit/describe.hpp for one state, from the sums; logarithms are the host's.
+/// akaike_criterion of ident/fit/describe.hpp for one state, from the sums; logarithms are computed by the host.
 template <int Q>
 HWY_NOINLINE void write_criterion(const Settings& settings, const Fit<Q>& fit, Index count, double* out) {
   if (!out) return;

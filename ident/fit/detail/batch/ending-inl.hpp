@@ -1,4 +1,4 @@
-// Sums over the residuals at the optimum, and the covariances made from them.
+// Sums over the residuals at the optimum, and the covariances computed from them.
 #if defined(MODEBANK_BATCH_ENDING_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_ENDING_INL
 #undef MODEBANK_BATCH_ENDING_INL
@@ -14,14 +14,14 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// What the residuals at the optimum say. omega = rho' is a sample's robust weight, y its increment.
+/// Sums over the residuals at the optimum. omega = rho' is a sample's robust weight, y its increment.
 struct Ending {
   V psi_square, slope, slope_square, weighted_square, inliers;
   V omega, omega_y, omega_y_square;  // y about the window's first increment
-  V cost;                            // sum rho, 0 for residuals of 0
+  V cost;                            // sum rho, zero for zero residuals
 };
 
-/// A row where no transition is counts nothing: its residual of zero has rho = 0, slope and omega 1.
+/// An absent transition must not count. Its residual is zero: rho = 0, slope and omega 1.
 template <int Q, class LossT>
 HWY_NOINLINE Ending residual_sums(const View& view, const LossT& loss, const V (&theta)[Q]) {
   Ending e{zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero()};
@@ -46,7 +46,7 @@ HWY_NOINLINE Ending residual_sums(const View& view, const LossT& loss, const V (
   return e;
 }
 
-/// Parameters that the data determine, the sum of the samples' leverages at sigma.
+/// Number of parameters that the data determine: the sum of the samples' leverages at sigma.
 template <int Q>
 HWY_INLINE V data_parameters(const Settings& settings, const Surroundings<Q>& around) {
   V f = splat(Q);
@@ -56,7 +56,7 @@ HWY_INLINE V data_parameters(const Settings& settings, const Surroundings<Q>& ar
   return f;
 }
 
-/// As ident/fit/covariance.hpp states it, with Huber's correction K; `weighed` is its weighed_information.
+/// The `model` covariance of ident/fit/covariance.hpp with Huber's correction K; `weighed` is its weighed_information.
 template <int Q>
 HWY_NOINLINE Symmetric<Q> model_covariance(const Settings& settings, const Start<Q>& start, const Ending& e, V f,
                                            V& weighed) {
@@ -83,7 +83,7 @@ HWY_NOINLINE Symmetric<Q> model_covariance(const Settings& settings, const Start
   return inverse(factor(information, information, 0.0));
 }
 
-/// HC3 as ident/fit/covariance.hpp states it.
+/// The HC3 covariance of ident/fit/covariance.hpp.
 template <int Q>
 HWY_NOINLINE Symmetric<Q> sandwich_covariance(const View& view, const AnyLoss& loss, const Surroundings<Q>& around,
                                               V sigma, const V (&theta)[Q]) {

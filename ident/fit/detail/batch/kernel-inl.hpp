@@ -1,4 +1,4 @@
-// The fit of as many consecutive windows as a vector has lanes, from samples to LocalModel.
+// Fits as many consecutive windows as a vector has lanes, from samples to LocalModel.
 #if defined(MODEBANK_BATCH_KERNEL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_KERNEL_INL
 #undef MODEBANK_BATCH_KERNEL_INL
@@ -22,12 +22,12 @@ struct Fit {
   Search<Q> search;
   Symmetric<Q> covariance;
   V noise_variance, condition, rank, inlier_fraction, r_squared, weighed_information;
-  V samples, sigma, deviance, data_parameters, price;  // what Akaike's criterion is made from
+  V samples, sigma, deviance, data_parameters, price;  // inputs of Akaike's criterion
   V information[Q];
   M clear, enough, reached, deficient;
 };
 
-/// R^2 and the parts of AIC as ident/fit/describe.hpp states them.
+/// R^2 and the parts of AIC in the definition of ident/fit/describe.hpp.
 template <int Q>
 HWY_INLINE void describe_quality(const Settings& settings, const Ending& e, V f, V sigma, Fit<Q>& fit) {
   const V nan = splat(std::numeric_limits<double>::quiet_NaN());
@@ -62,10 +62,11 @@ HWY_INLINE void describe(const Settings& settings, const View& view, const LossT
     const V sd = splat(settings.prior ? settings.prior_sd[j] : std::numeric_limits<double>::quiet_NaN());
     fit.information[j] = hn::Sub(splat(1.0), hn::Div(fit.covariance.a[at(j, j)], hn::Mul(sd, sd)));
   }
-  if (!settings.prior) fit.reached = hn::And(fit.reached, hn::Gt(e.slope, zero()));  // else nothing is known of theta
+  // otherwise nothing is known of theta
+  if (!settings.prior) fit.reached = hn::And(fit.reached, hn::Gt(e.slope, zero()));
 }
 
-/// X'X + sigma^2 P and the posterior least-squares solution, from which the search starts.
+/// X'X + sigma^2 P and the posterior least-squares solution, the start of the search.
 template <int Q>
 HWY_NOINLINE Surroundings<Q> surround(const Settings& settings, Start<Q>& start) {
   Surroundings<Q> around{start.gram, {}, {}, start.square_sum, settings.max_iterations, {}};
@@ -95,7 +96,7 @@ HWY_INLINE LossT make_loss(Loss kind, V scale) {
   }
 }
 
-/// A lane has converged only where what it has converged to is finite.
+/// A lane counts as converged only if its result is finite.
 template <int Q>
 HWY_INLINE void require_finite(Fit<Q>& fit) {
   for (int j = 0; j < Q; ++j) fit.reached = hn::And(fit.reached, finite(fit.search.theta[j]));

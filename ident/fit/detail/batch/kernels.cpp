@@ -1,4 +1,4 @@
-// The batch solver's kernels: every instruction set's own table, by loss and number of regressors.
+// The batch solver's kernels: one table per instruction set, by loss and number of regressors.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ident/fit/detail/batch/kernels.cpp"
 #include "ident/fit/detail/batch/kernels.hpp"
@@ -11,8 +11,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 
-/// The shapes and losses that people fit by the million have kernels of their own, except one lane at a time, which
-/// only processors without AVX2 run; the rest share a kernel per shape.
+/// Common shapes and losses have kernels of their own. One-lane kernels, which only processors without AVX2 run, and
+/// all other shapes share a kernel per shape.
 template <int Q>
 Kernel kernel_of(Loss loss) {
   if constexpr (Q >= 2 && Q <= 4 && HWY_TARGET != HWY_SCALAR) {

@@ -1,5 +1,5 @@
-// Robust losses on vectors of residuals, as ident/fit/loss.hpp defines them: D is the tuning constant times sigma
-// and t = r^2 / D^2. `cost` accumulates the objective up to a factor and an offset that are the window's own.
+// Robust losses on vectors of residuals, as defined in ident/fit/loss.hpp. D is the tuning constant times sigma, and t
+// = r^2 / D^2. `cost` accumulates the objective up to a factor and an offset per window.
 #if defined(MODEBANK_BATCH_LOSS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_LOSS_INL
 #undef MODEBANK_BATCH_LOSS_INL
@@ -17,13 +17,13 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// At one residual: psi = rho' r, slope = d psi / d r = rho' + 2 s rho'', weight = rho'.
+/// Values at one residual: psi = rho' r, slope = d psi / d r = rho' + 2 s rho'', weight = rho'.
 struct LossTerms {
   V psi, slope, weight;
 };
 
-/// Every loss has `quadratic`, `terms(r)` and an accumulator `Cost`, whose value is sum rho in
-/// units of r^2 up to an offset.
+/// Every loss has `quadratic`, `terms(r)` and an accumulator `Cost`. The value of `Cost` is sum rho in units of r^2, up
+/// to an offset.
 struct TrivialLoss {
   static constexpr bool quadratic = true;
   explicit TrivialLoss(V) {}
@@ -56,15 +56,15 @@ struct HuberLoss {
   };
 };
 
-/// What most losses are made from: D^2 and its inverse.
+/// Constants of most losses: D^2 and its inverse.
 struct ScaledLoss {
   static constexpr bool quadratic = false;
   V inverse_square, square;
   explicit ScaledLoss(const V& scale) : ScaledLoss(hn::Mul(scale, scale), hn::Div(splat(1.0), hn::Mul(scale, scale))) {}
   ScaledLoss(const V& scale_square, const V& inverse) : inverse_square(inverse), square(scale_square) {}
-  /// t.
+  /// t at residual r.
   HWY_INLINE V relative_square(V r) const { return hn::Mul(hn::Mul(r, r), inverse_square); }
-  /// 1 + t.
+  /// 1 + t at residual r.
   HWY_INLINE V one_more(V r) const { return hn::MulAdd(hn::Mul(r, r), inverse_square, splat(1.0)); }
 };
 
@@ -94,7 +94,7 @@ struct CauchyLoss : ScaledLoss {
     const V w = reciprocal(hn::Add(t, splat(1.0)));
     return {hn::Mul(w, r), hn::Mul(hn::Sub(splat(1.0), t), hn::Mul(w, w)), w};
   }
-  /// rho = D^2 log(1 + t): the logarithm of a product, taken before it can overflow.
+  /// rho = D^2 log(1 + t). Accumulates a product and takes its logarithm before it can overflow.
   struct Cost {
     static constexpr double largest = 1e37;
     static constexpr int factors = 8;
@@ -162,7 +162,7 @@ HWY_INLINE V rho_of(const LossT& loss, V r, const LossTerms& at_r) {
   return cost.value(loss);
 }
 
-/// Any loss, chosen at run time; for shapes that are not worth a kernel per loss.
+/// A loss chosen at run time, for shapes without a kernel per loss.
 struct AnyLoss {
   static constexpr bool quadratic = false;
   Loss kind;
@@ -212,7 +212,7 @@ struct AnyLoss {
   };
 };
 
-/// rho without the offset of the loss' Cost.
+/// rho without the offset of the loss's Cost.
 template <class LossT>
 HWY_INLINE V cost_above_zero(const LossT& loss, V r, const LossTerms& at_r) {
   return hn::Sub(rho_of(loss, r, at_r), rho_of(loss, zero(), loss.terms(zero())));

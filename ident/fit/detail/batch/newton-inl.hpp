@@ -1,4 +1,4 @@
-// The minimiser of one window per lane.
+// Minimises one window per lane.
 #if defined(MODEBANK_BATCH_NEWTON_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_NEWTON_INL
 #undef MODEBANK_BATCH_NEWTON_INL
@@ -16,41 +16,41 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A Newton step's expected gain, g' H^-1 g, at or below this share of sum psi^2 ends the search: H is at most X'X + P,
-/// so the gradient in orthonormal coordinates is below its root of |psi|.
+/// The search ends if the expected gain of a Newton step, g' H^-1 g, is at most this share of sum psi^2. H is at most
+/// X'X + P, so the gradient in orthonormal coordinates is then at most sqrt(share) |psi|.
 inline constexpr double stationary_square = stationary_gradient * stationary_gradient;
-/// The same share of sum y^2 cannot be told from rounding error.
+/// Gains below this share of sum y^2 are rounding error.
 inline constexpr double rounding_square = 1e-30;
-/// A second derivative whose pivots fall below this share of the regressors' own is not stepped by.
+/// Newton steps need a second derivative whose pivots exceed this share of the regressors' own.
 inline constexpr double least_curvature = 1e-8;
-/// Nor is a reweighted gram matrix with smaller pivots than this.
+/// Reweighted steps need a Gram matrix whose pivots exceed this share.
 inline constexpr double least_weight = 1e-12;
-/// A second derivative that is too weak gets this share of the regressors' own on top: where all samples of a direction
-/// are outliers its steps are long, and halved where they are too long.
+/// Share of the regressors' own second derivative that is added to one that is too weak. If all samples of a direction
+/// are outliers, its steps are long; steps that are too long are halved.
 inline constexpr double curvature_share = 0.01;
-/// The objective may grow by this share from rounding.
+/// Largest relative increase of the objective that counts as rounding.
 inline constexpr double cost_rounding = 1e-12;
 inline constexpr int max_halvings = 40;
 
-/// What a search needs beside samples and loss.
+/// Inputs of a search besides samples and loss.
 template <int Q>
 struct Surroundings {
-  Symmetric<Q> gram;  // X'X + P, the second derivative where every sample keeps its weight
-  V information[Q];   // P, diagonal, in units of sigma^2 per parameter^2; 0 without a prior
+  Symmetric<Q> gram;  // X'X + P, the second derivative if every sample keeps full weight
+  V information[Q];   // P, diagonal, in units of sigma^2 / parameter^2; 0 without a prior
   V mean[Q];
   V square_sum;  // sum y^2
   int max_iterations;
-  Ldl<Q> factors;  // of gram
+  Ldl<Q> factors;  // factors of gram
 };
 
-/// Where a search has got to.
+/// State of a search.
 template <int Q>
 struct Search {
   V theta[Q];
   V gradient;  // relative to |psi|, before the last step
 };
 
-/// sum_j P_j (theta_j - mean_j)^2, added to the gradient as to the cost.
+/// The prior's cost sum_j P_j (theta_j - mean_j)^2. Adds its gradient, too.
 template <int Q>
 HWY_INLINE V add_prior(const Surroundings<Q>& around, const V (&theta)[Q], Sums<Q>& s) {
   V square = zero();
@@ -64,7 +64,7 @@ HWY_INLINE V add_prior(const Surroundings<Q>& around, const V (&theta)[Q], Sums<
   return square;
 }
 
-/// sum y^2 + sum_j theta_j^2 (X'X)_jj: what cancels in the residuals.
+/// sum y^2 + sum_j theta_j^2 (X'X)_jj: the size of the terms that cancel in the residuals.
 template <int Q>
 HWY_INLINE V magnitude(const Symmetric<Q>& gram, V square_sum, const V (&theta)[Q]) {
   V sum = square_sum;
@@ -72,9 +72,9 @@ HWY_INLINE V magnitude(const Symmetric<Q>& gram, V square_sum, const V (&theta)[
   return sum;
 }
 
-/// For the lanes in `weak`, whose second derivative is not safely positive: a step with some of the regressors' own
-/// added; where even that is not positive, the step of reweighted least squares, which cannot increase these losses.
-/// Returns the lanes that have one.
+/// A step for the lanes in `weak`, whose second derivative is not safely positive. First it adds a share of the
+/// regressors' own second derivative. If the sum is still not positive, it takes the step of reweighted least squares,
+/// which cannot increase these losses. Returns the lanes that have a step.
 template <int Q, class LossT>
 HWY_NOINLINE M cautious_step(const View& view, const LossT& loss, const Surroundings<Q>& around, const V (&theta)[Q],
                              const Sums<Q>& s, M weak, V (&step)[Q]) {
@@ -95,7 +95,7 @@ HWY_NOINLINE M cautious_step(const View& view, const LossT& loss, const Surround
   return hn::Or(strong, hn::And(weak, g.ok));
 }
 
-/// The Newton step of the lanes in `wanted`; returns those that have one.
+/// The Newton step of the lanes in `wanted`. Returns the lanes that have one.
 template <int Q, class LossT>
 HWY_INLINE M next_step(const View& view, const LossT& loss, const Surroundings<Q>& around, const V (&theta)[Q],
                        const Sums<Q>& s, M wanted, V (&step)[Q]) {
@@ -111,8 +111,8 @@ HWY_INLINE M next_step(const View& view, const LossT& loss, const Surroundings<Q
   }
 }
 
-/// Newton's method with the exact second derivative from search.theta, steps halved until the objective no longer
-/// grows. Returns the lanes of `live` that got to a stationary point.
+/// Newton's method with the exact second derivative from search.theta; steps are halved until the objective does not
+/// increase. Returns the lanes of `live` that reached a stationary point.
 template <int Q, class LossT>
 HWY_NOINLINE M minimise(const View& view, const LossT& loss, const Surroundings<Q>& around, M live, Search<Q>& search) {
   V(&theta)[Q] = search.theta;

@@ -1,4 +1,4 @@
-// Least squares and the rank of the regressors by orthogonalisation: what any data can be trusted to.
+// Least squares and the rank of the regressors by orthogonalisation, which is accurate for all data.
 #if defined(MODEBANK_BATCH_ROTATION_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_ROTATION_INL
 #undef MODEBANK_BATCH_ROTATION_INL
@@ -14,31 +14,31 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A regressor that is this small a share of itself, once the ones before it are taken out, depends on them.
+/// A regressor depends on the previous ones if this share of its norm, or less, is left after projecting them out.
 inline constexpr double dependent = 1e-9;
-/// Singular values between `dependent` and this share of the largest are left to the singular value decomposition of
-/// the slow path: excitation_tolerance lies between.
+/// Singular values between `dependent` and this share of the largest need the singular value decomposition of the slow
+/// path, because excitation_tolerance lies in that range.
 inline constexpr double clearly_independent = 1e-5;
 
-/// Samples, least squares and scale of the windows, before any loss.
+/// Samples, least squares and scale of the windows, computed before any loss.
 template <int Q>
 struct Start {
   Symmetric<Q> gram;      // X'X
-  Symmetric<Q> unscaled;  // (X'X)^-1; meaningless where the rank is deficient
+  Symmetric<Q> unscaled;  // (X'X)^-1; undefined if rank deficient
   V moment[Q];            // X'y
-  V theta[Q];             // least squares; meaningless where the rank is deficient
+  V theta[Q];             // least squares; undefined if rank deficient
   V square_sum, count, rank, condition, sigma;
-  M clear;      // the rank is beyond doubt
-  M deficient;  // of those
+  M clear;      // lanes whose rank is certain
+  M deficient;  // those of them that are rank deficient
 };
 
-/// Columns of regressors and increments made orthogonal one after the other (modified Gram-Schmidt with the increments
-/// as last column, backward stable: Bjorck 1967); leaves least-squares residuals in the last column.
+/// Orthogonalises the columns of regressors and increments one after the other: modified Gram-Schmidt with the
+/// increments as last column (backward stable: Bjorck 1967). Leaves the least-squares residuals in the last column.
 template <int Q>
 struct Orthogonal {
   V r[Q][Q];  // column j of the triangle: r[j][0..j]
   V z[Q];     // Q' y
-  V norm[Q];  // of the regressors
+  V norm[Q];  // norms of the regressors
   M kept[Q];
 };
 
@@ -89,7 +89,7 @@ HWY_NOINLINE Orthogonal<Q> orthogonalise(const View& view, double* scratch) {
   return o;
 }
 
-/// Rank and condition from the triangle with its columns scaled to the regressors' unit norm.
+/// Rank and condition from the triangle with columns scaled to the regressors' unit norm.
 template <int Q>
 HWY_INLINE void judge_rank(const Orthogonal<Q>& o, Start<Q>& start) {
   V column[Q][Q], sigma[Q];
@@ -122,7 +122,7 @@ HWY_INLINE void judge_rank(const Orthogonal<Q>& o, Start<Q>& start) {
 /// theta = R^-1 z, X'X = R'R and its inverse R^-1 R^-T.
 template <int Q>
 HWY_INLINE void solve_triangle(const Orthogonal<Q>& o, Start<Q>& start) {
-  V r[Q][Q];  // without the rows of dependent columns, which hold rounding errors
+  V r[Q][Q];  // without the rows of dependent columns, which contain rounding errors
   for (int j = 0; j < Q; ++j)
     for (int k = 0; k <= j; ++k) r[j][k] = hn::IfThenElseZero(o.kept[k], o.r[j][k]);
   for (int i = 0; i < Q; ++i)
@@ -152,7 +152,7 @@ HWY_INLINE void solve_triangle(const Orthogonal<Q>& o, Start<Q>& start) {
   }
 }
 
-/// Start by orthogonalisation, which leaves the residuals in the last column of the scratch memory's rows.
+/// A start by orthogonalisation. Leaves the residuals in the last column of the scratch rows.
 template <int Q>
 HWY_NOINLINE void prepare_by_rotation(const View& view, double* scratch, Start<Q>& start) {
   const Orthogonal<Q> o = orthogonalise<Q>(view, scratch);

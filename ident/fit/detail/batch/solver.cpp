@@ -12,10 +12,10 @@ namespace modebank {
 
 namespace {
 
-/// Longer windows would not fit a core's cache, and their fits are no longer small problems.
+/// Longest window of the batch solver. Longer ones exceed a core's cache.
 constexpr Index longest_window = 16384;
 
-/// Batcher's odd-even merge sort (1968) of n rows.
+/// Comparators of Batcher's odd-even merge sort (1968) for n rows.
 std::vector<batch::Comparator> sorting_network(Index n) {
   std::vector<batch::Comparator> network;
   for (Index p = 1; p < n; p *= 2)
@@ -27,7 +27,7 @@ std::vector<batch::Comparator> sorting_network(Index n) {
   return network;
 }
 
-/// The comparators that decide which values end up in the middle of n rows.
+/// The comparators that determine the middle values of n rows.
 std::vector<batch::Comparator> median_network(const std::vector<batch::Comparator>& sorting, Index n) {
   std::vector<bool> needed(static_cast<std::size_t>(n), false);
   needed[static_cast<std::size_t>(n / 2)] = true;
@@ -44,13 +44,13 @@ std::vector<batch::Comparator> median_network(const std::vector<batch::Comparato
 }
 
 batch::Kernel choose_kernel(const batch::Settings& settings) {
-  // Before the machine is known Highway's pointers lead to a detour that asks for it, and would do so in every call.
+  // Until the target is set, Highway's pointers go through a function that detects the processor on every call.
   hwy::ChosenTarget& target = hwy::GetChosenTarget();
   if (!target.IsInitialized()) target.Update(hwy::SupportedTargets());
   return batch::find_kernel(settings.loss, settings.regressors);
 }
 
-/// One value that is not finite makes the sum of the values times zero a NaN.
+/// Whether all rows are finite: the sum of the values times zero is NaN otherwise.
 bool finite(const Transitions& t, Index rows) {
   double sum = (t.increments.col(0).head(rows) * 0.0).sum();
   for (Index j = 0; j < t.regressors.cols(); ++j) sum += (t.regressors.col(j).head(rows) * 0.0).sum();

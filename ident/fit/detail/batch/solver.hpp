@@ -11,11 +11,11 @@
 
 namespace modebank {
 
-/// Memory that one thread works in; it grows to what the chunks need and is then used again.
+/// Memory of one thread; it grows to the size of the largest chunk and is reused.
 class BatchWorkspace {
  public:
-  /// Lays the transitions that `windows` windows from transition `start` on cover side by side, in columns with
-  /// padding; those with a NaN or infinity become zeros that are marked as absent.
+  /// Copies the transitions of `windows` windows from transition `start` on into padded columns. Transitions with a NaN
+  /// or infinity become zeros marked as absent.
   batch::Chunk stage(const Trajectory& run, Index start, Index windows, const LinearStructure& structure,
                      const batch::Settings& settings);
   double* scratch(Index length);
@@ -26,22 +26,22 @@ class BatchWorkspace {
   std::vector<double> scratch_;
 };
 
-/// Fits consecutive windows of models that are linear in their parameters, a vector of windows at a time (one state):
-/// same objective, same definitions as fit_window, by Newton's method from each window's own (posterior) least squares;
-/// non-convex losses from its Huber optimum. A window's result depends on that window alone, bit by bit, whatever the
-/// chunk. Windows it cannot answer for (short of samples, ill-conditioned beyond 1e5, rank deficient without a prior,
-/// not converged to a gradient of 1e-10 in orthonormal coordinates relative to |psi|) get a verdict that says so, and
-/// are the caller's.
+/// Fits consecutive windows of models that are linear in their parameters (one state), a vector of windows at a time.
+/// Objective and definitions are those of fit_window. Newton's method starts from each window's (posterior) least
+/// squares; for non-convex losses from its Huber optimum. A window's result depends on that window alone, to the bit,
+/// not on the chunk.
+/// The solver passes some windows back to the caller, with a verdict: too few samples, condition above 1e5, rank
+/// deficient without a prior, or no convergence. Convergence is a gradient of 1e-10 |psi| in orthonormal coordinates.
 class BatchSolver {
  public:
-  /// Whether there are kernels for such models and windows.
+  /// Whether kernels exist for such models and windows.
   static bool handles(const LinearStructure& structure, Index length);
 
-  /// Throws std::invalid_argument where handles() is false.
+  /// Throws std::invalid_argument unless handles() is true.
   explicit BatchSolver(batch::Settings settings);
 
   const batch::Settings& settings() const { return settings_; }
-  /// Allocates nothing.
+  /// Fits a chunk; does not allocate.
   void operator()(const batch::Chunk& chunk, double* scratch, const batch::Output& out) const {
     kernel_(settings_, chunk, scratch, out);
   }
@@ -51,7 +51,7 @@ class BatchSolver {
   batch::Kernel kernel_;
 };
 
-/// The settings that options, loss, prior (may be null) and floor make for windows of one state.
+/// Settings for windows of one state from options, loss, prior (may be null) and floor.
 batch::Settings batch_settings(const LinearStructure& structure, const FitOptions& options, const ParameterPrior* prior,
                                double floor);
 

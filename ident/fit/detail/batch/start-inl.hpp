@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Where every pivot of the normal equations is above this share of its diagonal, they lose four of sixteen digits.
+/// If every pivot of the normal equations exceeds this share of its diagonal, they lose at most four of sixteen digits.
 inline constexpr double safe_pivot = 1e-4;
 
 HWY_INLINE V sample_count(const View& view) {
@@ -25,9 +25,9 @@ HWY_INLINE V sample_count(const View& view) {
   return count;
 }
 
-/// Smallest and largest eigenvalue of a positive definite matrix with unit diagonal and the given determinant: for
-/// three dimensions the largest by the trigonometric formula (Smith 1961, Communications of the ACM 4), the others from
-/// the trace and the determinant, which cancels nothing.
+/// Smallest and largest eigenvalue of a positive definite matrix with unit diagonal and the given determinant. In three
+/// dimensions the largest comes from the trigonometric formula (Smith 1961, Communications of the ACM 4). The others
+/// come from the trace and the determinant, without cancellation.
 struct Extremes {
   V least, largest;
 };
@@ -44,12 +44,13 @@ HWY_INLINE Extremes correlation_extremes(const Symmetric<3>& C, V determinant) {
   const V r = hn::IfThenElseZero(hn::Gt(cube, zero()), hn::Div(product, cube));
   const V angle = hn::Mul(splat(1.0 / 3.0), hn::Acos(D(), hn::Max(hn::Min(r, one), hn::Neg(one))));
   const V largest = hn::MulAdd(hn::Add(p, p), hn::Cos(D(), angle), one);
-  const V sum = hn::Sub(splat(3.0), largest), rest = hn::Div(determinant, largest);  // of the other two; their product
+  // sum of the other two; their product
+  const V sum = hn::Sub(splat(3.0), largest), rest = hn::Div(determinant, largest);
   const V root = hn::Sqrt(hn::Max(hn::NegMulAdd(splat(4.0), rest, hn::Mul(sum, sum)), zero()));
   return {hn::Div(hn::Add(rest, rest), hn::Add(sum, root)), largest};
 }
 
-/// Start from normal equations; the lanes where they lose too much are not `safe`.
+/// A start from normal equations. Lanes that lose too many digits are not `safe`.
 template <int Q>
 HWY_INLINE M prepare_by_gram(const View& view, Start<Q>& start) {
   const NormalEquations<Q> n = normal_equations<Q>(view);
@@ -76,7 +77,7 @@ HWY_INLINE M prepare_by_gram(const View& view, Start<Q>& start) {
 
 HWY_INLINE void take(M lanes, V other, V& value) { value = hn::IfThenElse(lanes, other, value); }
 
-/// `start` takes the lanes of `other`.
+/// Copies the lanes of `other` into `start`.
 template <int Q>
 HWY_NOINLINE void take(M lanes, const Start<Q>& other, Start<Q>& start) {
   for (int i = 0; i < at(Q, 0); ++i) {
@@ -94,8 +95,8 @@ HWY_NOINLINE void take(M lanes, const Start<Q>& other, Start<Q>& start) {
   start.deficient = hn::Or(hn::And(lanes, other.deficient), hn::AndNot(lanes, start.deficient));
 }
 
-/// Least squares, rank and scale; by normal equations where a lane's are well conditioned, as most are, and by
-/// orthogonalisation where they are not.
+/// Least squares, rank and scale. Well-conditioned lanes (the usual case) use normal equations, others
+/// orthogonalisation.
 template <int Q>
 HWY_NOINLINE Start<Q> prepare(const Settings& settings, const View& view, M wanted, double sigma, double* scratch) {
   const D d;

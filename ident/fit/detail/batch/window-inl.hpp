@@ -1,5 +1,5 @@
-// Passes over the samples of as many consecutive windows as a vector has lanes. Results of a lane depend on its own
-// window alone: whatever the neighbours still need is masked away.
+// Passes over the samples of as many consecutive windows as a vector has lanes. A lane's results depend on its own
+// window alone: samples of neighbouring windows are masked.
 #if defined(MODEBANK_BATCH_WINDOW_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_WINDOW_INL
 #undef MODEBANK_BATCH_WINDOW_INL
@@ -23,17 +23,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 struct View {
   const double* regressors[max_regressors];
   const double* increments;
-  const double* present;  // or null
+  const double* present;  // may be null
   Index stride;
   Index length;
 };
 
 HWY_INLINE V row(const View& view, const double* column, Index i) { return hn::LoadU(D(), column + i * view.stride); }
 
-/// What one pass over the samples gives at theta.
+/// Sums of one pass over the samples at theta.
 template <int Q>
 struct Sums {
-  V gradient[Q];         // sum psi phi: minus the gradient of half the objective
+  V gradient[Q];         // sum psi phi: minus half the objective's gradient
   Symmetric<Q> hessian;  // sum slope phi phi'
   V cost;                // sum rho up to an offset
   V psi_square;
@@ -61,7 +61,7 @@ HWY_INLINE Symmetric<Q> zero_matrix() {
   return m;
 }
 
-/// The hessian of a quadratic loss is the caller's to know.
+/// The Hessian of a quadratic loss is constant, so the caller computes it.
 template <int Q, class LossT>
 HWY_INLINE Sums<Q> evaluate(const View& view, const LossT& loss, const V (&theta)[Q]) {
   Sums<Q> s{{}, zero_matrix<Q>(), zero(), zero()};
@@ -93,7 +93,7 @@ HWY_NOINLINE Symmetric<Q> reweighted_gram(const View& view, const LossT& loss, c
   return sum;
 }
 
-/// Least squares by normal equations: sum phi phi', sum phi y, sum y^2.
+/// Sums for least squares by normal equations: sum phi phi', sum phi y, sum y^2.
 template <int Q>
 struct NormalEquations {
   Symmetric<Q> gram;
@@ -118,7 +118,7 @@ HWY_INLINE NormalEquations<Q> normal_equations(const View& view) {
   return n;
 }
 
-/// Median of the first `count` of the ordered rows, per lane; the mean of the middle two for an even count.
+/// Median of the first `count` sorted rows, per lane; for an even count the mean of the middle two.
 HWY_INLINE V middle(const double* ordered, Index rows, V count, bool all_present) {
   const auto load = [&](Index i) HWY_ATTR { return hn::Load(D(), ordered + i * hn::Lanes(D())); };
   if (all_present)
@@ -147,7 +147,7 @@ HWY_INLINE void order(const std::vector<Comparator>& network, double* rows) {
   }
 }
 
-/// 1.4826 median |r - median r| over the samples present. Overwrites the rows of residuals.
+/// 1.4826 median |r - median r| over the samples that are present. Overwrites the rows of residuals.
 HWY_NOINLINE inline V normalised_mad(const Settings& settings, const View& view, double* rows, V count) {
   const D d;
   const Index lanes = static_cast<Index>(hn::Lanes(d));

@@ -11,21 +11,21 @@
 
 namespace modebank {
 
-/// The batch solver on ranges of a recording's windows. Safe to use from several threads.
+/// The batch solver on ranges of a recording's windows. Thread-safe.
 class BatchWindows {
  public:
-  /// A range that is long enough to pay for its staging, short enough to stay in a core's second cache.
+  /// Largest range: long enough to pay for staging, short enough for a core's second-level cache.
   static constexpr Index longest_range = 1024;
 
-  /// Null where the stage of `count` windows is Ceres' (WindowSolver). `prior` may be null. Throws ConfigurationError
-  /// for WindowSolver::batch where the solver has no kernel.
+  /// The solver for `count` windows; null if Ceres solves them (WindowSolver). `prior` may be null. Throws
+  /// ConfigurationError for WindowSolver::batch without a matching kernel.
   static std::unique_ptr<BatchWindows> make(const LinearWindows& windows, Index count, const ParameterPrior* prior);
 
-  /// How it solves a window and to what tolerance, in words.
+  /// Method and tolerance in words, for reports.
   static std::string method();
 
-  /// Solves a range of at most longest_range windows into `out`; its verdicts are the calling thread's, until its next
-  /// call.
+  /// Solves a range of at most longest_range windows into `out`. The verdicts belong to the calling thread and are
+  /// valid until its next call.
   const std::vector<batch::Verdict>& solve(const WindowPlan::Range& range, batch::Output out);
 
  private:
@@ -41,7 +41,7 @@ class BatchWindows {
   tbb::enumerable_thread_specific<Worker> workers_;
 };
 
-/// Where the columns of `fits` from window i on lie.
+/// Pointers to the columns of `fits` from window i on.
 batch::Output columns_from(WindowFits& fits, Index i);
 
 }  // namespace modebank

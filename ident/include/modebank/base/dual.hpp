@@ -7,18 +7,18 @@
 
 namespace modebank {
 
-/// A number and its derivatives by D variables: arithmetic on them is forward automatic differentiation (Griewank &
-/// Walther 2008, "Evaluating Derivatives", chapter 3). Numbers without derivatives are made of double.
+/// A number with its derivatives by D variables. Arithmetic on such numbers is forward automatic differentiation
+/// (Griewank & Walther 2008, "Evaluating Derivatives", chapter 3). A double converts to a constant.
 template <int D>
 struct Dual {
-  double value = 0.0;             ///< of the number
-  std::array<double, D> slope{};  ///< its derivatives
+  double value = 0.0;             ///< value of the number
+  std::array<double, D> slope{};  ///< its derivatives by the variables
 
   /// Zero, a constant.
   Dual() = default;
   /// A constant.
   Dual(double constant) : value(constant) {}
-  /// Variable number `variable`, from 0.
+  /// Variable number `variable` (from 0) with value `at`.
   Dual(double at, int variable) : value(at) { slope[static_cast<std::size_t>(variable)] = 1.0; }
 
   /// f(a): its value, and its derivative by a.
@@ -49,7 +49,7 @@ struct Dual {
   }
   /// Adds b.
   Dual& operator+=(const Dual& b) { return *this = *this + b; }
-  /// Takes b off.
+  /// Subtracts b.
   Dual& operator-=(const Dual& b) { return *this = *this - b; }
   /// Multiplies by b.
   Dual& operator*=(const Dual& b) { return *this = *this * b; }
@@ -100,10 +100,10 @@ struct Dual {
     const double f = std::hypot(a.value, b.value);
     return of(f, a.value / f, a, b.value / f, b);
   }
-  /// a to the power b; the derivative by b is taken for zero unless a is positive.
+  /// a to the power b. The derivative by b is set to zero unless a is positive.
   friend Dual pow(const Dual& a, const Dual& b) {
     const double f = std::pow(a.value, b.value);
-    const double by_b = a.value > 0.0 ? f * std::log(a.value) : 0.0;  // else whole exponents, which are constants
+    const double by_b = a.value > 0.0 ? f * std::log(a.value) : 0.0;  // otherwise b is a whole constant exponent
     return of(f, b.value * std::pow(a.value, b.value - 1.0), a, by_b, b);
   }
 };

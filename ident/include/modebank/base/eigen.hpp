@@ -7,22 +7,21 @@
 
 namespace modebank {
 
-// Functions of a template, so that what a program compiles of them is its own, whatever its Eigen is called and aligned
-// to.
+// Templates, so that each program compiles its own code with its own version and alignment of Eigen.
 
-/// The matrix as Eigen sees it, unaligned and without a copy; valid while `matrix` lives and keeps its size.
+/// View of the matrix for Eigen, unaligned and without a copy; valid while `matrix` lives and keeps its size.
 template <int = 0>
 Eigen::Map<const Eigen::MatrixXd> view(const Matrix& matrix) {
   return {matrix.values.data(), matrix.rows, matrix.cols};
 }
 
-/// The numbers as a column vector of Eigen's, unaligned and without a copy.
+/// View of the numbers as an Eigen column vector, unaligned and without a copy.
 template <int = 0>
 Eigen::Map<const Eigen::VectorXd> view(const std::vector<double>& vector) {
   return {vector.data(), static_cast<Eigen::Index>(vector.size())};
 }
 
-/// A copy of anything that Eigen can evaluate.
+/// Copies any Eigen expression.
 template <class Derived>
 Matrix to_matrix(const Eigen::DenseBase<Derived>& source) {
   Matrix result(source.rows(), source.cols());
@@ -30,7 +29,7 @@ Matrix to_matrix(const Eigen::DenseBase<Derived>& source) {
   return result;
 }
 
-/// A copy of a vector of Eigen's.
+/// Copies an Eigen vector.
 template <class Derived>
 std::vector<double> to_vector(const Eigen::DenseBase<Derived>& source) {
   std::vector<double> result(static_cast<std::size_t>(source.size()));

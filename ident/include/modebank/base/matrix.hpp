@@ -6,20 +6,20 @@
 
 namespace modebank {
 
-/// A matrix of doubles, column after column: what crosses the border between the library and a program that links it.
-/// It holds nothing but a std::vector, so it may be made on one side and freed on the other, whatever both were
-/// compiled with. modebank/base/eigen.hpp shows it to Eigen without a copy.
+/// A column-major matrix of doubles, the type of the library's public API. It holds only a std::vector, so library and
+/// program may be compiled with different settings and free each other's matrices. modebank/base/eigen.hpp gives Eigen
+/// views without a copy.
 struct Matrix {
   std::ptrdiff_t rows = 0;     ///< number of rows
   std::ptrdiff_t cols = 0;     ///< number of columns
-  std::vector<double> values;  ///< rows * cols numbers, column after column
+  std::vector<double> values;  ///< rows * cols numbers, column by column
 
-  /// Without any element.
+  /// An empty matrix.
   Matrix() = default;
-  /// Of the given size, every element `value`.
+  /// A matrix of the given size with every element `value`.
   Matrix(std::ptrdiff_t row_count, std::ptrdiff_t column_count, double value = 0.0)
       : rows(row_count), cols(column_count), values(static_cast<std::size_t>(row_count * column_count), value) {}
-  /// Row by row as one writes it: {{a, b}, {c, d}}. Rows of different lengths are filled with zeros.
+  /// Row by row: {{a, b}, {c, d}}. Shorter rows are filled with zeros.
   Matrix(std::initializer_list<std::initializer_list<double>> rows_of_numbers) {
     for (const auto& row : rows_of_numbers)
       if (static_cast<std::ptrdiff_t>(row.size()) > cols) cols = static_cast<std::ptrdiff_t>(row.size());

@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// The words users write for an enumeration, in the order of its values (which count from 0). Specialised beside each
-/// enumeration, so configuration, help text and archive all read them from one place.
+/// Names of an enumeration's values for users, in the order of the values (from 0). Each enumeration specialises it at
+/// its definition; configuration, help text and archive use this one list.
 template <class E>
 struct EnumNames;
 

@@ -9,12 +9,12 @@ namespace modebank {
 
 /// One recorded run of N samples; column k of a signal is sample k.
 struct RecordedRun {
-  std::string name;            ///< of the run
-  bool held_out = false;       ///< true: scored, never learned from
+  std::string name;            ///< name of the run
+  bool held_out = false;       ///< true: used for scores, not for learning
   std::vector<double> time_s;  ///< N, strictly increasing
   Matrix state;                ///< n x N, as measured; NaN where missing
   Matrix input;                ///< m x N
-  std::vector<double> weight;  ///< N or empty (all one): of the transition that ends in sample k, >= 0
+  std::vector<double> weight;  ///< N or empty (all one): weight of the transition that ends in sample k, >= 0
 };
 
 /// All runs of one study object: the same n states and m inputs in each.

@@ -13,15 +13,14 @@
 
 namespace modebank {
 
-/// A MotionModel of N states, M inputs and P parameters from an equation that is written once for any scalar, as Ceres'
-/// AutoDiffCostFunction has it. `Functor` has
-/// `template <class T> void operator()(const T* theta, const T* x, const T* u, double dt_s, T* next) const`, which
-/// fills `next` (N) and calls exp and other functions without their namespace, after `using std::exp`. Derivatives are
-/// those of Dual numbers.
+/// A MotionModel of N states, M inputs and P parameters from an equation written once for any scalar type, as for
+/// Ceres' AutoDiffCostFunction. `Functor` has `template <class T> void operator()(const T* theta, const T* x, const T*
+/// u, double dt_s, T* next) const`, which fills `next` (N). It calls exp and other functions unqualified, after `using
+/// std::exp`. Derivatives come from Dual numbers.
 template <class Functor, int N, int M, int P>
 class AutoDiffMotionModel final : public MotionModel {
  public:
-  /// `name`: as results name it; `parameters`: P of them, else std::invalid_argument.
+  /// `name`: model name in results. `parameters`: P entries, else std::invalid_argument.
   AutoDiffMotionModel(Functor functor, std::string name, std::vector<ModelParameter> parameters)
       : functor_(std::move(functor)), name_(std::move(name)), parameters_(std::move(parameters)) {
     if (parameters_.size() != P)
@@ -29,16 +28,16 @@ class AutoDiffMotionModel final : public MotionModel {
                                   std::to_string(parameters_.size()));
   }
 
-  /// As it was given.
+  /// Name of the model.
   const std::string& name() const override { return name_; }
-  /// N.
+  /// Number of states N.
   std::ptrdiff_t states() const override { return N; }
-  /// M.
+  /// Number of inputs M.
   std::ptrdiff_t inputs() const override { return M; }
-  /// As they were given.
+  /// The P parameters.
   const std::vector<ModelParameter>& parameters() const override { return parameters_; }
 
-  /// Differentiates by what is asked for alone.
+  /// One-step prediction; computes only the requested derivatives.
   void predict(const double* theta, const double* x, const double* u, double dt_s, double* next,
                double* by_theta = nullptr, double* by_x = nullptr, double* by_u = nullptr) const override {
     if (by_x || by_u)
@@ -49,7 +48,7 @@ class AutoDiffMotionModel final : public MotionModel {
       functor_(theta, x, u, dt_s, next);
   }
 
-  /// The same without a call of an unknown function per transition, nor theta made dual in each.
+  /// Residuals of many transitions. Avoids a virtual call and the conversion of theta to dual numbers per transition.
   void residuals(const double* theta, const Transition* transitions, std::ptrdiff_t count, double* r,
                  double* by_theta) const override {
     if (by_theta) return residuals_with_derivatives(theta, transitions, count, r, by_theta);
@@ -90,7 +89,7 @@ class AutoDiffMotionModel final : public MotionModel {
     }
   }
 
-  /// Values as dual numbers; the first `Directions` of theta, x, u one after the other are differentiated.
+  /// Values as dual numbers; the first `Directions` entries of theta, x and u (concatenated) are differentiated.
   template <int Directions>
   void differentiate(const double* theta, const double* x, const double* u, double dt_s, double* next,
                      std::array<double*, 3> jacobians) const {
@@ -115,7 +114,7 @@ class AutoDiffMotionModel final : public MotionModel {
   }
 };
 
-/// A shared AutoDiffMotionModel<Functor, N, M, P>, the type of the functor deduced.
+/// Makes a shared AutoDiffMotionModel<Functor, N, M, P>; the functor's type is deduced.
 template <int N, int M, int P, class Functor>
 std::shared_ptr<const MotionModel> make_auto_diff_model(Functor functor, std::string name,
                                                         std::vector<ModelParameter> parameters) {
