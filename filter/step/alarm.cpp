@@ -8,13 +8,13 @@ namespace modebank {
 
 namespace {
 
-constexpr double alarm_tail = 0.0005;  // to either side: one in 1000 samples of a true filter
+constexpr double alarm_tail = 0.0005;  // per side: one in 1000 samples of a true filter
 
 }  // namespace
 
 LiveJudge::LiveJudge(const Bank& bank)
     : C_(bank.C),
-      interval_quantile_(normal_quantile(0.975)),  // of intervals that hold 95 %
+      interval_quantile_(normal_quantile(0.975)),  // for 95 % intervals
       verdict_{Eigen::VectorXd(C_.rows()), Eigen::VectorXd(C_.rows()), Eigen::VectorXd(C_.rows())} {}
 
 const LiveVerdict& LiveJudge::judge(const FilterEstimate& estimate) {
@@ -25,7 +25,7 @@ const LiveVerdict& LiveJudge::judge(const FilterEstimate& estimate) {
     verdict_.lower(i) = verdict_.predicted(i) - half;
     verdict_.upper(i) = verdict_.predicted(i) + half;
     const double pit = estimate.pit(i);
-    if (pit < alarm_tail || pit > 1.0 - alarm_tail) verdict_.alarm = true;  // NaN, a missing signal: never
+    if (pit < alarm_tail || pit > 1.0 - alarm_tail) verdict_.alarm = true;  // false for NaN, a missing signal
   }
   return verdict_;
 }

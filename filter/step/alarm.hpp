@@ -6,19 +6,19 @@
 
 namespace modebank {
 
-/// What a live sample means beside its estimate.
+/// Verdict about a live sample, besides its estimate.
 struct LiveVerdict {
-  Eigen::VectorXd predicted;     ///< n_y, measurement that was expected
-  Eigen::VectorXd lower, upper;  ///< n_y, where it was expected: +- quantile * sqrt(S_ii), by the mixture's moments
-  bool alarm = false;            ///< some signal came out further than `alarm` of a true filter's would
+  Eigen::VectorXd predicted;     ///< n_y, predicted measurement
+  Eigen::VectorXd lower, upper;  ///< n_y, predicted interval: +- quantile * sqrt(S_ii), by the mixture's moments
+  bool alarm = false;            ///< whether some signal lies in the outermost `alarm` share of the prediction
 };
 
-/// Judges samples by the filter's own uncertainty. The alarm goes by the probability transform, which unlike NIS has
-/// the same meaning for every mixture: it is false on 1 - `alarm` of the samples of a true filter of one signal.
+/// Judges samples by the filter's own uncertainty. The alarm uses the probability transform, which has the same meaning
+/// for every mixture, unlike NIS. A true filter of one signal gives an alarm on a share `alarm` of its samples.
 class LiveJudge {
  public:
   explicit LiveJudge(const Bank& bank);
-  /// Allocates nothing.
+  /// Judges one sample; does not allocate.
   const LiveVerdict& judge(const FilterEstimate& estimate);
 
  private:

@@ -10,22 +10,22 @@
 
 namespace modebank {
 
-/// A filter at work whose kind the caller need not know: a bank's, or several together.
+/// A running filter of any kind: a bank's, or several combined.
 class AnyFilter {
  public:
   virtual ~AnyFilter() = default;
   /// As BankFilter::step.
   virtual const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                                      const Eigen::Ref<const Eigen::VectorXd>& measurement) = 0;
-  /// The prediction for a later time, `input` held until then, as an estimate without a measurement. The filter stays
-  /// as it was.
+  /// Prediction for a later time, with `input` held until then, as an estimate without measurement. The filter does not
+  /// change.
   virtual FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) = 0;
   virtual bool started() const = 0;
   virtual void restart() = 0;
-  /// Keeps the present state, and goes back to it.
+  /// Saves the present state, and restores it.
   virtual void remember() = 0;
   virtual void go_back() = 0;
-  /// The filter of a bank, whose snapshot can be written; null of several together.
+  /// The filter of a bank, which has a snapshot; null for a combination.
   virtual BankFilter* of_bank() { return nullptr; }
 
  protected:

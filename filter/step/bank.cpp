@@ -69,7 +69,7 @@ void check_noise_factor(const Bank& bank) {
           "noise factor is not finite");
 }
 
-/// Coefficients can follow a run only where its states are known.
+/// Drift requires exactly measured states.
 void check_drift(const Bank& bank) {
   if (bank.drift.empty()) return;
   const LinearStructure& s = bank.structure;
@@ -135,7 +135,7 @@ TransitionMatrix::TransitionMatrix(Eigen::MatrixXd row_stochastic) : matrix_(std
     if (!(matrix_.row(i).minCoeff() >= 0.0))
       throw std::invalid_argument("row " + std::to_string(i) + " of the transition matrix holds the negative entry " +
                                   std::to_string(matrix_.row(i).minCoeff()));
-    // A row that was normalised before keeps its bits, so that a stored bank filters as the original did.
+    // A row that is already normalised keeps its bits, so that a stored bank filters as the original does.
     const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * static_cast<double>(matrix_.cols());
     if (std::abs(sum - 1.0) > rounding) matrix_.row(i) /= sum;
   }

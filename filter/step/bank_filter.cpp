@@ -22,7 +22,7 @@ const Bank& validated(const Bank& bank) {
   return bank;
 }
 
-/// Throws std::invalid_argument unless the memory is one of a filter of n states and K modes.
+/// Throws std::invalid_argument unless the memory fits a filter of n states and K modes.
 void check_memory(const FilterMemory& memory, Index n, Index K) {
   if (memory.means.rows() != n || memory.means.cols() != K || memory.covariances.rows() != n * n ||
       memory.covariances.cols() != K || memory.mode_probability.size() != K)
@@ -38,7 +38,7 @@ void check_memory(const FilterMemory& memory, Index n, Index K) {
       throw std::invalid_argument("the snapshot holds a matrix that is no covariance");
 }
 
-/// The same of what is known of coefficients that drift; `own`: that of this filter.
+/// The same check for drifting coefficients; `own`: state of this filter.
 void check_memory(const DriftState& drift, const DriftState& own) {
   const auto same = [](const std::vector<Eigen::MatrixXd>& a, const std::vector<Eigen::MatrixXd>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
@@ -128,7 +128,7 @@ void BankFilter::restore(const FilterSnapshot& snapshot) {
   FilterMemory own;
   parts_->stepper->save(own);
   check_memory(snapshot.drift, own.drift);
-  parts_->feed.restore(snapshot.samples);  // refuses before it changes anything, as the line above does
+  parts_->feed.restore(snapshot.samples);  // throws before any change, as does the line above
   parts_->stepper->restore(snapshot);
   parts_->started = snapshot.started;
 }

@@ -13,7 +13,7 @@ using Eigen::Index;
 
 namespace {
 
-/// Normalised square of the signals that are there.
+/// Normalised square of the available signals.
 double normalised_square(const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance) {
   std::vector<Index> there;
   for (Index i = 0; i < innovation.size(); ++i)
@@ -23,7 +23,7 @@ double normalised_square(const Eigen::VectorXd& innovation, const Eigen::MatrixX
   return factor.definite() ? factor.whiten(Eigen::VectorXd(innovation(there))).squaredNorm() : not_a_number;
 }
 
-/// The measured states of a filter's estimate alone.
+/// Copies the measured states of a filter's estimate.
 void take_measured(const FilterEstimate& said, FilterEstimate& measured) {
   const Index n = said.innovation.size();
   measured = said;
@@ -69,9 +69,9 @@ const FilterEstimate& CombinedFilter::step(double time_s, const Eigen::Ref<const
   return estimate_;
 }
 
-/// With the weights from before this sample. What the first filter does not score is its estimate alone.
+/// Combines with the weights from before this sample. If the first filter has no score, its estimate is used alone.
 void CombinedFilter::combine() {
-  take_measured(*said_.front(), estimate_);  // modes, steps, and what one filter has alone
+  take_measured(*said_.front(), estimate_);  // modes, steps, and fields of a single filter
   if (std::isnan(estimate_.log_density)) return;
   estimate_.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
   mix(filter::ForecastWeights::spoken_weights(weights_.weights(), log_densities_), estimate_);
@@ -82,7 +82,7 @@ FilterEstimate CombinedFilter::forecast(double time_s, const Eigen::VectorXd& in
   std::vector<double> known;
   for (const auto& filter : filters_) {
     FilterEstimate& one = ahead.emplace_back(filter->forecast(time_s, input));
-    one.innovation = -one.prediction.head(one.innovation.size());  // of a measurement of zero: how far they lie apart
+    one.innovation = -one.prediction.head(one.innovation.size());  // for a measurement of zero: the filters' distance
     known.push_back(one.prediction.array().isNaN().any() ? not_a_number : 0.0);
   }
   for (std::size_t i = 0; i < ahead.size(); ++i) said_[i] = &ahead[i];

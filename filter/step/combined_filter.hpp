@@ -8,17 +8,17 @@
 
 namespace modebank {
 
-/// The name of several filters together as one of an archive's.
+/// Name of the combination of several filters in archives.
 inline constexpr const char* combined_name = "combined";
 
-/// The sizes of their estimates: the modes of `bank`, the first of them, and of its states the measured ones alone,
-/// because others may have other lags. It is scored by and cannot be stepped.
+/// A bank with the sizes of the combined estimates: the modes of `bank` (the first filter), and only its measured
+/// states, because other filters may have other lags. It serves for scores and cannot be stepped.
 Bank combined_frame(const Bank& bank);
 
-/// Several filters of the same measurements as one: their predictions, weighted by how well each has predicted the run
-/// so far. Prediction, state and their covariances are those of the mixture, of the measured states. The transform is
-/// the mixture's for one signal; for several it is mixed by the joint weights, which is exact for the first of them.
-/// spread_share is the filters' differences in the trace of innovation_covariance. Modes are the first filter's.
+/// Several filters of the same measurements as one; their predictions are weighted by past success within the run.
+/// Prediction, state and covariances are those of the mixture, for the measured states. With one signal the transform
+/// is the mixture's. With several it is mixed by the joint weights, which is exact for the first signal. spread_share
+/// is the filters' differences in the trace of innovation_covariance. Modes are the first filter's.
 class CombinedFilter final : public AnyFilter {
  public:
   /// `start`: weights at the start and after every gap.

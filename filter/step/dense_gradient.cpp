@@ -14,7 +14,7 @@ constexpr int any = Eigen::Dynamic;
 
 MatrixXd symmetric_part(const MatrixXd& M) { return 0.5 * (M + M.transpose()); }
 
-/// Derivatives by what one mode's estimate is.
+/// Derivatives by one mode's estimate.
 struct ByGaussian {
   VectorXd mean;
   MatrixXd covariance;
@@ -48,7 +48,7 @@ class DenseGradient {
   }
 
   BankGradient go_back() {
-    std::vector<FilterState<any>> kept;  // the state before each stretch of moments
+    std::vector<FilterState<any>> kept;  // state before each stretch of moments
     std::vector<FilterState<any>> before;
     FilterState<any> state = initial_state(model_);
     for (Index first = 0; first < instants_.count(); first += stretch_length) {
@@ -70,11 +70,11 @@ class DenseGradient {
   FilterModel<any, any> model_;
   RunInstants instants_;
   FilterStep<any, any> step_;
-  ByState by_;         ///< of all that comes after the moment at work
+  ByState by_;         ///< of all later moments
   VectorXd by_prior_;  ///< by the mode probabilities before the measurement
   BankGradient sum_;
 
-  /// Leads `state` over a stretch of moments. Returns the states before each of them.
+  /// Filters a stretch of moments. Returns the states before each of them.
   std::vector<FilterState<any>> follow_stretch(Index first, FilterState<any>& state) {
     std::vector<FilterState<any>> before;
     for (Index t = first; t < std::min(first + stretch_length, instants_.count()); ++t) {
@@ -87,7 +87,7 @@ class DenseGradient {
   void back_over(Index t, const FilterState<any>& before) {
     const Instant& instant = instants_.instants[static_cast<std::size_t>(t)];
     const Index n = sum_.start_covariance.rows(), K = model_.mode_count();
-    if (instant.starts) {  // where the mean is measured
+    if (instant.starts) {  // the mean is measured there
       for (const ByGaussian& mode : by_.modes) sum_.start_covariance += mode.covariance;
       by_ = ByState(n, K);
       return;
@@ -102,7 +102,7 @@ class DenseGradient {
     if (K > 1) back_over_mixing(before);
   }
 
-  /// Bayes' rule and every mode's update: from derivatives by the estimates to those by the predictions.
+  /// Back over Bayes' rule and every mode's update: from derivatives by the estimates to those by the predictions.
   template <class Y>
   void back_over_measurement(const Y& y, double weight, const VectorXd& posterior) {
     const VectorXd by_log = posterior.array() * (weight + by_.probability.array() - by_.probability.dot(posterior));
@@ -112,7 +112,7 @@ class DenseGradient {
     for (std::size_t j = 0; j < by_.modes.size(); ++j)
       by_R += back_over_update(step_.partial.missing > 0 ? step_.partial.C : model_.C, step_.kalman[j],
                                by_log(static_cast<Index>(j)), by_.modes[j]);
-    for (Index i = 0; i < y.size(); ++i)  // R of a missing signal is none of the bank's
+    for (Index i = 0; i < y.size(); ++i)  // R of a missing signal does not belong to the bank
       if (is_missing(y(i))) {
         by_R.row(i).setZero();
         by_R.col(i).setZero();
@@ -120,8 +120,8 @@ class DenseGradient {
     sum_.R += by_R;
   }
 
-  /// m = x + K e, P' = (I - K C) P with K = P C' S^-1 and S = C P C' + R, and log N(e; 0, S). Returns the derivative by
-  /// R.
+  /// Back over m = x + K e, P' = (I - K C) P with K = P C' S^-1 and S = C P C' + R, and over log N(e; 0, S). Returns
+  /// the derivative by R.
   static MatrixXd back_over_update(const MatrixXd& C, const KalmanStep<any, any>& kalman, double by_density,
                                    ByGaussian& by) {
     MatrixXd inverse = MatrixXd::Identity(C.rows(), C.rows());
@@ -140,7 +140,7 @@ class DenseGradient {
     return by_R;
   }
 
-  /// x = F m + B u + c and P' = F P F' + Q.
+  /// Back over x = F m + B u + c and P' = F P F' + Q.
   template <class U>
   void back_over_motion(std::size_t j, const Gaussian<any>& from, const U& u) {
     const MatrixXd& F = model_.modes[j].F;
@@ -154,8 +154,8 @@ class DenseGradient {
     by.covariance = (F.transpose() * by.covariance * F).eval();
   }
 
-  /// Every mode starts from the mixture of all, with weights W_ij = T_ij mu_i / c_j. (By its mean the spread about it
-  /// has no derivative.)
+  /// Back over the mixing: every mode starts from the mixture of all with weights W_ij = T_ij mu_i / c_j. (The
+  /// covariance of the mixture has zero derivative by its mean.)
   void back_over_mixing(const FilterState<any>& before) {
     const Index n = sum_.start_covariance.rows(), K = model_.mode_count();
     ByState by(n, K);

@@ -1,4 +1,4 @@
-// The installed face of this library: plain vectors outside, Eigen inside.
+// The public API of this library: converts between plain vectors and Eigen.
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -23,7 +23,7 @@ modebank::Mode inside(const Mode& mode, Index n, Index m) {
   result.Q = view(mode.Q);
   result.spread = view(mode.parameter_covariance);
   result.weight = mode.weight;
-  // Left out means zero: no drift, no input.
+  // Omitted fields mean zero: no constant, no input.
   if (result.model.c.size() == 0) result.model.c.setZero(n);
   if (result.model.B.size() == 0) result.model.B.setZero(n, m);
   return result;
@@ -79,7 +79,7 @@ std::shared_ptr<const modebank::Bank> inside(const BankDescription& d) {
   return std::make_shared<const modebank::Bank>(std::move(bank));
 }
 
-/// Allocates where the sizes differ, which after the first time they do not.
+/// Copies; allocates only on the first call, when sizes differ.
 template <class Source>
 void assign(const Source& source, std::vector<double>& target) {
   target.assign(source.data(), source.data() + source.size());
@@ -151,10 +151,10 @@ struct BankFilter::Inside {
   FilterOptions options;
   modebank::BankFilter filter;
   Index inputs, measurements;
-  std::optional<Forecaster> forecaster = {};  ///< made when first asked for
+  std::optional<Forecaster> forecaster = {};  ///< created at the first request
   Estimate estimate = {};
   std::uint64_t seed = pit_seed(1, "");
-  Index samples = 0;  ///< that were taken in
+  Index samples = 0;  ///< number of samples taken in
 
   Inside(const Bank& stepped, const FilterOptions& how)
       : bank(stepped),
@@ -203,7 +203,7 @@ std::vector<Forecast> BankFilter::forecast(const Matrix& inputs, std::ptrdiff_t 
 
 std::vector<double> BankFilter::snapshot() const {
   std::vector<double> numbers = to_numbers(inside_->filter.snapshot());
-  numbers.push_back(static_cast<double>(inside_->samples));  // of which the transform's draws depend
+  numbers.push_back(static_cast<double>(inside_->samples));  // the draws of the transform depend on it
   return numbers;
 }
 

@@ -8,30 +8,30 @@
 
 namespace modebank {
 
-/// How coefficients of scaled regressors wander, in units of the noise variance v (method: section 6).
+/// Drift of the coefficients of scaled regressors, in units of the noise variance v (method: section 6).
 struct DriftRates {
-  double q = 0.0;     ///< variance that a step adds to every coefficient; 0: they are constant
-  double p0 = 0.0;    ///< variance of every coefficient at the start; with q = 0 both fix the coefficients
-  double leak = 1.0;  ///< what a step leaves of their difference from theta0, in (0, 1]
+  double q = 0.0;     ///< variance added to every coefficient per step; 0: constant
+  double p0 = 0.0;    ///< variance of every coefficient at the start; if q = 0, too, coefficients are fixed
+  double leak = 1.0;  ///< factor per step on the difference from theta0, in (0, 1]
 
   bool operator==(const DriftRates&) const = default;
 };
 
-/// How well settings that were chosen on a grid do on the training runs, and whether the grid was wide enough.
+/// Score of the settings that were chosen on a grid, on the training runs, and whether the grid was wide enough.
 struct GridTuning {
-  double log_score = 0.0;    ///< of the training runs [nats/sample]
-  Eigen::Index samples = 0;  ///< scored there
-  /// Settings whose best value is the grid's last while it could go on: of "q", "p0", "leak", "lam", "nu", "floor",
-  /// "horizon_factor".
+  double log_score = 0.0;    ///< log score of the training runs [nats/sample]
+  Eigen::Index samples = 0;  ///< scored training samples
+  /// Settings whose best value is at the end of the grid and could go further: from "q", "p0", "leak", "lam", "nu",
+  /// "floor", "horizon_factor".
   std::vector<std::string> at_grid_end;
 };
 
-/// How the coefficients of a bank's modes wander in a run (equations/drift.hpp); each mode's Q is its v.
+/// Drift of the coefficients of a bank's modes within a run (equations/drift.hpp); v is each mode's Q.
 struct BankDrift {
   DriftRates rates = {};
-  Eigen::VectorXd scale = {};            ///< r, root mean square of each regressor, positive; empty: nothing drifts
-  Wandering wandering = Wandering::all;  ///< other than all only with running noise
-  GridTuning tuning = {};                ///< of `drifting`
+  Eigen::VectorXd scale = {};            ///< r, root mean square of each regressor, positive; empty: no drift
+  Wandering wandering = Wandering::all;  ///< which coefficients drift; other than `all` requires running noise
+  GridTuning tuning = {};                ///< for the competitor `drifting`
 
   bool empty() const { return scale.size() == 0; }
 };

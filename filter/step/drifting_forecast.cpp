@@ -122,7 +122,7 @@ void DriftingForecast::push() {
   z_.head(n) = prediction_;
 }
 
-/// What diverges stops growing, as in other filters.
+/// Limits diverging values, as in other filters.
 void DriftingForecast::bound() {
   const double largest = Z_.diagonal().maxCoeff();
   if (!(largest > largest_variance)) return;

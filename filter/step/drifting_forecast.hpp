@@ -8,27 +8,29 @@
 
 namespace modebank {
 
-/// Predicts from where the filter of a bank with running noise stands, with known inputs and nothing measured any more.
+/// Predicts from the state of a filter with running noise, with known inputs and no further measurements.
 ///
-/// Coefficients: those of the origin, theta0 + leak^j (theta - theta0) in step j + 1. Where they are unstable they are
-/// contracted before the second step: A_i (of x[k-i+1], in full form) becomes A_i / rho^i with rho > 1 the largest
-/// modulus of a root of the polynomial, which divides every root by rho. theta0 is contracted likewise, so that leaking
-/// towards it does not undo that. The first step is the filter's own.
+/// Coefficients: those of the origin, theta0 + leak^j (theta - theta0) in step j + 1. The first step is the filter's
+/// own. Unstable coefficients are contracted before the second step: A_i (of x[k-i+1], in full form) becomes A_i /
+/// rho^i. rho > 1 is the largest modulus of the polynomial's roots, so every root is divided by rho. theta0 is
+/// contracted likewise; otherwise the leak towards it would undo the contraction.
 ///
-/// Variance, to first order in the errors of coefficients and samples: with e the error of a sample, d that of theta,
-///   e[j] = h[j]' d[j] + phi[j]' (e[j-1], e[j-2], ...) + noise of variance v,  d[j] = leak d[j-1] + w,  cov(w) = q v W,
-/// phi the coefficients of the lagged samples; joint covariance of d and the lagged e, v as at the origin.
+/// Variance, to first order in the errors of coefficients and samples, with e the error of a sample and d that of
+/// theta:
+///   e[j] = h[j]' d[j] + phi[j]' (e[j-1], e[j-2], ...) + noise of variance v,  d[j] = leak d[j-1] + w,  cov(w) = q v W.
+/// phi are the coefficients of the lagged samples. The joint covariance of d and the lagged e, and v, start with their
+/// values at the origin.
 class DriftingForecast {
  public:
   explicit DriftingForecast(const Bank& bank);
 
-  /// z and coefficients: the filter's after a sample (DriftingRecursion).
+  /// z and coefficients are those of the filter after a sample (DriftingRecursion).
   void start(const Eigen::Ref<const Eigen::VectorXd>& z, DriftState origin);
   void step(const Eigen::Ref<const Eigen::VectorXd>& inputs);
 
   const Eigen::VectorXd& prediction() const { return prediction_; }  ///< n
-  const Eigen::MatrixXd& covariance() const { return covariance_; }  ///< n x n, of its error
-  const Eigen::VectorXd& state() const { return z_; }                ///< the prediction and the samples before it
+  const Eigen::MatrixXd& covariance() const { return covariance_; }  ///< n x n, covariance of the prediction's error
+  const Eigen::VectorXd& state() const { return z_; }                ///< the prediction and the preceding samples
   const Eigen::MatrixXd& state_covariance() const { return Z_; }
 
  private:
@@ -38,11 +40,12 @@ class DriftingForecast {
   Eigen::MatrixXd theta0_, stable_theta0_;  ///< r x n, scaled
   DriftState origin_;
   Eigen::VectorXd z_, h_, prediction_;
-  Eigen::MatrixXd towards_, deviation_, theta_;         ///< r x n: what is leaked to, and the difference from it
-  Eigen::MatrixXd direction_;                           ///< r x n, what wanders; empty: all
+  Eigen::MatrixXd towards_, deviation_, theta_;         ///< r x n: target of the leak, and the difference from it
+  Eigen::MatrixXd direction_;                           ///< r x n, drifting direction; empty: all coefficients drift
   double of_origin_ = 1.0, of_drift_ = 0.0;             ///< cov(d) / v = of_origin P + of_drift W
   Eigen::MatrixXd Z_, next_Z_;                          ///< covariance of the lagged errors
-  std::vector<Eigen::MatrixXd> cross_, next_cross_;     ///< per output r x dimension: of d with the lagged errors
+  std::vector<Eigen::MatrixXd> cross_, next_cross_;     ///< per output r x dimension: covariance of d with the lagged
+                                                        ///< errors
   Eigen::MatrixXd covariance_, with_lagged_, through_;  ///< n x n, n x dimension, n x dimension
   Eigen::MatrixXd of_lagged_;                           ///< n x dimension, phi
   int steps_ = 0;
@@ -54,7 +57,8 @@ class DriftingForecast {
   void bound();
 };
 
-/// Coefficients of scaled regressors (r x n) with every root of their polynomial inside or on the unit circle.
+/// Contracts coefficients of scaled regressors (r x n) so that every root of their polynomial lies inside or on the
+/// unit circle.
 Eigen::MatrixXd contracted(const LinearStructure& structure, const Eigen::VectorXd& scale, Eigen::MatrixXd theta);
 
 }  // namespace modebank

@@ -29,7 +29,7 @@ Eigen::MatrixXd wandering_direction(const Bank& bank) {
   }
   const auto inputs = Eigen::seqN(s.dimension(), s.acting_inputs());
   d(inputs, Eigen::all) = scaled_coefficients(s, bank.theta(0), bank.drift.scale)(inputs, Eigen::all);
-  d.colwise().normalize();  // of an output that no input moves nothing wanders
+  d.colwise().normalize();  // an output without input coefficients does not drift
   return d;
 }
 
@@ -55,7 +55,7 @@ DriftingRecursion::DriftingRecursion(const Bank& bank)
   start(Eigen::VectorXd::Zero(structure_.dimension()));
 }
 
-/// Each output has a P by itself.
+/// Gives each output its own P.
 void DriftingRecursion::own_P() {
   std::iota(P_of_.begin(), P_of_.end(), Index{0});
   P_count_ = structure_.states;
@@ -74,7 +74,7 @@ void DriftingRecursion::start(const Vector& z) {
   for (Eigen::MatrixXd& P : P_) P = P_[0];
 }
 
-/// Between two samples: coefficients leak to where they came from, and wander.
+/// Advances time between two samples: coefficients leak towards theta0 and drift.
 void DriftingRecursion::pass_time() {
   if (rates_.leak != 1.0) {
     theta_ = theta0_ + rates_.leak * (theta_ - theta0_);
@@ -109,7 +109,7 @@ void DriftingRecursion::skip() {
   pass_time();
 }
 
-/// Outputs that share a P, of which some are measured and others not: the others get a copy.
+/// If some outputs that share a P are measured and others are not, the latter get a copy.
 void DriftingRecursion::split_partial() {
   const Index before = P_count_;
   for (Index g = 0; g < before; ++g) {
@@ -142,7 +142,7 @@ void DriftingRecursion::learn() {
   }
 }
 
-/// A missing signal leaves its variance as it was.
+/// A missing signal does not change its variance.
 void DriftingRecursion::adapt_variance() {
   for (Index i = 0; i < v_.size(); ++i) {
     const double e = innovation_(i);
@@ -189,7 +189,7 @@ void DriftingRecursion::restore(const Vector& z, const DriftState& state) {
   P_ = state.P;
   own_P();
   if (direction_.size() > 0) return;
-  P_count_ = 0;  // outputs whose P are equal share one, as before
+  P_count_ = 0;  // outputs with equal P share one, as before
   for (std::size_t i = 0; i < P_of_.size(); ++i) {
     const auto equal = [&](Index g) { return P_[static_cast<std::size_t>(g)] == state.P[i]; };
     Index g = 0;

@@ -8,42 +8,46 @@
 
 namespace modebank {
 
-/// One mode of a bank that drifts, where outputs are independent (running_noise.hpp): the equations of drift.hpp with a
-/// covariance of r x r for each output, or one for all, in place of one of p x p. With h the regressors [z; v; (1)] of
-/// LinearStructure, each over its scale,
-///   x[k+1] = x[k] + theta[k]' h[k] + e[k],  theta[k] = theta0 + leak (theta[k-1] - theta0) + w[k],  cov(w) = q v W,
-/// W = I, or d d' of the direction that wanders. In units of the variance v of e neither errors nor gains depend on v,
-/// so this recursion serves every v, and all outputs together.
+/// One mode that drifts with independent outputs (running_noise.hpp). It has the equations of drift.hpp with a
+/// covariance of r x r per output (or one for all) instead of p x p. h are the regressors [z; v; (1)] of
+/// LinearStructure, each divided by its scale:
+///   x[k+1] = x[k] + theta[k]' h[k] + e[k],  theta[k] = theta0 + leak (theta[k-1] - theta0) + w[k],  cov(w) = q v W.
+/// W = I, or d d' for a drifting direction d. In units of v, the variance of e, neither errors nor gains depend on v.
+/// So one recursion serves every v and all outputs.
 ///
-/// What the method leaves open, and why it is so here:
-/// - The first step after a start has the coefficients theta0 with covariance p0 v I themselves: no leak, no q yet.
-/// - After a step come coefficients, variance, then leak and q: a sample is scored by nothing that it had a part in.
-/// - A step without a measurement leaks and adds q, too: time passes. Its prediction stands in for the sample.
-/// - Where some signals of a sample are missing the others' coefficients learn alone; P is then their own from there
-/// on.
-/// - Between samples further apart a step is taken per sample period with the inputs held, as banks do.
+/// Choices that the method leaves open, with reasons:
+/// - The first step after a start uses theta0 with covariance p0 v I, without leak or q.
+/// - After a step the coefficients are updated, then the variance, then leak and q. So a sample does not influence its
+///   own score.
+/// - A step without a measurement also applies leak and q, because time passes. Its prediction replaces the sample.
+/// - If some signals of a sample are missing, only the others' coefficients learn; from then on they have their own P.
+/// - Between samples that are further apart, one step is taken per sample period with the inputs held, as in other
+///   banks.
 class DriftingRecursion {
  public:
-  /// Requires validate(bank), running noise.
+  /// Requires validate(bank) and running noise.
   explicit DriftingRecursion(const Bank& bank);
 
   void start(const Eigen::Ref<const Eigen::VectorXd>& z);
-  /// To the next model step; `inputs`: those that act on it.
+  /// Advances to the next model step; `inputs`: acting inputs.
   void predict(const Eigen::Ref<const Eigen::VectorXd>& inputs);
-  /// Nothing was measured: the prediction is the sample.
+  /// Without a measurement, the prediction becomes the sample.
   void skip();
-  /// Takes the sample in; what is missing of it is the prediction.
+  /// Updates with a sample; missing signals are replaced by their predictions.
   void update(const Eigen::Ref<const Eigen::VectorXd>& measured);
 
-  const Eigen::VectorXd& prediction() const { return prediction_; }  ///< n, of the newest sample
-  const Eigen::VectorXd& variance() const { return variance_; }      ///< n, of its error
-  const Eigen::VectorXd& innovation() const { return innovation_; }  ///< n, of the last update; NaN where missing
-  const Eigen::VectorXd& z() const { return z_; }                    ///< n * state_lags, newest sample first
-  /// 1 + h'Ph, the variance of an output's prediction over v.
+  const Eigen::VectorXd& prediction() const { return prediction_; }  ///< n, prediction of the newest sample
+  const Eigen::VectorXd& variance() const { return variance_; }      ///< n, variance of its error
+  const Eigen::VectorXd& innovation() const {
+    return innovation_;
+  }                                                ///< n, innovation of the last update; NaN where
+                                                   ///< missing
+  const Eigen::VectorXd& z() const { return z_; }  ///< n * state_lags, newest sample first
+  /// 1 + h'Ph, the variance of an output's prediction divided by v.
   double growth(Eigen::Index output) const { return growth_(of(output)); }
 
   DriftState save() const;
-  /// `state`: of the sizes of save().
+  /// `state`: with the sizes of save().
   void restore(const Eigen::Ref<const Eigen::VectorXd>& z, const DriftState& state);
 
  private:
@@ -55,8 +59,8 @@ class DriftingRecursion {
   Eigen::MatrixXd theta0_, direction_;      ///< r x n, of scaled regressors
   Eigen::MatrixXd theta_;                   ///< r x n
   std::vector<Eigen::MatrixXd> P_;          ///< n of r x r, lower triangles; the first P_count_ are in use
-  std::vector<Eigen::Index> P_of_;          ///< n, which of them an output's is
-  Eigen::Index P_count_ = 1;                ///< one serves all until a signal is missing
+  std::vector<Eigen::Index> P_of_;          ///< n, index of each output's P
+  Eigen::Index P_count_ = 1;                ///< one P serves all outputs until a signal is missing
   Eigen::VectorXd z_, v_;
   Eigen::VectorXd h_, prediction_, variance_, innovation_, sample_;
   Eigen::MatrixXd Ph_;      ///< r x n, one column per P in use
@@ -74,8 +78,8 @@ class DriftingRecursion {
 /// theta as coefficients of scaled regressors, r x n.
 Eigen::MatrixXd scaled_coefficients(const LinearStructure& structure, const Eigen::VectorXd& theta,
                                     const Eigen::VectorXd& scale);
-/// The direction d of unit length in which each output's scaled coefficients wander, r x n: cov(w) = q v d d'. Empty
-/// where all wander: cov(w) = q v I.
+/// The unit direction d in which each output's scaled coefficients drift, r x n: cov(w) = q v d d'. Empty if all drift:
+/// cov(w) = q v I.
 Eigen::MatrixXd wandering_direction(const Bank& bank);
 
 }  // namespace modebank

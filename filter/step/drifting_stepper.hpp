@@ -9,9 +9,9 @@
 
 namespace modebank {
 
-/// One mode that drifts, with running noise: state is z with the newest measured value (the prediction where missing),
-/// covariances of states are zero, that of the innovation diagonal, pit by Student's distribution, a log density the
-/// outputs' sum; of quantised outputs log (mass of the interval / q).
+/// One mode that drifts, with running noise. The state is z with the newest measured value (or the prediction if
+/// missing). State covariances are zero, the innovation covariance is diagonal. pit uses Student's distribution. The
+/// log density is the sum over outputs; for quantised outputs log (mass of the interval / q).
 class DriftingStepper final : public Stepper {
  public:
   explicit DriftingStepper(const Bank& bank);
@@ -36,7 +36,7 @@ class DriftingStepper final : public Stepper {
   Eigen::VectorXd quantum_;  ///< n; 0: continuous
   Eigen::VectorXd one_ = Eigen::VectorXd::Ones(1);
 
-  /// Standard deviation of the prediction's error, before the update as after it.
+  /// Standard deviation of the prediction's error; the same before and after the update.
   double deviation(Eigen::Index i) const { return std::sqrt(recursion_.variance()(i)); }
 };
 

@@ -7,9 +7,9 @@
 
 namespace modebank {
 
-/// What every filter has around its recursion: which samples are a start, a step or waited for, and an estimate in
-/// which nothing stands that was not said. A filter derives from it and has start(), with feed.start() known, and
-/// step(measurement), with feed.inputs() and feed.steps().
+/// Common frame of all filters: decides whether a sample is a start, a step or waited for, and clears the estimate's
+/// stale values. A filter derives from it and provides start() (feed.start() is known) and step(measurement)
+/// (feed.inputs() and feed.steps() are known).
 struct FilterShell {
   FilterEstimate estimate;
   bool started = false;
@@ -19,14 +19,14 @@ struct FilterShell {
   FilterShell(const Bank& bank);
 
   void restart();
-  /// Nothing was said of this sample before it came.
+  /// Clears the prediction: none was made for this sample.
   void clear_prediction();
   void clear_scores();
-  /// Before a start nothing is known at all.
+  /// Clears all values before a start.
   void wait();
 };
 
-/// Takes in one sample: BankFilter::step for any filter.
+/// Processes one sample: BankFilter::step for any filter.
 template <class Filter>
 const FilterEstimate& take_sample(Filter& filter, double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                                   const Eigen::Ref<const Eigen::VectorXd>& measurement) {

@@ -11,7 +11,7 @@ namespace modebank {
 
 using Eigen::Index;
 
-/// BankForecast, its sizes hidden.
+/// BankForecast with its sizes hidden.
 struct Forecaster::Sized {
   Sized() = default;
   Sized(const Sized&) = delete;
@@ -43,7 +43,7 @@ struct Forecaster::OfSize final : Forecaster::Sized {
   }
 };
 
-/// DriftingForecast of a bank whose noise runs.
+/// DriftingForecast of a bank with running noise.
 struct Forecaster::OfRunningNoise final : Forecaster::Sized {
   RunningNoise noise;
   DriftingForecast forecast;

@@ -9,14 +9,14 @@
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"
 
-/// Prediction without measurements, from where a filter stands and with the inputs known: the one place where it is
-/// done. A forecast is an object with start(...) and step(acting inputs): BankForecast of a bank by its moments,
-/// DriftingForecast of one whose noise runs, SamplePaths of a bank by chance. look_ahead takes one through a recorded
-/// run, Forecaster through planned inputs.
+/// Prediction without measurements, from a filter's state and with known inputs; all such predictions use this header.
+/// A forecast is an object with start(...) and step(acting inputs): BankForecast (moments of a bank), DriftingForecast
+/// (running noise) or SamplePaths (random paths). look_ahead applies one to a recorded run, Forecaster to planned
+/// inputs.
 namespace modebank {
 
-/// Steps `forecast`, which was started at moment t of a run, through the moments after it. Calls arrive(ahead, k) at
-/// each sample k, the `ahead`-th from there, until that returns false or the stretch ends.
+/// Steps `forecast`, started at moment t of a run, through the following moments. Calls arrive(ahead, k) at each sample
+/// k, the `ahead`-th after t, until it returns false or the stretch ends.
 template <class Forecast, class Arrive>
 void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, Arrive arrive) {
   Eigen::Index ahead = 0;
@@ -27,7 +27,7 @@ void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, Arri
   }
 }
 
-/// The same up to the longest of `horizons` (samples ahead, ascending); calls arrive(i, k) at the i-th of them.
+/// look_ahead up to the longest of `horizons` (samples ahead, ascending); calls arrive(i, k) at the i-th of them.
 template <class Forecast, class Arrive>
 void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, const std::vector<Eigen::Index>& horizons,
                 Arrive arrive) {
@@ -39,9 +39,9 @@ void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, cons
   });
 }
 
-/// A bank's moments: a Gaussian per mode, mixed (merged) as the filter does and propagated. With a constant transition
-/// matrix every mode's probability, mean and covariance are exactly those of the switching system (moments of mixtures
-/// merge without loss); that each mode's distribution is a Gaussian is the approximation.
+/// Forecast of a bank by moments: one Gaussian per mode, mixed (merged) as in the filter, and propagated. With a
+/// constant transition matrix every mode's probability, mean and covariance equal those of the switching system,
+/// because moments of mixtures merge exactly. The approximation is that each mode has a Gaussian distribution.
 template <int N, int NY>
 class BankForecast {
  public:
@@ -83,7 +83,7 @@ class BankForecast {
     });
   }
 
-  /// Log density of a whole measurement [nats]; `error`: it minus the combined prediction.
+  /// Log density of a complete measurement [nats]; `error`: measurement minus combined prediction.
   template <class Y, class Error>
   double observe(const Y& y, Error&& error) {
     error = y;
@@ -107,8 +107,8 @@ class BankForecast {
   Gaussian<N> unused_;
   bool ahead_ = false, contracted_ = false;
 
-  /// Coefficients that drifted to where they are unstable, good for one step, would run away in many; as
-  /// DriftingForecast has it.
+  /// Contracts coefficients that drifted to unstable values. These are good for one step but diverge over many. Method
+  /// as in DriftingForecast.
   void contract() {
     contracted_ = true;
     const LinearStructure& s = model_.structure;
@@ -126,17 +126,17 @@ struct StateForecast {
   Eigen::VectorXd mode_probability;  ///< K
 };
 
-/// Forecasts of a bank of any sizes under planned inputs.
+/// Forecasts of a bank of any size under planned inputs.
 class Forecaster {
  public:
-  /// Conditions of BankFilter.
+  /// Conditions as for BankFilter.
   Forecaster(const Bank& bank, const FilterOptions& options);
   ~Forecaster();
 
-  /// The next `steps` samples, a model step apart, from where a filter of this bank stood. Column i of `inputs` (m x c)
-  /// is the input recorded at the sample i + 1 ahead. An input acts input_delay samples later, so that the last
-  /// input_delay columns have no effect and may be left out. Before a filter's start states are NaN. Throws
-  /// std::invalid_argument for fewer inputs, inputs that are not finite and steps below 1.
+  /// Predicts the next `steps` samples, one model step apart, from a filter state of this bank. Column i of `inputs` (m
+  /// x c) is the input recorded at the sample i + 1 ahead. An input acts input_delay samples later, so the last
+  /// input_delay columns have no effect and may be omitted. States are NaN before a filter's start. Throws
+  /// std::invalid_argument for too few inputs, inputs that are not finite and steps below 1.
   std::vector<StateForecast> ahead(const FilterSnapshot& from, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                    Eigen::Index steps);
 

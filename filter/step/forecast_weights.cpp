@@ -12,9 +12,9 @@ namespace modebank::filter {
 namespace {
 
 constexpr double kept_per_sample = 0.99;     // Raftery, Karny & Ettler's
-constexpr double least_log_weight = -700.0;  // of a density of zero, which must be able to come back
+constexpr double least_log_weight = -700.0;  // of a density of zero, after which a forecaster must be able to recover
 
-/// The largest that is a number; NaN without any.
+/// The largest number; NaN if there is none.
 double largest(const std::vector<double>& values) {
   double most = std::numeric_limits<double>::quiet_NaN();
   for (const double value : values) most = std::fmax(most, value);
@@ -48,7 +48,7 @@ void ForecastWeights::observe(const std::vector<double>& log_densities) {
   if (log_densities.size() != evidence_.size())
     throw std::invalid_argument(std::to_string(log_densities.size()) + " log densities of " +
                                 std::to_string(evidence_.size()) + " forecasters");
-  // The silent are taken to have said what all say together, so that the others' scores do not move them.
+  // Forecasters without a value get the mixture's density, so that the others' scores do not change their weights.
   const double together = mixed_log_density(weights_, log_densities);
   if (std::isnan(together)) return;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
@@ -73,7 +73,7 @@ void ForecastWeights::normalise() {
 
 namespace {
 
-/// Per sample the densities of all forecasters in units of the largest, one after the other; NaN of the silent.
+/// Densities of all forecasters for each sample, in units of the largest, sample by sample; NaN without a value.
 std::vector<double> relative_densities(const std::vector<std::vector<double>>& log_densities) {
   const std::size_t forecasters = log_densities.size();
   std::vector<double> densities, one(forecasters);
@@ -86,7 +86,7 @@ std::vector<double> relative_densities(const std::vector<std::vector<double>>& l
   return densities;
 }
 
-/// One step of expectation-maximisation. The silent of a sample keep their weight.
+/// One step of expectation-maximisation. Forecasters without a value for a sample keep their weight.
 std::vector<double> likelier_weights(const std::vector<double>& weights, const std::vector<double>& densities) {
   const std::size_t forecasters = weights.size();
   std::vector<double> next(forecasters, 0.0);

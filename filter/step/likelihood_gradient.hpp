@@ -9,8 +9,8 @@
 
 namespace modebank {
 
-/// Derivatives of a log-likelihood by everything about a bank that it depends on, each number for itself; of symmetric
-/// matrices by each of their entries.
+/// Derivatives of a log-likelihood by all numbers of a bank that it depends on, each separately; for symmetric matrices
+/// by each of their entries.
 struct BankGradient {
   struct Mode {
     LinearModel model;
@@ -19,21 +19,21 @@ struct BankGradient {
   std::vector<Mode> modes;
   Eigen::MatrixXd R;
   Eigen::MatrixXd transition;
-  Eigen::MatrixXd start_covariance;  ///< of start_moments
+  Eigen::MatrixXd start_covariance;  ///< that of start_moments
 
   BankGradient& operator+=(const BankGradient& other);
-  /// What it says the likelihood of a bank close by has more than that of another. Of the two only what is listed above
-  /// may differ.
+  /// First-order difference of the log-likelihoods of two similar banks. They may differ only in the parts listed
+  /// above.
   double along(const Bank& from, const Bank& to) const;
 };
 
-/// Whether there is a gradient of what this filter says.
+/// Whether the gradient is available for this filter.
 bool has_likelihood_gradient(const Bank& bank, const FilterOptions& options);
 
-/// The gradient of sum_k weight_k log p(y_k | earlier) of one run, exact for what the filter computes, at the cost of a
-/// few filter passes, however many parameters there are: the steps are gone back over in reverse (reverse mode of
-/// differentiation; Griewank & Walther 2008, "Evaluating derivatives"). `weight`: one per sample, or empty: all one.
-/// Conditions are those of log_likelihood (filter/judge/run/evaluate.hpp) and has_likelihood_gradient.
+/// The gradient of sum_k weight_k log p(y_k | earlier) of one run. It is exact for the filter's computation and costs a
+/// few filter passes for any number of parameters (reverse-mode differentiation; Griewank & Walther 2008, "Evaluating
+/// derivatives"). `weight`: one per sample, or empty: all one. Conditions are those of log_likelihood
+/// (filter/judge/run/evaluate.hpp) and has_likelihood_gradient.
 BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
                                      const FilterOptions& options);
 

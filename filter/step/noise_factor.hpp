@@ -6,21 +6,22 @@
 
 namespace modebank {
 
-/// One factor on the process noise of every mode, a function of the state z and the acting inputs v that a step starts
-/// from:
-///   f = exp(sum_i weights_i log(|directions_i [z; v]| + 0.1) - offset), bounded to between a fifth and five.
-/// The bounds keep a forecast usable where inputs move otherwise than on the training runs: unbounded, a factor that
-/// was learned on DART lost 54 nats per sample on other runs.
+/// One factor on the process noise of every mode, a function of the state z and the acting inputs v at the start of a
+/// step:
+///   f = exp(sum_i weights_i log(|directions_i [z; v]| + 0.1) - offset), limited to the range from a fifth to five.
+/// The limits keep a forecast usable if inputs differ from those of the training runs. Without them, a factor learned
+/// on DART lost 54 nats per sample on other runs.
 struct NoiseFactor {
-  Eigen::MatrixXd directions;  ///< d x (n + m): what the noise follows, over its root mean square on the training runs
+  Eigen::MatrixXd directions;  ///< d x (n + m): directions that the noise depends on, divided by their root mean square
+                               ///< on the training runs
   Eigen::VectorXd weights;     ///< d
-  double offset = 0.0;         ///< the mean logarithm on the training runs is 0
+  double offset = 0.0;         ///< makes the mean logarithm on the training runs 0
 
   static constexpr double softening = 0.1, largest = 5.0;
 
   bool empty() const { return weights.size() == 0; }
 
-  /// log f; NaN where an entry is not finite. No allocation.
+  /// log f; NaN if an entry is not finite. Does not allocate.
   template <class Z, class V>
   double log_at(const Z& z, const V& v) const {
     double sum = -offset;

@@ -6,20 +6,21 @@
 
 namespace modebank {
 
-/// Noise of one motion whose variance follows each output by itself (method: section 6, `drifting`). With e the error
-/// of a prediction, Student t of variance v (1 + h'Ph), P the covariance of the coefficients over v,
+/// Noise of one motion with a variance that follows each output separately (method: section 6, `drifting`). e is a
+/// prediction error with Student's t distribution of variance v (1 + h'Ph); P is the covariance of the coefficients
+/// divided by v:
 ///   v <- max(lam v + (1 - lam) e^2 / (1 + h'Ph), floor), from the diagonal of Q at a start.
 /// Given the past, outputs are independent.
 struct RunningNoise {
   double lam = 0.9;            ///< forgetting of the running variance, in [0, 1]
   double nu = 0.0;             ///< degrees of freedom, above 2; 0: Gaussian
-  Eigen::VectorXd floor = {};  ///< n, least v; empty: the noise is Q and nothing else
-  /// Horizons, ascending from 2 samples ahead on, and the factor of the first-order variance at each. One sample ahead
-  /// the factor is 1: the prediction is the filter's own.
+  Eigen::VectorXd floor = {};  ///< n, smallest v; empty: the noise is constant, Q
+  /// Horizons in samples, ascending from 2, and the factor on the first-order variance at each. One sample ahead the
+  /// factor is 1, because the prediction is the filter's own.
   std::vector<std::pair<Eigen::Index, double>> horizon_factor = {};
 
   bool empty() const { return floor.size() == 0; }
-  /// The factor of the longest horizon up to this one; 1 where there is none.
+  /// The factor of the longest horizon up to this one; 1 if there is none.
   double factor_at(Eigen::Index horizon) const {
     double factor = 1.0;
     for (const auto& [ahead, value] : horizon_factor)

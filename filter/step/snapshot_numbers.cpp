@@ -69,7 +69,7 @@ class NumbersReader {
     for (double& value : matrix.reshaped()) value = next();
   }
   void operator()(std::vector<Eigen::MatrixXd>& matrices) {
-    matrices.resize(static_cast<std::size_t>(count(left() / 2)));  // each has its sizes
+    matrices.resize(static_cast<std::size_t>(count(left() / 2)));  // each has two sizes
     for (Eigen::MatrixXd& matrix : matrices) (*this)(matrix);
   }
   void require_end() const {
@@ -88,7 +88,7 @@ class NumbersReader {
     if (left() == 0) refuse();
     return numbers_[at_++];
   }
-  /// A whole number from 0 to `most`.
+  /// Reads a whole number from 0 to `most`.
   Index count(Index most) {
     const double value = next();
     if (!(value >= 0.0 && value <= static_cast<double>(most) && value == std::floor(value))) refuse();

@@ -6,11 +6,11 @@
 
 namespace modebank {
 
-/// A snapshot as a row of numbers, which a program can keep or write without a look inside. The same bits come back.
+/// A snapshot as a list of numbers that a program can store. The conversion back gives the same bits.
 std::vector<double> to_numbers(const FilterSnapshot& snapshot);
 
-/// Throws std::invalid_argument for numbers that to_numbers cannot have made; whether they fit a filter is found by
-/// BankFilter::restore.
+/// Throws std::invalid_argument for numbers that to_numbers cannot have produced. BankFilter::restore checks whether
+/// they fit a filter.
 FilterSnapshot snapshot_of(const std::vector<double>& numbers);
 
 }  // namespace modebank

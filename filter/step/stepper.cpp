@@ -10,7 +10,7 @@ namespace modebank {
 
 namespace {
 
-/// By the equations.
+/// Stepper by the equations.
 template <int N, int NY>
 class EquationStepper final : public Stepper {
  public:

@@ -37,9 +37,9 @@ double StudentNoise::probability(double value) const {
 
 double StudentNoise::log_mass(double low, double high) const {
   if (gaussian()) return truncated_normal(low, high).log_mass;
-  if (low + high > 0.0) low = -std::exchange(high, -low);  // the lower tail keeps its digits
+  if (low + high > 0.0) low = -std::exchange(high, -low);  // the lower tail keeps more digits
   const double mass = probability(high) - probability(low), middle = 0.5 * (low + high);
-  // Of an interval that is narrow against its distance, what the difference has lost is in the density.
+  // If an interval is narrow against its distance, the difference loses digits; the density then gives the mass.
   constexpr double narrow = 1e-3;
   if (high - low < narrow * (1.0 + std::abs(middle))) return log_density(middle * middle) + std::log(high - low);
   return std::log(mass);

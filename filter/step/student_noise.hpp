@@ -4,16 +4,16 @@
 
 namespace modebank {
 
-/// Student's t of `degrees` degrees of freedom, scaled to variance one (its scale squared is (degrees - 2) / degrees),
-/// or the normal distribution where `degrees` is 0.
+/// Student's t with `degrees` degrees of freedom, scaled to variance one (squared scale (degrees - 2) / degrees). The
+/// normal distribution if `degrees` is 0.
 class StudentNoise {
  public:
-  /// Throws std::invalid_argument unless degrees are 0 or above 2: else there is no variance.
+  /// Throws std::invalid_argument unless degrees are 0 or above 2, because the variance is then infinite.
   explicit StudentNoise(double degrees);
 
   double degrees() const { return degrees_; }
   bool gaussian() const { return degrees_ == 0.0; }
-  /// What the log density of a value has beside its dependence on the value [nats].
+  /// The part of a log density that does not depend on the value [nats].
   double log_constant() const { return log_constant_; }
   /// Log density of a value by its square [nats].
   double log_density(double square) const {

@@ -4,19 +4,19 @@
 
 namespace modebank {
 
-/// How state and input move the switches, a multinomial logit (McFadden 1974): of the step from k to k + 1, under mode
-/// j after mode i,
-///   P(j | i, z[k]) = T_ij exp(w_j' (z[k] - reference)) / sum_l T_il exp(w_l' (z[k] - reference)),
-/// z[k] = (x[k], v[k]) the state that the step starts from and the inputs that act on it, known before its measurement.
-/// T alone is the case without weights. A constant added to a column of the weights changes nothing.
+/// State-dependent transition probabilities, a multinomial logit (McFadden 1974). For the step from k to k + 1, to mode
+/// j after mode i:
+///   P(j | i, z[k]) = T_ij exp(w_j' (z[k] - reference)) / sum_l T_il exp(w_l' (z[k] - reference)).
+/// z[k] = (x[k], v[k]) holds the state at the start of the step and the acting inputs, known before its measurement.
+/// Without weights the probabilities are T. A constant added to a column of the weights has no effect.
 struct TransitionLogit {
-  Eigen::MatrixXd weights = {};    ///< K x d, d = n + acting inputs [1 / unit of z]; empty: T wherever z is
-  Eigen::VectorXd reference = {};  ///< d, the z at which T holds
+  Eigen::MatrixXd weights = {};    ///< K x d, d = n + acting inputs [1 / unit of z]; empty: T for every z
+  Eigen::VectorXd reference = {};  ///< d, the z for which T holds
 
   bool empty() const { return weights.size() == 0; }
 };
 
-/// Where a step's transition probabilities are worked out, sized once.
+/// Workspace for a step's transition probabilities, sized once.
 struct TransitionWorkspace {
   TransitionWorkspace(Eigen::Index modes, const TransitionLogit& logit)
       : offset(logit.empty() ? Eigen::VectorXd() : Eigen::VectorXd(logit.weights * logit.reference)) {
@@ -30,10 +30,10 @@ struct TransitionWorkspace {
   Eigen::VectorXd offset;  ///< K, weights times reference
 };
 
-/// Odds further apart than this exponential are as good as certain, and rows of T stay possible.
+/// Cap on the difference of log odds; larger ones are practically certain, and rows of T stay possible.
 inline constexpr double largest_log_odds = 200.0;
 
-/// The probabilities at (x, v); T where z is not known (not finite). Allocates nothing.
+/// The probabilities at (x, v); T if z is not finite. Does not allocate.
 template <class X, class V>
 const Eigen::MatrixXd& transition_at(const Eigen::MatrixXd& T, const TransitionLogit& logit, const X& x, const V& v,
                                      TransitionWorkspace& at) {

@@ -11,13 +11,13 @@ namespace modebank {
 
 namespace {
 
-constexpr double nis_level = 0.99;     // of the interval whose outside is a verdict
-constexpr double nis_tolerance = 0.1;  // a tenth of the variance is a twentieth of the interval's width
+constexpr double nis_level = 0.99;     // level of the interval that decides
+constexpr double nis_tolerance = 0.1;  // of the variance; one tenth is one twentieth of the interval's width
 constexpr double outside_level = 0.99;
 
 bool within(double value, double least, double largest) { return value >= least && value <= largest; }
 
-/// What the mean NIS says: -1 underconfident, 1 overconfident, 0 nothing.
+/// Verdict of the mean NIS: -1 underconfident, 1 overconfident, 0 neither.
 int judge_nis(const BandCounts& counts) {
   if (!counts.chi_square_nis) return 0;
   const double degrees = counts.nis_degrees, mean = mean_distance(counts.nis, degrees);

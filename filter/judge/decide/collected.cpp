@@ -12,10 +12,10 @@ namespace {
 
 using Eigen::Index;
 
-/// Collects over runs for the whole filter (mode -1) or one mode.
+/// Collects counts over runs, for the whole filter (mode -1) or one mode.
 class Collector {
  public:
-  /// `nees_states`: the states that the NEES is about.
+  /// `nees_states`: the states of the NEES.
   Collector(const Bank& bank, Index mode, bool chi_square_nis, const std::vector<Index>& nees_states)
       : mode_(mode), nees_states_(nees_states) {
     sums.squared_state_error.setZero(bank.C.rows());
@@ -31,7 +31,7 @@ class Collector {
     for (HitsByRun& hits : counts.outside) hits.emplace_back();
     counts.sizes.emplace_back();
     for (SquaredDistances* distances : {&counts.nis, &sums.nees}) distances->begin_run();
-    OutputSeries z(static_cast<std::size_t>(e.pit.rows()));  // of a mode's own samples
+    OutputSeries z(static_cast<std::size_t>(e.pit.rows()));  // samples of one mode
     if (mode_ < 0) make_room(e, z);
     for (Index k = 0; k < e.log_density.size(); ++k) {
       if (std::isnan(e.log_density(k))) continue;
@@ -46,7 +46,7 @@ class Collector {
   }
 
  private:
-  /// For all samples of a run, since growing series take up to twice of what they need.
+  /// Reserves memory for all samples of a run; growing series would take up to twice as much.
   void make_room(const RunEvaluation& e, OutputSeries& z) {
     BandCounts& counts = sums.counts;
     const auto samples = static_cast<std::size_t>(e.log_density.size()), all = samples * z.size();

@@ -11,21 +11,21 @@
 
 namespace modebank {
 
-/// What is known of the samples that belong to one row.
+/// Statistics of the samples that belong to one row.
 struct Collected {
   Eigen::Index samples = 0, entropy_samples = 0;
   double usage = 0.0, entropy = 0.0, spread = 0.0, visits = 0.0, visited = 0.0;
   BandCounts counts;
   SquaredDistances nees;
-  SeriesByRun z;  ///< of the whole filter: one series per run and measurement
+  SeriesByRun z;  ///< only for the whole filter: one series per run and measurement
   std::vector<double> whiteness;
   Eigen::VectorXd squared_state_error;
   Eigen::Index state_errors = 0;
 };
 
-/// Over the runs of a role, of one filter: the whole (mode -1) or the samples of one of its modes, those where it was
-/// the most probable before the measurement. `scores`: of all evaluations. `nees_states`: the states that the NEES is
-/// about.
+/// Collects the samples of the runs of a role for one filter (mode -1) or one of its modes. A sample belongs to the
+/// mode that was most probable before the measurement. `scores`: of all evaluations. `nees_states`: the states of the
+/// NEES.
 Collected collect(const Bank& bank, Eigen::Index mode, Role role, bool chi_square_nis,
                   const std::vector<Eigen::Index>& nees_states, const std::vector<Trajectory>& runs,
                   const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores);

@@ -17,7 +17,7 @@ using Eigen::Index;
 
 constexpr double negligible_R = 1e-6;  // of the innovations' variance
 
-/// A fraction of hits with its interval.
+/// Sets a fraction of hits and its interval.
 void set_fraction(const HitsByRun& hits, double time, double& fraction, double& lower, double& upper) {
   const SeriesByRun numbers = as_numbers(hits);
   fraction = mean_of(numbers);
@@ -40,8 +40,7 @@ void set_fractions(const BandCounts& e, double time, DiagnosticsRow& row) {
   set_fraction(e.close, time, row.too_close, row.too_close_lower, row.too_close_upper);
 }
 
-/// The states whose measurement noise is more than next to nothing, so that their stated covariance after the
-/// measurement is more than R.
+/// The states whose measurement noise is not negligible, so that their covariance after the measurement differs from R.
 std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vector<Trajectory>& runs,
                                      const std::vector<RunEvaluation>& evaluations) {
   const Index n_y = bank.C.rows();
@@ -101,7 +100,7 @@ constexpr double dominating_spread = 0.5;  // share of trace S
 
 void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
 
-/// "mode 3 unused", "modes 1, 3 unused"; empty without any.
+/// "mode 3 unused", "modes 1, 3 unused"; empty if all are used.
 std::string unused_modes(const std::vector<DiagnosticsRow>& modes) {
   std::string list;
   int count = 0;
@@ -116,8 +115,8 @@ std::string two_digits(double value) {
   return {text.data(), end};
 }
 
-/// Flags of a filter's row, separated by "; ". `modes`: rows of the same filter's modes. `nees_states`: how
-/// many states the NEES is about.
+/// Flags of a filter's row, separated by "; ". `modes`: rows of the same filter's modes. `nees_states`: number of
+/// states of the NEES.
 std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Eigen::Index nees_states) {
   std::string flags;
   for (const DiagnosticsRow& mode : modes)
@@ -151,7 +150,7 @@ std::vector<DiagnosticsRow> diagnose_role(const std::string& filter, Role role, 
                                           const std::vector<RunEvaluation>& evaluations,
                                           const std::vector<RunScores>& scores) {
   if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) return {};
-  // One Gaussian of known variance per prediction.
+  // True if every prediction is one Gaussian of known variance.
   const bool chi_square_nis =
       (bank.mode_count() == 1 || options.variant == FilterVariant::kf) && options.noise == FilterNoise::gaussian;
   const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);

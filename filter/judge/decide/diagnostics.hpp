@@ -11,21 +11,23 @@
 
 namespace modebank {
 
-/// One row of /evaluation/diagnostics: a filter on the pooled runs of a role, or one of its modes there. A mode is
-/// judged on the samples where it was the most probable before the measurement, so that a true filter is calibrated
-/// there, too (the transform is uniform given whatever was known before: Rosenblatt 1952; Diebold, Gunther & Tay 1998).
-/// Intervals hold with 95 %: Clopper & Pearson's (1934) for fractions, of as many samples as there are independent
-/// ones by calibration.hpp; chi-square's for mean NIS and NEES (squared_distances.hpp). They hold for a true filter: a
-/// learned one's error comes on top. NaN: not known.
+/// One row of /evaluation/diagnostics: a filter, or one of its modes, on the pooled runs of a role.
+/// A mode is judged on the samples where it was the most probable before the measurement. A true filter is calibrated
+/// there, too, because the transform is uniform given all earlier information (Rosenblatt 1952; Diebold, Gunther & Tay
+/// 1998).
+/// Intervals have 95 % confidence. Fractions: Clopper & Pearson (1934), for the number of independent samples
+/// (calibration.hpp). Mean NIS and NEES: chi-square (squared_distances.hpp). The intervals hold for a true filter; the
+/// error of a learned filter is not included. NaN: unknown.
 struct DiagnosticsRow {
   std::string filter;
   Role role = Role::train;
   Eigen::Index mode = -1;    ///< -1: the whole filter
-  Eigen::Index samples = 0;  ///< scored
-  double usage = 0.0;        ///< mean probability after the measurement; of the whole filter: of its most probable mode
-  double entropy = 0.0;      ///< mean entropy of the probabilities after it over log K; 0 for K = 1
-  double dwell = 0.0;        ///< mean stay in a mode along viterbi_mode (without it: the most probable) [samples]
-  double dwell_model = 0.0;  ///< 1 / (1 - T_jj), what the transition matrix says; NaN for the whole filter
+  Eigen::Index samples = 0;  ///< scored samples
+  double usage = 0.0;        ///< mean probability after the measurement; for the whole filter: of its most probable
+                             ///< mode
+  double entropy = 0.0;      ///< mean entropy of the probabilities after the measurement, over log K; 0 for K = 1
+  double dwell = 0.0;        ///< mean stay in a mode along viterbi_mode (or the most probable modes) [samples]
+  double dwell_model = 0.0;  ///< 1 / (1 - T_jj), the stay by the transition matrix; NaN for the whole filter
   // Share of the signals inside the central bands, with intervals that allow for autocorrelation.
   double coverage_50 = 0.0, coverage_50_lower = 0.0, coverage_50_upper = 0.0;
   double coverage_90 = 0.0, coverage_90_lower = 0.0, coverage_90_upper = 0.0;
@@ -33,24 +35,25 @@ struct DiagnosticsRow {
   double coverage_99 = 0.0, coverage_99_lower = 0.0, coverage_99_upper = 0.0;
   double too_far = 0.0, too_far_lower = 0.0, too_far_upper = 0.0;        ///< z^2 above its 97.5 % quantile
   double too_close = 0.0, too_close_lower = 0.0, too_close_upper = 0.0;  ///< z^2 below its 2.5 % quantile
-  double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< mean_distance, interval of it if the filter is true
+  double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< mean_distance, and its interval for a true filter
   double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< of the state after the measurement, with truth;
   ///< NaN where R is next to nothing: the state is then the measurement, and its stated covariance R no judgement of it
   Eigen::VectorXd state_rmse;    ///< n_y, state minus truth; NaN without truth
   double whiteness_p = 0.0;      ///< Ljung & Box, as in the summary
-  double autocorrelation = 0.0;  ///< of z, the largest by size, at this lag; of the whole filter, else 0
+  double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value, at this lag; only for the whole
+                                 ///< filter, else 0
   Eigen::Index autocorrelation_lag = 0;
-  double spread_share = 0.0;  ///< mean share of the modes' differences in trace S
+  double spread_share = 0.0;  ///< mean share of the modes' differences in the trace of S
   Calibration verdict = Calibration::undecided;
-  std::string flags;  ///< what stands out, separated by "; "
+  std::string flags;  ///< remarkable facts, separated by "; "
 };
 
-/// Rows of one filter: per role with runs the whole filter, then each mode if there are several. `options`: of the
-/// filter that made the evaluations; `scores`: of these (score_runs).
+/// Rows of one filter: for each role with runs the whole filter, then each mode if there are several. `options`: of the
+/// filter that made the evaluations; `scores`: of the evaluations (score_runs).
 std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
                                      const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
                                      const std::vector<RunScores>& scores);
-/// Those of one role, whose runs alone need an evaluation.
+/// The rows of one role; only its runs need an evaluation.
 std::vector<DiagnosticsRow> diagnose_role(const std::string& filter, Role role, const Bank& bank,
                                           const FilterOptions& options, const std::vector<Trajectory>& runs,
                                           const std::vector<RunEvaluation>& evaluations,

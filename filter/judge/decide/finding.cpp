@@ -17,11 +17,12 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double coarse_share = 0.25;  // of the innovation's standard deviation: densities then peak between quanta
+constexpr double coarse_share = 0.25;  // of the innovation's standard deviation; above it densities peak between quanta
 constexpr Index free_run_horizon = 0;
-constexpr double noticeable_rmse = 1e-3;  // relative: what a table of three digits shows
-constexpr double rounding_rmse = 1e-8;    // of a state's standard deviation: half of a double's digits
-constexpr double fewest_stay = 5.0;       // samples: the least of 60 systems with modes was 8.4, those without had 1.6
+constexpr double noticeable_rmse = 1e-3;  // relative; visible in a table with three digits
+constexpr double rounding_rmse = 1e-8;    // of a state's standard deviation; half of a double's digits
+// samples; smallest stay of 60 systems with modes: 8.4; systems without modes: 1.6
+constexpr double fewest_stay = 5.0;
 
 Index scored_runs(const Densities& densities) {
   return std::count_if(densities.of_runs.begin(), densities.of_runs.end(),
@@ -33,7 +34,7 @@ const Densities* named(const std::vector<Densities>& all, const std::string& fil
   return found == all.end() ? nullptr : &*found;
 }
 
-/// The competitor of highest score is the one that the bank gains least over.
+/// Finds the competitor with the highest score, which has the smallest gain of the bank.
 void set_best_competitor(Finding& finding) {
   finding.gain = finding.standard_error = not_a_number;
   for (const PairedGain& gain : finding.gains) {
@@ -44,7 +45,7 @@ void set_best_competitor(Finding& finding) {
   }
 }
 
-/// Whether what `better` gains over another is small, or not told from zero.
+/// Whether the gain of `better` over another description is negligible or not significant.
 bool is_as_good(const PairedGain& of_better) {
   if (of_better.gain < negligible_gain) return true;
   return std::isfinite(of_better.margin) && !of_better.exceeds() && !of_better.ranks_tell();
@@ -56,12 +57,12 @@ const PairedGain* gain_over(const Finding& finding, const std::string& competito
   return found == finding.gains.end() ? nullptr : &*found;
 }
 
-/// The simplest competitor that is as good as the best one and as the bank, and what it loses against the former.
+/// Finds the simplest competitor that is as good as the best one and as the bank, and its loss against the best.
 void set_better_description(const std::vector<Densities>& competitors, Finding& finding) {
   const Densities* leader = named(competitors, finding.best_competitor);
   for (const char* name : competitor_names) {
     const Densities* candidate = named(competitors, name);
-    if (finding.best_competitor == name) break;  // what follows is less simple
+    if (finding.best_competitor == name) break;  // the remaining ones are less simple
     if (!leader || !candidate) continue;
     const PairedGain loss = paired_gain(name, leader->of_runs, candidate->of_runs);
     if (!is_as_good(*gain_over(finding, name)) || !is_as_good(loss)) continue;
@@ -73,10 +74,10 @@ void set_better_description(const std::vector<Densities>& competitors, Finding& 
   if (over && is_as_good(*over)) finding.better_description = finding.best_competitor;
 }
 
-/// Whether a gain is told from zero, and large enough to count.
+/// Whether a gain is significant and not negligible.
 bool is_beaten(const PairedGain& over) { return over.told() && over.gain >= negligible_gain; }
 
-/// Whether the bank is beyond doubt better than the best competitor.
+/// Whether the bank is significantly better than the best competitor.
 bool beats_the_best(const Finding& finding) {
   const PairedGain* gain = gain_over(finding, finding.best_competitor);
   return gain && is_beaten(*gain);
@@ -86,7 +87,7 @@ bool is_coarse(const Resolution& state) {
   return state.repeated > repeated_share || state.quantum > coarse_share * state.innovation_sd;
 }
 
-/// Where lags and steps leave nothing to ask first.
+/// The answer by scores, once lags and time steps raise no objection.
 Answer answer_by_scores(const Finding& finding) {
   if (finding.modes < 2 || finding.without_noise) return Answer::one_mode;
   if (!finding.coarse.empty()) return Answer::not_comparable;
@@ -100,7 +101,7 @@ Answer answer_by_scores(const Finding& finding) {
   return finding.stay < finding.stay_asked ? Answer::cannot_tell : Answer::evidence;
 }
 
-/// Competitors share the bank's lags, so that gains over them say little of modes while lags are missing.
+/// The answer. Competitors have the bank's lags, so while lags are missing, gains over them do not prove modes.
 Answer answer_of(const Finding& finding) {
   if (finding.step_scatter > most_step_scatter) return Answer::not_yet;
   const Answer answer = answer_by_scores(finding);
@@ -109,8 +110,8 @@ Answer answer_of(const Finding& finding) {
   return by_gains && finding.pattern.told() ? Answer::not_yet : answer;
 }
 
-/// How long the bank stays in a mode: one over how often it leaves one. Transitions that see the state are not known
-/// without it, and go by the most probable sequence.
+/// Mean stay of the bank in a mode: one over the rate of leaving it. State-dependent transition probabilities need the
+/// state, so the most probable sequence replaces them.
 double stay_of(const FindingInputs& in) {
   const bool by_sequence = !in.bank.transition_logit.empty();
   double used = 0.0, left = 0.0;
@@ -134,13 +135,13 @@ Description description_of(const Finding& finding, const Bank& bank) {
   return drifts ? Description::one_drifting_motion : Description::one_linear_motion;
 }
 
-/// Gains of modes and of one nonlinear motion over one linear motion, where both count and one describes the runs.
+/// Gains of modes and of one nonlinear motion over one linear motion, if both count and one of them describes the runs.
 void set_gains_over_linear(const std::vector<Densities>& competitors, Finding& finding) {
   const Densities* bent = named(competitors, "nonlinear");
   const bool one_of_both =
       finding.description == Description::several_modes || finding.description == Description::one_nonlinear_motion;
   if (!bent || !one_of_both) return;
-  const PairedGain* over = nullptr;  // the bank gains least over the better one
+  const PairedGain* over = nullptr;  // the better of the two has the smaller gain of the bank
   for (const char* name : {"baseline", "noise_only"})
     if (const PairedGain* gain = gain_over(finding, name); gain && (!over || gain->gain < over->gain)) over = gain;
   if (!over || !is_beaten(*over)) return;
@@ -152,7 +153,7 @@ void set_gains_over_linear(const std::vector<Densities>& competitors, Finding& f
   finding.nonlinear_over_linear = of_bend.gain;
 }
 
-/// Whether one linear model's errors are no more than rounding.
+/// Whether the errors of one linear model are only rounding.
 bool leaves_rounding(const FindingInputs& in) {
   for (const SummaryRow& row : in.summary) {
     if (row.filter != "baseline" || row.run != "*" || row.role != in.role) continue;
@@ -164,7 +165,7 @@ bool leaves_rounding(const FindingInputs& in) {
   return false;
 }
 
-/// At each horizon and state the competitor of least RMSE, where that is less than the bank's.
+/// The competitor of least RMSE at each horizon and state, if it is below the bank's.
 class BestMeans {
  public:
   void add(const std::string& filter, Index horizon, const Eigen::VectorXd& rmse) {
@@ -183,7 +184,7 @@ class BestMeans {
       result.back().rmse_bank = bank->second(where.second);
       if (states.size() > 1) result.back().state = states[static_cast<std::size_t>(where.second)].state;
     }
-    // Free runs look furthest ahead.
+    // Free runs come last, because they look furthest ahead.
     std::stable_partition(result.begin(), result.end(), [](const BetterMean& m) { return m.horizon > 0; });
     return result;
   }
@@ -207,7 +208,7 @@ std::vector<BetterMean> better_means(const FindingInputs& in) {
   return means.better(in.states);
 }
 
-/// Variances of theta; NaN where there are no standard errors.
+/// Variances of theta; NaN without standard errors.
 Eigen::ArrayXd variances(const Bank& bank, Index mode) {
   const Eigen::VectorXd& error = bank.modes[static_cast<std::size_t>(mode)].standard_error;
   const Index parameters = bank.structure.parameters();
@@ -215,7 +216,7 @@ Eigen::ArrayXd variances(const Bank& bank, Index mode) {
                                     : Eigen::ArrayXd::Constant(parameters, not_a_number);
 }
 
-/// Whether something holds for the difference of two modes' theta and its variance, for some pair.
+/// Whether `holds` is true for the difference of two modes' theta and its variance, for some pair.
 template <class Holds>
 bool any_pair(const Bank& bank, Holds holds) {
   for (Index a = 0; a < bank.mode_count(); ++a)

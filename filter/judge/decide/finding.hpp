@@ -17,11 +17,11 @@
 #include "ident/data/trajectory.hpp"
 #include "modebank/base/names.hpp"
 
-/// Whether held-out runs ask for modes of motion (method: section 6): the one place that decides it. Whoever prints it
-/// prints what stands here.
+/// Decides whether held-out runs require modes of motion (method: section 6). No other code decides it; all output uses
+/// this result.
 namespace modebank {
 
-/// not_yet: a simpler fact has to be settled first (Finding::step_scatter, Finding::pattern). not_comparable:
+/// not_yet: a simpler fact must be settled first (Finding::step_scatter, Finding::pattern). not_comparable:
 /// measurements are so coarse, or repeated so often, that log densities mean little.
 enum class Answer { one_mode, not_comparable, cannot_tell, no_evidence, evidence, not_yet };
 
@@ -30,15 +30,15 @@ struct EnumNames<Answer> {
   static constexpr Names<6> values{"one mode", "not comparable", "cannot tell", "no evidence", "evidence", "not yet"};
 };
 
-/// The competitors that a bank is asked to beat, the simplest description first.
+/// The competitors of a bank, the simplest description first.
 inline constexpr std::array<const char*, 5> competitor_names{"baseline", "noise_only", "one_motion", "drifting",
                                                              "nonlinear"};
-/// What a competitor says that the runs are, "one linear model with constant noise"; empty for other names.
-/// `one_motion_drifts`: whether the theta of `one_motion` does.
+/// A competitor's description of the runs, such as "one linear model with constant noise"; empty for other names.
+/// `one_motion_drifts`: whether the theta of `one_motion` drifts.
 const char* description_of(const std::string& competitor, bool one_motion_drifts);
 
-/// The simplest name that the scores leave for the motion of the judged runs. none: nothing was judged, or nothing is
-/// told.
+/// The simplest description of the judged runs' motion that the scores allow. none: nothing was judged, or the result
+/// is inconclusive.
 enum class Description { none, one_linear_motion, one_drifting_motion, one_nonlinear_motion, several_modes };
 
 template <>
@@ -47,8 +47,8 @@ struct EnumNames<Description> {
                                    "several modes"};
 };
 
-/// Why an answer is `cannot tell`. errors_unknown: modes whose parameters have no standard error may be alike.
-/// within_chance: the gain over some competitor is not told from zero. small_gain: it is, and less than counts.
+/// Why an answer is `cannot tell`. errors_unknown: modes may be alike, because parameters lack standard errors.
+/// within_chance: the gain over some competitor is not significant. small_gain: it is significant but too small.
 /// short_stays: Finding::stay is below stay_asked.
 enum class Doubt {
   nothing_held_out,
@@ -60,41 +60,42 @@ enum class Doubt {
   short_stays
 };
 
-/// A description that loses less is as good [nats per sample], as where modes are counted (rule.hpp).
+/// Descriptions that lose less are equally good [nats per sample]. The count of modes uses the same value (rule.hpp).
 inline constexpr double negligible_gain = 0.02;
 
-/// The part of a bank's errors on its training runs that past errors and inputs predict.
+/// The part of a bank's training errors that past errors and inputs predict.
 struct ErrorPattern {
-  double gain = not_a_number;            ///< by predicting errors so, on parts left out [nats/sample]; NaN: unknown
+  double gain = not_a_number;            ///< gain from predicting the errors, on left-out parts [nats/sample]; NaN:
+                                         ///< unknown
   double standard_error = not_a_number;  ///< over those parts [nats/sample]
 
-  /// Whether the gain counts, and exceeds two standard errors.
+  /// Whether the gain is not negligible and exceeds two standard errors.
   bool told() const { return gain >= negligible_gain && gain > 2.0 * standard_error; }
 };
 
-/// What a filter said of the judged runs.
+/// Log densities of one filter on the judged runs.
 struct Densities {
   std::string filter;
-  std::vector<Eigen::VectorXd> of_runs;  ///< log predictive density of every sample [nats], NaN where there is none
+  std::vector<Eigen::VectorXd> of_runs;  ///< log predictive density of every sample [nats], NaN if there is none
 };
 
-/// How finely a state is measured.
+/// Resolution of a state's measurement.
 struct Resolution {
   std::string state;
-  double quantum = 0.0;        ///< all values are multiples of it apart; 0: none seen
-  double repeated = 0.0;       ///< share of samples in motion that equal the one before
+  double quantum = 0.0;        ///< spacing of the values; 0: none found
+  double repeated = 0.0;       ///< share of samples in motion equal to the previous one
   double innovation_sd = 0.0;  ///< median standard deviation of the bank's predictions in motion [state unit]
   double sd = 0.0;             ///< of the samples [state unit]; 0: not known
 };
 
-/// Share of repeated samples beyond which densities are not compared: measured noise hardly ever repeats to the last
+/// Share of repeated samples above which densities are not compared. Measured noise hardly ever repeats to the last
 /// digit.
 inline constexpr double repeated_share = 0.1;
 
-/// A competitor that predicts the mean better than the bank, in root mean square over the judged runs.
+/// A competitor with a smaller root mean square error than the bank over the judged runs.
 struct BetterMean {
   std::string competitor;
-  Eigen::Index horizon = 1;  ///< samples ahead; 0: in free run
+  Eigen::Index horizon = 1;  ///< samples ahead; 0: free run
   std::string state;
   double rmse_bank = 0.0, rmse = 0.0;  ///< [state unit]
 };
@@ -102,51 +103,53 @@ struct BetterMean {
 struct Finding {
   Answer answer = Answer::cannot_tell;
   Role role = Role::test;
-  Eigen::Index runs = 0;           ///< judged, with scored samples
-  Eigen::Index modes = 0;          ///< of the bank
-  bool modes_differ = false;       ///< in theta, beyond their errors
-  bool errors_known = true;        ///< errors_known of the bank: else modes may differ all the same
+  Eigen::Index runs = 0;           ///< number of judged runs with scored samples
+  Eigen::Index modes = 0;          ///< number of modes of the bank
+  bool modes_differ = false;       ///< whether they differ in theta by more than their errors
+  bool errors_known = true;        ///< errors_known of the bank; if false, modes may differ anyway
   double step_scatter = 0.0;       ///< standard deviation of the time steps over their median
-  ErrorPattern pattern;            ///< of the bank's errors
-  double stay = not_a_number;      ///< in a mode, harmonic mean over the samples judged [samples]; NaN: unknown
-  double stay_asked = 0.0;         ///< for evidence [samples]
+  ErrorPattern pattern;            ///< pattern in the bank's errors
+  double stay = not_a_number;      ///< stay in a mode, harmonic mean over the judged samples [samples]; NaN: unknown
+  double stay_asked = 0.0;         ///< stay required for evidence [samples]
   std::vector<Resolution> coarse;  ///< states for which densities are not comparable
-  bool without_noise = false;      ///< one linear model leaves no more of the runs than rounding
-  bool one_motion_drifts = false;  ///< the competitor of that name learns within a run, as the bank does
-  bool terms_asked = false;        ///< whether training runs were asked for terms of one nonlinear motion
-  std::vector<PairedGain> gains;   ///< of the bank over each competitor
-  std::string best_competitor;     ///< of highest log score; empty without competitors
-  double gain = 0.0, standard_error = 0.0;  ///< over that one [nats/sample]; NaN where it is not known
+  bool without_noise = false;      ///< one linear model explains the runs up to rounding
+  bool one_motion_drifts = false;  ///< whether the competitor one_motion drifts within a run, as the bank does
+  bool terms_asked = false;        ///< whether terms of one nonlinear motion were searched on the training runs
+  std::vector<PairedGain> gains;   ///< gains of the bank over each competitor
+  std::string best_competitor;     ///< competitor with the highest log score; empty without competitors
+  double gain = 0.0, standard_error = 0.0;  ///< gain over best_competitor [nats/sample]; NaN: unknown
   Description description = Description::none;
-  std::string better_description;  ///< the competitor that describes the runs instead; empty where there is none
-  double description_loss = 0.0;   ///< of that one against the best competitor [nats/sample]
-  /// Where one nonlinear motion and several modes each gain over the better of baseline and noise_only, and either
-  /// describes the runs: modes that switch by state and input are both. Else empty.
+  std::string better_description;  ///< competitor that describes the runs instead of modes; empty if there is none
+  double description_loss = 0.0;   ///< its loss against the best competitor [nats/sample]
+  /// Competitor that one nonlinear motion and several modes both beat: the better of baseline and noise_only. It is set
+  /// if either describes the runs, because modes that switch by state and input are a nonlinear motion, too. Else
+  /// empty.
   std::string over_linear;
   double bank_over_linear = 0.0, nonlinear_over_linear = 0.0;  ///< [nats/sample]
   std::vector<BetterMean> better_means;
-  std::vector<std::pair<std::string, double>> coefficients;  ///< of one linear model, where that leaves no noise
-  std::vector<std::string> equations;  ///< of the nonlinear motion that describes the runs instead
-  std::string text;                    ///< all of it in plain sentences, by whoever has words for it
+  std::vector<std::pair<std::string, double>> coefficients;  ///< coefficients of one linear model, if it leaves no
+                                                             ///< noise
+  std::vector<std::string> equations;  ///< equations of the nonlinear motion that describes the runs instead of modes
+  std::string text;                    ///< the finding in plain sentences, filled in by the output
 
   bool held_out() const { return role == Role::test; }
 };
 
-/// Whether some pair of modes differs in a parameter by more than its two standard errors allow, at 95 % for all pairs
-/// and parameters together (Bonferroni). Parameters without a standard error tell no modes apart.
+/// Whether some pair of modes differs significantly in a parameter. The level is 95 % for all pairs and parameters
+/// together (Bonferroni). Parameters without a standard error do not count.
 bool modes_differ(const Bank& bank);
-/// Whether every parameter in which modes have different values has a standard error.
+/// Whether every parameter that differs between modes has a standard error.
 bool errors_known(const Bank& bank);
 
-/// The first reason that the numbers of a finding give that cannot tell.
+/// The first reason in a finding's numbers for the answer `cannot tell`.
 Doubt doubt_of(const Finding& finding);
-/// The competitor that the bank's gain is least beyond chance over, one that it is not told from if there is one, in
-/// units of its margin; null without a margin.
+/// The competitor with the least significant gain of the bank: an insignificant one if there is one, in units of its
+/// margin. Null without a margin.
 const PairedGain* least_beaten(const Finding& finding);
 
 struct FindingInputs {
   const Bank& bank;
-  Role role;  ///< of the judged runs
+  Role role;  ///< role of the judged runs
   const Densities& bank_densities;
   const std::vector<Densities>& competitors;
   const std::vector<SummaryRow>& summary;
@@ -159,15 +162,18 @@ struct FindingInputs {
   ErrorPattern pattern = {};
 };
 
-/// not yet: the steps scatter beyond most_step_scatter, or the errors follow a pattern that lags would take away. one
-/// mode: the bank has one, or one linear model leaves no noise: scores are then those of rounding. evidence: the gain
-/// over each competitor is told (paired_gain.hpp) and not negligible, the modes differ, and they stay for five samples
-/// and for the model's memory. no evidence: a competitor has no lower score, the gain over one is known to be
-/// negligible, or all modes have the same theta. cannot tell: all between, nothing held out, too few samples for a
-/// margin, or modes whose errors are not known. Modes that pass sooner are how noisy inputs and a delay that differs
-/// between runs come back: no competitor has them. Where the bank is not beyond doubt better than the best competitor,
-/// better_description is the simplest one that is as good as both: it loses less than 0.02 nats, or neither a t-test
-/// nor Wilcoxon's over runs tells it apart.
+/// Decides whether the runs require modes.
+/// not yet: the steps scatter beyond most_step_scatter, or further lags would remove a pattern in the errors.
+/// one mode: the bank has one mode, or one linear model leaves no noise (scores are then those of rounding).
+/// evidence: the gain over each competitor is significant (paired_gain.hpp) and not negligible, the modes differ, and
+/// they stay for at least five samples and for the model's memory. Shorter stays appear with noisy inputs or a delay
+/// that differs between runs; competitors do not model these.
+/// no evidence: a competitor has at least the bank's score, the gain over one is known to be negligible, or all modes
+/// have the same theta.
+/// cannot tell: all other cases, nothing held out, too few samples for a margin, or modes with unknown errors.
+/// If the bank is not significantly better than the best competitor, better_description is the simplest competitor as
+/// good as both. As good means: it loses less than 0.02 nats, or neither a t-test nor Wilcoxon's test over runs
+/// separates them.
 Finding judge_modes(const FindingInputs& in);
 
 }  // namespace modebank

@@ -6,18 +6,18 @@
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"
 
-/// Kim's (1994) smoother on the modes' filtered estimates, moment by moment: what smooth_run writes down and what
-/// expectation-maximisation with measurement noise takes its expectations from.
+/// Kim's (1994) smoother on the modes' filtered estimates, moment by moment. smooth_run stores its results;
+/// expectation-maximisation with measurement noise takes its expectations from them.
 namespace modebank {
 
-/// The filter's estimates at every moment of a run. Rows that are known (Gaussian::uncertain) are stored once for all
-/// modes and without covariances: lags of an exact sensor take n numbers a moment, not K (n + n^2).
+/// The filter's estimates at every moment of a run. Exactly known rows (those beyond Gaussian::uncertain) are stored
+/// once for all modes, without covariances. Lags of an exact sensor then take n numbers per moment, not K (n + n^2).
 template <int N, int NY>
 class FilteredHistory {
  public:
   FilteredHistory(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory)
       : n_(model.structure.dimension()), K_(model.mode_count()) {
-    const Eigen::Index uncertain = model.exact ? 0 : n_;  // at most moments
+    const Eigen::Index uncertain = model.exact ? 0 : n_;  // largest number over the moments
     values_.reserve(static_cast<std::size_t>(run.count() * numbers_of(uncertain)));
     first_.resize(run.count());
     probability_.resize(K_, run.count());
@@ -41,13 +41,13 @@ class FilteredHistory {
 
  private:
   Eigen::Index n_, K_;
-  std::vector<double> values_;  ///< by moment: means of the known rows; by mode mean and covariance of the others
-  Eigen::VectorX<Eigen::Index> first_;  ///< where the values of each moment begin
+  std::vector<double> values_;  ///< per moment: means of the known rows; per mode mean and covariance of the others
+  Eigen::VectorX<Eigen::Index> first_;  ///< index of each moment's first value
   Eigen::MatrixXd probability_;
   Eigen::VectorXd noise_scale_;
   Eigen::VectorX<Eigen::Index> uncertain_;
 
-  /// Values of a moment.
+  /// Number of values of a moment.
   Eigen::Index numbers_of(Eigen::Index uncertain) const { return n_ - uncertain + K_ * uncertain * (1 + uncertain); }
 
   template <class Values>
@@ -73,12 +73,12 @@ class FilteredHistory {
   }
 };
 
-/// Two moments that follow each other with their modes, given the whole run.
+/// Two successive moments with their modes, given the whole run.
 template <int N>
 struct SmoothedPair {
   std::size_t from, to;                     ///< mode at t, mode at t + 1
   double weight;                            ///< P(from, to | all)
-  const Gaussian<N>&now, &next;             ///< the states at t given both modes, at t + 1 given `to`
+  const Gaussian<N>&now, &next;             ///< states at t given both modes, and at t + 1 given `to`
   const Eigen::Matrix<double, N, N>& gain;  ///< Cov(now, next) = gain next.covariance
 };
 
@@ -86,7 +86,7 @@ struct SmoothedPair {
 template <int N, int NY>
 class BackwardPass {
  public:
-  /// Pairs of modes less probable than `negligible` are left out.
+  /// Ignores pairs of modes less probable than `negligible`.
   BackwardPass(const FilterModel<N, NY>& model, const FilteredHistory<N, NY>& history, double negligible = 0.0)
       : model_(model),
         history_(history),
@@ -105,18 +105,18 @@ class BackwardPass {
         transition_(model.mode_count(), model.transition_logit),
         combined_(n()) {}
 
-  /// The end of a stretch: there is nothing to add to the filter.
+  /// Begins at the end of a stretch, where the smoothed estimates are the filtered ones.
   void begin(Eigen::Index t) {
     for (std::size_t j = 0; j < modes.size(); ++j) history_.get(t, j, modes[j]);
     probability = history_.probability(t);
   }
 
-  /// `input`: acting on the step from t to t + 1.
+  /// `input`: acts on the step from t to t + 1.
   template <class U>
   void step(Eigen::Index t, const U& input) {
     step(t, input, [](const SmoothedPair<N>&) {});
   }
-  /// The same; calls visit(pair) for every pair of modes that weighs anything.
+  /// The same step; calls visit(pair) for every pair of modes that is not negligible.
   template <class U, class Visit>
   void step(Eigen::Index t, const U& input, Visit visit) {
     next_ = modes;
@@ -148,14 +148,14 @@ class BackwardPass {
   std::vector<Gaussian<N>> pairs_;
 
  public:
-  std::vector<Gaussian<N>> modes;  ///< smoothed, given each mode
-  Eigen::VectorXd probability;     ///< smoothed
+  std::vector<Gaussian<N>> modes;  ///< smoothed estimate of each mode
+  Eigen::VectorXd probability;     ///< smoothed probabilities
 
  private:
   std::vector<Gaussian<N>> next_;
   Eigen::MatrixXd weights_;  ///< P(mode j at t, mode k at t + 1 | all)
   TransitionWorkspace transition_;
-  Eigen::Matrix<double, N, 1> combined_;  ///< of all modes
+  Eigen::Matrix<double, N, 1> combined_;  ///< combined over all modes
 
   Eigen::Index n() const { return model_.structure.dimension(); }
 
@@ -167,7 +167,7 @@ class BackwardPass {
     }
   }
 
-  /// As the filter has it (imm.hpp).
+  /// As in the filter (imm.hpp).
   template <class U>
   double noise_of_step(Eigen::Index t, const U& input) {
     if (model_.noise_factor.empty()) return history_.noise_scale(t);
@@ -199,12 +199,13 @@ class BackwardPass {
     probability = weights_.rowwise().sum();
   }
 
-  /// Rauch, Tung & Striebel's step for mode k next; the covariance as a sum of squares, which rounding keeps definite.
+  /// Step of the Rauch-Tung-Striebel smoother if mode k is next. The covariance is a sum of squares, which stays
+  /// definite under rounding.
   template <class U>
   void smooth_pair(const Gaussian<N>& filtered, const U& input, std::size_t k, double noise_scale) {
     const auto& mode = model_.modes[k];
     Gaussian<N>& result = pairs_[k];
-    if (filtered.uncertain == 0) {  // nothing later can tell more of it
+    if (filtered.uncertain == 0) {  // known exactly; later samples add nothing
       result = filtered;
       gain_.setZero();
       return;
@@ -224,10 +225,10 @@ class BackwardPass {
     if (!is_finite(result)) result = filtered;
   }
 
-  /// Rows of a state that the next one repeats, lags further on: their gain is a shift, which leaves nothing open.
+  /// Number of rows that the next state repeats (lags). Their gain is a shift and leaves no uncertainty.
   Eigen::Index repeated() const { return n() - model_.full_rows; }
 
-  /// P F' P_next^-1.
+  /// Computes the gain P F' P_next^-1.
   void find_gain(const Gaussian<N>& filtered, const Eigen::Matrix<double, N, N>& F) {
     gain_.setZero();
     for (Eigen::Index i = 0; i < repeated(); ++i) gain_(i, i + model_.full_rows) = 1.0;
@@ -254,7 +255,7 @@ class BackwardPass {
       }
   }
 
-  /// out += (I - gain F) P (I - gain F)', whose repeated rows are zeros.
+  /// out += (I - gain F) P (I - gain F)'; its repeated rows are zero.
   void add_what_is_left(const Gaussian<N>& filtered, const Eigen::Matrix<double, N, N>& F,
                         Eigen::Matrix<double, N, N>& out) {
     for (Eigen::Index i = repeated(); i < n(); ++i) {

@@ -1,4 +1,4 @@
-// The installed face of scoring: plain vectors outside, Eigen inside.
+// The public API of scoring: converts between plain vectors and Eigen.
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/run/smoother.hpp"
 #include "ident/data/public_recording.hpp"

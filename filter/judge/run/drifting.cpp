@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Errors over their standard deviations, decorrelated in their order, and the log determinant of what does that.
+/// Errors over their standard deviations, decorrelated in order, with the log determinant of that map.
 struct WhitenedError {
   Eigen::VectorXd error;
   double log_scale = 0.0;
@@ -24,7 +24,8 @@ struct WhitenedError {
 WhitenedError whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
   const Cholesky factor(covariance);
   if (factor.definite()) return {factor.whiten(error), factor.L().diagonal().array().log().sum()};
-  const Eigen::ArrayXd deviation = covariance.diagonal().array().max(least_variance).sqrt();  // by rounding alone
+  // below it only by rounding
+  const Eigen::ArrayXd deviation = covariance.diagonal().array().max(least_variance).sqrt();
   return {error.array() / deviation, deviation.log().sum()};
 }
 
@@ -43,7 +44,7 @@ double log_density(const StudentNoise& noise, const Eigen::VectorXd& error, cons
 
 namespace {
 
-/// Looks ahead from where the filter stands at one moment of a run.
+/// Predicts ahead from the filter's state at one moment of a run.
 class DriftingLookAhead {
  public:
   DriftingLookAhead(const Bank& bank, const RunInstants& instants, const Trajectory& run, DriftingForecasts& out)

@@ -8,9 +8,9 @@
 
 namespace modebank {
 
-/// The most probable sequence of modes (Viterbi) of a bank whose modes drift; -1 before the start. Every mode counts at
-/// every sample as the filter had it, with what its theta had learned until then from the filter's own probabilities:
-/// exact where nothing drifts, an approximation where a sequence would have taught its modes otherwise.
+/// The most probable sequence of modes (Viterbi) of a bank whose modes drift; -1 before the start. Each mode has at
+/// each sample the theta that the filter had learned by then with its own probabilities. This is exact without drift.
+/// Otherwise it is an approximation, because another sequence would have taught the modes differently.
 Eigen::VectorXi drifting_mode_sequence(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 }  // namespace modebank

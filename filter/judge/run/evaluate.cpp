@@ -49,7 +49,7 @@ void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
   e.spread_share(k) = estimate.spread_share;
 }
 
-/// Filter alone: calls take(first, log densities) for every stretch of samples that it scores; NaN where nothing was
+/// Runs the filter only. Calls take(first, log densities) for every stretch of scored samples; NaN where nothing was
 /// measured.
 template <class Take>
 void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions& options, Take take) {
@@ -65,7 +65,7 @@ void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions&
                                          });
 }
 
-/// `bank`: one of the sizes of what the filter says.
+/// `bank`: a bank with the sizes of the filter's results.
 template <class Filter>
 RunEvaluation evaluate_samples(const Bank& bank, Filter&& filter, const Trajectory& run) {
   RunEvaluation evaluation = sized_evaluation(bank, run.samples());
@@ -97,7 +97,7 @@ double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptio
   check_run(bank, run);
   double total = 0.0;
   score_samples(bank, run, options, [&](Index, const Eigen::VectorXd& log_density) {
-    double sum = total;  // sample by sample, whatever the stretches
+    double sum = total;  // summed sample by sample, so that stretches do not change the rounding
     for (const double value : log_density) sum += std::isnan(value) ? 0.0 : value;
     total = sum;
   });

@@ -10,9 +10,9 @@
 
 namespace modebank {
 
-/// Estimates of a filter at every sample of a run, one sample per column. Column 0 is the start: its scores are NaN.
-/// The n states are those of the sample itself (LinearStructure::states): the state of a bank with lags holds earlier
-/// samples too, which are in earlier columns.
+/// Estimates of a filter at every sample of a run, one sample per column. Column 0 is the start; its scores are NaN.
+/// The n states are those of the sample itself (LinearStructure::states); lagged samples of a bank's state are in
+/// earlier columns.
 struct RunEvaluation {
   Eigen::MatrixXd prediction;                  ///< n x N, combined one-step prediction of the state
   Eigen::MatrixXd innovation;                  ///< n_y x N, measurement minus combined prediction
@@ -20,38 +20,40 @@ struct RunEvaluation {
   Eigen::MatrixXd state;                       ///< n x N, after the measurement
   Eigen::MatrixXd covariance;                  ///< n*n x N, after the measurement
   Eigen::VectorXd nis;                         ///< N
-  Eigen::MatrixXd pit;                         ///< n_y x N, Rosenblatt's transform; of quantised signals draw_pit's
-  Eigen::MatrixXd pit_width;                   ///< n_y x N, of the interval that pit lies in; empty: nothing quantised
+  Eigen::MatrixXd pit;                         ///< n_y x N, Rosenblatt's transform; drawn by draw_pit for quantised
+                                               ///< signals
+  Eigen::MatrixXd pit_width;                   ///< n_y x N, width of the interval of pit; empty if nothing is quantised
   Eigen::VectorXd log_density;                 ///< N, nats
   Eigen::MatrixXd mode_probability_predicted;  ///< K x N, before the measurement
   Eigen::MatrixXd mode_probability;            ///< K x N, after the measurement
-  Eigen::VectorXd spread_share;                ///< N, of the modes' differences in the trace of innovation_covariance
-  // By smooth_run; empty without.
+  Eigen::VectorXd spread_share;                ///< N, share of the modes' differences in the trace of
+                                               ///< innovation_covariance
+  // Filled by smooth_run; otherwise empty.
   Eigen::MatrixXd smoothed_state;       ///< n x N, given the whole run
   Eigen::MatrixXd smoothed_covariance;  ///< n*n x N
-  Eigen::VectorXi viterbi_mode;         ///< N, the most probable sequence of modes; -1 before the start
+  Eigen::VectorXi viterbi_mode;         ///< N, most probable sequence of modes; -1 before the start
 };
 
-/// Runs the filter over one run, whose `state` holds the measurements (n_y x N), starting at x[0] = y[0], P[0] = R. A
-/// signal whose measurement is NaN is predicted only: the others are taken in, and the sample is scored by them;
-/// without any its innovation and scores are NaN. When the first measurements are NaN the first whole one is the start,
-/// and everything before it is NaN but the mode probabilities; a bank with lags starts at the first sample whose lagged
-/// samples are all measured. Longer times between samples: see FilterOptions. Throws std::invalid_argument when sizes
-/// disagree and DataError for an input that is not finite.
+/// Filters one run, whose `state` holds the measurements (n_y x N), from x[0] = y[0], P[0] = R.
+/// A signal with a NaN measurement is only predicted; the others update the state and score the sample. Without any
+/// measurement, innovation and scores are NaN. The filter starts at the first complete measurement; earlier results are
+/// NaN except the mode probabilities. A bank with lags starts at the first sample whose lagged samples are all
+/// measured. Longer times between samples: see FilterOptions. Throws std::invalid_argument if sizes disagree, and
+/// DataError for an input that is not finite.
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
-/// Evaluates any filter, whose estimates have the sizes of `frame`.
+/// Evaluates any filter whose estimates have the sizes of `frame`.
 RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& filter);
 
-/// Draws the transforms of quantised measurements within their intervals (pit_draw.hpp), by the seed, the run's name
-/// and the sample.
+/// Draws the transforms of quantised measurements within their intervals (pit_draw.hpp), from the seed, the run's name
+/// and the sample number.
 void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation);
 
 /// Sum of log predictive densities over the scored samples of a run [nats]: the log-likelihood of theta, Q, R and T.
-/// Nothing is stored, so maximum likelihood may call it thousands of times. Same conditions as evaluate_run.
+/// Stores nothing, so maximum likelihood can call it thousands of times. Conditions as for evaluate_run.
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
-/// The log predictive density of every sample of a run [nats], N; NaN where there is none.
+/// The log predictive density of every sample of a run [nats], N; NaN if there is none.
 Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 }  // namespace modebank

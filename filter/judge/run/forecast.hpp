@@ -7,24 +7,24 @@
 
 #include "filter/step/equations/predicted_mixture.hpp"
 
-/// The interface of predictions to free runs, whichever model makes them (filter/step/forecast.hpp).
+/// The interface between free runs and the models that predict (filter/step/forecast.hpp).
 namespace modebank {
 
-/// The measurement so many model steps ahead as some model predicts it, each signal by itself and all jointly.
+/// A model's prediction of the measurement some steps ahead: each signal's distribution and the joint density.
 class Forecast {
  public:
   virtual ~Forecast() = default;
-  /// One model step further under these acting inputs.
+  /// Advances by one model step under these acting inputs.
   virtual void step(const Eigen::Ref<const Eigen::VectorXd>& inputs) = 0;
-  /// Before what is asked below of a sample; `samples`: how many ahead it is, from 1 on.
+  /// Must precede the queries below for a sample; `samples`: number of samples ahead, at least 1.
   virtual void arrive(Eigen::Index /*samples*/) {}
 
   virtual Eigen::VectorXd mean() const = 0;                ///< n_y
   virtual Eigen::VectorXd standard_deviation() const = 0;  ///< n_y
-  /// P(y_i <= y), and the y with that probability.
+  /// P(y_i <= y), and its inverse: the y with that probability.
   virtual double probability(Eigen::Index i, double y) const = 0;
   virtual double quantile(Eigen::Index i, double probability) const = 0;
-  /// Of all signals jointly [nats].
+  /// Joint log density of all signals [nats].
   virtual double log_density(const Eigen::Ref<const Eigen::VectorXd>& y) = 0;
   virtual Eigen::VectorXd mode_probability() const = 0;  ///< K
 
@@ -43,7 +43,7 @@ struct NormalMixture {
     for (Eigen::Index j = 0; j < weight.size(); ++j) sum += weight(j) * normal_cdf((y - mean(j)) / deviation(j));
     return std::min(sum, 1.0);
   }
-  /// `score`: the normal quantile of the probability. By bisection between the parts' own quantiles.
+  /// Quantile by bisection between the parts' own quantiles. `score`: normal quantile of the probability.
   double quantile(double probability_below, double score) const {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (Eigen::Index j = 0; j < weight.size(); ++j) {
@@ -61,7 +61,7 @@ struct NormalMixture {
   }
 
  private:
-  static constexpr double negligible_weight = 1e-9;  ///< at the edge of the bands that anyone asks for
+  static constexpr double negligible_weight = 1e-9;  ///< at the edge of any band in use
 };
 
 }  // namespace modebank

@@ -30,7 +30,7 @@ FreeRun sized_free_run(Index n_y, Index samples) {
   return result;
 }
 
-/// Samples of a run between gaps at which filters start anew: [first, end).
+/// Samples [first, end) of a run between gaps at which filters restart.
 struct Stretch {
   Index first = 0, end = 0;
 };
@@ -46,7 +46,7 @@ std::vector<Stretch> stretches_of(const Trajectory& run, double dt_s) {
   return stretches;
 }
 
-/// A run, its samples as a free run is given them, and where it begins.
+/// A run, the samples that a free run may use, and its start.
 class Given {
  public:
   Given(const Bank& bank, const Trajectory& run, const FreeRunOptions& options)
@@ -63,7 +63,7 @@ class Given {
   const RunInstants& instants() const { return *instants_; }
 
   /// Calls from(first, last, end) for every stretch that can be predicted: the moments from the filter's start to the
-  /// last measured sample, and the sample before which predictions end. Says of others why not.
+  /// last measured sample, and the end of the predictions. Notes the reason for other stretches.
   template <class From>
   void for_each(FreeRun& out, From from) const {
     for (const Stretch& stretch : stretches_) {
@@ -98,7 +98,7 @@ class Given {
     }
   }
 
-  /// Of the filter's start and of sample `last`; -1 where there is no start between them.
+  /// The moments of the filter's start and of sample `last`; -1 without a start between them.
   std::pair<Index, Index> moments(Index first, Index last) const {
     Index start = -1;
     for (Index t = 0; t < instants_->count(); ++t) {
@@ -110,7 +110,7 @@ class Given {
   }
 };
 
-/// Stores the prediction of sample k, where `forecast` has arrived.
+/// Stores the prediction of sample k, at which `forecast` is.
 void record(const Forecast& forecast, const Eigen::VectorXd& mean, Index k, FreeRun& out) {
   out.mean.col(k) = mean;
   out.deviation.col(k) = forecast.standard_deviation();
@@ -121,7 +121,7 @@ void record(const Forecast& forecast, const Eigen::VectorXd& mean, Index k, Free
   }
 }
 
-/// Predicts from the moment t, at which the filter stands, to the sample before `end`.
+/// Predicts from moment t, where the filter is, to the sample before `end`.
 void predict_on(Forecast& forecast, const Given& given, Index t, Index end, FreeRun& out) {
   look_ahead(forecast, given.instants(), t, [&](Index ahead, Index k) {
     interruption_point();
@@ -141,7 +141,7 @@ void predict_on(Forecast& forecast, const Given& given, Index t, Index end, Free
   });
 }
 
-/// Runs the bank's filter over each start; hands its state to from(state, t, end).
+/// Filters the samples before each start of a free run and passes the state on: from(state, t, end).
 template <int N, int NY, class From>
 void from_each_start(const FilterModel<N, NY>& model, const Given& given, FreeRun& out, From from) {
   FilterStep<N, NY> step(model);

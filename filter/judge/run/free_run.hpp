@@ -12,9 +12,9 @@
 
 namespace modebank {
 
-/// How a bank's free run is computed. moments: probability, mean and covariance of every mode, exact for a constant
-/// transition matrix; bands and densities take every mode's distribution for a Gaussian. paths: sample paths; bands are
-/// their quantiles, densities as above of their moments, and both are as noisy as so many paths are.
+/// Method of a bank's free run. moments: probability, mean and covariance of every mode, exact for a constant
+/// transition matrix. Bands and densities treat every mode's distribution as Gaussian. paths: sample paths. Bands are
+/// their quantiles; densities use their moments as above. Both have the sampling noise of that many paths.
 enum class FreeRunMethod { moments, paths };
 
 template <>
@@ -22,8 +22,8 @@ struct EnumNames<FreeRunMethod> {
   static constexpr Names<2> values{"moments", "paths"};
 };
 
-/// What a free run starts from. estimated: what the filter knows after the measured samples. fixed: the last of them as
-/// a filter's first measurement, all before it unseen.
+/// Start of a free run. estimated: the filter's estimate after the measured samples. fixed: the last measured sample as
+/// a filter's first measurement, without earlier ones.
 enum class FreeRunStart { estimated, fixed };
 
 template <>
@@ -32,54 +32,56 @@ struct EnumNames<FreeRunStart> {
 };
 
 struct FreeRunOptions {
-  Eigen::Index samples = 0;  ///< measured ones at the beginning; 0: no free run
-  Eigen::Index horizon = 0;  ///< samples predicted after them; 0: to the end of the run
+  Eigen::Index samples = 0;  ///< measured samples at the beginning; 0: no free run
+  Eigen::Index horizon = 0;  ///< samples to predict after them; 0: to the end of the run
   FreeRunStart start = FreeRunStart::estimated;
   FreeRunMethod method = FreeRunMethod::moments;
   Eigen::Index paths = 400;
-  std::uint64_t seed = 1;  ///< of the paths; every run has its own generator by its name
+  std::uint64_t seed = 1;  ///< seed of the paths; each run derives its own generator from its name
 
   bool operator==(const FreeRunOptions&) const = default;
 };
 
-/// The fewest measured samples that a model can start from.
+/// Smallest number of measured samples that a model can start from.
 inline Eigen::Index fewest_start_samples(const LinearStructure& structure) { return structure.first_transition() + 1; }
 
-/// Predictions of a run after its first samples, from these and the inputs alone. Column k belongs to sample k; NaN
-/// (-1) where nothing was predicted. After a time without samples for which filters start anew, the free run does, too.
+/// Predictions of a run from its first samples and the inputs alone. Column k belongs to sample k; NaN (-1) where
+/// nothing was predicted. The free run restarts after a gap at which filters restart.
 struct FreeRun {
   Eigen::MatrixXd mean;            ///< n_y x N
-  Eigen::MatrixXd deviation;       ///< n_y x N, standard deviation of the measurement about it
+  Eigen::MatrixXd deviation;       ///< n_y x N, standard deviation of the measurement about `mean`
   Eigen::MatrixXd lower, upper;    ///< n_y x N, central 95 % band
-  Eigen::MatrixXd pit;             ///< n_y x N, of every signal by itself; NaN where the measurement is not whole
-  Eigen::VectorXd log_density;     ///< N, of the measurement jointly [nats]
-  Eigen::VectorXi mode;            ///< N, most probable
-  Eigen::Index lost_paths = 0;     ///< paths that left the finite range and were taken out
-  std::vector<std::string> notes;  ///< why there is no prediction where there is none
+  Eigen::MatrixXd pit;             ///< n_y x N, of each signal separately; NaN unless the measurement is complete
+  Eigen::VectorXd log_density;     ///< N, joint log density of the measurement [nats]
+  Eigen::VectorXi mode;            ///< N, most probable mode
+  Eigen::Index lost_paths = 0;     ///< number of paths that diverged and were removed
+  std::vector<std::string> notes;  ///< reasons for missing predictions
 };
 
-/// Conditions as those of evaluate_run; throws std::invalid_argument for fewer samples than the model needs. Of banks
-/// whose noise runs coefficients decay as where horizons are predicted (DriftingForecast), and it is always by moments.
+/// Computes a free run. Conditions as for evaluate_run; throws std::invalid_argument for fewer samples than the model
+/// needs. Banks with running noise always use moments; their coefficients decay as in predictions at a horizon
+/// (DriftingForecast).
 FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& filter, const FreeRunOptions& options);
 
-/// One row of /evaluation/free_run. Over the samples that are predicted and measured; each signal by itself, but for
-/// the log score.
+/// One row of /evaluation/free_run: scores over samples that are predicted and measured. All scores are per signal,
+/// except the log score.
 struct FreeRunRow {
   std::string filter;  ///< bank or a competitor
   Role role = Role::train;
-  std::string run;  ///< "*": pooled over the samples of all runs of the role
+  std::string run;  ///< "*": all runs of the role pooled
   FreeRunMethod method = FreeRunMethod::moments;
   Eigen::Index start = 0;    ///< measured samples at the beginning
-  Eigen::Index samples = 0;  ///< scored
+  Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample]
   Eigen::VectorXd rmse;      ///< n_y [state unit]
-  Eigen::VectorXd nrmse;     ///< n_y, RMSE over the standard deviation of the measurements (about their mean, over N)
+  Eigen::VectorXd nrmse;     ///< n_y, RMSE over the standard deviation of the measurements (about their mean, divisor
+                             ///< N)
   Eigen::VectorXd fit;       ///< n_y [%], 100 (1 - ||y - mean|| / ||y - average of y||)
   Eigen::VectorXd coverage_50, coverage_90, coverage_95, coverage_99;  ///< n_y, share inside the central bands
   Eigen::Index lost_paths = 0;
 };
 
-/// Rows of one filter, ordered as summarize() orders its own.
+/// Rows of one filter, in the order of summarize().
 std::vector<FreeRunRow> summarize_free_runs(const std::string& filter, const std::vector<Trajectory>& runs,
                                             const std::vector<FreeRun>& free_runs, const FreeRunOptions& options);
 

@@ -15,10 +15,10 @@
 #include "filter/step/student_noise.hpp"
 #include "ident/base/distributions.hpp"
 
-/// What each kind of model says of samples in a free run.
+/// Forecasts of each kind of model for free runs.
 namespace modebank {
 
-/// A bank by moments.
+/// Forecast of a bank by moments.
 template <int N, int NY>
 class MomentForecast final : public Forecast {
  public:
@@ -69,21 +69,21 @@ class MomentForecast final : public Forecast {
 
  private:
   BankForecast<N, NY> bank_;
-  std::vector<NormalMixture> signals_;  ///< n_y, of the sample arrived at
+  std::vector<NormalMixture> signals_;  ///< n_y, of the present sample
 
-  /// What the recorded value differs by from the signal.
+  /// Variance of the rounding of a recorded value.
   double rounding(Eigen::Index i) const { return bank_.model().quantum(i) * bank_.model().quantum(i) / 12.0; }
   const NormalMixture& of(Eigen::Index i) const { return signals_[static_cast<std::size_t>(i)]; }
 };
 
-/// A bank by sample paths. Bands are those of the paths with measurement noise; the joint density is that of a Gaussian
-/// per mode, with the moments of the paths that are in it (before the last step's noise, whose covariance is added as
-/// it is known).
+/// Forecast of a bank by sample paths. Bands are quantiles of the paths with measurement noise. The joint density has
+/// one Gaussian per mode with the moments of the mode's paths. The noise of the last step enters by its known
+/// covariance, not by samples.
 class PathForecast final : public Forecast {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
-  /// `row`: as SamplePaths takes it.
+  /// `row`: as for SamplePaths.
   PathForecast(const Bank& bank, Eigen::Index paths, std::uint64_t seed, TransitionRow row = {});
   void start(const FilterMemory& origin) { paths_.start(origin); }
   void step(const Vector& inputs) override { paths_.step(inputs); }
@@ -100,11 +100,11 @@ class PathForecast final : public Forecast {
  private:
   Eigen::MatrixXd C_, R_, R_root_;
   SamplePaths paths_;
-  Eigen::MatrixXd sorted_;  ///< count x n_y, of the sample arrived at
+  Eigen::MatrixXd sorted_;  ///< count x n_y, of the present sample
   Eigen::VectorXd share_;   ///< K
 };
 
-/// A bank whose noise runs.
+/// Forecast of a bank with running noise.
 class DriftingFreeForecast final : public Forecast {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;

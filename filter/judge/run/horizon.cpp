@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Looks ahead from the filter's state at one moment.
+/// Predicts ahead from the filter's state at one moment.
 template <int N, int NY>
 class HorizonScores {
  public:

@@ -10,21 +10,21 @@
 
 namespace modebank {
 
-/// Predictions of a run's measurements, each made some samples before from what was known then and from the inputs that
-/// were recorded since. Column k belongs to sample k; NaN where no filter stood so long before it, or where the
-/// measurement is not whole.
+/// Predictions of a run's measurements, each made some samples earlier from the measurements by then and the inputs
+/// recorded since. Column k belongs to sample k. NaN if no filter was running that long before, or if the measurement
+/// is incomplete.
 struct HorizonEvaluation {
   std::vector<Eigen::Index> horizons;  ///< samples ahead, ascending
   std::vector<Eigen::MatrixXd> error;  ///< per horizon n_y x N: measurement minus combined prediction
   Eigen::MatrixXd log_density;         ///< horizons x N: log predictive density of the measurement [nats]
 };
 
-/// One of a run of n_y signals in which nothing is predicted yet; `horizons` in ascending order, each once. Throws
-/// std::invalid_argument when one is below 1.
+/// An empty evaluation for a run of n_y signals. `horizons`: ascending, without duplicates. Throws
+/// std::invalid_argument for a horizon below 1.
 HorizonEvaluation empty_horizons(std::vector<Eigen::Index> horizons, Eigen::Index n_y, Eigen::Index samples);
 
-/// `horizons`: each at least 1. At 1 it is what evaluate_run says. Same conditions as evaluate_run; costs as many steps
-/// per sample as the longest horizon has.
+/// Evaluates predictions at several horizons, each at least 1; horizon 1 equals evaluate_run. Conditions as for
+/// evaluate_run. The cost per sample is as many steps as the longest horizon has.
 HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,
                                     std::vector<Eigen::Index> horizons);
 
@@ -32,9 +32,9 @@ HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, con
 struct HorizonRow {
   std::string filter;  ///< bank or a competitor
   Role role = Role::train;
-  std::string run;           ///< "*": pooled over the samples of all runs of the role
+  std::string run;           ///< "*": all runs of the role pooled
   Eigen::Index horizon = 1;  ///< samples ahead
-  Eigen::Index samples = 0;  ///< scored
+  Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample]
   Eigen::VectorXd rmse;      ///< n_y [state unit]
 };
@@ -48,10 +48,10 @@ struct HorizonSums {
 
   HorizonSums& operator+=(const HorizonSums& other);
 };
-/// One per horizon of a run.
+/// The sums of a run, one per horizon.
 std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run);
 
-/// Rows of one filter, ordered as summarize() orders its own, every horizon in turn. `sums`: of every run.
+/// Rows of one filter in the order of summarize(), each with all horizons. `sums`: of every run.
 std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,
                                            const std::vector<std::vector<HorizonSums>>& sums);
 

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Adds what is counted of predictions of one origin after another to a sum over horizons for every sample.
+/// Sums the scores of predictions over horizons, for every sample, one origin after the other.
 template <int N, int NY>
 class FarScores {
  public:
@@ -30,7 +30,7 @@ class FarScores {
   void from(Index t, const FilterState<N>& state) {
     forecast_.start(state);
     look_ahead(forecast_, instants_, t, [&](Index ahead, Index k) {
-      // One sample ahead the filter itself has scored every sample by its density.
+      // One sample ahead, the filter itself has already scored every sample by its density.
       if (ahead > 1 || look_.counts_errors()) count(k);
       return ahead < look_.samples;
     });

@@ -15,13 +15,13 @@ using Eigen::Index;
 
 Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
   const SymmetricEigen parts = symmetric_eigen(covariance);
-  const Index directions = (parts.values.array() > 0.0).count();  // values increase: the last ones
+  const Index directions = (parts.values.array() > 0.0).count();  // values increase, so the last ones are positive
   return parts.vectors.rightCols(directions) * parts.values.tail(directions).cwiseSqrt().asDiagonal();
 }
 
 namespace {
 
-/// Every mode's next one by the bank's matrix, at the path's own state where that matters.
+/// Mode probabilities by the bank's transition matrix, at each path's own state if they depend on it.
 TransitionRow bank_row(const Bank& bank) {
   if (bank.mode_count() == 1)
     return [](Index mode, const auto&, const auto&, Eigen::VectorXd& row) { row.setZero()(mode) = 1.0; };
@@ -57,7 +57,7 @@ Index SamplePaths::draw_mode(const Eigen::VectorXd& probability) {
   double u = boost::random::uniform_01<double>()(generator_) * probability.sum();
   Index mode = 0;
   while (mode + 1 < probability.size() && (u -= probability(mode)) >= 0.0) ++mode;
-  while (mode > 0 && !(probability(mode) > 0.0)) --mode;  // by rounding alone
+  while (mode > 0 && !(probability(mode) > 0.0)) --mode;  // reached only by rounding
   return mode;
 }
 

@@ -12,32 +12,32 @@
 
 namespace modebank {
 
-/// Fills `row` (K) with the probabilities of the mode that rules the next step, given the mode of the last one, the
-/// state (z with lags) before the step and the inputs that act on it.
+/// Fills `row` (K) with the probabilities of the next mode, given the last mode, the state (z with lags) before the
+/// step and the acting inputs.
 using TransitionRow = std::function<void(Eigen::Index mode, const Eigen::Ref<const Eigen::VectorXd>& state,
                                          const Eigen::Ref<const Eigen::VectorXd>& inputs, Eigen::VectorXd& row)>;
 
-/// Random futures of a switching system, all from what a filter knows at one moment: each draws its state and mode
-/// there, then mode and noise in every step. One generator, path by path, so that equal seeds give equal paths.
+/// Random futures of a switching system from a filter's estimate at one moment. Each path draws its state and mode
+/// there, then mode and noise in every step. One generator serves all paths in order, so equal seeds give equal paths.
 class SamplePaths {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
-  /// `row`: what the transition matrix is where it is not constant; empty: the bank's.
+  /// `row`: transition probabilities if not constant; empty: the bank's.
   SamplePaths(const Bank& bank, Eigen::Index paths, std::uint64_t seed, TransitionRow row = {});
 
   void start(const FilterMemory& origin);
-  /// One model step of every path. One that leaves the finite range (beyond largest_mean) is lost from then on.
+  /// Advances every path by one model step. A path that leaves the finite range (beyond largest_mean) is removed.
   void step(const Vector& inputs);
 
   Eigen::Index lost() const { return lost_; }
-  Eigen::Index count() const { return states_.cols(); }              ///< those that are left
+  Eigen::Index count() const { return states_.cols(); }              ///< remaining paths
   const Eigen::MatrixXd& states() const { return states_; }          ///< n x count
-  const Eigen::MatrixXd& predicted() const { return predicted_; }    ///< n x count: before the last step's noise
-  const std::vector<Eigen::Index>& modes() const { return modes_; }  ///< count, of the last step
-  /// Q of a mode in the last step, the mean over the paths `in_mode`.
+  const Eigen::MatrixXd& predicted() const { return predicted_; }    ///< n x count, before the last step's noise
+  const std::vector<Eigen::Index>& modes() const { return modes_; }  ///< count, modes of the last step
+  /// Q of a mode in the last step: the mean over the paths `in_mode`.
   Eigen::MatrixXd step_noise(Eigen::Index mode, const std::vector<Eigen::Index>& in_mode) const;
-  /// Adds a draw of N(0, scale^2 root root').
+  /// Adds a draw from N(0, scale^2 root root').
   void add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to, double scale = 1.0);
 
  private:
@@ -57,7 +57,8 @@ class SamplePaths {
   void keep(const std::vector<Eigen::Index>& which);
 };
 
-/// A matrix whose product with its transpose is the covariance; of a singular one it has fewer columns than rows.
+/// A square root of the covariance: its product with its transpose. For a singular covariance it has fewer columns than
+/// rows.
 Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance);
 
 }  // namespace modebank

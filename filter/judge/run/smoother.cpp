@@ -13,9 +13,9 @@ namespace {
 
 using Eigen::Index;
 
-/// Pairs of modes less probable than this change no digit of what is smoothed.
+/// Pairs of modes below this probability do not change a digit of the smoothed values.
 constexpr double negligible_pair = 1e-18;
-constexpr double rounding = 1e-6;  // nats, far above that of a log density
+constexpr double rounding = 1e-6;  // nats, far above the rounding of a log density
 
 template <int N, int NY>
 void smooth(const Bank& bank, const Trajectory& run, const FilterOptions& options, RunEvaluation& evaluation) {
@@ -40,8 +40,7 @@ void smooth(const Bank& bank, const Trajectory& run, const FilterOptions& option
   }
 }
 
-/// The factors that the filter itself multiplied the noise of every moment's step by; ones unless noise adapts or
-/// follows state and input.
+/// The noise factors that the filter used at every moment; ones unless noise adapts or depends on state and input.
 template <int N, int NY>
 Eigen::VectorXd noise_scales(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory) {
   Eigen::VectorXd scales = Eigen::VectorXd::Ones(run.count());
@@ -56,8 +55,8 @@ Eigen::VectorXd noise_scales(const FilterModel<N, NY>& model, const RunInstants&
   return scales;
 }
 
-/// The best history of every mode, moment by moment. `scales`: as noise_scales says. A scale of its own would follow
-/// this pass, whose modes count as equally probable at every moment, and take a change of mode for one of scale.
+/// The best history of every mode, moment by moment. `scales`: from noise_scales. This pass cannot adapt its own scale:
+/// its modes count as equally probable at every moment, so it would mistake a change of mode for one of scale.
 template <int N, int NY>
 class BestHistories {
  public:
@@ -90,7 +89,7 @@ class BestHistories {
     }
   }
 
-  /// The mode of every moment on the best history that ends each stretch.
+  /// The mode of every moment on the best history of each stretch.
   Eigen::VectorXi trace(const RunInstants& run) const {
     Eigen::VectorXi mode(run.count());
     for (Index t = run.count() - 1; t >= 0; --t)
@@ -103,15 +102,15 @@ class BestHistories {
   const FilterModel<N, NY>& model_;
   TransitionWorkspace transition_;
   Eigen::MatrixXd log_transition_;
-  Eigen::MatrixXi from_;  ///< K x moments: the mode before, on the best history that ends in mode j
+  Eigen::MatrixXi from_;  ///< K x moments: the previous mode on the best history that ends in mode j
   Eigen::Matrix<Index, Eigen::Dynamic, 1> best_;
   KalmanStep<N, NY> kalman_;
   PartialSensor<N, NY> partial_;
   small::Cholesky<NY> least_;
-  Eigen::VectorXd score_;                        ///< of every mode's best history
-  std::vector<Gaussian<N>> modes_, next_modes_;  ///< where these have come to
+  Eigen::VectorXd score_;                        ///< score of every mode's best history
+  std::vector<Gaussian<N>> modes_, next_modes_;  ///< states that these histories have reached
 
-  /// Each row at the state that its mode's best history has reached.
+  /// Each row at the state of its mode's best history.
   template <class U>
   void set_transition(const U& input) {
     if (model_.transition_logit.empty()) return;
@@ -142,7 +141,7 @@ class BestHistories {
     }
   }
 
-  /// `excess`: what the log density of a partial sensor has too little.
+  /// `excess`: correction to the log density of a partial sensor.
   template <class U, class Sensor, class Y>
   void measure(Index t, const U& u, double scale, const Sensor& sensor, const Y& y, double excess) {
     const auto most = [&](const auto& mode) {
@@ -158,9 +157,9 @@ class BestHistories {
     });
   }
 
-  /// The best history into every mode. `most(mode)`: above every log density that a step into the mode can find, since
-  /// no S is less than what the mode's own noise makes of it; histories that even that does not lift to the best one
-  /// are not stepped. `take_in(estimate)`: the measurement, after the prediction; its log density.
+  /// Finds the best history into every mode. `most(mode)`: upper bound of the log density of a step into the mode,
+  /// since no S is smaller than that of the mode's own noise. Histories that cannot reach the best one with this bound
+  /// are skipped. `take_in(estimate)`: updates with the measurement after the prediction and returns its log density.
   template <class U, class Most, class TakeIn>
   void choose(Index t, const U& u, double scale, Most most, TakeIn take_in) {
     Eigen::VectorXd next(K_);
@@ -183,7 +182,7 @@ class BestHistories {
       step(likely);
       for (Index i = 0; i < K_; ++i)
         if (i != likely && reach(i) - least_reach >= best) step(i);
-      if (!(best > -std::numeric_limits<double>::infinity())) {  // nowhere to come from: it stays
+      if (!(best > -std::numeric_limits<double>::infinity())) {  // no predecessor: the mode stays
         kalman_.predict(modes_[static_cast<std::size_t>(j)], model_, mode, u, scale);
         take_in(next_modes_[static_cast<std::size_t>(j)]);
       }
@@ -204,7 +203,7 @@ Eigen::VectorXi best_histories_sequence(const Bank& bank, const Trajectory& run,
   return BestHistories<N, NY>(model, scales, instants, run).trace(instants);
 }
 
-/// Every mode from every mode, whatever the variant.
+/// Allows every transition between modes, whatever the variant.
 Eigen::VectorXi viterbi(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   const RunInstants instants(bank, run);
   const Eigen::VectorXi modes = with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() {

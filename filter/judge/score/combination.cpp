@@ -24,17 +24,17 @@ void check_members(const std::vector<const HorizonEvaluation*>& members) {
       throw std::invalid_argument("forecasts to combine must be of the same samples and horizons");
 }
 
-/// One horizon of one run.
+/// Combines the forecasts of one horizon of one run.
 class CombinedHorizon {
  public:
   CombinedHorizon(const std::vector<const HorizonEvaluation*>& members, std::size_t horizon, std::vector<double> start)
       : members_(members), horizon_(horizon), start_(std::move(start)), said_(members.size()) {}
 
-  /// Fills in the forecasts of all samples: those of sample k with the weights of sample k - h.
+  /// Fills in the forecasts of all samples; those of sample k use the weights of sample k - h.
   void fill(CombinedForecasts& out) {
     const Index h = members_.front()->horizons[horizon_], N = members_.front()->log_density.cols();
     ForecastWeights now(start_, h);
-    Eigen::MatrixXd known(std::ssize(said_), N);  // after each sample
+    Eigen::MatrixXd known(std::ssize(said_), N);  // weights after each sample
     std::vector<double> weights(said_.size());
     for (Index k = 0; k < N; ++k) {
       hear(k);
@@ -86,7 +86,7 @@ CombinedForecasts combine_forecasts(const std::vector<const HorizonEvaluation*>&
 
 namespace {
 
-/// The edge of the band at this quantile.
+/// The edge of the combined band at this quantile.
 double mixed_edge(const std::vector<const FreeRun*>& members, const std::vector<double>& weights, bool upper, Index i,
                   Index k) {
   const double probability = upper ? 0.975 : 0.025, score = normal_quantile(probability);
@@ -134,7 +134,7 @@ void mix_sample(const std::vector<const FreeRun*>& members, const std::vector<do
 
 FreeRun combine_free_runs(const std::vector<const FreeRun*>& members, const std::vector<double>& weights) {
   if (members.empty()) throw std::invalid_argument("no free runs to combine");
-  FreeRun out = *members.front();  // of its samples, with its modes
+  FreeRun out = *members.front();  // takes over samples and modes
   for (Index k = 0; k < out.mode.size(); ++k)
     if (out.mode(k) >= 0) mix_sample(members, weights, k, out);
   return out;
@@ -194,7 +194,7 @@ std::vector<HorizonRow> ForecastTables::horizons() const {
   return rows;
 }
 
-/// Over the runs of a role that are there.
+/// Sums over the runs of a role that have been added.
 ForecastTables::Weights ForecastTables::weights_of(Role role) const {
   Weights total;
   for (std::size_t i = 0; i < runs_.size(); ++i) {

@@ -10,78 +10,79 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"
 
-/// The forecasts of the bank and of its competitors, weighted by how well each has predicted the run so far.
+/// Combination of the forecasts of the bank and its competitors, weighted by past success within the run.
 namespace modebank {
 
-/// What several filters predicted of one run, combined with ForecastWeights, which start anew with every run. A
-/// forecast has the weights of the sample it was made at: nothing later enters.
+/// Forecasts of several filters for one run, combined by ForecastWeights, which restart with every run. A forecast has
+/// the weights of its origin, so no later information enters.
 struct CombinedForecasts {
   HorizonEvaluation predictions;
-  /// Per horizon F x N: weights of the filters in the forecast of a sample; NaN where nothing was scored.
+  /// Per horizon F x N: the filters' weights in the forecast of a sample; NaN where nothing was scored.
   std::vector<Eigen::MatrixXd> weight;
 };
-/// `members`: one at least, of the same run and horizons. A sample is scored where the first of them is. `start`: per
-/// horizon the weights that the run starts with; empty: equal ones. Throws std::invalid_argument otherwise.
+/// Combines forecasts. `members`: at least one, of the same run and horizons. A sample is scored if the first member
+/// scores it. `start`: per horizon the starting weights; empty: equal. Throws std::invalid_argument otherwise.
 CombinedForecasts combine_forecasts(const std::vector<const HorizonEvaluation*>& members,
                                     const std::vector<std::vector<double>>& start = {});
 
-/// Free runs of one run, mixed by constant weights. A band is that of a mixture in which each member's part is a normal
-/// distribution of its mean, as wide to either side as its own band: one member alone keeps its band.
+/// Combines free runs of one run with constant weights. In the band of the mixture each member is a normal distribution
+/// about its mean, on each side as wide as its own band. So a single member keeps its band.
 FreeRun combine_free_runs(const std::vector<const FreeRun*>& members, const std::vector<double>& weights);
 
-/// How much a filter counted, one row of /evaluation/combination.
+/// Mean weight of a filter; one row of /evaluation/combination.
 struct CombinationRow {
   Role role = Role::train;
-  Eigen::Index horizon = 1;  ///< samples ahead; 0: in free run
+  Eigen::Index horizon = 1;  ///< samples ahead; 0: free run
   std::string filter;
   double weight = 0.0;          ///< mean over the scored samples of all runs of the role
-  double start = not_a_number;  ///< at the start of a held-out run, and of any later one
+  double start = not_a_number;  ///< weight at the start of a held-out or later run
 };
 
-/// Scores of a filter on the training runs, each by a fit that was learned without it: names and weights are
-/// chosen by. One row of /bank/left_out.
+/// Scores of a filter on the training runs, each by a fit learned without that run. Names and weights are chosen by
+/// them. One row of /bank/left_out.
 struct LeftOutRow {
   std::string filter;           ///< bank, a competitor or combined_name
   Eigen::Index horizon = 1;     ///< samples ahead
-  Eigen::Index samples = 0;     ///< scored
+  Eigen::Index samples = 0;     ///< scored samples
   double log_score = 0.0;       ///< mean log predictive density [nats/sample]
   Eigen::VectorXd rmse;         ///< n_y [state unit]
-  double start = not_a_number;  ///< weight at the start of a run in combined forecasts; NaN of combined_name
+  double start = not_a_number;  ///< starting weight in combined forecasts; NaN for combined_name
 };
-/// Rows of filters and, of two or more, of their combination. `forecasts`: of each filter, the bank first, the runs.
+/// Rows of the filters and, for two or more, of their combination. `forecasts`: per filter (the bank first) the
+/// forecasts of all runs.
 std::vector<LeftOutRow> left_out_rows(const std::vector<std::string>& filters,
                                       const std::vector<std::vector<HorizonEvaluation>>& forecasts);
-/// The weights that left_out_rows found, as ForecastTables takes them; empty unless the rows have all filters and
-/// horizons.
+/// The weights found by left_out_rows, in the form that ForecastTables expects; empty unless the rows have all filters
+/// and horizons.
 std::vector<std::vector<double>> start_weights(const std::vector<LeftOutRow>& rows,
                                                const std::vector<Eigen::Index>& horizons,
                                                const std::vector<std::string>& filters);
 
-/// Which of `filters` (the bank first) at which horizon starts with which weight; empty where no row has the horizon.
-/// Archives that hold no starts have mean weights.
+/// Starting weights of `filters` (the bank first) at one horizon; empty if no row has the horizon. Archives without
+/// starting weights give mean weights.
 std::vector<double> start_weights(const std::vector<CombinationRow>& rows, Eigen::Index horizon,
                                   const std::vector<std::string>& filters);
 
-/// Samples that stacked weights are taken from, about: evenly spaced ones where there are more.
+/// About how many samples stacked weights are computed from; more are thinned evenly.
 inline constexpr Eigen::Index enough_densities = 20000;
-/// ForecastWeights::stacked of the log densities of runs, each filters x N; of some of the samples where they are many.
+/// ForecastWeights::stacked of the log densities of runs (filters x N each); large sets are thinned.
 std::vector<double> stacked_weights(const std::vector<Eigen::MatrixXd>& log_densities);
 
-/// Rows on the forecasts of several filters and on their combination, run by run: of what was predicted only sums stay,
-/// and of training runs a part of the densities.
+/// Rows for the forecasts of several filters and of their combination, run by run. It keeps sums, and for training runs
+/// some densities.
 class ForecastTables {
  public:
-  /// The first filter is the bank. `start`: per horizon weights that other forecasts have left, see combine_forecasts;
-  /// empty: start_as_trained finds some.
+  /// The first filter is the bank. `start`: per horizon starting weights from earlier forecasts, see combine_forecasts;
+  /// empty: from start_as_trained.
   ForecastTables(std::vector<std::string> filters, const std::vector<Trajectory>& runs,
                  std::vector<std::vector<double>> start = {});
-  /// What every filter predicted of the i-th run. Different runs may come from different threads.
+  /// Adds every filter's predictions of the i-th run. Different runs may be added from different threads.
   void add(std::size_t run, const std::vector<HorizonEvaluation>& of_filters);
-  /// Runs that are added from now on start with the weights that make the training runs that are there most likely,
+  /// Sets the starting weights of all runs added later to those that are most likely on the training runs so far,
   /// unless weights were given.
   void start_as_trained();
 
-  /// Of all runs: filter by filter, then, of two or more, combined_name.
+  /// Rows of all runs: filter by filter, then, for two or more, combined_name.
   std::vector<HorizonRow> horizons() const;
   std::vector<CombinationRow> combination() const;
 
@@ -91,12 +92,12 @@ class ForecastTables {
     Eigen::MatrixXd sum;
     Eigen::VectorXd samples;
   };
-  std::vector<std::string> filters_;  ///< that are combined
+  std::vector<std::string> filters_;  ///< filters to combine
   const std::vector<Trajectory>& runs_;
-  std::vector<std::vector<std::vector<HorizonSums>>> sums_;  ///< per filter, at last the combination, and run
+  std::vector<std::vector<std::vector<HorizonSums>>> sums_;  ///< per filter (the combination last) and run
   std::vector<Weights> weights_;                             ///< per run
   std::vector<std::vector<Eigen::MatrixXd>> densities_;      ///< per training run and horizon: filters x some samples
-  Eigen::Index every_ = 1;                                   ///< of how many samples one is kept in densities_
+  Eigen::Index every_ = 1;                                   ///< one in this many samples is kept in densities_
   std::vector<std::vector<double>> start_;                   ///< per horizon; empty: equal weights
 
   Weights weights_of(Role role) const;

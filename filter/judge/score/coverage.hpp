@@ -7,30 +7,31 @@
 
 namespace modebank {
 
-/// The central bands whose coverage is counted, and which of them decides.
+/// Levels of the central bands whose coverage is counted, and the level that decides.
 inline constexpr std::array<double, 4> coverage_levels{0.50, 0.90, 0.95, 0.99};
 inline constexpr std::size_t deciding_level = 2;
 
-/// Share of a true filter's samples beyond each of the two quantiles by which fractions are counted.
+/// Probability of each of the two tails in a true filter.
 inline constexpr double true_tail = 0.025;
 
-/// Where a normal score z lies: whatever counts coverage or tails asks here.
+/// Classifies a normal score z by bands and tails. All counts of coverage and tails use it.
 class ScoreBands {
  public:
   struct Hits {
     std::array<bool, coverage_levels.size()> outside;  ///< of each central band
-    bool far, close;                                   ///< z^2 beyond the upper or lower true_tail of chi-square(1)
+    bool far, close;                                   ///< z^2 above the upper or below the lower true_tail quantile of
+                                                       ///< chi-square(1)
   };
   ScoreBands();
   Hits of(double z) const;
 
  private:
-  std::array<double, coverage_levels.size()> edges_{};  ///< of |z|: normal quantiles
+  std::array<double, coverage_levels.size()> edges_{};  ///< limits of |z|: normal quantiles
   double near_square_, far_square_;
 };
 
-/// Limits of the probability behind `count` successes in `samples` independent trials, Clopper & Pearson (1934).
-/// Fractions of trials are allowed. NaN without samples.
+/// Confidence limits of a probability from `count` successes in `samples` independent trials (Clopper & Pearson 1934).
+/// Fractional counts are allowed. NaN without samples.
 Interval binomial_interval(double count, double samples, double level = 0.95);
 
 }  // namespace modebank

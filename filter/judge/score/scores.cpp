@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Index;
 
-/// The two-sided 5 % region of a chi-square variable, as method section 6 counts it.
+/// The two-sided 5 % region of a chi-square variable (method: section 6).
 struct ChiSquareRegion {
   double lower, upper;
   explicit ChiSquareRegion(double degrees_of_freedom)
@@ -26,7 +26,7 @@ struct ChiSquareRegion {
         upper(chi_square_quantile(1.0 - true_tail, degrees_of_freedom)) {}
 };
 
-/// Sums over scored samples of one or more runs. A sample is scored by the signals that it has.
+/// Sums over scored samples of one or more runs. A sample is scored by its available signals.
 class ScoreSums {
  public:
   explicit ScoreSums(Index measurements)
@@ -68,7 +68,7 @@ class ScoreSums {
   SquaredDistances nis_;
   Eigen::ArrayXd squared_error_, errors_;
   std::vector<double> pit_, whiteness_;
-  std::vector<ChiSquareRegion> nis_regions_;            ///< of one signal, two, ...
+  std::vector<ChiSquareRegion> nis_regions_;            ///< for one signal, two, ...
   std::array<Index, coverage_levels.size()> inside_{};  ///< signals inside each central band
   ScoreBands bands_;
 
@@ -139,7 +139,7 @@ struct MeanScore {
   Index samples = 0;
 };
 
-/// Over the samples that have a prediction, as in the summary.
+/// Mean log score over the samples with a prediction, as in the summary.
 MeanScore mean_log_score(const Bank& bank, const Recording& recording, Role role, const FilterOptions& options) {
   double sum = 0.0;
   Index scored = 0;

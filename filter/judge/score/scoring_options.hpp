@@ -8,13 +8,13 @@
 
 namespace modebank {
 
-/// What is found out about a filter, beside how it steps.
+/// Options of a filter's evaluation, besides how it steps.
 struct ScoringOptions {
   static inline const std::vector<Eigen::Index> default_horizon{1, 10};
-  std::vector<Eigen::Index> horizon = default_horizon;  ///< samples ahead; 1 alone is what the summary scores anyway
-  bool smooth = true;            ///< smoothed states and the most probable sequence of modes, too
-  FreeRunOptions free_run = {};  ///< its seed is the chain's
-  std::uint64_t seed = 1;        ///< of the transforms of quantised measurements; the chain's
+  std::vector<Eigen::Index> horizon = default_horizon;  ///< samples ahead; 1 alone is already in the summary
+  bool smooth = true;            ///< whether to compute smoothed states and the most probable sequence of modes
+  FreeRunOptions free_run = {};  ///< options of free runs; their seed is that of the whole chain
+  std::uint64_t seed = 1;        ///< for transforms of quantised measurements; the seed of the whole chain
 };
 
 }  // namespace modebank

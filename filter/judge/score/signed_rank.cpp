@@ -8,7 +8,7 @@
 namespace modebank {
 namespace {
 
-/// Twice the ranks of sizes in increasing order: whole numbers where equal ones share theirs, too.
+/// Twice the ranks of increasing sizes; they are whole numbers even if equal sizes share ranks.
 std::vector<std::size_t> double_ranks(const std::vector<double>& sizes) {
   std::vector<std::size_t> ranks(sizes.size());
   for (std::size_t first = 0, next = 0; first < sizes.size(); first = next) {
@@ -19,7 +19,7 @@ std::vector<std::size_t> double_ranks(const std::vector<double>& sizes) {
   return ranks;
 }
 
-/// P(sum of the ranks that a coin chooses >= sum), over all choices.
+/// P(sum of randomly chosen ranks >= sum), over all choices.
 double exact_tail(const std::vector<std::size_t>& ranks, std::size_t sum) {
   std::vector<double> ways(std::accumulate(ranks.begin(), ranks.end(), std::size_t{1}), 0.0);
   ways[0] = 1.0;

@@ -10,12 +10,12 @@ namespace modebank {
 
 namespace {
 
-/// Mean of a distance per degree of freedom.
+/// Mean distance per degree of freedom.
 double mean_per_degree(const SquaredDistances& d) {
   return sample_count(d.value) > 0.0 ? sum_of(d.value) / sum_of(d.degrees) : not_a_number;
 }
 
-/// What the distances differ by from their degrees' share of the mean: of mean zero over all.
+/// Deviations of the distances from their degrees times the mean per degree; their overall mean is zero.
 SeriesByRun deviations(const SquaredDistances& d) {
   const double share = mean_per_degree(d);
   SeriesByRun result = d.value;

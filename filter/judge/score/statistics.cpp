@@ -47,7 +47,7 @@ std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations)
 }
 
 ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, const ResidualTestOptions& options) {
-  // Sample k + 1 closes transition k, whose input is u[k].
+  // Sample k + 1 ends transition k, whose input is u[k].
   return test_residuals(scores.z.rightCols(run.transitions()), run.input.leftCols(run.transitions()), options);
 }
 
@@ -55,7 +55,7 @@ namespace {
 
 constexpr Eigen::Index most_lags = 20;
 
-/// Runs of a series about the mean of all of them.
+/// The runs of a series, about the mean of all runs.
 class CentredSeries {
  public:
   explicit CentredSeries(const SeriesByRun& series) {
@@ -70,7 +70,7 @@ class CentredSeries {
     return samples;
   }
 
-  /// Sum of the products of values `lag` samples apart in one run.
+  /// Sum of the products of values `lag` samples apart within one run.
   double autocovariance(Eigen::Index lag) const {
     double sum = 0.0;
     for (const Eigen::ArrayXd& run : runs_) sum += lagged_product(run, run, lag);
@@ -125,10 +125,10 @@ namespace {
 
 constexpr double outer_tail = 0.025;
 constexpr double root_two_pi = 2.506628274631000502415765284811;
-constexpr double near_one = 0.999;    // correlations beyond: the series below would take too many terms
-constexpr double negligible = 1e-10;  // last power of the correlation
+constexpr double near_one = 0.999;    // the series below converges too slowly for larger correlations
+constexpr double negligible = 1e-10;  // smallest power of the correlation in the sum
 
-/// Autocorrelations of lag 1, 2, ... as far as pairs of them (with that of lag 0) sum to more than nothing.
+/// Autocorrelations at lags 1, 2, ... as long as the sums of successive pairs (the first with lag 0) are positive.
 std::vector<double> autocorrelations(const SeriesByRun& series) {
   const CentredSeries centred(series);
   std::vector<double> result;
@@ -149,7 +149,7 @@ double time_of(const std::vector<double>& correlations) {
   return std::max(1.0, time);
 }
 
-/// Every value by the normal quantile of its rank among all.
+/// Replaces every value by the normal quantile of its rank among all.
 SeriesByRun normal_scores(SeriesByRun series) {
   std::vector<double*> order;
   for (auto& x : series)
@@ -160,13 +160,14 @@ SeriesByRun normal_scores(SeriesByRun series) {
   return series;
 }
 
-/// Of the indicators that two standard normal variables of correlation r lie beyond the `outer_tail` quantile: sum over
-/// j of r^j / j He_{j-1}(q)^2 / (j-1)! times phi(q)^2 / (outer_tail (1 - outer_tail)).
+/// Correlation of the indicators that two standard normal variables of correlation r exceed the `outer_tail` quantile
+/// q: sum over j of r^j / j He_{j-1}(q)^2 / (j-1)! times phi(q)^2 / (outer_tail (1 - outer_tail)).
 double tail_correlation(double r) {
   r = std::clamp(r, -near_one, near_one);
   const double q = normal_score(1.0 - outer_tail);
   const double density = std::exp(-0.5 * q * q) / root_two_pi;
-  double before = 0.0, hermite = 1.0, power = r, sum = 0.0;  // of order j - 1, over the root of (j-1)!
+  // Hermite polynomials of order j - 1, divided by the square root of (j-1)!
+  double before = 0.0, hermite = 1.0, power = r, sum = 0.0;
   for (double j = 1.0; std::abs(power) > negligible; ++j, power *= r) {
     sum += power * hermite * hermite / j;
     before = std::exchange(hermite, (q * hermite - std::sqrt(j - 1.0) * before) / std::sqrt(j));

@@ -13,7 +13,7 @@
 namespace modebank {
 namespace {
 
-/// The bank, refined if the options say so.
+/// Learns the bank, and refines it if the options require.
 Refinement learn_wanted(const LearnedFrom& from, const BankInputs& inputs, const BankOptions& options) {
   return learn_as_asked(from.recording, from.windows, from.mixture, options, from.baseline.R, inputs.filter,
                         from.motion);
@@ -68,9 +68,9 @@ void tell_of(const Refinement& refined, const Progress& progress) {
     progress.progress("refine: fit to predictions up to the look-ahead: " + worth_of(ahead));
 }
 
-/// Modes that a mixture makes of windows between two others. Refinement takes them apart.
+/// Warns of modes that the mixture made from windows between two other modes. Refinement separates these.
 void warn_of_passing_modes(const LearnedFrom& from, const Bank& bank, const Progress& progress) {
-  constexpr double most = 0.75;  // of a true mode's windows about half seem to pass where labels flicker
+  constexpr double most = 0.75;  // with flickering labels about half of a true mode's windows seem to be between others
   const Eigen::VectorXd shares = passing_shares(from.windows, from.mixture);
   for (Index k = 0; k < shares.size(); ++k) {
     const bool screened = std::any_of(bank.screened.begin(), bank.screened.end(),
@@ -98,7 +98,7 @@ Refinement learn_modes(const LearnedFrom& from, const BankInputs& inputs, const 
   return refined;
 }
 
-/// What a limit on the number of modes cost: the same bank is learned without it.
+/// Cost of a limit on the number of modes: learns the same bank without the limit.
 std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& inputs, const Bank& limited) {
   const Index components = from.mixture.mixture.components();
   if (inputs.bank.modes == 0 || components <= inputs.bank.modes) return {};
@@ -110,7 +110,7 @@ std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& i
 
 Refinement learn_one_motion(const LearnedFrom& from, const Bank& rival, const BankInputs& inputs,
                             const Progress& progress) {
-  constexpr Index fewest_levels = 8;  // noise levels that it may have at least (method: section 6)
+  constexpr Index fewest_levels = 8;  // smallest number of noise levels (method: section 6)
   const Stopwatch watch;
   const OneMotionInputs& learned = *inputs.one_motion;
   const std::optional<Recording> part =

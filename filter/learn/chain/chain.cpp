@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-/// One run through the stages.
+/// Takes one run of the chain through its stages.
 class Run {
  public:
   Run(const Recording& recording, const LearningHooks& hooks, const Progress& progress, Learning& learned)
@@ -55,7 +55,7 @@ class Run {
   const LearningHooks& hooks_;
   const Progress& progress_;
   Learning& learned_;
-  std::shared_ptr<const MotionModel> named_ = {};  ///< of window.model
+  std::shared_ptr<const MotionModel> named_ = {};  ///< motion model of window.model
 
   const MotionModel* motion_of(const FitOptions& window) {
     if (!hooks_.motion && !named_) named_ = motion_model(window, recording_.state_count(), recording_.input_count());
@@ -101,7 +101,7 @@ class Run {
   }
 };
 
-/// As far as the data have to say something of the options.
+/// Sets the options that are to be found from the data.
 LearningOptions found_in(const Recording& recording, LearningOptions options,
                          const std::optional<FoundStructure>& structure) {
   if (structure) options = with_structure(options, *structure);

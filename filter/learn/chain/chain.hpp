@@ -7,18 +7,19 @@
 
 namespace modebank {
 
-/// Callers' part in learning beside runs and options.
+/// Hooks of the caller, besides runs and options.
 struct LearningHooks {
-  /// Called for each stage, in their order, with the inputs that it is given: calls `compute`, or puts what an earlier
-  /// call with equal inputs computed in place. Empty: computes.
+  /// Called for each stage in order, with its inputs. It either calls `compute`, or restores what an earlier call with
+  /// equal inputs computed. Empty: always computes.
   std::function<void(Stage, const LearningInputs& inputs, const std::function<void()>& compute)> provide = {};
-  const MotionModel* motion = nullptr;  ///< of the caller's own; null: that of window.model, if it is one
-  std::function<void(const Refinement& bank)> refined = {};  ///< hears how the bank was refined
+  const MotionModel* motion = nullptr;  ///< the caller's own motion model; null: that of window.model, if any
+  std::function<void(const Refinement& bank)> refined = {};  ///< called with each refined bank
 };
 
-/// The one order of stages from runs to a bank: lags and delay, windows, mixture, competitors, bank. `learned` holds
-/// what earlier calls left, and gets what is learned. `one_model`: steps of many lengths make modes of one motion, and
-/// least squares alone keeps its time constant: the bank is the baseline's. `last`: not past bank.
+/// Runs the stages in their only order, from runs to a bank: lags and delay, windows, mixture, competitors, bank.
+/// `learned` holds the results of earlier calls and receives the new ones. `last`: last stage, at most bank.
+/// `one_model`: the bank is the baseline. It is set when steps have many lengths, because these turn one motion into
+/// modes, and only least squares keeps its time constant.
 ///
 /// Throws what the stages throw (stages.hpp).
 void learn_all(const Recording& recording, const LearningOptions& options, Stage last, bool one_model,

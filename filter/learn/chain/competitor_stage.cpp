@@ -50,7 +50,7 @@ Bank drifting(const Recording& recording, const OneModel& of, const CompetitorIn
   return bank;
 }
 
-/// The factor on the competitors' noise; empty: none.
+/// The factor on the competitors' noise; empty if there is none.
 NoiseFactor noise_factor(const Recording& recording, const LinearStructure& structure, const CompetitorInputs& inputs,
                          const Progress& progress) {
   if (inputs.noise_by_input == NoiseByInput::none) return {};
@@ -70,7 +70,7 @@ std::string lags_of(const LinearStructure& s) {
   return fmt::format("({}, {}, {})", s.state_lags, s.input_lags, s.input_delay);
 }
 
-/// Terms that the configuration states are taken, whatever they gain.
+/// Fits the terms given in the configuration, whatever their gain.
 FoundTerms take_stated(const Recording& recording, const LinearStructure& structure, const std::string& terms) {
   constexpr Index enough_rows = 200000;
   std::vector<std::string> names = state_names(recording, structure);

@@ -1,4 +1,4 @@
-// The installed face of learning: from runs to a bank, plain vectors outside, Eigen inside.
+// The public API of learning, from runs to a bank: converts between plain vectors and Eigen.
 #include "ident/base/door.hpp"
 
 #include <memory>
@@ -21,7 +21,7 @@ filter::Bank opaque(modebank::Bank bank) {
   return filter::Bank(std::make_shared<const modebank::Bank>(std::move(bank)));
 }
 
-/// One column per mode.
+/// Copies one column per mode.
 template <class Column>
 Matrix columns(const modebank::Bank& bank, Column column) {
   Matrix result;
@@ -63,11 +63,11 @@ LearningOptions learning_of(const LearnOptions& options, bool linear) {
   learning.searched_lags = {searched, searched, searched};
   learning.automatic_windows = {options.automatic_length, options.automatic_step};
   learning.noise_by_input = options.noise_by_input ? NoiseByInput::automatic : NoiseByInput::none;
-  learning.competitors = false;  // nobody asks for them here
+  learning.competitors = false;  // this API returns no competitors
   return learning;
 }
 
-/// The chain that `modebank run` runs. `own`: a motion model of the caller's, or null.
+/// Runs the chain of `modebank run`. `own`: a motion model of the caller's, or null.
 Learned learn_from(const Recording& recording, const LearnOptions& options, const MotionModel* own) {
   Learning learned;
   Origin origin;

@@ -11,7 +11,7 @@
 
 namespace modebank {
 
-/// A filter that was learned, as it is run.
+/// A learned filter with the options to run it.
 struct Forecaster {
   std::string name;
   Bank bank;
@@ -22,7 +22,7 @@ struct Forecaster {
   std::vector<FreeRun> free(const std::vector<Trajectory>& runs, const FreeRunOptions& options) const;
 };
 
-/// The bank and its competitors, as far as there are any. `filter`: that runs the bank.
+/// The bank and its competitors, as far as they exist. `filter`: options of the bank's filter.
 std::vector<Forecaster> forecasters_of(const Learning& learned, const FilterOptions& filter);
 
 }  // namespace modebank

@@ -8,8 +8,7 @@
 
 namespace modebank {
 
-/// Free runs of every run, side by side; none where none is asked for (options.samples = 0). Throw what free_run
-/// throws.
+/// Free runs of all runs, in parallel; empty if none is requested (options.samples = 0). Throws what free_run throws.
 std::vector<FreeRun> free_runs(const Bank& bank, const std::vector<Trajectory>& runs, const FilterOptions& filter,
                                const FreeRunOptions& options);
 

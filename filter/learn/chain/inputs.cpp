@@ -15,14 +15,14 @@ BankInputs bank_inputs(const LearningOptions& options, const FitOptions& window)
   inputs.terms_stated = lists_terms(options.terms);
   inputs.bank.em.seed = options.seed;
   inputs.bank.em.most_modes = most_components(options.mixture.selection);
-  inputs.bank.refine = refinement_asked(options.bank, is_linear(window));  // one key for what is the same
+  inputs.bank.refine = refinement_asked(options.bank, is_linear(window));  // equal inputs must give equal keys
   const bool runs_the_filter = inputs.bank.refine == Refine::em || options.bank.modes > 0;
   if (runs_the_filter && !inputs.one_model) inputs.filter = options.filter;
   return inputs;
 }
 
-/// Asked where all that is learned by it can have it: no logit, no drift, no look ahead, no R that is given or told
-/// from rounding, and an IMM whose noise follows nothing else.
+/// Whether to look for noise that follows the input. Everything learned from it must support it: no logit, no drift, no
+/// look-ahead, no R that is given or estimated beside rounding, and an IMM with no other noise adaptation.
 NoiseByInput noise_by_input(const LearningOptions& options, const FitOptions& window) {
   const BankOptions& bank = options.bank;
   const bool can = refinement_asked(bank, is_linear(window)) == Refine::em &&
@@ -33,7 +33,7 @@ NoiseByInput noise_by_input(const LearningOptions& options, const FitOptions& wi
 }
 
 CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOptions& window) {
-  // A single Kalman filter has no use for rivals that are learned as a bank is.
+  // A single Kalman filter needs no competitors that are learned as a bank is.
   const bool rivals = options.filter.variant != FilterVariant::kf;
   RefineOptions em = options.bank.em;
   em.seed = options.seed;
@@ -50,7 +50,7 @@ CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOpti
           options.competitors};
 }
 
-/// Learned by refinement, whatever makes the bank.
+/// one_motion is learned by refinement, whatever makes the bank.
 std::optional<OneMotionInputs> one_motion_inputs(const LearningOptions& options) {
   if (options.filter.variant == FilterVariant::kf) return std::nullopt;
   BankOptions learned;
@@ -72,14 +72,14 @@ FilterOptions competitor_filter(const std::string& name, const FilterOptions& of
 
 namespace {
 
-/// With the chain's seed.
+/// The window options with the chain's seed.
 FitOptions window_inputs(const LearningOptions& options) {
   FitOptions window = options.window;
   window.seed = options.seed;
   return window;
 }
 
-/// Free runs may not need more measured samples than they start from.
+/// Free runs must not need more measured samples than they start from.
 std::optional<StructureInputs> structure_inputs(const LearningOptions& options) {
   if (!options.searched_lags.any()) return std::nullopt;
   StructureInputs inputs{options.searched_lags, {}, options.filter.variant != FilterVariant::kf};

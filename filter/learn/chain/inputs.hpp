@@ -7,8 +7,8 @@
 
 #include "filter/learn/chain/options.hpp"
 
-/// The options that each stage of learning gets, and all that it gets: a stored stage's key is made of its struct,
-/// field by field, so that no stage can depend on what its key does not hold.
+/// The inputs of each stage of learning. The key of a stored stage is made from its struct, field by field, so a stage
+/// cannot depend on anything outside its key.
 namespace modebank {
 
 struct WindowInputs {
@@ -21,59 +21,63 @@ struct MixtureInputs {
   std::uint64_t seed = 1;
 };
 
-/// The bank's competitors: all but one_motion depend on the windows alone, which has as many noise levels at most as
-/// the mixture has components.
+/// Inputs of the bank's competitors. All but one_motion depend on the windows alone; one_motion has at most as many
+/// noise levels as the mixture has components.
 struct CompetitorInputs {
   FitOptions window;
-  FilterOptions filter;                              ///< that runs competitors, for the noise scale's memory
-  std::vector<Index> horizon;                        ///< that drifting is to widen its predictions for
-  Index transitions = 0;                             ///< that they learn from at most, as the bank does; 0: from all
-  std::uint64_t seed = 1;                            ///< which these are
-  std::string terms = "auto";                        ///< of nonlinear
-  RefineOptions em = {};                             ///< how that is learned
-  std::optional<Lags> linear = {};                   ///< of baseline, noise_only and nonlinear; empty: the windows'
-  std::optional<Lags> drifting = {};                 ///< of drifting; empty: the windows'
-  NoiseByInput noise_by_input = NoiseByInput::none;  ///< of all but baseline and drifting, and of the bank
-  bool all = true;                                   ///< false: baseline and the question on noise alone
+  FilterOptions filter;                              ///< filter of the competitors, for the memory of the noise scale
+  std::vector<Index> horizon;                        ///< horizons for which `drifting` widens its predictions
+  Index transitions = 0;                             ///< largest number of transitions to learn from, as for the bank;
+                                                     ///< 0: all
+  std::uint64_t seed = 1;                            ///< selects these transitions
+  std::string terms = "auto";                        ///< terms of `nonlinear`
+  RefineOptions em = {};                             ///< how `nonlinear` is learned
+  std::optional<Lags> linear = {};                   ///< lags of baseline, noise_only and nonlinear; empty: the
+                                                     ///< windows'
+  std::optional<Lags> drifting = {};                 ///< lags of `drifting`; empty: the windows'
+  NoiseByInput noise_by_input = NoiseByInput::none;  ///< for all but baseline and drifting, and for the bank
+  bool all = true;                                   ///< false: only the baseline and the decision on the noise factor
 };
 
-/// How the competitor one_motion is learned: as the bank.
+/// Inputs of the competitor one_motion, which is learned as the bank is.
 struct OneMotionInputs {
   BankOptions bank;
-  FilterOptions filter;             ///< that runs it
-  std::vector<Index> horizon = {};  ///< that left-out training runs are predicted for, beside one sample ahead
+  FilterOptions filter;             ///< its filter
+  std::vector<Index> horizon = {};  ///< horizons at which left-out training runs are predicted, besides one sample
+                                    ///< ahead
   std::optional<Lags> lags = {};    ///< empty: the windows'
 };
 
 struct BankInputs {
   FitOptions window;
   BankOptions bank;                     ///< with the chain's seed
-  bool one_model = false;               ///< the bank is the baseline: a single Kalman filter was asked for
-  std::optional<FilterOptions> filter;  ///< where learning runs the filter: refinement, and what merging modes costs
-  std::optional<OneMotionInputs> one_motion = {};  ///< empty: a single Kalman filter has no use for it
-  bool terms_stated = false;                       ///< runs left out choose no terms of nonlinear
+  bool one_model = false;               ///< the bank is the baseline, because a single Kalman filter was requested
+  std::optional<FilterOptions> filter;  ///< set where learning runs the filter: in refinement, and for the cost of
+                                        ///< merged modes
+  std::optional<OneMotionInputs> one_motion = {};  ///< empty for a single Kalman filter, which does not need it
+  bool terms_stated = false;                       ///< terms of `nonlinear` are given, not chosen on left-out runs
 };
 
 /// The inputs of the search for a structure.
 struct StructureInputs {
   SearchedLags searched;
-  FitOptions window;       ///< the lags that are not searched for, and how a model is fitted; the rest as by default
-  bool with_modes = true;  ///< whether modes, and one motion whose noise switches, choose for themselves
+  FitOptions window;       ///< the lags that are not searched, and the fit of a model; all else has default values
+  bool with_modes = true;  ///< whether modes, and one motion with switching noise, choose their own structure
 };
 
 /// The inputs of all stages of learning.
 struct LearningInputs {
-  std::optional<StructureInputs> structure;  ///< empty where nothing is searched for
+  std::optional<StructureInputs> structure;  ///< empty if nothing is searched
   WindowInputs windows;
   MixtureInputs mixture;
   CompetitorInputs competitors;
   BankInputs bank;
 };
 
-/// How a competitor steps: by its own kind of filter, with the bank's noise and time steps.
+/// Filter options of a competitor: its own kind of filter, with the bank's noise and time steps.
 FilterOptions competitor_filter(const std::string& name, const FilterOptions& of_bank);
 
-/// Parts the options into what each stage needs.
+/// Splits the options into the inputs of each stage.
 LearningInputs learning_inputs(const LearningOptions& options);
 
 }  // namespace modebank

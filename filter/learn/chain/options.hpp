@@ -14,22 +14,21 @@
 
 namespace modebank {
 
-/// Which numbers of windows are found from the data (ident/fit/window_length.hpp).
+/// Which options of windows are set from the data (ident/fit/window_length.hpp).
 struct AutomaticWindows {
   bool length = false, step = false;
 
   bool any() const { return length || step; }
 };
 
-/// Lags and delay of stages that have others than the windows; empty: the same.
+/// Lags and delay of stages that differ from the windows'; empty: the same.
 struct OtherLags {
-  std::optional<Lags> linear = {};      ///< baseline, noise_only, and where terms are looked for
-  std::optional<Lags> one_motion = {};  ///< one motion whose noise switches
+  std::optional<Lags> linear = {};      ///< baseline, noise_only and the search for terms
+  std::optional<Lags> one_motion = {};  ///< one motion with switching noise
   std::optional<Lags> drifting = {};
 };
 
-/// Everything that decides what is learned from runs. `seed` is the one seed: it takes the place of those in `window`
-/// and `bank`.
+/// All options of learning from runs. `seed` is the only seed: it replaces those in `window` and `bank`.
 struct LearningOptions {
   FitOptions window = {};
   ClusterOptions mixture = {};
@@ -37,12 +36,13 @@ struct LearningOptions {
   FilterOptions filter = {};
   ScoringOptions scoring = {};
   std::uint64_t seed = 1;
-  SearchedLags searched_lags = {};                        ///< that are found by runs left out, whatever `window` has
-  AutomaticWindows automatic_windows = {};                ///< whatever `window` has
-  std::string terms = "auto";                             ///< of nonlinear: auto, none, or a list that read_terms takes
-  NoiseByInput noise_by_input = NoiseByInput::automatic;  ///< whether noise may follow state and input
+  SearchedLags searched_lags = {};                        ///< lags chosen on left-out runs, ignoring `window`
+  AutomaticWindows automatic_windows = {};                ///< set from the data, ignoring `window`
+  std::string terms = "auto";                             ///< terms of `nonlinear`: auto, none, or a list for
+                                                          ///< read_terms
+  NoiseByInput noise_by_input = NoiseByInput::automatic;  ///< whether noise may depend on state and input
   OtherLags other_lags = {};
-  bool competitors = true;  ///< false: none is learned but the baseline, which the bank starts from
+  bool competitors = true;  ///< false: only the baseline, from which the bank starts
 };
 
 }  // namespace modebank

@@ -16,7 +16,7 @@
 namespace modebank {
 
 struct StructurePart {
-  std::optional<FoundStructure> structure;  ///< where lags were searched for
+  std::optional<FoundStructure> structure;  ///< result of the search for lags, if there was one
 };
 
 struct WindowsPart {
@@ -29,26 +29,27 @@ struct MixturePart {
 
 struct CompetitorsPart {
   std::optional<Bank> baseline;        ///< one Kalman filter
-  std::optional<Bank> noise_only;      ///< switches noise alone
-  std::optional<Bank> drifting;        ///< one linear motion whose coefficients wander, with running noise
-  std::optional<Bank> nonlinear = {};  ///< one motion that bends; empty where no term gains on the training runs
+  std::optional<Bank> noise_only;      ///< only its noise switches
+  std::optional<Bank> drifting;        ///< one linear motion whose coefficients drift, with running noise
+  std::optional<Bank> nonlinear = {};  ///< one nonlinear motion; empty if no term gains on the training runs
 };
 
 struct BankPart {
   std::optional<Bank> bank;
-  std::optional<Bank> one_motion;  ///< the competitor that is learned as the bank, with one theta
-  std::optional<Bank> unrefined;   ///< the bank that expectation-maximisation started from
+  std::optional<Bank> one_motion;  ///< the competitor that is learned as the bank is, with one theta
+  std::optional<Bank> unrefined;   ///< the bank before expectation-maximisation
   MeasuredFit measured_fit = MeasuredFit::none;
-  Index learned_transitions = 0;          ///< that the bank was refined on; 0: all of the training runs'
-  std::vector<LeftOutRow> left_out = {};  ///< where filters were learned without some training runs
-  std::vector<MergingCost> merging = {};  ///< with bank.modes, where components were merged
+  Index learned_transitions = 0;          ///< number of transitions that the bank was refined on; 0: all training
+                                          ///< transitions
+  std::vector<LeftOutRow> left_out = {};  ///< filled if filters were learned without some training runs
+  std::vector<MergingCost> merging = {};  ///< filled if bank.modes merged components
 };
 
-/// All that was learned from runs.
+/// All results of learning from runs.
 struct Learning : StructurePart, WindowsPart, MixturePart, CompetitorsPart, BankPart {
-  bool terms_asked = false;  ///< for nonlinear, whether or not any gained
+  bool terms_asked = false;  ///< whether terms of `nonlinear` were searched, even if none gained
 
-  /// By the name of its filter, where there is one; of all combined their combined_frame.
+  /// The bank of a filter by name, if there is one; for the combination its combined_frame.
   std::optional<Bank> bank_of(const std::string& filter) const;
 };
 

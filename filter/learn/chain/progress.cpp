@@ -5,7 +5,7 @@
 namespace modebank {
 namespace {
 
-/// In groups of three digits.
+/// Formats a count with digits in groups of three.
 std::string grouped(Eigen::Index count) {
   std::string digits = std::to_string(count);
   for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)

@@ -8,19 +8,19 @@
 
 namespace modebank {
 
-/// Hears what learning does while it does it.
+/// Receives messages about the progress of learning.
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// One line on how it goes on.
+  /// Receives a line about progress.
   virtual void progress(const std::string&) const {}
-  /// One line on something that was tried on the way.
+  /// Receives a line about an intermediate trial.
   virtual void detail(const std::string&) const {}
-  /// One line on what may need a look.
+  /// Receives a line about a possible problem.
   virtual void warning(const std::string&) const {}
 };
 
-/// Wall time since it was made, for lines of progress.
+/// Wall time since construction, for progress messages.
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }

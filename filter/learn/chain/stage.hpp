@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// The stages from data to scores, in their order. Learning is those from structure to bank.
+/// The stages from data to scores, in order. Learning comprises structure to bank.
 enum class Stage { data, structure, windows, mixture, competitors, bank, competitor_scores, bank_scores };
 inline constexpr std::size_t stage_count = 8;
 

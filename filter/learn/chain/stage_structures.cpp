@@ -33,7 +33,7 @@ void mark(Rows& rows, Flag flag, std::size_t at) {
   rows[at].*flag = true;
 }
 
-/// Where the table has these lags; they are added to it where it has them not, without a score.
+/// Position of these lags in the table. If absent, they are added without a score.
 std::size_t position_of(Rows& rows, Index state_lags, Index input_lags, Index delay) {
   const auto found = std::find_if(rows.begin(), rows.end(), [&](const StructureScore& s) {
     return s.state_lags == state_lags && s.input_lags == input_lags && s.input_delay == delay;
@@ -45,8 +45,8 @@ std::size_t position_of(Rows& rows, Index state_lags, Index input_lags, Index de
   return rows.size() - 1;
 }
 
-/// The delay of one linear motion, and the usual one: effects of an input that differ in sign between modes cancel in
-/// one model of all of them, which then takes a later sample of that input.
+/// The delay of one linear motion, and the usual delay. Input effects of opposite sign in different modes cancel in one
+/// common model, which then prefers a later sample of that input.
 std::vector<Index> delays_of(const StructureScore& linear, const SearchedLags& searched) {
   constexpr Index usual = 1;
   std::vector<Index> delays{linear.input_delay};
@@ -54,8 +54,8 @@ std::vector<Index> delays_of(const StructureScore& linear, const SearchedLags& s
   return delays;
 }
 
-/// Positions of 1 to `most` lags of the states and as many of the inputs, of those that are searched for, where runs
-/// have samples enough before their first prediction.
+/// Positions of 1 to `most` equal state and input lags (of the searched ones), if runs have enough samples before their
+/// first prediction.
 std::vector<std::size_t> positions_of_equal(Rows& rows, Index most, const SearchedLags& searched) {
   const StructureScore linear = marked(rows, &StructureScore::linear);
   std::vector<std::size_t> positions;
@@ -103,7 +103,7 @@ void let_drifting_choose(const Recording& recording, const StructureInputs& inpu
   mark(rows, &StructureScore::drifting, *fewest);
 }
 
-/// Marks which of the rows at these positions modes take.
+/// Marks the rows among these positions that modes use.
 void let_modes_choose(const Recording& recording, const StructureInputs& inputs,
                       const std::vector<std::size_t>& positions, bool one_theta, Rows& rows) {
   std::vector<LinearStructure> structures;

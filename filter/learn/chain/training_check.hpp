@@ -6,20 +6,20 @@
 #include "ident/data/trajectory.hpp"
 #include "ident/fit/options.hpp"
 
-/// What is looked at of the training runs before anything is fitted to them.
+/// Checks of the training runs before anything is fitted.
 namespace modebank {
 
-/// Throws DataError for a state that has one value in all of them: there is no motion to learn, and any filter predicts
+/// Throws DataError for a state that is constant in all training runs: it contains no motion, and any filter predicts
 /// it without error.
 void refuse_constant_states(const Recording& recording);
 
-/// Throws DataError for a stated horizon (samples ahead) that the longest of the judged runs, those held out or else
-/// those trained on, does not reach: its errors would be those of no sample.
+/// Throws DataError for a given horizon (samples ahead) that is longer than the longest judged run. Judged runs are
+/// held-out runs, or else the training runs. Its errors would come from no sample.
 void refuse_unreached_horizons(const Recording& recording, const std::vector<Index>& horizons);
 
-/// A line on regressors of the linear model that they leave open; empty: none.
+/// A message about regressors of the linear model that the training runs do not determine; empty if there is none.
 std::string open_effects(const Recording& recording, const LinearStructure& structure);
-/// The same of the model that is fitted.
+/// open_effects for the fitted model.
 std::string open_effects(const Recording& recording, const FitOptions& options);
 
 }  // namespace modebank

@@ -16,16 +16,16 @@
 namespace modebank {
 namespace {
 
-constexpr double smallest_r_share = 1e-8;  // of the residual variance: what R at its bound adds to a prediction
-constexpr double bound_tolerance = 1e-5;   // nats per sample that R at its bound may cost
-constexpr double least_gain = 1e-9;        // nats per sample: a better start has to be better than rounding
+constexpr double smallest_r_share = 1e-8;  // of the residual variance; effect of R at its bound on a prediction
+constexpr double bound_tolerance = 1e-5;   // nats per sample; acceptable loss with R at its bound
+constexpr double least_gain = 1e-9;        // nats per sample; a better start must exceed rounding
 constexpr AscentLimits limits{200, 1e-12};
-constexpr AscentLimits rough_limits{200, 1e-6};  // while starts and bounds are compared
+constexpr AscentLimits rough_limits{200, 1e-6};  // for comparing starts and bounds
 constexpr std::array<std::pair<double, double>, 2> noise_starts{{{1.0, 0.1}, {0.01, 0.5}}};  // shares of Q, R
 
-/// Lower bound of R's diagonal. An output's noise enters the innovations of every state, by the measurement itself and
-/// by each lag in the prediction with its squared coefficient: the share of the residual variance is that of all of it.
-/// A share of var(y) would not do: of clean data of many lags it is more than the residuals have.
+/// Lower bound of R's diagonal. An output's noise enters the innovations of every state, through the measurement and
+/// through each lag by its squared coefficient. The bound limits the sum of these effects to a share of the residual
+/// variance. A share of var(y) is unsuitable: with clean data and many lags it exceeds the residuals.
 Eigen::VectorXd measurement_bound(const LinearStructure& structure, const Eigen::VectorXd& theta,
                                   const Eigen::VectorXd& residual_variance) {
   const Index n = structure.states;
@@ -38,10 +38,10 @@ Eigen::VectorXd measurement_bound(const LinearStructure& structure, const Eigen:
   return bound;
 }
 
-/// The search for Q and R: theta is known unless the states are rounded, and one mode has no T.
+/// The search for Q and R. theta is known unless states are rounded; one mode has no T.
 struct NoiseSearch {
   LikelihoodTarget target;
-  Eigen::VectorXd scale;            ///< n residual variances: the unit of the starts
+  Eigen::VectorXd scale;            ///< n residual variances, the unit of the starts
   Eigen::VectorXd bound;            ///< n lower bounds of R's diagonal
   Eigen::VectorXd theta_unit = {};  ///< p standard errors; empty: theta is known
 
@@ -50,7 +50,8 @@ struct NoiseSearch {
   LikelihoodMaximum maximise(const Bank& start, const std::vector<Index>& free_R,
                              const AscentLimits& end = rough_limits) const {
     FreeParameters free;
-    if (theta_unit.size() > 0) free.theta_unit = theta_unit;  // an empty vector is a column, which is one theta
+    // an empty vector counts as one column, which would mean one theta
+    if (theta_unit.size() > 0) free.theta_unit = theta_unit;
     free.least_Q = rounding_share * scale;
     free.R = free_R;
     free.least_R = bound;
@@ -59,8 +60,8 @@ struct NoiseSearch {
   }
 };
 
-/// The likelihood can have one maximum with the noise in Q and another with it in R: the best of several starts, of
-/// which one whose likelihood is no number is below all.
+/// The likelihood can have one maximum with the noise in Q and another with it in R. So several starts are compared;
+/// NaN counts as lowest.
 LikelihoodMaximum best_of_starts(const NoiseSearch& search, Bank bank, const std::vector<Index>& outputs) {
   std::optional<LikelihoodMaximum> best;
   for (const auto& [q_share, r_share] : noise_starts) {
@@ -78,8 +79,8 @@ struct HeldNoise {
   std::vector<Index> free;  ///< outputs whose R is not at its bound
 };
 
-/// Holds every output's R at its bound where that costs no likelihood: all at once, from Q of states measured exactly,
-/// or one by one.
+/// Holds each output's R at its bound if that costs no likelihood: first all outputs at once, with Q of exactly
+/// measured states, then one by one.
 HeldNoise hold_at_bounds(const NoiseSearch& search, const Bank& exact, LikelihoodMaximum best,
                          const std::vector<Index>& outputs) {
   const auto costs_nothing = [&](const LikelihoodMaximum& held, const LikelihoodMaximum& free) {
@@ -104,7 +105,7 @@ HeldNoise hold_at_bounds(const NoiseSearch& search, const Bank& exact, Likelihoo
 }  // namespace
 
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
-  // Every sample counts the same: its likelihood is what other filters' scores are compared with.
+  // All samples have equal weight, because other filters' scores are compared with this likelihood.
   const Recording training = unweighted_training_part(recording);
   if (training.transitions(Role::train) == 0) throw DataError("no training run has a transition to learn from");
   const Index n = structure.states, p = structure.parameters();
@@ -119,7 +120,7 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
   const Eigen::VectorXd scale = global.noise_variance().unaryExpr(&positive_variance);
   NoiseSearch search{
       {training, {FilterVariant::kf}, std::nullopt}, scale, measurement_bound(structure, global.theta, scale)};
-  if (bank.is_quantised())  // least squares take rounding for noise of what predicts
+  if (bank.is_quantised())  // least squares attribute rounding to the process
     search.theta_unit = global.covariance.diagonal().cwiseSqrt().unaryExpr(&positive_variance);
   std::vector<Index> outputs(static_cast<std::size_t>(n));
   std::iota(outputs.begin(), outputs.end(), Index{0});

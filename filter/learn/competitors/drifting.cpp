@@ -27,7 +27,7 @@ Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructur
 
 namespace {
 
-constexpr Index factors_below = 16, factors_above = 32;  // of the grid 2^(i / 4) of a horizon's factor
+constexpr Index factors_below = 16, factors_above = 32;  // grid 2^(i / 4) of a horizon's factor
 
 Bank undecided_bank(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
   const Index n = structure.states;
@@ -51,7 +51,8 @@ void take_own_variance(Bank& bank, const Recording& recording) {
   bank.noise_variance() = bank.noise_variance().unaryExpr(&positive_variance).eval();
 }
 
-/// Settings that may be better beyond the grid; a floor that the next one equals never mattered.
+/// Settings at the ends of the grid that may be better beyond it. A floor that gives the same score as the next one has
+/// no effect and does not count.
 std::vector<std::string> grid_ends(const DriftingGrid& grid, const DriftingScores& scores, Index best) {
   const std::array<Index, 6> at = grid.point(best), size = grid.sizes();
   const auto last = [&](std::size_t i) { return size[i] > 1 && at[i] == size[i] - 1; };
@@ -61,7 +62,7 @@ std::vector<std::string> grid_ends(const DriftingGrid& grid, const DriftingScore
   if (last(1)) ends.emplace_back("p0");
   if (last(2)) ends.emplace_back("leak");
   if (first(3) || last(3)) ends.emplace_back("lam");
-  double least = 0.0;  // of the degrees of freedom
+  double least = 0.0;  // smallest degrees of freedom
   for (const double nu : grid.nu) least = nu > 0.0 && (least == 0.0 || nu < least) ? nu : least;
   if (size[4] > 1 && least > 0.0 && grid.nu[static_cast<std::size_t>(at[4])] == least) ends.emplace_back("nu");
   const bool binds = first(5) && scores.log_score(best) > scores.log_score(best + 1);
@@ -93,7 +94,7 @@ std::vector<DriftingForecasts> training_forecasts(const Bank& bank, const Record
   return forecasts;
 }
 
-/// The position in the grid of factors that makes the errors most likely, the nearest to 1 of equals.
+/// The grid position of the factor that makes the errors most likely; of equal ones the nearest to 1.
 Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts>& runs, std::size_t horizon) {
   const auto gain = [&](Index i) {
     const double factor = std::exp2(0.25 * static_cast<double>(i));
@@ -104,7 +105,7 @@ Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts
     return sum;
   };
   Index best = 0;
-  double most = 0.0;  // of factor 1
+  double most = 0.0;  // log density of factor 1
   for (Index away = 1; away <= factors_above; ++away)
     for (const Index i : {away, -away}) {
       if (i < -factors_below) continue;
@@ -148,7 +149,7 @@ Bank relearn_drifting(const Bank& like, const Recording& recording, const Global
   Bank bank = like;
   bank.modes.front().model = own.modes.front().model;
   bank.drift.scale = own.drift.scale;
-  if (like.drift.wandering == Wandering::gain) return bank;  // whose variance is that of its own errors
+  if (like.drift.wandering == Wandering::gain) return bank;  // its variance comes from its own errors
   const Eigen::ArrayXd share = like.running_noise.floor.array() / like.noise_variance().array();
   bank.running_noise.floor = share * own.noise_variance().array();
   bank.modes.front().Q = own.modes.front().Q;

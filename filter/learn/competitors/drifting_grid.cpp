@@ -17,7 +17,7 @@
 namespace modebank {
 namespace {
 
-/// A training run as the recursion steps through it.
+/// A training run prepared for the recursion.
 struct GridRun {
   const Trajectory& trajectory;
   RunInstants instants;
@@ -33,8 +33,8 @@ std::vector<GridRun> training_instants(const Bank& bank, const Recording& record
   return runs;
 }
 
-/// What every running variance and density needs of one (q, p0, leak): of each scored signal e^2 / (1 + h'Ph) over v0,
-/// output by output, and where a running variance starts anew.
+/// Inputs of all running variances and densities of one (q, p0, leak): for each scored signal e^2 / (1 + h'Ph) over v0,
+/// by output, and the restarts of the running variance.
 struct DriftTrace {
   std::vector<std::vector<double>> ratio;       ///< per output
   std::vector<std::vector<std::size_t>> start;  ///< per output: positions in `ratio`
@@ -84,7 +84,7 @@ DriftTrace trace_drift(Bank bank, const DriftRates& rates, const std::vector<Gri
   return trace;
 }
 
-/// Sums of log densities of all (lam, nu, floor).
+/// Sums of log densities for all (lam, nu, floor).
 void score_trace(const DriftTrace& trace, const DriftingGrid& grid, Eigen::Ref<Eigen::VectorXd> sums) {
   DriftingLanes lanes(grid);
   for (std::size_t i = 0; i < trace.ratio.size(); ++i)
@@ -127,7 +127,8 @@ DriftingScores score_drifting_grid(const Bank& start, const Recording& recording
     const std::array<Index, 6> at = grid.point(d * rest);
     const DriftRates rates{grid.q[static_cast<std::size_t>(at[0])], grid.p0[static_cast<std::size_t>(at[1])],
                            grid.leak[static_cast<std::size_t>(at[2])]};
-    if (rates.q == 0.0 && rates.p0 == 0.0 && at[2] > 0) return;  // there is nothing to leak: as the first leak
+    // without drift the leak has no effect, so one leak is enough
+    if (rates.q == 0.0 && rates.p0 == 0.0 && at[2] > 0) return;
     const DriftTrace trace = trace_drift(start, rates, runs);
     score_trace(trace, grid, scores.log_score.segment(d * rest, rest));
     samples[static_cast<std::size_t>(d)] = trace.samples;

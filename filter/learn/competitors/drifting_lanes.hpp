@@ -11,7 +11,7 @@
 
 namespace modebank {
 
-/// Sums of logarithms, one per lane: by the logarithm of the product of eight, as long as that is far from overflow and
+/// Sums of logarithms, one per lane. It takes the logarithm of the product of eight values, which cannot overflow or
 /// underflow.
 class LogSum {
  public:
@@ -19,7 +19,7 @@ class LogSum {
 
   explicit LogSum(Eigen::Index lanes) : sum_(Eigen::ArrayXd::Zero(lanes)), product_(lanes) {}
 
-  /// The leading `count` columns of lanes x block values, positive.
+  /// Adds the first `count` columns of lanes x block positive values.
   void add(const Eigen::ArrayXXd& values, Eigen::Index count) {
     product_ = values.col(0);
     for (Eigen::Index j = 1; j < count; ++j) product_ *= values.col(j);
@@ -35,8 +35,8 @@ class LogSum {
   Eigen::ArrayXd sum_, product_;
 };
 
-/// The running variances of all (lam, floor) of a grid at work, one lane each (floor runs fastest), and what the
-/// densities of all nu add up to. Everything in units of v0.
+/// Running variances of all (lam, floor) of a grid, one per lane (floor runs fastest), and the sums of densities for
+/// all nu. All in units of v0.
 class DriftingLanes {
  public:
   explicit DriftingLanes(const DriftingGrid& grid)
@@ -57,7 +57,7 @@ class DriftingLanes {
     for (const double nu : grid.nu) noise_.emplace_back(nu);
   }
 
-  /// A signal's e^2 / (1 + h'Ph) from a start on, one after the other.
+  /// Processes a signal's e^2 / (1 + h'Ph) from a start on.
   void follow(const double* ratio, std::size_t count) {
     v_.setOnes();
     for (std::size_t k = 0; k < count; k += LogSum::block)
@@ -65,7 +65,8 @@ class DriftingLanes {
     signals_ += static_cast<double>(count);
   }
 
-  /// The sums of log densities in the grid's order (lam, nu, floor), less half of what `v0` and 1 + h'Ph add.
+  /// Writes the sums of log densities in the grid's order (lam, nu, floor), without the half of log v0 and log (1 +
+  /// h'Ph).
   void write(Eigen::Ref<Eigen::VectorXd> out) const {
     const Eigen::Index nus = std::ssize(noise_);
     for (Eigen::Index d = 0; d < nus; ++d) {

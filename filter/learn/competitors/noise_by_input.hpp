@@ -11,8 +11,8 @@
 
 namespace modebank {
 
-/// automatic: one factor on all process noise follows state and input where training runs left out gain by it; none:
-/// nothing is asked.
+/// automatic: one factor on all process noise depends on state and input if left-out training runs gain by it. none: no
+/// factor.
 enum class NoiseByInput { automatic, none };
 
 template <>
@@ -20,23 +20,24 @@ struct EnumNames<NoiseByInput> {
   static constexpr Names<2> values{"auto", "none"};
 };
 
-/// The likeliest factor on the noise of one motion (method: section 2a, item 5): Huber's theta of the structure and
-/// the terms, then maximum likelihood of Student t residuals whose scale is exp(g'z / 2). z: logarithms of the newest
-/// states, the newest inputs, their changes where the structure has the input before, and what each state's inputs add
-/// to the forecast. Empty where all residuals are zero. Throws DataError without a transition to learn from.
+/// The most likely factor on the noise of one motion (method: section 2a, item 5). theta is Huber's for the structure
+/// and the terms. Maximum likelihood of Student t residuals with scale exp(g'z / 2) follows. z holds logarithms of the
+/// newest states, the newest inputs, their changes (if the structure has the previous input), and each state's forecast
+/// contribution from inputs. Empty if all residuals are zero. Throws DataError without usable transitions.
 NoiseFactor fit_noise_factor(const Recording& recording, const LinearStructure& structure,
                              const MotionTerms& terms = {});
 
-/// The factor, if training runs that were left out gain by it.
+/// The factor, if left-out training runs gain by it.
 struct FoundNoiseFactor {
-  NoiseFactor factor;                    ///< empty: not taken
-  double gain = not_a_number;            ///< of runs left out; of all runs where that is not enough [nats/sample]
-  double standard_error = not_a_number;  ///< over the runs left out; NaN where none were
+  NoiseFactor factor;                    ///< empty: rejected
+  double gain = not_a_number;            ///< on left-out runs, or on all runs if that is already too small
+                                         ///< [nats/sample]
+  double standard_error = not_a_number;  ///< over the left-out runs; NaN if none was left out
 };
 
-/// Compares one motion whose noise switches between four levels by itself, with and without the factor. Taken where it
-/// is worth it on runs left out (left_out/rule.hpp). Nothing is asked of rounded or weighted samples. Learns from at
-/// most 20,000 transitions, drawn with the seed.
+/// Compares one motion whose noise switches between four levels with and without the factor. The factor is accepted if
+/// it is worth it on left-out runs (left_out/rule.hpp). Rounded or weighted samples are not tested. Learns from at most
+/// 20,000 transitions drawn by the seed.
 FoundNoiseFactor find_noise_factor(const Recording& recording, const LinearStructure& structure, Eigen::Index folds,
                                    std::uint64_t seed);
 

@@ -20,12 +20,12 @@
 namespace modebank {
 namespace {
 
-constexpr Index noise_only_levels = 8;  // method: section 6, as all constants here
+constexpr Index noise_only_levels = 8;  // method: section 6, as for all constants here
 constexpr double lowest_quantile = 0.30;
 constexpr double highest_quantile = 0.997;
 constexpr std::array<double, 4> stays{0.7, 0.8, 0.9, 0.95};
 
-/// Variances spaced geometrically between the squared quantiles of |r|, kept positive where most residuals are zero.
+/// Variances in geometric steps between the squared quantiles of |r|; positive even if most residuals are zero.
 Eigen::VectorXd noise_scales(const Eigen::VectorXd& r, Index levels) {
   std::vector<double> sizes(r.size());
   Eigen::VectorXd::Map(sizes.data(), r.size()) = r.cwiseAbs();
@@ -38,20 +38,20 @@ Eigen::VectorXd noise_scales(const Eigen::VectorXd& r, Index levels) {
   return Eigen::VectorXd::LinSpaced(levels, log_low, log_high).array().exp();
 }
 
-/// levels x n, one column per state: row j makes mode j's diagonal Q.
+/// levels x n, one column per state: row j is the diagonal of mode j's Q.
 Eigen::MatrixXd noise_scales_per_state(const Eigen::MatrixXd& residuals, Index levels) {
   Eigen::MatrixXd variances(levels, residuals.cols());
   for (Index i = 0; i < residuals.cols(); ++i) variances.col(i) = noise_scales(residuals.col(i), levels);
   return variances;
 }
 
-/// q x n, as RobustRegression has them.
+/// q x n, as in RobustRegression.
 struct Regression {
   Eigen::MatrixXd coefficients, standard_error;
 };
 
-/// Huber's; of rounded states least squares: where values repeat, Huber's scale is nothing and "no change" an exact
-/// law.
+/// Huber's regression; least squares for rounded states. Where values repeat, Huber's scale is zero and x[k+1] = x[k]
+/// looks exact.
 Regression regression(const Recording& recording, const LinearStructure& structure, const Transitions& transitions) {
   if (recording.quantum.size() == 0) {
     const RobustRegression fit = huber_regression(transitions);
@@ -62,7 +62,7 @@ Regression regression(const Recording& recording, const LinearStructure& structu
   return {fit.theta.reshaped(q, n), fit.covariance.diagonal().cwiseSqrt().reshaped(q, n)};
 }
 
-/// Gives the bank the `stay` that makes the training runs most likely, the smallest of equals.
+/// Sets the most likely `stay` on the training runs, the smallest on a tie.
 void choose_stay(Bank& bank, const Recording& recording) {
   Bank candidate = bank;
   double best = not_a_number;
@@ -98,11 +98,12 @@ Bank learn_noise_levels(const Recording& recording, const LinearStructure& struc
 
 namespace {
 
-/// From residuals of rounded values, which hold the rounding, to the most likely theta and noise levels by intervals.
+/// Improves theta and noise levels of rounded states by the likelihood of their intervals. The residuals of rounded
+/// values, where it starts, include the rounding.
 Bank by_intervals(Bank bank, const Recording& recording) {
   const Recording unweighted = unweighted_training_part(recording);
   FreeParameters free;
-  // What the runs leave open may have any unit: nothing depends on it.
+  // Directions that the runs do not determine may have any unit, because nothing depends on them.
   free.theta_unit = bank.modes.front().standard_error.unaryExpr(
       [](double error) { return std::isnan(error) ? 1.0 : positive_variance(error); });
   free.transition = false;

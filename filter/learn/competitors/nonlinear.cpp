@@ -21,20 +21,20 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index most_levels = 4;  // beside the wide one
+constexpr Index most_levels = 4;  // besides the wide level
 constexpr std::ptrdiff_t most_em_iterations = 35;
-// Factors of 4 to 25, shares of .001 to .01 and stays of .5 to .98 gave mean held-out scores within .016 nats of each
-// other on eleven bent motions.
+// Not sensitive: factors of 4 to 25, shares of .001 to .01 and stays of .5 to .98 gave mean held-out scores within .016
+// nats on eleven nonlinear motions.
 constexpr double wide_factor = 9.0;  // of the widest level's variance
-constexpr double wide_share = 0.01;  // of the steps that enter the wide level
+constexpr double wide_share = 0.01;  // share of steps that enter the wide level
 constexpr double wide_stay = 0.9;
 
-/// The structure of runs whose inputs are all that acts on a transition, its terms last.
+/// A structure with all acting inputs as inputs without lags, followed by the terms.
 LinearStructure with_known_terms(const LinearStructure& s, const MotionTerms& terms) {
   return {s.states, s.acting_inputs() + terms.count(), s.intercept, s.state_lags};
 }
 
-/// Holds the last known values in columns that are not finite; zeros before the first.
+/// Replaces columns that are not finite by the last known values; zeros before the first.
 void fill_unknown(MatrixXd& columns) {
   for (Index k = 0; k < columns.cols(); ++k) {
     if (columns.col(k).allFinite()) continue;
@@ -45,7 +45,7 @@ void fill_unknown(MatrixXd& columns) {
   }
 }
 
-/// From where filters of the lags start on, each sample with the acting inputs and the terms of its transition.
+/// The run from the start of filters with lags on; each sample has the acting inputs and the terms of its transition.
 Trajectory with_known_terms(const Trajectory& run, const LinearStructure& s, const MotionTerms& terms) {
   const Index first = s.first_transition() - (s.state_lags - 1);
   Trajectory known = stretch(run, first, run.samples() - first);
@@ -56,7 +56,7 @@ Trajectory with_known_terms(const Trajectory& run, const LinearStructure& s, con
   known.input.leftCols(phi.rows()).bottomRows(terms.count()) = term_columns(terms, phi).transpose();
   for (Index k = 0; k < phi.rows(); ++k)
     if (!phi.row(k).allFinite()) known.input.col(k).setConstant(not_a_number);
-  known.input.rightCols(1).setConstant(not_a_number);  // acts on nothing
+  known.input.rightCols(1).setConstant(not_a_number);  // has no effect
   fill_unknown(known.input);
   return known;
 }
@@ -70,7 +70,7 @@ Recording with_known_terms(const Recording& recording, const LinearStructure& s,
   return known;
 }
 
-/// Parameters of the terms apart from those of the linear regressors, equation by equation.
+/// Parameters of the terms and of the linear regressors, separated equation by equation.
 struct SplitParameters {
   VectorXd linear;
   MatrixXd bend;
@@ -87,7 +87,7 @@ SplitParameters split(const VectorXd& all, const LinearStructure& s, Index terms
   return parts;
 }
 
-/// The factor where terms are further inputs, which it does not follow.
+/// The factor for a bank whose terms are further inputs; it does not depend on these.
 NoiseFactor of_known(NoiseFactor factor, const MotionTerms& terms) {
   if (factor.empty()) return factor;
   const Index before = factor.directions.cols();
@@ -124,11 +124,11 @@ Bank with_terms(Bank known, const Recording& recording, const LinearStructure& s
   return known;
 }
 
-/// One more noise level, that training runs did not ask for: terms may err by several times their training error
-/// where inputs move otherwise, and a bank without such a level has no density left for it. On fourteen bent systems
-/// (two seeds of seven kinds) it gains .13 held-out nats per sample in the mean, .73 and 1.07 of them on backlash, and
-/// loses .007 where no error is large. noise_only and one_motion lose .009 by such a level, even where the pole differs
-/// by run, and have none.
+/// Adds one more noise level that the training runs do not require. Where inputs move differently, terms may err by
+/// several times their training error, and a bank without such a level gives these errors no density. On fourteen
+/// nonlinear systems (two seeds of seven kinds) the mean gain is .13 held-out nats per sample (backlash: .73 and 1.07);
+/// the loss is .007 without large errors. noise_only and one_motion lose .009 by such a level, even if the pole differs
+/// by run, so they have none.
 void add_wide_level(Bank& bank) {
   const Index K = bank.mode_count();
   const auto widest = std::max_element(bank.modes.begin(), bank.modes.end(),

@@ -14,18 +14,18 @@ namespace {
 
 using Eigen::Index;
 
-/// All that refinement wants to know of windows, in terms of the linear model.
+/// The fields of windows that refinement uses, for the linear model.
 WindowFits linear_frame(const WindowFits& fits, const GlobalModel& global) {
   WindowFits frame;
   frame.structure = fits.structure;
   frame.length = fits.length;
   frame.step = fits.step;
   frame.global = global;
-  if (fits.model_parameters.empty()) frame.prior_sd = fits.prior_sd;  // a motion model's prior is of other parameters
+  if (fits.model_parameters.empty()) frame.prior_sd = fits.prior_sd;  // a motion model's prior is for other parameters
   return frame;
 }
 
-/// A frame with the noises and the chain of `rival`, and one theta.
+/// The frame with the noises and the transitions of `rival`, and one theta.
 Bank with_noises_of(const Bank& rival, Bank frame, const GlobalModel& global) {
   const Index n = frame.structure.states, p = frame.structure.parameters();
   frame.modes.clear();
@@ -52,7 +52,7 @@ Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, 
   RefineOptions em = options.em;
   em.one_theta = true;
   em.guards = options.transition == TransitionSource::logit;
-  em.restarts = 0;  // stretches of the runs differ in theta, which there is one of
+  em.restarts = 0;  // random stretches differ in theta, but this model has only one
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   std::vector<Bank> starts =
       level_starts(recording, fits.structure,

@@ -33,7 +33,7 @@ std::vector<std::string> input_names(const Recording& recording, const LinearStr
 
 Bank bank_frame(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {
   check_structure(recording, structure);
-  const Index n = structure.states;  // measured
+  const Index n = structure.states;  // measured states
   if (R.rows() != n || R.cols() != n)
     throw std::invalid_argument("R is " + std::to_string(R.rows()) + " x " + std::to_string(R.cols()) + " for " +
                                 std::to_string(n) + " states");

@@ -42,13 +42,13 @@ std::optional<ParameterPrior> prior_of(const WindowFits& fits) {
   return ParameterPrior{fits.global.theta, fits.prior_sd};
 }
 
-/// A component's estimates: linear, and the motion model's behind it where there is one.
+/// A component's linear estimate, with the motion model's estimate if there is one.
 struct ComponentEstimate {
   ModeEstimate linear;
   std::optional<MotionMode> motion;
 };
 
-/// What every way to estimate the components needs.
+/// Common inputs of all estimates of the components.
 struct EstimationInput {
   const Recording& recording;
   const WindowFits& fits;
@@ -56,7 +56,7 @@ struct EstimationInput {
   ThetaSource source;
 };
 
-/// [S25]'s way: theta is the component's mean, and Q is taken about that mean.
+/// Method of [S25]: theta is the component's mean, and Q is computed about it.
 Eigen::VectorXd component_mean(const EstimationInput& in, Index k) {
   return in.mixture.mixture.means.col(k).head(in.fits.parameter_count());
 }
@@ -98,7 +98,7 @@ std::vector<ComponentEstimate> estimate_components(const EstimationInput& in, co
   return estimates;
 }
 
-/// Positions of the components that become modes, maybe none; the others are listed in `screened`.
+/// Positions of the components that become modes, possibly none; the others are added to `screened`.
 std::vector<Index> screen(const LinearStructure& structure, const std::vector<ComponentEstimate>& modes,
                           const Eigen::VectorXd& weights, std::vector<ScreenedMode>& screened) {
   std::vector<Index> kept;
@@ -112,7 +112,7 @@ std::vector<Index> screen(const LinearStructure& structure, const std::vector<Co
   return kept;
 }
 
-/// Where Q of the bank's modes comes from. theta and its errors always rest on the mode's own noise.
+/// Sets Q of the bank's modes from the chosen source. theta and its errors always use the mode's own noise.
 void set_process_noise(std::vector<ComponentEstimate>& modes, const BankOptions& options) {
   const Index n = modes.front().linear.Q.rows();
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
@@ -127,8 +127,8 @@ void set_process_noise(std::vector<ComponentEstimate>& modes, const BankOptions&
   }
 }
 
-/// Covariance of the windows' parameters in component k, p x p: the component's own block, or the windows' weighted by
-/// their responsibilities where the component is over other features.
+/// Covariance of the windows' parameters in component k, p x p: the component's own block. If the component has other
+/// features, it is the covariance of the windows weighted by their responsibilities.
 Eigen::MatrixXd spread_of(const WindowFits& fits, const MixtureResult& mixture, Index k) {
   const Index p = fits.parameter_count();
   if (mixture.features.size() == 0) return mixture.mixture.covariances[static_cast<std::size_t>(k)].topLeftCorner(p, p);
@@ -154,7 +154,7 @@ TransitionMatrix learn_transition(const WindowFits& fits, const Eigen::VectorXi&
   return transition_from_counts(count_label_transitions(fits, labels, kept), fits.step);
 }
 
-/// The mode of the bank: with a motion model the windows' spread is carried over to the linear parameters.
+/// The bank's mode. For a motion model the windows' parameter covariance is propagated to the linear parameters.
 Mode bank_mode(const LinearStructure& structure, const ComponentEstimate& estimate, const Eigen::MatrixXd& spread,
                double weight) {
   const ModeEstimate& linear = estimate.linear;
@@ -173,8 +173,8 @@ std::vector<Index> all_positions(Index count) {
   return positions;
 }
 
-/// Where no component can be a mode, all of them together are one, an unstable one, too: so is the global model that it
-/// competes with, one step ahead it may be right, and the summary warns of the rest.
+/// One mode from all components, used if no component can be a mode. It may be unstable, as the global model may be
+/// that it competes with. One step ahead it may still be right; the summary warns of the rest.
 Bank bank_of_all(const Recording& recording, const WindowFits& fits, const MixtureResult& whole, BankOptions options,
                  const Bank& without_modes, const MotionModel* motion) {
   options.modes = 1;
@@ -217,7 +217,7 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
 
 namespace {
 
-/// The score of the chosen fit, with the measurement noise that it has; NaN where nothing was left out.
+/// Score of the chosen fit with its measurement noise; NaN if nothing was left out.
 double left_out_score(const Refinement& refined) {
   if (!std::isnan(refined.measurement.score)) return refined.measurement.score;
   double score = std::numeric_limits<double>::quiet_NaN();
@@ -237,7 +237,7 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   };
   for (Index modes = fewer(starts.front().mode_count()); modes >= 1; modes = fewer(modes)) {
     of_start.modes = modes;
-    of_start.screen = options.screen && modes > 1;  // one mode is a start in any case; refinement screens it
+    of_start.screen = options.screen && modes > 1;  // a single mode is a start in any case; refinement screens it
     starts.push_back(learn_bank(recording, fits, mixture, of_start, R));
   }
   RefineOptions em = options.em;

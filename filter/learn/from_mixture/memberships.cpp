@@ -20,7 +20,7 @@ void check_sizes(const WindowFits& fits, const MixtureResult& mixture) {
                               std::to_string(mixture.mixture.components()) + " components");
 }
 
-/// A run's clustered windows by increasing start, those that are noise among them, and their responsibilities.
+/// A run's clustered windows by increasing start, including those that are noise, with their responsibilities.
 struct RunWindows {
   std::vector<Index> windows;
   Index first = 0;                   ///< window of the first column
@@ -49,7 +49,7 @@ std::vector<std::vector<Index>> windows_by_run(const WindowFits& fits) {
   return by_run;
 }
 
-/// The clustered window nearest to a transition that none covers. `windows` is not empty.
+/// The clustered window nearest to a transition that no window covers. `windows` is not empty.
 Index nearest_window(Index transition, const std::vector<Index>& windows, const WindowFits& fits) {
   const auto after = std::partition_point(windows.begin(), windows.end(),
                                           [&](Index i) { return fits.windows[i].start <= transition; });
@@ -99,7 +99,7 @@ Eigen::MatrixXd transition_memberships(const TrainingTransitions& transitions, c
       of_run.rowwise() = mixture.mixture.weights.transpose();
   }
   if (mixture.mixture.noise.present()) return transitions.usable.asDiagonal() * memberships;
-  // Rounding aside every row sums to one already; exactness makes the modes' weights add up to N.
+  // Every row already sums to one up to rounding. Exact sums make the modes' weights add up to N.
   return transitions.usable.cwiseQuotient(memberships.rowwise().sum()).asDiagonal() * memberships;
 }
 

@@ -8,11 +8,12 @@
 
 namespace modebank {
 
-/// How much each training transition belongs to each mixture component, N x K. Every usable transition enters once
-/// (its row sums to one, or to its sample weight): the mean responsibility of the clustered windows that cover it;
-/// where none does, the responsibility of the nearest clustered window of its run (the earlier of two equally near
-/// ones); the mixture weights in runs without any clustered window. Of a mixture with a noise component the row lacks
-/// the probability of noise: what is noise teaches no mode. Rows of unusable transitions are zero.
+/// Membership of each training transition in each mixture component, N x K. A usable transition's row sums to one, or
+/// to its sample weight. It is the mean responsibility of the clustered windows that cover the transition. Without such
+/// a window it is that of the nearest clustered window of its run (the earlier one on a tie), or the mixture weights in
+/// a run without clustered windows.
+/// With a noise component the row excludes the probability of noise, so noise does not influence any mode. Rows of
+/// unusable transitions are zero.
 Eigen::MatrixXd transition_memberships(const TrainingTransitions& transitions, const WindowFits& fits,
                                        const MixtureResult& mixture);
 

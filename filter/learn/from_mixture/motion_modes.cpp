@@ -16,7 +16,7 @@ constexpr int max_passes = 50;
 constexpr double pass_tolerance = 1e-10;  // relative change of Q's diagonal
 constexpr int search_iterations = 200;
 
-/// sum g r r' / sum g, floored; the global covariance where no transition has weight.
+/// sum g r r' / sum g, floored; the global covariance if no transition has weight.
 Eigen::MatrixXd weighted_scatter(const ModelResiduals& residuals, const Eigen::VectorXd& theta,
                                  const GlobalModel& global) {
   const Index n = residuals.states();
@@ -38,7 +38,7 @@ double sum_of_weights(const ModelResiduals& residuals) {
   return sum;
 }
 
-/// (sum g J' Q^-1 J + prior)^-1 with Q free of the bias of the fitted parameters; NaN where theta is not determined.
+/// (sum g J' Q^-1 J + prior)^-1, with Q corrected for the number of fitted parameters; NaN if theta is not determined.
 Eigen::MatrixXd motion_covariance(const ModelResiduals& residuals, const MotionMode& mode,
                                   const ParameterPrior* prior) {
   const Index n = residuals.states(), p = residuals.unknowns();
@@ -61,7 +61,7 @@ Eigen::MatrixXd motion_covariance(const ModelResiduals& residuals, const MotionM
   return scale.asDiagonal() * factor.inverse() * scale.asDiagonal();
 }
 
-/// Alternates between theta and the residual variances until both stand still.
+/// Alternates between theta and the residual variances until both converge.
 void estimate_theta(const ModelResiduals& residuals, const GlobalModel& global, const ParameterPrior* prior,
                     MotionMode& mode) {
   const RobustLoss least_squares(Loss::trivial, 0.0);

@@ -10,23 +10,22 @@
 
 namespace modebank {
 
-/// One mode of a motion model: its own parameters, and their linearisation as ModeEstimate has it (theta is the vec of
-/// [A B c] at the mode's weighted mean state and input, standard errors carried over by the derivative).
+/// One mode of a motion model: its own parameters, and their linearisation as a ModeEstimate. theta is the vec of [A B
+/// c] at the mode's weighted mean state and input; standard errors are propagated by the derivative.
 struct MotionMode {
   Eigen::VectorXd theta;           ///< p_motion
   Eigen::VectorXd standard_error;  ///< p_motion
-  Eigen::MatrixXd by_motion;       ///< derivative of the linear theta by the motion model's
+  Eigen::MatrixXd by_motion;       ///< derivative of the linear theta by the motion model's theta
   ModeEstimate linear;
 };
 
-/// The counterpart of fit_weighted_mode for motion models: weighted least squares of the one-step residuals and the
-/// prior, alternating with the residual variances (`weights`: one per training transition). `given`: theta that is not
-/// to be estimated, only assessed; null otherwise. Q is the weighted scatter / sum of weights, floored like a linear
-/// mode's.
+/// fit_weighted_mode for motion models: weighted least squares of the one-step residuals and the prior, alternating
+/// with the residual variances (`weights`: one per training transition). `given`: theta to be assessed, not estimated;
+/// else null. Q is the weighted scatter / sum of weights, floored like a linear mode's.
 MotionMode fit_motion_mode(const Recording& recording, const MotionModel& model, const Eigen::VectorXd& weights,
                            const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd* given);
 
-/// One mode per column of `memberships`, in parallel.
+/// Fits one mode per column of `memberships`, in parallel.
 std::vector<MotionMode> fit_motion_modes(const Recording& recording, const MotionModel& model,
                                          const Eigen::MatrixXd& memberships, const GlobalModel& global,
                                          const ParameterPrior* prior);

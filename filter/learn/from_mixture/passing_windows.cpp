@@ -8,7 +8,7 @@
 namespace modebank {
 namespace {
 
-/// Clustered windows of one run, by start, that have the same label: [first, end) of `windows`.
+/// Clustered windows of one run in order of start that have the same label: [first, end) of `windows`.
 struct SameLabel {
   std::size_t first = 0, end = 0;
 };
@@ -29,7 +29,8 @@ class LabelStretches {
   const std::vector<SameLabel>& stretches() const { return stretches_; }
   int label(std::size_t at) const { return labels_(windows_[at]); }
 
-  /// Whether the run's next window after the stretch is that which follows a switch after its last one before.
+  /// Whether the stretch is too short: the next window after it begins before any window could that shares no
+  /// transition with the last window before it.
   bool passes(const SameLabel& stretch) const {
     if (stretch.first == 0 || stretch.end == windows_.size()) return false;
     const std::size_t before = stretch.first - 1;

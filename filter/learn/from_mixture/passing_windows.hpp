@@ -7,10 +7,10 @@
 
 namespace modebank {
 
-/// Of each component's windows the share that seem to straddle a switch of mode, K: those that straddling_windows
-/// flags, and those in stretches of one label that end before a window without a transition of the stretch's
-/// predecessor could begin. Where modes last for two windows or more only mixed windows come and go that fast. 0 for a
-/// component without windows.
+/// Share of each component's windows that seem to contain a switch of mode, K. These are windows flagged by
+/// straddling_windows, and short stretches of one label. A stretch is short if it ends before a window could begin that
+/// shares no transition with the stretch's predecessor. If modes last at least two windows, only mixed windows are that
+/// short. 0 for a component without windows.
 Eigen::VectorXd passing_shares(const WindowFits& fits, const MixtureResult& mixture);
 
 }  // namespace modebank

@@ -15,17 +15,17 @@
 namespace modebank {
 namespace {
 
-constexpr double smallest_weight = 1e-9;         // transitions; less carries no information about Q
-constexpr double alternation_tolerance = 1e-12;  // relative change of Q; rounding is three decades below
+constexpr double smallest_weight = 1e-9;         // transitions; a smaller sum has no information about Q
+constexpr double alternation_tolerance = 1e-12;  // relative change of Q; rounding is three decades smaller
 constexpr int max_alternations = 500;
 
-/// The weighted transitions' sums about their own least squares, so that nothing cancels.
+/// Sums of the weighted transitions about their own least squares, which avoids cancellation.
 struct WeightedRegression {
-  Eigen::MatrixXd beta;  // q x n coefficients by least squares; directions without data stay at the global model
-  RegressionSums sums;   // H is zero but for rounding and directions without data
+  Eigen::MatrixXd beta;  // q x n, least-squares coefficients; directions without data stay at the global model
+  RegressionSums sums;   // H is zero except for rounding and directions without data
 };
 
-/// Transitions that are decomposed at once: of a long recording a fit needs no copy.
+/// Number of transitions per decomposition; a long recording then needs no copy.
 constexpr Index block_rows = Index{1} << 18;
 
 WeightedRegression regress(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
@@ -60,7 +60,7 @@ Eigen::MatrixXd prior_information(Index parameters, const ParameterPrior* prior)
   return prior->sd.array().square().inverse().matrix().asDiagonal();
 }
 
-/// Empty where Q is not definite.
+/// Empty if Q is not definite.
 std::optional<Eigen::MatrixXd> regularised(const WeightedRegression& data, const Eigen::MatrixXd& Q,
                                            const ParameterPrior& prior) {
   const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(Q);

@@ -10,33 +10,32 @@
 
 namespace modebank {
 
-/// Smallest eigenvalue of a mode's Q, as a share of the global residual variance of each state: below it a mode would
-/// claim that its transitions are exact, which only a handful of transitions can seem to be.
+/// Smallest eigenvalue of a mode's Q, as a share of the global residual variance of each state. A smaller one would
+/// mean that transitions are exact, which a handful of transitions can suggest by chance.
 inline constexpr double process_noise_floor = 1e-6;
 
-/// Share of a variance that is rounding (a millionth of the standard deviation): keeps a variance positive where the
-/// data ask for none, without shaping any that they do ask for.
+/// Share of a variance that is rounding (a millionth of the standard deviation). It keeps a variance positive if the
+/// data suggest zero, without changing other variances.
 inline constexpr double rounding_share = 1e-12;
 
-/// A residual variance as the unit of the two shares above: itself, but positive on exact data, so that inverses stay
-/// finite.
+/// A residual variance as the unit of the two shares above; positive even for exact data, so that inverses stay finite.
 inline double positive_variance(double variance) { return std::max(variance, 1e-100); }
 
 /// One mode from weighted transitions.
 struct ModeEstimate {
   Eigen::VectorXd theta;  ///< p
-  Eigen::MatrixXd Q;      ///< n x n, weighted scatter about theta / sum of weights; floored (process_noise_floor)
-  Eigen::VectorXd standard_error;      ///< p, of theta; NaN when neither data nor prior determine theta
+  Eigen::MatrixXd Q;      ///< n x n, weighted scatter about theta / sum of weights; at least process_noise_floor
+  Eigen::VectorXd standard_error;      ///< p, of theta; NaN if neither data nor prior determine theta
   double effective_transitions = 0.0;  ///< sum of weights
-  bool converged = true;  ///< whether theta and Q stopped changing within the bounded iterations, Q definite
+  bool converged = true;               ///< whether theta and Q converged within the iteration limit, with Q definite
 };
 
-/// Maximises, alternating between theta and Q until both stand still,
-///   -1/2 sum_k g_k (log det Q + r_k' Q^-1 r_k) - 1/2 (theta - m)' P^-1 (theta - m),   r_k = d_k - [A B (c)] phi_k,
-/// with weights g (N, nonnegative) and the Gaussian prior (m, P) where there is one (`prior` may be null). Directions
-/// of theta that neither data nor prior determine stay at the global model. Standard errors are the square roots of
-/// the diagonal of (Q_u^-1 (x) sum g phi phi' + P^-1)^-1, Q_u = Q W / (W - q) free of the bias of q fitted regressors,
-/// W = sum of weights: for K = 1 without a prior theta, Q and standard errors are the global model's.
+/// Maximises the following by alternating between theta and Q until both converge:
+///   -1/2 sum_k g_k (log det Q + r_k' Q^-1 r_k) - 1/2 (theta - m)' P^-1 (theta - m),   r_k = d_k - [A B (c)] phi_k.
+/// g are the weights (N, nonnegative), (m, P) the Gaussian prior (`prior` may be null). Directions of theta that
+/// neither data nor prior determine stay at the global model. Standard errors are the square roots of the diagonal of
+/// (Q_u^-1 (x) sum g phi phi' + P^-1)^-1. Q_u = Q W / (W - q) removes the bias of q fitted regressors, with W = sum of
+/// weights. For K = 1 without a prior, theta, Q and standard errors are the global model's.
 ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
                                const GlobalModel& global, const ParameterPrior* prior);
 
@@ -44,20 +43,20 @@ ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eig
 ModeEstimate assess_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
                                   const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd& theta);
 
-/// A process noise covariance whose eigenvalues, in units of the global residual variances, are raised to the floor.
+/// Raises the eigenvalues of a process noise covariance, in units of the global residual variances, to the floor.
 Eigen::MatrixXd floored_process_noise(const Eigen::MatrixXd& Q, const GlobalModel& global);
 
-/// Slack above 1 for the spectral radius of I + A: an integrator (A = 0) must survive rounding.
+/// Tolerance above 1 for the spectral radius of I + A, so that an integrator (A = 0) passes in spite of rounding.
 inline constexpr double spectral_radius_slack = 1e-9;
 
-/// Largest absolute eigenvalue of I + A; infinite when A is not finite.
+/// Largest absolute eigenvalue of I + A; infinite if A is not finite.
 double spectral_radius(const LinearModel& model);
 
-/// Why a mode cannot serve in a bank: "starved" (fewer effective transitions than regressors + 1), "unstable"
-/// (spectral radius of I + A above 1), or empty when it can.
+/// Why a mode is unusable in a bank: "starved" (fewer effective transitions than regressors + 1) or "unstable"
+/// (spectral radius of I + A above 1). Empty if it is usable.
 std::string screening_reason(const LinearStructure& structure, const ModeEstimate& mode);
 
-/// One mode per column of `memberships` (N x K), in parallel; mode k depends on column k alone.
+/// Fits one mode per column of `memberships` (N x K), in parallel; mode k depends on column k alone.
 std::vector<ModeEstimate> fit_pooled_modes(const TrainingTransitions& transitions, const Eigen::MatrixXd& memberships,
                                            const GlobalModel& global, const ParameterPrior* prior);
 

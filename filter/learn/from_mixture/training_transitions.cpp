@@ -24,7 +24,7 @@ std::vector<RunRows> number_rows(const Recording& recording) {
   return runs;
 }
 
-/// Zeros in the rows that are not finite or have no weight.
+/// Sets rows to zero that are not finite or have no weight.
 void blank_unusable(TrainingTransitions& transitions) {
   Transitions& data = transitions.data;
   const bool weighted = data.weight.size() > 0;
@@ -105,7 +105,7 @@ Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::
 
 RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& weights,
                                const Eigen::MatrixXd& residuals) {
-  constexpr double negligible = 1e-12;  // a mode has most transitions with less than this
+  constexpr double negligible = 1e-12;  // most transitions have less weight than this in any mode
   const Index q = regressors.cols(), n = residuals.cols();
   std::vector<Index> rows;
   for (Index k = 0; k < weights.size(); ++k)

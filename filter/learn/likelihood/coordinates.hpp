@@ -7,28 +7,28 @@
 
 namespace modebank {
 
-/// What of a bank is to be estimated, and in which units.
+/// Which parameters of a bank are estimated, and their units.
 struct FreeParameters {
-  Eigen::MatrixXd theta_unit = {};   ///< p x K, or p x 1: one theta of all modes; positive; empty: theta is known
+  Eigen::MatrixXd theta_unit = {};   ///< p x K, or p x 1 for one theta of all modes; positive; empty: theta is known
   bool Q = true;                     ///< false: every Q is known
-  bool Q_by_one_factor = false;      ///< every Q by the same factor, instead of each by itself
+  bool Q_by_one_factor = false;      ///< one common factor on every Q, instead of separate Q
   Eigen::VectorXd least_Q = {};      ///< n, lower bounds of every Q's diagonal [state unit^2]; empty: none
-  std::vector<Eigen::Index> R = {};  ///< outputs whose variance is estimated
+  std::vector<Eigen::Index> R = {};  ///< outputs with estimated variance
   Eigen::VectorXd least_R = {};      ///< n_y, lower bounds of R's diagonal [state unit^2]
   bool transition = true;            ///< false: T is known
-  Eigen::VectorXd weight_unit = {};  ///< d, of the weights of T's logit; empty: there are none
+  Eigen::VectorXd weight_unit = {};  ///< d, units of the weights of T's logit; empty: no weights
 };
 
-/// Where parameters stand in the vector of a bank's free parameters: theta of every mode, the lower triangles of every
-/// Q (column by column, measured states), R of the estimated outputs, T row by row, the logit's weights mode by mode
-/// about their mean over the modes, which changes no probability.
+/// Layout of a bank's free parameters in one vector: theta of every mode; the lower triangle of every Q (column by
+/// column, measured states); R of the estimated outputs; T row by row. Last come the logit's weights, mode by mode,
+/// about their mean over the modes (which does not change probabilities).
 struct ParameterPlaces {
   Eigen::Index parameters = 0;  ///< p; 0: theta is known
   Eigen::Index triangle = 0;    ///< n (n + 1) / 2; 0: Q is known
   Eigen::Index modes = 0;
-  Eigen::Index outputs = 0;  ///< whose R is estimated
+  Eigen::Index outputs = 0;  ///< number of outputs with estimated R
   bool transition = false;
-  Eigen::Index regressors = 0;  ///< d of the logit's weights; 0: none
+  Eigen::Index regressors = 0;  ///< d, number of the logit's regressors; 0: none
 
   Eigen::Index theta(Eigen::Index mode) const { return mode * parameters; }
   Eigen::Index Q(Eigen::Index mode) const { return modes * parameters + mode * triangle; }
@@ -38,14 +38,14 @@ struct ParameterPlaces {
   Eigen::Index size() const { return weights(modes); }
 };
 
-/// Unconstrained coordinates of everything that is estimated about a bank, relative to one bank, the origin:
+/// Unconstrained coordinates of all estimated parameters of a bank, relative to one bank, the origin:
 ///   theta_j       = theta0_j + unit z (one coordinate per parameter);
 ///   Q_j           = L0 M M' L0' with L0 L0' = Q0_j, M lower triangular, exp(z) on its diagonal (log-Cholesky: Pinheiro
 ///                   & Bates 1996), its diagonal at least least_Q; or Q0_j exp(z) with one z for all modes;
 ///   R_ii          = least_R_i + max(R0_ii - least_R_i, 0) exp(z);
 ///   row i of T    proportional to T0_ij exp(z_j), z = 0 for its largest entry;
 ///   weights_ja    = weights0_ja + unit_a z, the last coordinates, regressor by regressor.
-/// Initial probabilities and what else a bank holds stay as they are.
+/// Initial probabilities and all else of the bank are constant.
 class BankCoordinates {
  public:
   BankCoordinates(Bank origin, FreeParameters free);
@@ -55,7 +55,7 @@ class BankCoordinates {
   const Eigen::VectorXd& weight_unit() const { return free_.weight_unit; }
   const Eigen::VectorXd& least_R() const { return free_.least_R; }
   bool has_one_theta() const { return free_.theta_unit.cols() == 1; }
-  /// `at`: size(); zero is the origin.
+  /// The bank at these coordinates. `at`: size() entries; zero is the origin.
   Bank decode(const Eigen::VectorXd& at) const;
 
   ParameterPlaces places() const;

@@ -10,30 +10,29 @@
 
 namespace modebank {
 
-/// Of coordinates that are in units of about their standard error, or logarithms: central differences by so much are
-/// off by a ten thousandth.
+/// Step of central differences for coordinates in units of about their standard error, or logarithms. Its relative
+/// error is about 1e-4.
 inline constexpr double difference_step = 1e-2;
 
-/// Derivatives of the log predictive densities of single training samples by a bank's coordinates, at their origin.
+/// Derivatives of single training samples' log predictive densities by a bank's coordinates, at the origin.
 struct SampleGradients {
   Eigen::VectorXd sum;          ///< gradient of the training runs' log-likelihood [nats per coordinate]
   Eigen::MatrixXd information;  ///< sum of their outer products: Berndt, Hall, Hall & Hausman (1974, Annals of Economic
-                                ///< and Social Measurement 3(4)), the observed information of a model that is true
+                                ///< and Social Measurement 3(4)), the observed information if the model is true
 };
 
-/// By central differences of `steps` (one per coordinate) in the filter that will run the bank. A sample of weight w,
-/// in units of their mean, counts as w samples. `look`: of what learning counts that looks ahead.
+/// Gradients by central differences with `steps` (one per coordinate) in the bank's filter. A sample of weight w (in
+/// units of the mean weight) counts as w samples. `look`: score of look-ahead learning.
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                  const Recording& recording, const FilterOptions& filter, const LookAhead& look = {});
 
-/// Gradients where states are measured exactly (R = 0) and samples have no weights: by the switching regression, whose
-/// densities are the filter's at a fraction of the cost, the smaller the more lags there are.
+/// Gradients for exactly measured states (R = 0) and equal sample weights, by the switching regression. It has the
+/// filter's densities at a fraction of the cost; the saving grows with the number of lags.
 SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                        const TrainingTransitions& transitions);
 
-/// What the prior adds to the information about the coordinates, at their origin: of theta exactly, of Q as so many
-/// observations of a normal scatter, of T as so many counts, of a guard's memory
-/// exactly. A prior on one theta of all modes counts once.
+/// Information of the prior about the coordinates, at the origin. Exact for theta and the logit's memory. Q counts as
+/// observations of a normal scatter, T as counts. A prior on one theta shared by all modes counts once.
 Eigen::MatrixXd prior_information(const BankCoordinates& around, const SwitchingPrior& prior);
 
 }  // namespace modebank

@@ -17,12 +17,12 @@ namespace modebank {
 namespace {
 
 constexpr double step_share = 1e-2;       // of a standard error, for central differences
-constexpr double first_step = 1e-3;       // while no standard errors are known
-constexpr double least_curvature = 1e-2;  // of a coordinate that the data say nothing about: such are logarithms
+constexpr double first_step = 1e-3;       // used until standard errors are known
+constexpr double least_curvature = 1e-2;  // of an undetermined coordinate; these are logarithms
 constexpr double remaining_gain = 1e-3;   // nats
 constexpr Index iterations_per_metric = 40;
 
-/// The target around one bank.
+/// The target in the neighbourhood of one bank.
 class Neighbourhood {
  public:
   Neighbourhood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& origin,
@@ -35,7 +35,7 @@ class Neighbourhood {
   Bank decode(const Eigen::VectorXd& at) const { return coordinates_.decode(at); }
   double value(const Eigen::VectorXd& at) const { return target_.value(decode(at)); }
 
-  /// Where the value is wanted besides: back over the filter's steps where they know the way, else by differences.
+  /// Gradient, and the value if requested. Uses the adjoint of the filter's steps if there is one, else differences.
   Eigen::VectorXd gradient(const Eigen::VectorXd& at) const {
     if (!is_exact()) return differences(at, [this](const Bank& bank) { return target_.value(bank); });
     const BankGradient by_bank = training_gradient(decode(at), target_.recording, target_.filter);
@@ -50,8 +50,8 @@ class Neighbourhood {
     return result;
   }
 
-  /// Gradient and information of likelihood and prior at the origin. The gradient is the one that the search follows:
-  /// where the search ends, another would not vanish.
+  /// Gradient and information of likelihood and prior at the origin. The search follows the same gradient, so it
+  /// vanishes where the search ends.
   SampleGradients gradients() const {
     SampleGradients result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look);
     const Eigen::VectorXd origin = Eigen::VectorXd::Zero(size());
@@ -84,7 +84,7 @@ class Neighbourhood {
   }
 };
 
-/// Minus the target as Ceres minimises it, from the value at the origin on; coordinates in standard errors.
+/// Minus the target relative to its value at the origin, for minimisation by Ceres; coordinates in standard errors.
 class WhitenedTarget final : public ceres::FirstOrderFunction {
  public:
   WhitenedTarget(const Neighbourhood& around, Eigen::MatrixXd by_standard_errors, double origin_value)
@@ -108,13 +108,13 @@ class WhitenedTarget final : public ceres::FirstOrderFunction {
   double origin_value_;
 };
 
-/// The gradient at a bank in units of the standard errors.
+/// The gradient at a bank and the units of its standard errors.
 struct Metric {
-  Eigen::VectorXd steps;               ///< of central differences from now on
-  Eigen::MatrixXd by_standard_errors;  ///< coordinates from whitened ones
-  Eigen::VectorXd gradient;            ///< by whitened ones
+  Eigen::VectorXd steps;               ///< steps of central differences from here on
+  Eigen::MatrixXd by_standard_errors;  ///< maps whitened coordinates to coordinates
+  Eigen::VectorXd gradient;            ///< by whitened coordinates
 
-  /// Of a Newton step.
+  /// Expected gain of a Newton step.
   double expected_gain() const { return 0.5 * gradient.squaredNorm(); }
 };
 
@@ -131,10 +131,10 @@ std::optional<Metric> metric_of(const SampleGradients& gradients) {
 struct BfgsEnd {
   Eigen::VectorXd at;
   Index iterations = 0;
-  double expected_gain = 0.0;  ///< of a Newton step from there, by the metric that it began with
+  double expected_gain = 0.0;  ///< of a Newton step at the end, by the metric at the beginning
 };
 
-/// `small_gain`: what no more is to be gained by.
+/// `small_gain`: expected gain at which the search ends.
 BfgsEnd bfgs(const Neighbourhood& nearby, const Metric& metric, double origin_value, double small_gain, Index limit) {
   const ceres::GradientProblem problem(new WhitenedTarget(nearby, metric.by_standard_errors, origin_value));
   ceres::GradientProblemSolver::Options options;
@@ -197,7 +197,7 @@ LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const Free
     best.bank = std::move(next);
     best.value = value;
     best.rose = true;
-    // Another metric costs two passes of the filter per coordinate, a gradient three.
+    // A new metric costs two filter passes per coordinate, a gradient three in all.
     if (end.expected_gain <= small_gain) {
       best.end = MeasuredFit::converged;
       return best;

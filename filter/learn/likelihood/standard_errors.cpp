@@ -18,11 +18,11 @@ namespace modebank {
 namespace {
 
 constexpr double weight_unit_share = 0.1;  // of the prior's standard deviation
-// Errors are wanted to a few per cent: their own relative error falls with the root of the samples.
+// Standard errors need an accuracy of a few per cent; their relative error falls with the square root of the samples.
 constexpr double most_numbers = 4e6;  // samples times coordinates: 32 MB
 constexpr Index fewest_samples = 2000, most_samples = 20000;
 
-/// Samples that errors are learned from: stretches of all training runs where these are long. Their information is
+/// Samples for estimating standard errors: stretches of all training runs if these are long. The information is
 /// multiplied by `factor`.
 struct ErrorSamples {
   std::optional<Recording> part;  ///< empty: all
@@ -30,7 +30,7 @@ struct ErrorSamples {
 };
 
 ErrorSamples error_samples(const Recording& recording, Index coordinates) {
-  constexpr std::uint64_t seed = 1;  // of the draw: errors of one bank are always the same
+  constexpr std::uint64_t seed = 1;  // fixed seed: a bank always has the same standard errors
   const Index most =
       std::clamp(static_cast<Index>(most_numbers / static_cast<double>(coordinates)), fewest_samples, most_samples);
   ErrorSamples samples{learning_part(recording, most, seed)};
@@ -40,13 +40,13 @@ ErrorSamples error_samples(const Recording& recording, Index coordinates) {
   return samples;
 }
 
-/// Of the parameters in ParameterPlaces' order: their covariance, and how far the maximum is from where they stand.
+/// Covariance of the parameters in the order of ParameterPlaces, and the distance from their values to the maximum.
 struct Observed {
   Eigen::MatrixXd covariance;
   Eigen::VectorXd newton_step;
 };
 
-/// Gradient of the prior on the logit's weights, which are the last coordinates.
+/// Adds the gradient of the prior on the logit's weights, the last coordinates.
 void add_weights_gradient(const BankCoordinates& around, const SwitchingPrior& prior, Eigen::VectorXd& gradient) {
   const ParameterPlaces at = around.places();
   for (Index a = 0; a < at.regressors; ++a)
@@ -55,7 +55,7 @@ void add_weights_gradient(const BankCoordinates& around, const SwitchingPrior& p
         around.origin().transition_logit.weights.col(a);
 }
 
-/// Whether the states count as measured exactly: R stands at its bound.
+/// Whether states count as measured exactly, because R is at its bound.
 bool is_exact(const LikelihoodTarget& target, const BankCoordinates& around) {
   const Bank& bank = around.origin();
   return around.places().outputs == 0 && (bank.R.diagonal().array() <= around.least_R().array()).all() &&
@@ -63,7 +63,7 @@ bool is_exact(const LikelihoodTarget& target, const BankCoordinates& around) {
          bank.drift.empty() && bank.terms.empty();
 }
 
-/// Empty where the information has no inverse.
+/// Empty if the information is singular.
 std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordinates& around) {
   const ErrorSamples samples = error_samples(target.recording, around.size());
   const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), difference_step);
@@ -76,7 +76,7 @@ std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordi
           : sample_gradients(around, steps, recording, target.filter);
   const Eigen::MatrixXd information = samples.factor * gradients.information + prior_information(around, *target.prior);
   if (!information.allFinite()) return std::nullopt;
-  // Coordinates differ in scale by orders of magnitude: the factorisation sees correlations.
+  // Coordinates differ in scale by orders of magnitude, so correlations are factorised.
   const Eigen::VectorXd unit =
       information.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
   const Cholesky factor(unit.asDiagonal() * information * unit.asDiagonal());
@@ -90,8 +90,8 @@ std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordi
   return observed;
 }
 
-/// Given the smoothed modes: of theta by its posterior covariance, of Q by the normal scatter's (Q_ii Q_jj + Q_ij^2) /
-/// W, of T by the binomial's.
+/// Standard errors given the smoothed modes: of theta by its posterior covariance, of Q by that of a normal scatter,
+/// (Q_ii Q_jj + Q_ij^2) / W, of T by the binomial's.
 void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior, bool with_R, Bank& bank) {
   const std::vector<Eigen::MatrixXd> covariances = parameter_covariances(sums, prior, switching_model(bank));
   for (std::size_t j = 0; j < bank.modes.size(); ++j) {
@@ -112,10 +112,11 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
     bank.R_standard_error = Eigen::VectorXd::Constant(bank.R.rows(), not_a_number).asDiagonal().toDenseMatrix();
 }
 
-/// Whether the training runs speak against borders twice as hard: all log odds doubled, which leaves every border where
-/// it is. Where no sample lies near a border they do not, however narrow the prior makes the curvature there look.
+/// Whether the training runs contradict borders between modes that are twice as sharp. All log odds are doubled, which
+/// does not move any border. If no sample lies near a border, the data do not contradict, however small the prior makes
+/// the standard errors.
 bool against_harder_borders(const LikelihoodTarget& target, const Bank& bank) {
-  constexpr double clearly = 1.92;  // nats: 95 % of a chi-squared with one degree of freedom
+  constexpr double clearly = 1.92;  // nats: 95 % of a chi-square with one degree of freedom
   Bank harder = bank;
   harder.transition_logit.weights *= 2.0;
   const Eigen::MatrixXd squared = bank.transition.matrix().cwiseAbs2();
@@ -124,11 +125,11 @@ bool against_harder_borders(const LikelihoodTarget& target, const Bank& bank) {
   return data_alone.value(bank) - data_alone.value(harder) > clearly;
 }
 
-/// Errors of the logit's weights that the data determine. Where a mode begins at a border that no sample lies on, data
-/// say no more than that weights are large: their error is about the prior's, or they were still growing when
-/// expectation-maximisation stopped. Then none is stated.
+/// Standard errors of those weights of the logit that the data determine. If no sample lies on a mode's border, the
+/// data show only that weights are large. Their error is then about the prior's standard deviation, or they were still
+/// growing at the end of expectation-maximisation. Such errors become NaN.
 Eigen::VectorXd determined(const Eigen::VectorXd& error, const Eigen::VectorXd& step, const Eigen::VectorXd& prior_sd) {
-  constexpr double most = 0.5;  // of the prior's standard deviation, and of the error still to go
+  constexpr double most = 0.5;  // of the prior's standard deviation, and of the error by the remaining step
   const bool all = (error.array() < most * prior_sd.array()).all() && (step.array().abs() < most * error.array()).all();
   return all ? error : Eigen::VectorXd::Constant(error.size(), not_a_number);
 }
@@ -151,7 +152,7 @@ void set_observed_errors(const ParameterPlaces& at, const Observed& observed, co
                      observed.newton_step.segment(at.weights(j), at.regressors), prior.weight_sd)
               .transpose();
   }
-  // Weights of modes are about each other: of one that is not known the others are not either.
+  // Weights of modes are relative to each other: if one is unknown, all are.
   if (!bank.transition_weight_error.allFinite()) bank.transition_weight_error.setConstant(not_a_number);
   if (at.outputs > 0) bank.R_standard_error = error.segment(at.R(), at.outputs).asDiagonal().toDenseMatrix();
 }

@@ -8,20 +8,20 @@
 
 namespace modebank {
 
-/// Everything about a bank as free parameters, theta in units of its standard errors given the smoothed modes.
-/// `complete`: a fit's expected sums. `estimate_R`: with R of all outputs, at least `least_R` (n_y).
+/// All parameters of a bank as free parameters, theta in units of its standard errors given the smoothed modes.
+/// `complete`: a fit's expected sums. `estimate_R`: includes R of all outputs, at least `least_R` (n_y).
 FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, const SwitchingPrior& prior,
                               bool one_theta, bool estimate_R, const Eigen::VectorXd& least_R);
 
-/// The bank with standard errors of its theta, Q, T and R where these are free, and theta's covariance as the modes'
-/// spread: the inverse of the observed information (information.hpp) with the prior's added, of all parameters
-/// together, in the filter and with the sample weights of the target. So it allows for what is not known about the
-/// modes and, with R > 0, about the states, which the expected sums of the fit (Louis 1982's complete information) do
-/// not. It supposes that the model is true. Of long recordings it takes stretches of all training
-/// runs (learning_part.hpp) and scales up. Where the
-/// information has no inverse the errors are those of the complete information, and R's are NaN.
+/// The bank with standard errors of its theta, Q, T and R (those that are free), and theta's covariance as the modes'
+/// parameter covariance. They come from the inverse of the observed information (information.hpp) plus the prior's, for
+/// all parameters together, in the target's filter and with its sample weights.
+/// So they include the uncertainty of the modes and, for R > 0, of the states; the fit's expected sums (Louis 1982's
+/// complete information) do not. The model is assumed true. Long recordings are reduced to stretches of all training
+/// runs (learning_part.hpp), and the information scaled up. If the information is singular, the errors come from the
+/// complete information, and R's are NaN.
 ///
-/// target.prior is required; `free` is all_parameters of the same bank.
+/// Requires target.prior; `free` is all_parameters of the same bank.
 Bank with_standard_errors(const LikelihoodTarget& target, const FreeParameters& free, const SwitchingSums& complete,
                           Bank bank);
 

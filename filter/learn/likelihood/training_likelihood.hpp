@@ -8,20 +8,19 @@
 
 namespace modebank {
 
-/// Log-likelihood of all training runs [nats], each from its second sample, whatever the samples' weights; runs in
-/// parallel, summed in an order of their own. `look`: what is counted
-/// instead by learning that looks ahead.
+/// Log-likelihood of all training runs [nats], each from its second sample, ignoring sample weights. Runs in parallel,
+/// with a fixed order of summation. `look`: score of look-ahead learning instead.
 double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
                                const LookAhead& look = {});
 
-/// The same with every sample's density to the power of its weight in units of mean_training_weight.
+/// training_log_likelihood with every sample's density to the power of its weight, in units of mean_training_weight.
 double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
                                         const LookAhead& look = {});
 
 /// The gradient of weighted_training_log_likelihood; requires has_likelihood_gradient (filter/step).
 BankGradient training_gradient(const Bank& bank, const Recording& recording, const FilterOptions& options);
 
-/// Mean of the training samples' positive weights, which only count in ratios; 1 without weights.
+/// Mean positive weight of the training samples; only ratios of weights matter. 1 without weights.
 double mean_training_weight(const Recording& recording);
 
 }  // namespace modebank

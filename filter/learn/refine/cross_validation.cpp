@@ -14,9 +14,9 @@
 namespace modebank {
 namespace {
 
-/// Of ways that are as good as the best within one standard error of the difference over the runs left out (Breiman et
-/// al. 1984, section 3.4.3) the one that is soonest ready to leave its start: new runs differ more from all training
-/// runs than these do from each other. scores: of each way, one per run; samples: of each run.
+/// The noise adaptation that leaves its start soonest among those as good as the best: within one standard error of the
+/// difference over left-out runs (Breiman et al. 1984, section 3.4.3). New runs differ more from the training runs than
+/// these do from each other. scores: of each way, one per run; samples: of each run.
 std::size_t soonest_of_the_good(const std::vector<NoiseAdaptation>& ways, const std::vector<Eigen::VectorXd>& scores,
                                 const Eigen::VectorXd& samples) {
   const auto lower = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return is_below(a.sum(), b.sum()); };

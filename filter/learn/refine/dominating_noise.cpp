@@ -14,17 +14,17 @@
 namespace modebank {
 namespace {
 
-/// Shares of the residual variance of exact states: R enters it once by the newest sample, and again by every lagged
-/// one.
+/// Shares of R in the residual variance of exact states. R enters it once by the newest sample, and again by every
+/// lagged one.
 constexpr std::array<double, 2> R_shares{0.6, 0.25};
 constexpr double Q_share = 0.05;
 constexpr AscentLimits climb_limits{100, 1e-7};
-/// Beyond so many coefficients of states a climb in all of them takes minutes.
+/// Above this number of state coefficients, a search over all of them takes minutes.
 constexpr Index most_coefficients = 4;
-/// Two lags hold a velocity; the coefficients of more stand in for R.
+/// Two lags determine a velocity; the coefficients of more lags take the place of R.
 constexpr Index most_lags = 2;
 
-/// One model with the bank's structure, R of these shares.
+/// One model with the bank's structure and these shares of R.
 Bank one_model(const Bank& bank, const GlobalModel& global, double R_share) {
   Bank one = bank;
   const Eigen::VectorXd variance = global.noise_variance().unaryExpr(&positive_variance);

@@ -6,10 +6,10 @@
 
 namespace modebank {
 
-/// Where measurement noise dominates, theta of exact states is drawn so far to errors in variables that no search from
-/// there finds R. One linear model then tells: its theta, Q and R together by the exact likelihood of the training
-/// runs, from R of about what exact states take for process noise. Where that ends with R above Q: `bank` with its R
-/// and its share of Q, and every theta moved as the one model's was. Empty otherwise. `global`: least squares of
+/// A start for data dominated by measurement noise. There, theta of exact states is so biased (errors in variables)
+/// that no search from it finds R. So the theta, Q and R of one linear model maximise the exact likelihood of the
+/// training runs together, starting from R near the process noise of exact states. If R ends above Q, `bank` gets this
+/// R and its share of Q, and every theta the shift of the one model's. Empty otherwise. `global`: least squares of
 /// `recording`.
 std::optional<Bank> start_of_dominating_noise(const RefineInput& in, const Recording& recording,
                                               const GlobalModel& global, const Bank& bank);

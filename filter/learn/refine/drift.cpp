@@ -13,7 +13,7 @@
 namespace modebank {
 namespace {
 
-/// The fit with modes that drift and a noise scale that moves as it says, scored on the runs left out.
+/// The fit with drifting modes and its noise adaptation, scored on the left-out runs.
 Fit tried(const CrossValidation& validation, Fit fit) {
   for (Bank& bank : fit.of_splits) bank = with_drift(bank, fit);
   fit.scores = validation.scores(fit.of_splits);
@@ -22,13 +22,13 @@ Fit tried(const CrossValidation& validation, Fit fit) {
 
 double total(const Fit& fit) { return fit.scores.log_likelihood.sum(); }
 
-/// One setting: its grid, and where it stands.
+/// One setting: its grid and position.
 struct Coordinate {
   std::span<const double> grid;
   double& value;
 };
 
-/// Goes to better neighbours on every grid in turn until there are none. A score that is no number is never better.
+/// Moves to better neighbours on each grid in turn until there are none. NaN is never better.
 Fit climbed(const RefineInput& in, const CrossValidation& validation, const Fit& start) {
   const RefineTuning& tuning = refine_tuning;
   Fit best = tried(validation, start);
@@ -58,7 +58,7 @@ Fit climbed(const RefineInput& in, const CrossValidation& validation, const Fit&
   return best;
 }
 
-/// The chosen fit, and the best one of every other number of modes.
+/// The chosen fit, and the best fit of every other number of modes.
 std::vector<Fit> fits_to_try(const CrossValidation& validation, const Fit& steady, bool other_sizes) {
   std::vector<Fit> fits{steady};
   if (!other_sizes) return fits;
@@ -67,7 +67,7 @@ std::vector<Fit> fits_to_try(const CrossValidation& validation, const Fit& stead
   return fits;
 }
 
-/// From the middle of the grids.
+/// A start in the middle of the grids.
 Fit start_of(Fit fit, const Eigen::VectorXd& scale) {
   const RefineTuning& tuning = refine_tuning;
   fit.drift = {{tuning.drift_rates[2], tuning.drift_starts[3], tuning.drift_leaks[0]}, scale};
@@ -75,7 +75,7 @@ Fit start_of(Fit fit, const Eigen::VectorXd& scale) {
   return fit;
 }
 
-/// The runs' scores without drift, the noise scale moving as is best for that.
+/// Scores of the runs without drift, with the best noise adaptation for that case.
 Eigen::VectorXd scores_without(const CrossValidation& validation, const Fit& steady) {
   std::vector<Bank> banks = steady.of_splits;
   const NoiseAdaptation adaptation = validation.adaptation(banks);

@@ -9,16 +9,17 @@
 
 namespace modebank {
 
-/// Whether theta of each mode follows a run (equations/drift.hpp), how fast, and how the noise scale moves then. For
-/// the best fit of each number of modes (`other_sizes`; else for `steady` alone) the settings of the highest score of
-/// the runs left out are searched on the grids of RefineTuning, one after the other until none gains; of the numbers of
-/// modes the fewest that are as good are chosen (fewest_modes_as_good). Empty where it is not worth it
-/// (is_worth_it) against the chosen fit without drift, or where nothing can be left out. `stage`
-/// says what was found.
+/// Decides whether the theta of each mode drifts within a run (equations/drift.hpp), at which rate, and how the noise
+/// scale adapts. With `other_sizes` this is tried for the best fit of each number of modes, else only for the chosen
+/// fit. The settings are searched on the grids of RefineTuning. The search maximises the score of left-out runs, one
+/// setting after the other, until none gains. Among the numbers of modes, the fewest that are as good as the best are
+/// chosen (fewest_modes_as_good).
+/// Empty if the gain over the chosen fit without drift is not worth it (is_worth_it), or nothing can be left out.
+/// `stage` records the result.
 std::optional<Fit> choose_drift(const RefineInput& in, const CrossValidation& validation, const Fit& steady,
                                 bool other_sizes, DriftStage& stage);
 
-/// The bank with its modes drifting as the fit's: R is zero then.
+/// The bank with the fit's drift; R is then zero.
 Bank with_drift(Bank bank, const Fit& fit);
 
 }  // namespace modebank

@@ -11,27 +11,27 @@
 
 namespace modebank {
 
-/// Where a fit begins, and its priors.
+/// Start of a fit, and its priors.
 struct RefineStart {
   std::string name;
   SwitchingRegression model;
   double noise_transitions = 0.0;
-  double theta_transitions = 0.0;  ///< that draw theta towards one motion (switching/shrinkage.hpp)
+  double theta_transitions = 0.0;  ///< weight of the prior towards one motion, in transitions (switching/shrinkage.hpp)
 };
 
-/// The model that refinement has taken so far, whatever was added to it. Each step of refinement takes one and gives
-/// one, with the same fit on every split of the cross-validation, by which the rule (left_out/rule.hpp) decides.
+/// The model accepted so far, with all additions. Each refinement step takes a fit and returns one, with the same fit
+/// on every split of the cross-validation. The rule (left_out/rule.hpp) decides by these.
 struct Fit {
   RefineStart start;
-  SwitchingRegression model;         ///< that expectation-maximisation goes on from: the start's, or one with a logit
-  GuardPrior guard = {};             ///< of the logit
-  std::size_t row = 0;               ///< of the start in the table
-  Eigen::Index iterations = 0;       ///< of expectation-maximisation, as the runs left out like them best
-  LeftOutScores scores = {};         ///< of the runs left out
-  std::vector<Bank> of_splits = {};  ///< the fit without the runs of each split; empty where nothing is left out
-  BankDrift drift = {};              ///< of the modes; empty: none
-  NoiseAdaptation adaptation = {};   ///< of the filter where modes drift
-  // Once expectation-maximisation on all training runs is through:
+  SwitchingRegression model;         ///< start of expectation-maximisation, or a model with a logit
+  GuardPrior guard = {};             ///< prior of the logit
+  std::size_t row = 0;               ///< row of the start in the table
+  Eigen::Index iterations = 0;       ///< iterations of expectation-maximisation that score best on left-out runs
+  LeftOutScores scores = {};         ///< on the left-out runs
+  std::vector<Bank> of_splits = {};  ///< the fit without each split's runs; empty if nothing is left out
+  BankDrift drift = {};              ///< drift of the modes; empty: none
+  NoiseAdaptation adaptation = {};   ///< of the filter with drifting modes
+  // Set after expectation-maximisation on all training runs:
   Bank bank = {};
   SwitchingPrior prior = {};
   bool R_estimated = false;

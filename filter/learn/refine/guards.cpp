@@ -15,9 +15,9 @@
 namespace modebank {
 namespace {
 
-/// A model with guards, fitted to all training runs.
+/// A model with a logit, fitted to all training runs.
 struct GuardStart {
-  const Fit* constant;  ///< the fit with a constant T that it goes on from, whose priors it keeps
+  const Fit* constant;  ///< the fit with constant T that it started from, whose priors it keeps
   SwitchingRegression model;
   double log_likelihood;
 };
@@ -29,7 +29,7 @@ GuardStart gone_on(const RefineInput& in, const Fit& constant, SwitchingRegressi
   return {&constant, em.model(), em.posterior().log_likelihood};
 }
 
-/// Every start's fit with a constant T taken on as a logit; empty for one mode, where nothing switches.
+/// Continues every start's fit with constant T as a logit; empty for one mode, which does not switch.
 std::vector<GuardStart> from_constant_fits(const RefineInput& in, const std::vector<Fit>& fits) {
   std::vector<std::optional<GuardStart>> all(fits.size());
   tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t f) {
@@ -46,8 +46,8 @@ std::vector<GuardStart> from_constant_fits(const RefineInput& in, const std::vec
 
 bool likelier(const GuardStart& a, const GuardStart& b) { return a.log_likelihood > b.log_likelihood; }
 
-/// The likeliest of each number of modes, the most modes first: of the constant fits that were taken on, and of the
-/// likeliest of these with one pair of its modes after another merged.
+/// The most likely model of each number of modes, the most modes first. Candidates are the continued constant fits, and
+/// the best of these with one pair of modes after another merged.
 std::vector<GuardStart> guard_starts(const RefineInput& in, const std::vector<Fit>& fits) {
   std::vector<GuardStart> all = from_constant_fits(in, fits);
   if (all.empty()) return all;
@@ -65,7 +65,7 @@ std::vector<GuardStart> guard_starts(const RefineInput& in, const std::vector<Fi
   return all;
 }
 
-/// Goes on from a start on every split; the best number of iterations.
+/// Continues from a start on every split; chooses the best number of iterations.
 Fit scored(const RefineInput& in, const CrossValidation& validation, const GuardStart& start, const GuardPrior& prior) {
   const std::vector<SplitData>& splits = validation.splits();
   std::vector<SwitchingPrior> priors;

@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index stretches = 100;         // so many at least, where runs are long: folds and restarts draw from them
-constexpr Index shortest_stretch = 100;  // transitions: some dwell times and the filter's first steps
+constexpr Index stretches = 100;         // smallest number in long runs; folds and restarts draw from them
+constexpr Index shortest_stretch = 100;  // transitions: several dwell times and the filter's first steps
 
 struct Piece {
   const Trajectory* run;
@@ -35,7 +35,7 @@ std::vector<Piece> pieces_of(const Recording& recording, Index longest) {
   return pieces;
 }
 
-/// Appends a piece, to the one before where it goes on from there.
+/// Appends a piece; merges it with the previous one if they are adjacent.
 void append(std::vector<Piece>& drawn, const Piece& piece) {
   const bool goes_on =
       !drawn.empty() && drawn.back().run == piece.run && drawn.back().first + drawn.back().transitions == piece.first;

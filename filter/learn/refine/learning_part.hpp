@@ -7,11 +7,12 @@
 
 namespace modebank {
 
-/// At most `most` transitions of the training runs to learn from (0: all), as runs of their own: whole contiguous
-/// stretches, so that dynamics and dwell times are kept, one drawn by the seed from each of as many equal shares of the
-/// runs laid end to end, so that every run is there in proportion to its length. A stretch has most / 100 transitions,
-/// at least 100; shorter runs are taken whole. The draw depends on the runs, `most` and the seed alone. Empty where the
-/// runs have no more: all of them are learned from, as they are. Test runs are left out.
+/// A part of the training runs for learning with at most `most` transitions (0: all), as separate runs. It consists of
+/// whole contiguous stretches, which keep dynamics and dwell times. The runs laid end to end are divided into equal
+/// shares, and the seed draws one stretch from each. So every run is represented in proportion to its length. A stretch
+/// has most / 100 transitions, at least 100; shorter runs are taken whole. The draw depends on the runs, `most` and the
+/// seed alone. Empty if the runs have no more than `most`; all of them are then used unchanged. Held-out runs are
+/// excluded.
 std::optional<Recording> learning_part(const Recording& recording, Eigen::Index most, std::uint64_t seed);
 
 }  // namespace modebank

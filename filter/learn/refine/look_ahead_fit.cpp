@@ -20,12 +20,12 @@ namespace modebank {
 namespace {
 
 constexpr Index most_iterations = 40;
-// Each is differenced at every gradient: with 200 (twelve modes on ice) a fit would take ten minutes, and there are as
-// many as folds.
+// Every coordinate needs a difference at every gradient. With 200 (twelve modes on ICE) one fit would take ten minutes,
+// and each fold needs a fit.
 constexpr Index most_coordinates = 50;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// What is searched, with units from the sums of expectation-maximisation.
+/// The coordinates of the search, with units from the sums of expectation-maximisation.
 FreeParameters free_parameters(const RefineInput& in, const Recording& recording, const SwitchingPrior& prior,
                                bool R_estimated, const Bank& bank) {
   const TrainingTransitions transitions = gather_training_transitions(recording, bank.structure, bank.noise_factor);
@@ -34,7 +34,7 @@ FreeParameters free_parameters(const RefineInput& in, const Recording& recording
                         least_measurement_noise(in.fits, refine_tuning));
 }
 
-/// What is to be fitted, and how.
+/// The data and options of a look-ahead fit.
 struct LookAheadFit {
   const RefineInput& in;
   LookAhead look;
@@ -47,8 +47,8 @@ struct LookAheadFit {
         .bank;
   }
 
-  /// Densities ask for everything. Errors ask for theta, and nothing about the noise and how modes follow each other,
-  /// of which the likelihood says what they are beside that theta.
+  /// Densities fit all parameters. Errors fit theta only; the likelihood then determines noise and transitions for that
+  /// theta.
   Bank taken_on(const Recording& recording, const SwitchingPrior& prior, const Bank& bank) const {
     const FreeParameters all = free_parameters(in, recording, prior, R_estimated, bank);
     if (!look.counts_errors()) return climbed(recording, prior, look, all, bank);
@@ -60,8 +60,8 @@ struct LookAheadFit {
   }
 };
 
-/// Root mean square of the errors that count, of the bank as it is: every signal weighs as much, and what is gained is
-/// about in nats.
+/// Root mean square of the scored errors of the present bank. With this unit all signals have equal weight, and gains
+/// are roughly in nats.
 Eigen::VectorXd error_unit(const RefineInput& in, const Bank& bank) {
   const Index outputs = bank.C.rows();
   Eigen::VectorXd unit(outputs);
@@ -75,7 +75,7 @@ Eigen::VectorXd error_unit(const RefineInput& in, const Bank& bank) {
   return unit;
 }
 
-/// Empty: there is nothing to be looked at.
+/// Empty if there is nothing to score.
 std::optional<LookAhead> look_of(const RefineInput& in, const Bank& bank) {
   if (in.options.look_ahead_score == LookAheadScore::density)
     return in.options.look_ahead > 1 ? std::optional<LookAhead>{{in.options.look_ahead}} : std::nullopt;
@@ -94,7 +94,7 @@ Bank without_errors(Bank bank) {
   return bank;
 }
 
-/// Whether the runs left out, each scored by a fit that has not seen it, gain enough (left_out/rule.hpp).
+/// Whether left-out runs, each scored by a fit without them, gain enough (left_out/rule.hpp).
 bool gains(const LookAheadFit& search, const CrossValidation& validation, LookAheadStage& stage, Fit& fit) {
   std::vector<Bank> banks = fit.of_splits;
   const LeftOutScores before = validation.scores(banks, search.look);

@@ -8,14 +8,14 @@
 
 namespace modebank {
 
-/// The bank taken on from one-step likelihood to the maximum of what options.look_ahead and look_ahead_score count
-/// (judge/look_ahead.hpp) and the prior: of densities over theta, Q, T and R where `R_estimated`; of errors over theta,
-/// and then of the likelihood over the rest beside that theta. Kept where the runs left out, each
-/// scored by a fit that has not seen it, gain more than least_gain, and where options.folds = 1 asks nobody. Nothing
-/// where not, or where nothing can be left out; `stage` says what it was worth. It has no standard errors: those of a
-/// composite likelihood are not its information's. Expectation-maximisation cannot see further than one step; this can,
-/// at h / 2 times the cost of a likelihood for every coordinate's difference, so it makes few iterations, and none for
-/// a bank of more than 50 coordinates.
+/// Continues the fit from one-step likelihood to the maximum of the look-ahead score and the prior (options.look_ahead,
+/// look_ahead_score; judge/look_ahead.hpp). Densities: over theta, Q, T and, with `R_estimated`, R. Errors: over theta,
+/// then the likelihood over the rest with that theta.
+/// The result is kept if left-out runs, each scored by a fit without them, gain more than least_gain, and always for
+/// options.folds = 1. Empty otherwise, or if nothing can be left out. `stage` records the gain. It has no standard
+/// errors, because a composite likelihood does not have the usual information.
+/// Expectation-maximisation cannot look further than one step. This search can, at h / 2 times the cost of a likelihood
+/// per coordinate. So it makes few iterations, and none for a bank of more than 50 coordinates.
 std::optional<Fit> fit_looking_ahead(const RefineInput& in, const CrossValidation& validation, const Fit& fit,
                                      LookAheadStage& stage);
 

@@ -21,17 +21,17 @@
 namespace modebank {
 namespace {
 
-// The search for R alone: its end is where the fit of everything begins.
+// For the search for R alone; the fit of all parameters starts at its end.
 constexpr AscentLimits search_limits{30, 1e-7};
 
-/// Nats that R has to add to the likelihood of these training runs.
+/// Smallest increase of the log-likelihood of these training runs by R [nats].
 double least_rise(const LikelihoodTarget& target) {
   const auto samples = static_cast<double>(target.recording.transitions(Role::train));
   return samples * refine_tuning.least_gain;
 }
 
-/// R = `share` of the mean Q, taken out of Q: white measurement noise of variance r enters a residual of exact states
-/// about twice.
+/// The bank with R = `share` of the mean Q, subtracted from Q. White measurement noise of variance r enters a residual
+/// of exact states about twice.
 Bank with_share_as_R(Bank bank, double share) {
   const Index n_y = bank.R.rows();
   Eigen::VectorXd mean_Q = Eigen::VectorXd::Zero(n_y);
@@ -41,7 +41,7 @@ Bank with_share_as_R(Bank bank, double share) {
   return bank;
 }
 
-/// R of every output and one factor on Q.
+/// Free parameters: R of every output and one factor on Q.
 FreeParameters free_noise(Index n_y) {
   FreeParameters free;
   free.Q_by_one_factor = true;
@@ -52,7 +52,7 @@ FreeParameters free_noise(Index n_y) {
   return free;
 }
 
-/// Whether a step of Newton's method from `start`, by the information of single samples, leads above `level`.
+/// Whether a Newton step from `start`, with the information of single samples, is expected to exceed `level`.
 bool promises(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start, double level) {
   const BankCoordinates around(start, free);
   const SampleGradients gradients = sample_gradients(around, Eigen::VectorXd::Constant(around.size(), difference_step),
@@ -62,13 +62,13 @@ bool promises(const LikelihoodTarget& target, const FreeParameters& free, const 
   return target.value(start) + 0.5 * information.whiten(gradients.sum).squaredNorm() > level;
 }
 
-/// Beyond so many states a filter pass takes so long that R is looked for from one start, and with theta only where
-/// that has few coordinates.
+/// With more states a filter pass is slow. R is then searched from one start, and together with theta only if that has
+/// few coordinates.
 constexpr Index most_states_of_wide_search = 4, most_coordinates_of_large_filters = 40;
 
 bool is_large(const Bank& bank) { return bank.structure.dimension() > most_states_of_wide_search; }
 
-/// All shares of the tuning; of a large filter the likeliest alone, if its gradient promises anything.
+/// All shares in the tuning. For a large filter only the most likely one, if its gradient promises a gain.
 std::vector<Bank> starts_of_R(const LikelihoodTarget& target, const FreeParameters& free, const Bank& bank,
                               double level, const RefineTuning& tuning) {
   std::vector<Bank> starts;
@@ -82,10 +82,9 @@ std::vector<Bank> starts_of_R(const LikelihoodTarget& target, const FreeParamete
   return starts;
 }
 
-/// The fit that took the state as measured exactly has its theta drawn to errors in variables, at times so far that
-/// with this theta no R is likelier than none. Then theta is searched with R and one factor on Q, if the gradient
-/// promises anything. Empty where that does not lead above the bank by least_rise either. `transitions`: of
-/// the target's recording.
+/// Searches theta with R and one factor on Q, if the gradient promises a gain. The fit with exactly measured states has
+/// a theta biased by errors in variables; with it R = 0 may be the most likely. Empty if this gains less than
+/// least_rise over the bank, too. `transitions`: of the target's recording.
 std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const RefineInput& in,
                                         const TrainingTransitions& transitions, const SwitchingPrior& prior,
                                         const Bank& bank) {
@@ -104,7 +103,7 @@ std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const Re
   return std::move(end.bank);
 }
 
-/// Theta, Q, T and (`with_R`) R of a bank together, from there to the maximum on these runs.
+/// Maximises over theta, Q, T and (`with_R`) R of a bank together on these runs.
 LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const RefineInput& in,
                                       const TrainingTransitions& transitions, const Bank& bank, bool with_R) {
   const SwitchingSums sums =
@@ -114,9 +113,9 @@ LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const Refi
   return maximise_likelihood(target, free, bank, {in.options.max_iterations, in.options.tolerance});
 }
 
-/// R of a bank: by the search for R alone, or with theta where no R is likelier than none with the theta of exact
-/// states. Where R dominates, the theta of exact states is so wrong that both end beside the maximum: a bank that
-/// starts from one model with a large R competes with theirs, all of theta, Q and R at their maximum.
+/// R of a bank: by the search for R alone, or with theta if the theta of exact states makes R = 0 most likely. If R
+/// dominates, theta of exact states is so wrong that both searches miss the maximum. So a bank that starts from one
+/// model with a large R competes with them, each at its maximum over theta, Q and R.
 MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, const TrainingTransitions& transitions,
                         const GlobalModel& global, const SwitchingPrior& prior, const Bank& bank) {
   MeasurementNoise noise = estimate_measurement_noise(target, bank, refine_tuning);
@@ -134,8 +133,8 @@ MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, c
   return noise;
 }
 
-/// The fits to the splits' training runs as measurement noise enters them. Nothing of a fit has seen the runs it is
-/// scored on: not theta and T, nor R or the prior.
+/// The fits to the splits' training runs with measurement noise. No part of a fit (theta, T, R, prior) uses the runs
+/// that score it.
 class MeasuredSplits {
  public:
   MeasuredSplits(const RefineInput& in, const CrossValidation& validation, const Fit& exact)
@@ -144,10 +143,10 @@ class MeasuredSplits {
   }
 
   const std::vector<Bank>& banks() const { return banks_; }
-  /// Mean log score of the runs left out.
+  /// Mean log score of the left-out runs.
   double score() const { return validation_.mean_score(validation_.scores(banks_)); }
 
-  /// R of each split; a split may ask for none.
+  /// Estimates R of each split; it may be zero for some.
   void estimate_R() {
     for_each([&](const SplitData& split, Bank& bank) {
       const LikelihoodTarget target{split.runs.training, in_.filter, std::nullopt};
@@ -204,7 +203,7 @@ MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, cons
       ++result.failed_starts;
       continue;
     }
-    // Ends that differ by less than they are searched to are one.
+    // Results that differ by less than the search tolerance count as equal.
     if (!best || end.value > best->value + search_limits.tolerance * transitions) best = &end;
   }
   if (best && best->value > level) result.bank = std::move(best->bank);
@@ -228,7 +227,7 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 
 namespace {
 
-/// R where the data ask for some and the runs left out do not lose by it: of the bank and of the splits.
+/// Accepts R, for the bank and the splits, if the data require it and the left-out runs do not lose by it.
 bool take_R(const RefineInput& in, const SwitchingPrior& exact, std::optional<MeasuredSplits>& splits, Fit& fit,
             MeasurementStage& stage) {
   const RefineTuning& tuning = refine_tuning;
@@ -248,7 +247,7 @@ bool take_R(const RefineInput& in, const SwitchingPrior& exact, std::optional<Me
   return true;
 }
 
-/// On to the maximum, bank and splits, unless the runs left out lose by it.
+/// Continues to the maximum, for the bank and the splits, unless the left-out runs lose by it.
 void go_on(const RefineInput& in, const SwitchingPrior& exact, std::optional<MeasuredSplits>& splits, Fit& fit,
            MeasurementStage& stage) {
   fit.prior = prior_with_states_unknown(exact, fit.bank, refine_tuning);
@@ -272,7 +271,7 @@ Fit fit_untimed(const RefineInput& in, const CrossValidation& validation, const 
   Fit fit = exact;
   std::optional<MeasuredSplits> splits;
   if (validation.possible()) splits.emplace(in, validation, exact);
-  // The search for R needs gradients, which leave out how a noise factor changes with the state.
+  // The search for R needs gradients, which ignore that a noise factor changes with the state.
   const bool with_R = in.options.measurement_noise && fit.bank.structure.state_lags <= most_lags_beside_R &&
                       fit.bank.noise_factor.empty();
   const bool quantised = fit.bank.is_quantised();
@@ -280,7 +279,7 @@ Fit fit_untimed(const RefineInput& in, const CrossValidation& validation, const 
   if (asks_for_R && (with_R || quantised ||
                      (fit.bank.R.diagonal().array() > least_measurement_noise(in.fits, refine_tuning).array()).any()))
     go_on(in, exact.prior, splits, fit, stage);
-  // Rounding stands in the Q of states taken as exact: only beside a fit by intervals is R told from it.
+  // With states taken as exact, Q contains the rounding. Only a fit by intervals separates R from it.
   if (with_R && quantised && take_R(in, exact.prior, splits, fit, stage)) go_on(in, exact.prior, splits, fit, stage);
   if (splits) fit.of_splits = splits->banks();
   return fit;

@@ -12,33 +12,33 @@
 
 namespace modebank {
 
-/// What a search for R found.
+/// Result of a search for R.
 struct MeasurementNoise {
-  std::optional<Bank> bank;  ///< with R, and less Q; empty: the data ask for none, or every start failed
+  std::optional<Bank> bank;  ///< bank with R and a smaller Q; empty: the data require no R, or every start failed
   Index starts = 0;
-  Index failed_starts = 0;  ///< where the likelihood is no number, or no step from there raised it
+  Index failed_starts = 0;  ///< starts with a likelihood that is not finite, or without any step that raised it
 };
 
-/// The bank with R (diagonal) by maximum likelihood: the target is maximised over R and one factor on every Q (which
-/// held the measurement noise before), theta and T as they are, from several shares of Q; the best end counts. No bank
-/// where that is no more than least_gain nats per sample better than the bank without R: the data ask for none. The
-/// IMM's likelihood is itself approximate for R > 0.
+/// The bank with maximum-likelihood R (diagonal). The target is maximised over R and one factor on every Q (which
+/// contained the measurement noise before); theta and T are constant. The best of several starting shares of Q is
+/// taken. Empty unless it gains more than least_gain nats per sample over the bank without R. For R > 0 the IMM's
+/// likelihood is itself approximate.
 MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
                                             const RefineTuning& tuning);
 
-/// The prior once the states count as unknown: that of the fit with states measured exactly, but Q as if one more
-/// transition of the modes' own harmonic mean covariance in `start` was seen. The global residual covariance, which
-/// holds what the modes differ in, would outweigh the data of modes that differ much. A harmonic mean is at most a few
-/// times the least Q, so no mode is drawn up by more than about its share of one transition.
+/// The prior for unknown states. It equals that of the fit with exactly measured states, except for Q: one additional
+/// transition with the harmonic mean covariance of the modes in `start`. The global residual covariance includes the
+/// modes' differences and would outweigh the data of very different modes. A harmonic mean is at most a few times the
+/// smallest Q, so no mode rises by more than about its share of one transition.
 SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank& start, const RefineTuning& tuning);
 
-/// Where R is more than nothing (by estimate_measurement_noise in the filter that will run the bank, unless it costs
-/// the runs left out more than least_gain, or as given), the fit goes on with the states unknown, theta, Q, R and T
-/// together, to the maximum of the filter's likelihood; that is kept if it pays on the runs left out, each scored by a
-/// fit that has not seen it: its R, its prior and all else are those of the other runs. Rounded states are unknown
-/// whatever R is: their fit goes on so in any case, and R is looked for afterwards, what rounding alone explains being
-/// in the likelihood by then. R is not looked for beside more than eight lags of the state.
-/// `exact`: with its bank of exact states and that bank's prior. `stage` says what was found.
+/// Continues the fit with unknown states if R is not negligible. R is given, or estimated in the bank's filter
+/// (estimate_measurement_noise) and accepted unless left-out runs lose more than least_gain. theta, Q, R and T then
+/// maximise the filter's likelihood together. The result is kept if it gains on left-out runs, each scored by a fit
+/// whose R, prior and other parameters come from the other runs.
+/// Rounded states are unknown for any R: their fit always continues so, and R is searched afterwards, because the
+/// likelihood then already explains the rounding. R is not searched beside more than eight state lags. `exact`: the fit
+/// with exact states, with its bank and prior. `stage` records the result.
 Fit fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation, const Fit& exact,
                                MeasurementStage& stage);
 

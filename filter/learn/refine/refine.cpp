@@ -17,25 +17,27 @@
 namespace modebank {
 namespace {
 
-/// What is not refined. The fit takes the state as measured exactly: a start's R would count what Q then holds twice.
+/// The parts that are not refined. The fit takes states as measured exactly, so R of a start would be counted twice: Q
+/// then includes it.
 Bank frame_of(const Bank& start, const RefineOptions& options) {
   Bank frame = start;
   if (options.measurement_noise) frame.R.setZero();
   return frame;
 }
 
-/// How many modes the stretches start with: more than the mixture's bank has, if so many are to be tried, and as many.
+/// Numbers of modes for starts from stretches: larger ones than the mixture's bank has, if requested, and the same
+/// number.
 std::vector<Index> stretch_modes(const RefineOptions& options, Index of_mixture) {
   std::vector<Index> counts;
   const double kept = refine_tuning.modes_kept;
   for (Index modes = options.most_modes; modes > of_mixture;
        modes = static_cast<Index>(kept * static_cast<double>(modes)))
     counts.push_back(modes);
-  if (of_mixture > 1) counts.push_back(of_mixture);  // every start of one mode ends in the same maximum
+  if (of_mixture > 1) counts.push_back(of_mixture);  // all starts of one mode end in the same maximum
   return counts;
 }
 
-/// The mixture's banks and random stretches of the runs.
+/// Starts: the mixture's banks and random stretches of the runs.
 std::vector<RefineStart> all_starts(const RefineInput& in, const std::vector<Bank>& banks, double Q_transitions) {
   std::vector<RefineStart> starts;
   for (const Bank& bank : banks) starts.push_back({"mixture", switching_model(bank), Q_transitions});
@@ -49,7 +51,7 @@ std::vector<RefineStart> all_starts(const RefineInput& in, const std::vector<Ban
   return starts;
 }
 
-/// The best start again, with weaker and stronger priors on Q.
+/// The best start with weaker and stronger priors on Q.
 std::vector<RefineStart> other_priors(const RefineStart& best, const RefineTuning& tuning) {
   std::vector<RefineStart> starts;
   for (const double transitions : tuning.other_Q_transitions) {
@@ -59,7 +61,7 @@ std::vector<RefineStart> other_priors(const RefineStart& best, const RefineTunin
   return starts;
 }
 
-/// The best start again, drawn towards one motion more and more.
+/// The best start with increasingly strong priors towards one motion.
 std::vector<RefineStart> towards_one_motion(const RefineStart& best, const RefineTuning& tuning) {
   std::vector<RefineStart> starts;
   for (const double transitions : tuning.theta_transitions) {
@@ -69,7 +71,7 @@ std::vector<RefineStart> towards_one_motion(const RefineStart& best, const Refin
   return starts;
 }
 
-/// Which start and how many iterations first; then how strong the prior on Q is.
+/// Chooses the start and the number of iterations first, then the strength of the prior on Q.
 CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& banks) {
   CrossValidation validation(in);
   const RefineTuning& tuning = refine_tuning;
@@ -82,11 +84,11 @@ CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& b
   return validation;
 }
 
-/// The fit on all training runs, its states measured exactly; `chosen`: by the runs left out.
+/// The fit on all training runs with exactly measured states; `chosen`: the choice by left-out runs.
 TrainingFit fit_exactly(const RefineInput& in, const Fit& chosen, const SwitchingPrior& prior) {
   TrainingFit fit = fit_training_runs(in, chosen.model, prior, chosen.iterations);
   if (Eigen::MatrixXd& weights = fit.model.logit.weights; weights.size() > 0)
-    weights.rowwise() -= weights.colwise().mean().eval();  // changes no probability
+    weights.rowwise() -= weights.colwise().mean().eval();  // does not change probabilities
   return fit;
 }
 
@@ -118,7 +120,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   const bool drifts = !chosen.drift.empty();
   chosen.bank = bank_of_fit(in, fit, drifts ? chosen.adaptation : validation.adaptation(chosen.of_splits));
   if (!drifts) chosen = fit_with_measurement_noise(in, validation, chosen, result.measurement);
-  // Where modes drift standard errors are those of the likelihood that the fit maximises, without.
+  // For drifting modes, standard errors are those of the likelihood without drift, which the fit maximises.
   const FilterOptions maximised = result.measurement.iterations > 0 ? learning_filter(filter) : exact_filter(filter);
   chosen.bank = with_errors(in, fit, chosen.prior, chosen.R_estimated, maximised, chosen.bank);
   if (drifts)

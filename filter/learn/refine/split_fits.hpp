@@ -12,29 +12,29 @@
 
 namespace modebank {
 
-/// One part of the cross-validation as fits see it.
+/// The data of one split for fits.
 struct SplitData {
   ValidationSplit runs;
   TrainingTransitions transitions;  ///< of runs.training
-  GlobalModel global;               ///< of the same
+  GlobalModel global;               ///< of the same transitions
 };
 
 std::vector<SplitData> split_data(const RefineInput& in);
-/// Of the split's training runs.
+/// The prior from the split's training runs.
 SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, double noise_transitions);
 SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, const RefineStart& start);
 
-/// The fits from one start, one on every split with the prior of that split, iteration by iteration. Keeps references.
+/// The fits from one start: one per split with that split's prior, iteration by iteration. Refers to its inputs.
 class SplitFits {
  public:
   SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, const RefineStart& start);
-  /// The same with a prior and a start of each split.
+  /// Fits with a prior and a start per split.
   SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, std::vector<SwitchingPrior> priors,
             std::vector<SwitchingRegression> starts);
 
-  /// Goes on to so many iterations in all, or fewer where the objective stands still.
+  /// Continues to this number of iterations in all, or fewer if the objective converges.
   void advance_to(Index iterations);
-  /// Whether none moves any more.
+  /// Whether all fits have converged.
   bool converged() const;
   std::vector<Bank> banks() const;
 

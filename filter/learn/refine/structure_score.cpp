@@ -32,12 +32,12 @@ constexpr Index most_parts = 4, most_trial_iterations = 40, most_compared_transi
 constexpr Index shortest_start = 30, start_per_regressor = 3;
 constexpr double trial_tolerance = 1e-4;  // nats per transition
 
-/// Log-likelihoods of runs that were left out, and how many transitions each has.
+/// Log-likelihoods of left-out runs, and their numbers of transitions.
 struct LeftOutRuns {
   VectorXd log_likelihood, transitions;
 };
 
-/// Runs that were left out, by one fit to the others.
+/// Predicts left-out runs by one fit to the others.
 LeftOutRuns predict(const TrainingTransitions& learned, const TrainingTransitions& left_out,
                     const SwitchingPrior& prior, const ModesAndStart& fit, bool one_theta, std::uint64_t seed) {
   const Index length = std::max(shortest_start, start_per_regressor * learned.structure.regressors());
@@ -47,8 +47,7 @@ LeftOutRuns predict(const TrainingTransitions& learned, const TrainingTransition
   return {sum_by_run(left_out, predictive_log_densities(left_out, em.model())), sum_by_run(left_out, left_out.usable)};
 }
 
-/// A split as one structure sees it, and what every fit to it says of its left-out runs; empty where there is nothing
-/// to learn from.
+/// Predictions of a split's left-out runs by every fit with one structure; empty if there is nothing to learn from.
 std::vector<LeftOutRuns> ask(const ValidationSplit& split, const LinearStructure& structure, Index latest,
                              bool one_theta, std::uint64_t seed) {
   const Index earlier = latest - structure.first_transition();
@@ -79,7 +78,7 @@ VectorXd joined(const std::vector<VectorXd>& parts) {
   return all;
 }
 
-/// The best number of modes of a structure: log-likelihoods of all runs; NaN where a split had nothing to learn from.
+/// The best number of modes of a structure: log-likelihoods of all runs; NaN if a split had nothing to learn from.
 LeftOutRuns best_of(const std::vector<std::vector<LeftOutRuns>>& splits) {
   LeftOutRuns best{VectorXd::Constant(1, not_a_number), VectorXd::Ones(1)};
   if (std::any_of(splits.begin(), splits.end(), [](const auto& said) { return said.empty(); })) return best;

@@ -15,17 +15,17 @@
 
 namespace modebank {
 
-/// What a bank is refined from, and how. Keeps references.
+/// Inputs of the refinement of a bank. Refers to them.
 struct RefineInput {
   const Recording& recording;
   const WindowFits& fits;
-  const Bank& frame;  ///< everything that is not refined
+  const Bank& frame;  ///< the parts that are not refined
   const TrainingTransitions& transitions;
   const RefineOptions& options;
   const FilterOptions& filter;
 
   SwitchingPrior prior(double noise_transitions) const;
-  /// Of a start, with its pull towards one motion.
+  /// The prior of a start, including its weight towards one motion.
   SwitchingPrior prior(const RefineStart& start) const;
 };
 
@@ -35,34 +35,34 @@ SwitchingEmOptions em_options(const RefineOptions& options);
 struct TrainingFit {
   SwitchingRegression model;
   ModePosterior posterior;
-  std::vector<ScreenedMode> screened;  ///< the frame's and those of the fit
-  std::vector<double> objective;       ///< before each iteration until modes were screened
-  Shrinking shrinking = {};            ///< of the model as it stands
+  std::vector<ScreenedMode> screened;  ///< modes screened from the frame and from the fit
+  std::vector<double> objective;       ///< before each iteration until modes are screened
+  Shrinking shrinking = {};            ///< of the present model
 };
 
-/// Expectation-maximisation from `model` for a number of iterations, or fewer if the objective stands still; then
-/// starved, unstable and duplicate modes are taken out one by one, each time with some more iterations for the others.
+/// Expectation-maximisation from `model` for a number of iterations, or fewer if the objective converges. Starved,
+/// unstable and duplicate modes are then removed one by one, each followed by some more iterations.
 TrainingFit fit_training_runs(const RefineInput& in, const SwitchingRegression& model, const SwitchingPrior& prior,
                               Index iterations);
 
-/// The fit as a bank, its modes weighted by their shares of the transitions. Standard errors are not known yet.
+/// The fit as a bank; modes have the weight of their share of the transitions. Without standard errors.
 Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit, const NoiseAdaptation& adaptation);
 
-/// The bank that this fit led to (with_standard_errors: likelihood/standard_errors.hpp) in the filter whose likelihood
-/// it maximises, exact_filter's or learning_filter's. `estimated_R`: R is among what was estimated.
+/// The bank of this fit with standard errors (likelihood/standard_errors.hpp), in the filter whose likelihood it
+/// maximises: exact_filter or learning_filter. `estimated_R`: whether R is among the estimated parameters.
 Bank with_errors(const RefineInput& in, const TrainingFit& fit, const SwitchingPrior& prior, bool estimated_R,
                  const FilterOptions& filter, const Bank& bank);
 
-/// The least R that refinement knows: as good as none. n_y.
+/// The smallest R in refinement, which is negligible. n_y.
 Eigen::VectorXd least_measurement_noise(const WindowFits& fits, const RefineTuning& tuning);
 
-/// The filter whose likelihood is maximised once there is measurement noise: as the bank will be run, but an IMM with
-/// known parameters.
+/// The filter whose likelihood is maximised with measurement noise: the bank's filter, but an IMM without adaptation of
+/// parameters.
 FilterOptions learning_filter(const FilterOptions& filter);
 
-/// The filter whose likelihood expectation-maximisation raises: the same with every run as rough as the others. Errors
-/// in an adaptive one would be those of an estimate that weighs rough runs less, which this is not: over draws of runs
-/// with sd 0.4 and 2 they are half of what theta is off by (standard_errors_test.cpp).
+/// The filter whose likelihood expectation-maximisation raises: learning_filter with equal noise in every run. An
+/// adaptive filter would weigh rough runs less, which this estimate does not; its standard errors are then too small.
+/// Over draws of runs with sd 0.4 and 2 they are half of theta's actual error (standard_errors_test.cpp).
 FilterOptions exact_filter(const FilterOptions& filter);
 
 }  // namespace modebank

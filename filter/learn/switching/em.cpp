@@ -10,14 +10,14 @@
 namespace modebank {
 namespace {
 
-/// Theta and Q of all modes, each given the other.
+/// Maximises theta and Q of all modes, each given the other.
 class ConditionalMaximiser {
  public:
   ConditionalMaximiser(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
                        SwitchingRegression& model)
       : structure_(structure), sums_(sums), prior_(prior), model_(model) {}
 
-  // Where a Q has no inverse, theta stays: the objective is then minus infinity, and nothing chooses such a fit.
+  // If a Q is singular, theta stays: the objective is then minus infinity, and such a fit is never chosen.
   void set_theta(Index j) {
     if (const auto best = best_theta(j, j + 1)) model_.theta.col(j) = *best;
   }
@@ -36,7 +36,7 @@ class ConditionalMaximiser {
   Eigen::MatrixXd& noise(Index j) { return model_.Q[static_cast<std::size_t>(j)]; }
   const RegressionSums& at(Index j) const { return sums_.modes[static_cast<std::size_t>(j)]; }
 
-  /// Of the modes first to end - 1 together, and the prior; empty where one's Q is not definite.
+  /// The best theta for modes first to end - 1 together with the prior; empty if a Q is not definite.
   std::optional<Eigen::VectorXd> best_theta(Index first, Index end) {
     Eigen::MatrixXd information = prior_.information;
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(prior_.mean.size());
@@ -93,7 +93,7 @@ void ExpectationMaximisation::step() {
   if (!model_.logit.empty()) raise_switching(transitions_, posterior_, prior_, model_);
   posterior_ = smooth_modes(transitions_, model_);
   const double gain = posterior_.log_likelihood + log_prior(prior_, options_.one_theta, model_) - objective_.back();
-  // The first step leaves the start's own optimum for the prior's and may lose.
+  // The first step moves from the start's optimum to the prior's, so the objective may fall.
   converged_ = objective_.size() > 1 && !(gain >= options_.tolerance * static_cast<double>(transitions_.count()));
 }
 

@@ -8,25 +8,25 @@
 namespace modebank {
 
 struct SwitchingEmOptions {
-  bool one_theta = false;   ///< all modes have the same theta, and differ in Q
-  double tolerance = 1e-6;  ///< nats per transition: the objective stands still when it gains less
-  int alternations = 3;     ///< of theta and Q in one maximisation
+  bool one_theta = false;   ///< all modes share theta and differ in Q
+  double tolerance = 1e-6;  ///< nats per transition: converged if the objective gains less
+  int alternations = 3;     ///< between theta and Q in one maximisation
 };
 
-/// The model with the largest expected log posterior near `model`, whose parameters the sums were computed with: theta
-/// given Q, then Q given theta, a few times each (ECM: Meng & Rubin 1993), T and initial probabilities exactly; T of a
-/// logit is not among them (transition_regression.hpp).
+/// The model with the largest expected log posterior near `model`, whose parameters were used for the sums. theta given
+/// Q and Q given theta alternate a few times (ECM: Meng & Rubin 1993). T and initial probabilities are exact, except T
+/// of a logit (transition_regression.hpp).
 SwitchingRegression maximise(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
                              const SwitchingEmOptions& options, SwitchingRegression model);
 
-/// Expectation-maximisation of the switching regression on one set of runs, iteration by iteration. Keeps references
-/// to the transitions and the prior.
+/// Expectation-maximisation of the switching regression on one set of runs, iteration by iteration. Refers to the
+/// transitions and the prior.
 class ExpectationMaximisation {
  public:
   ExpectationMaximisation(const TrainingTransitions& transitions, const SwitchingPrior& prior,
                           const SwitchingEmOptions& options, SwitchingRegression start);
 
-  /// One iteration; does nothing once the objective stands still.
+  /// One iteration; does nothing after convergence.
   void step();
 
   bool converged() const { return converged_; }

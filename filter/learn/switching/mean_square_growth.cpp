@@ -11,8 +11,7 @@
 namespace modebank {
 namespace {
 
-/// The operator on the modes' second moments, symmetric matrices of which the lower triangles stand one after the
-/// other.
+/// The operator on the modes' second moments: symmetric matrices, stored as their lower triangles one after the other.
 class SecondMoments {
  public:
   SecondMoments(const LinearStructure& structure, const SwitchingRegression& model)
@@ -64,11 +63,11 @@ class SecondMoments {
 double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model) {
   const SecondMoments moments(structure, model);
   if (!moments.finite()) return std::numeric_limits<double>::infinity();
-  // The sum of all modes' moments then goes on as one mode's does, for rows of T sum to one: a root of n x n, not of
-  // all moments, is exact where these have none that is simple.
+  // With one motion, the sum of all modes' moments evolves like that of a single mode, because rows of T sum to one. A
+  // root of the n x n matrix is exact even where the eigenvalues of the larger operator are multiple.
   if (moments.one_motion()) return std::pow(spectral_radius(unpack(structure, model.theta.col(0))), 2);
-  // The operator keeps positive semidefinite matrices so, hence its spectral radius is one of its eigenvalues (Krein &
-  // Rutman 1948), and no other has a larger real part.
+  // The operator maps positive semidefinite matrices to such matrices. So its spectral radius is one of its eigenvalues
+  // (Krein & Rutman 1948), and no other has a larger real part.
   return largest_real_eigenvalue([&](const Eigen::VectorXd& x) { return moments.after_a_step(x); },
                                  moments.of_white_noise());
 }

@@ -16,10 +16,9 @@
 namespace modebank {
 namespace {
 
-constexpr double power_ridge = 1e-12;  // share of the regressors' power: keeps unexcited regressions solvable
+constexpr double power_ridge = 1e-12;  // share of the regressors' power; keeps unexcited regressions solvable
 
-/// 1/2 W log det of the residual covariance about the least squares of these transitions. Sums add: pooling modes adds
-/// theirs.
+/// 1/2 W log det of the residual covariance of these transitions' least squares. Sums of pooled modes add up.
 double cost(const RegressionSums& sums) {
   Eigen::MatrixXd normal = sums.G;
   normal.diagonal().array() += power_ridge * std::max(sums.G.trace(), std::numeric_limits<double>::min());
@@ -31,7 +30,7 @@ double cost(const RegressionSums& sums) {
 std::vector<RegressionSums> sums_of_modes(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                           const SwitchingRegression& model) {
   const Eigen::MatrixXd& X = transitions.data.regressors;
-  const Eigen::VectorXd middle = model.theta.rowwise().mean();  // near every mode, so that little cancels
+  const Eigen::VectorXd middle = model.theta.rowwise().mean();  // near every mode, which limits cancellation
   const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, middle);
   std::vector<RegressionSums> modes;
   for (Index j = 0; j < model.modes(); ++j)
@@ -48,7 +47,7 @@ Index free_parameters(const LinearStructure& structure, bool one_theta) {
   return (one_theta ? 0 : theta) + noise;
 }
 
-/// The pair of modes that loses least by being pooled, if it loses less than `least` nats.
+/// The pair of modes whose pooling loses least, if it loses less than `least` nats.
 std::optional<Twins> closest_twins(const std::vector<RegressionSums>& modes, double least) {
   std::optional<Twins> twins;
   for (std::size_t i = 0; i < modes.size(); ++i)
@@ -68,7 +67,7 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& columns, Index drop) {
   return rest;
 }
 
-/// Leaves one mode out; what led to it or from it is spread over the others as they are.
+/// Removes one mode; its transitions are distributed over the other modes in proportion.
 void drop_mode(Index mode, SwitchingRegression& model) {
   model.theta = without(model.theta, mode);
   if (!model.logit.empty()) model.logit.weights = without(model.logit.weights.transpose(), mode).transpose();
@@ -80,7 +79,7 @@ void drop_mode(Index mode, SwitchingRegression& model) {
   model.initial /= model.initial.sum();
 }
 
-/// Gives the twin what belonged to the dropped mode, weighted as the modes are.
+/// Adds the dropped mode's data to the remaining mode of the pair, weighted as the modes are.
 void merge(const Twins& twins, const std::vector<RegressionSums>& modes, SwitchingRegression& model) {
   const double kept = modes[static_cast<std::size_t>(twins.kept)].weight;
   const double dropped = modes[static_cast<std::size_t>(twins.dropped)].weight;
@@ -105,7 +104,7 @@ std::optional<Index> starved_mode(const LinearStructure& structure, const std::v
   return least - modes.begin();
 }
 
-/// The mode with the largest spectral radius above 1, if the switching system is not mean-square stable with it.
+/// The mode with the largest spectral radius above 1, if the switching system with it is not mean-square stable.
 std::optional<Index> unstable_mode(const LinearStructure& structure, const SwitchingRegression& model,
                                    double growth_slack) {
   std::optional<Index> unstable;

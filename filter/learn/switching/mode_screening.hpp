@@ -8,27 +8,27 @@
 
 namespace modebank {
 
-/// A model that lost a mode, and which.
+/// A model after the removal of a mode, and that mode.
 struct ScreenedModel {
   SwitchingRegression model;
   ScreenedMode mode;
 };
 
-/// The model without one mode that cannot serve, worst reason first; empty when all can. The last mode stays whatever
-/// it is.
+/// The model without its worst unusable mode; empty if all modes are usable. The last mode always stays. Reasons, worst
+/// first:
 /// - "starved": fewer effective transitions than regressors + 1;
-/// - "unstable": spectral radius of I + A above 1, the largest first, as long as the switching system is not
-///   mean-square stable with it (a motion that never lasts may be unstable by itself);
-/// - "duplicate" of another: pooling both modes' transitions (the moment-preserving merge of Runnalls 2007, IEEE Trans.
-///   AES 43(3), its bound on the loss being the increase of 1/2 sum W log det Q) costs less than a likelihood-ratio
-///   test at 5 % would notice. Its part in T goes to its twin.
-/// `one_theta`: modes differ in Q alone, which is what the test then counts.
+/// - "unstable": spectral radius of I + A above 1, the largest first, as long as the switching system with it is not
+///   mean-square stable (a mode that never lasts may be unstable by itself);
+/// - "duplicate" of another: pooling both modes' transitions costs less than a likelihood-ratio test at 5 % would
+///   detect. Pooling is the moment-preserving merge of Runnalls 2007, IEEE Trans. AES 43(3); the cost is its bound, the
+///   increase of 1/2 sum W log det Q. The other mode takes over its part in T.
+/// `one_theta`: modes differ in Q alone, and the test counts only Q.
 std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                                 const SwitchingRegression& model, bool one_theta,
                                                 const RefineTuning& tuning);
 
-/// The model without the mode that it can best do without: the pair of modes that loses least by being pooled (as under
-/// "duplicate" above, however much that is) is merged. Two modes at least.
+/// The model with its closest pair of modes merged: the pair whose pooling loses least, however much that is (see
+/// "duplicate" above). Requires at least two modes.
 SwitchingRegression with_closest_pair_merged(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                              const SwitchingRegression& model);
 

@@ -11,7 +11,7 @@
 namespace modebank {
 namespace {
 
-/// Modes `which` moved by `share` of their way to theta.
+/// Moves the modes `which` by `share` of the distance to theta.
 SwitchingRegression moved(const SwitchingRegression& model, const std::vector<Index>& which,
                           const Eigen::VectorXd& theta, double share) {
   SwitchingRegression result = model;

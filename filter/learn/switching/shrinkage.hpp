@@ -8,21 +8,21 @@
 
 namespace modebank {
 
-/// The prior with every mode's theta drawn towards one motion: normal about the theta that all modes of `model` would
-/// share, fitted to these transitions, with the information of `theta_transitions` more of them. None: the prior as it
-/// is; without end: modes that differ in noise alone.
+/// The prior with every mode's theta shrunk towards one motion. theta is normal about the theta that all modes of
+/// `model` would share, fitted to these transitions, with the information of `theta_transitions` more of them. 0: prior
+/// unchanged. Infinity: all modes share theta and differ in noise alone.
 SwitchingPrior towards_one_motion(SwitchingPrior prior, const TrainingTransitions& transitions,
                                   SwitchingRegression model, double theta_transitions, const RefineTuning& tuning);
 
-/// A model whose modes were drawn towards one motion, and how far.
+/// A model after shrinking modes towards one motion, and the amount.
 struct ShrunkModel {
   SwitchingRegression model;
   Shrinking shrinking;
 };
 
-/// The model with modes drawn towards `theta` (p) by the least share of the way at which the switching system no longer
-/// grows in mean square: the modes that are unstable by themselves, or all where that does not do. Empty where the
-/// system does not grow (as it is, then), or where even one mode of that theta would.
+/// Moves modes towards `theta` (p) by the smallest share of the distance at which the switching system no longer grows
+/// in mean square. Moves the modes that are unstable by themselves, or all modes if that is not enough. Empty if the
+/// system does not grow, or if one mode with that theta would grow, too.
 std::optional<ShrunkModel> shrunk_to_stability(const LinearStructure& structure, const SwitchingRegression& model,
                                                const Eigen::VectorXd& theta, const RefineTuning& tuning);
 

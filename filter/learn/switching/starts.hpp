@@ -9,18 +9,19 @@
 
 namespace modebank {
 
-/// The prior that refine.hpp describes. `prior_sd`: p standard deviations, or empty.
+/// The prior described in refine.hpp. `prior_sd`: p standard deviations, or empty.
 SwitchingPrior switching_prior(const TrainingTransitions& transitions, const GlobalModel& global,
                                const Eigen::VectorXd& prior_sd, double noise_transitions,
                                const RefineTuning& tuning = {});
 
-/// p x p, information about theta that one transition carries on average where residuals have covariance Q, made
-/// definite by `least_information` of its largest entry. Throws DataError where Q has no inverse.
+/// Average information of one transition about theta for residuals of covariance Q, p x p. It is made definite by
+/// `least_information` of its largest entry. Throws DataError if Q is singular.
 Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const Eigen::MatrixXd& Q,
                                  double least_information);
 
-/// `modes` modes, each the prior-regularised regression of a random stretch of `length` transitions, stretches drawn
-/// without overlap where there is room; sticky transitions. Restart `index` derives its generator from the seed.
+/// A start with `modes` modes, each the prior-regularised regression of a random stretch of `length` transitions.
+/// Stretches do not overlap if there is room. The transition matrix favours staying. Restart `index` derives its
+/// generator from the seed.
 SwitchingRegression start_from_stretches(const TrainingTransitions& transitions, const SwitchingPrior& prior,
                                          Index modes, Index length, std::uint64_t seed, Index index,
                                          const RefineTuning& tuning = {});

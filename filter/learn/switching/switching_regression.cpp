@@ -17,7 +17,7 @@
 namespace modebank {
 namespace {
 
-/// log N(r_k; 0, Q) of every transition of one mode, to the power of its sample weight.
+/// log N(r_k; 0, Q) of every transition under one mode, times its sample weight.
 Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eigen::VectorXd& theta,
                               const Eigen::MatrixXd& Q) {
   const Eigen::MatrixXd r =
@@ -25,13 +25,13 @@ Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eige
   const Eigen::MatrixXd whitened = Cholesky(Q).whiten(Eigen::MatrixXd(r.transpose()));
   const double constant = static_cast<double>(Q.rows()) * log_two_pi + log_determinant(Q);
   Eigen::ArrayXd log_density = -0.5 * (whitened.colwise().squaredNorm().array() + constant).transpose();
-  if (transitions.log_noise_factor.size() > 0)  // of rows as they were before they were divided
+  if (transitions.log_noise_factor.size() > 0)  // density of the rows before the division
     log_density -= (transitions.usable.array() > 0.0)
                        .select(0.5 * static_cast<double>(Q.rows()) * transitions.log_noise_factor.array(), 0.0);
   return log_density * transitions.usable.array();
 }
 
-/// N x K.
+/// Densities of all modes, N x K.
 Eigen::MatrixXd densities_of_modes(const TrainingTransitions& transitions, const SwitchingRegression& model) {
   Eigen::MatrixXd log_density(transitions.count(), model.modes());
   tbb::parallel_for(Index{0}, model.modes(), [&](Index j) {
@@ -40,7 +40,7 @@ Eigen::MatrixXd densities_of_modes(const TrainingTransitions& transitions, const
   return log_density;
 }
 
-/// Forward-backward over the rows of one run; adds to the posterior's sums and fills its rows.
+/// Forward-backward algorithm over the rows of one run. Adds to the posterior's sums and fills its rows.
 class RunSmoother {
  public:
   RunSmoother(const SwitchingRegression& model, const TrainingTransitions& transitions,
@@ -55,7 +55,7 @@ class RunSmoother {
     backward(rows, posterior);
   }
 
-  /// log p(transition | those before) of the run's rows.
+  /// log p(transition | previous ones) for the run's rows.
   void predict(const RunRows& all, Eigen::VectorXd& log_density) {
     const RunRows rows = from_first_usable(all);
     if (rows.count == 0) return;
@@ -64,7 +64,7 @@ class RunSmoother {
   }
 
  private:
-  /// Leading transitions that are not usable are left out, as the filter starts after them.
+  /// The rows without leading unusable transitions; the filter starts after these.
   RunRows from_first_usable(RunRows rows) const {
     while (rows.count > 0 && transitions_.usable(rows.first) == 0.0) {
       ++rows.first;
@@ -109,10 +109,10 @@ class RunSmoother {
     posterior.first += model_.initial.cwiseProduct(later);
   }
 
-  /// Mode probabilities that the step to transition k starts from.
+  /// Mode probabilities before the step to transition k.
   Eigen::VectorXd before(Index k) const { return k > 0 ? filtered_.col(k - 1) : model_.initial; }
 
-  /// A transition that misses a sample switches by T alone.
+  /// The transition matrix of a row; T alone if a sample is missing.
   const Eigen::MatrixXd& transition_of(Index row) {
     if (model_.logit.empty() || transitions_.usable(row) == 0.0) return model_.transition;
     const Index n = transitions_.structure.dimension();

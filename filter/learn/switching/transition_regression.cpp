@@ -11,13 +11,14 @@ namespace modebank {
 namespace {
 
 constexpr double negligible_share = 1e-12;  // of a transition that starts from a mode
-constexpr double curvature_ridge = 1e-10;   // of the largest curvature: a constant on a row of log T changes nothing
+// of the largest curvature; adding a constant to a row of log T has no effect
+constexpr double curvature_ridge = 1e-10;
 constexpr int most_halvings = 30;
 
 Index regressor_count(const LinearStructure& s) { return s.dimension() + s.acting_inputs(); }
 
-/// The expected log posterior of switches as a function of b = log T up to constants in rows, and of the weights W; in
-/// one vector b row by row, then W column by column.
+/// The expected log posterior of switches as a function of b = log T (up to constants in rows) and of the weights W.
+/// The vector of unknowns holds b row by row, then W column by column.
 class SwitchObjective {
  public:
   SwitchObjective(const TrainingTransitions& transitions, const ModePosterior& posterior, const SwitchingPrior& prior,
@@ -28,7 +29,7 @@ class SwitchObjective {
         d_(regressor_count(transitions.structure)),
         memory_information_(1.0 / (prior.memory_sd * prior.memory_sd)),
         z_((transitions.data.regressors.leftCols(d_).rowwise() - model.logit.reference.transpose()).transpose()) {
-    // A transition that misses a sample switched by T alone.
+    // A transition with a missing sample has switched by T alone.
     for (Index k = 0; k < z_.cols(); ++k)
       if (transitions.usable(k) == 0.0) z_.col(k).setZero();
   }

@@ -7,28 +7,29 @@
 
 namespace modebank {
 
-/// A logit without any effect yet, for expectation-maximisation to go on with: its reference is the mean of the
-/// regressors (x, v) over the usable transitions.
+/// A logit without effect, as a start for expectation-maximisation. Its reference is the mean of the regressors (x, v)
+/// over the usable transitions.
 TransitionLogit no_effect(const TrainingTransitions& transitions, Index modes);
 
-/// Standard deviations of the regressors (x, v) over the usable transitions; one for a regressor that is
-/// constant to rounding, which no weight can use. d.
+/// Standard deviations of the regressors (x, v) over the usable transitions, d. One for a regressor that is constant up
+/// to rounding, whose weight has no effect.
 Eigen::VectorXd regressor_spread(const TrainingTransitions& transitions);
 
-/// What is believed of a guard.
+/// Prior of state-dependent transition probabilities.
 struct GuardPrior {
-  double width = 0.0;  ///< standard deviation of the weights in units of the regressors' spread; 0: there is no guard
+  double width = 0.0;  ///< standard deviation of the weights in units of the regressors' standard deviation; 0:
+                       ///< constant T
   double memory_sd = std::numeric_limits<double>::infinity();  ///< SwitchingPrior::memory_sd
 };
 
-/// The prior with that of a guard's weights and memory.
+/// The prior extended by that of the logit's weights and memory.
 SwitchingPrior with_guard(SwitchingPrior prior, const TrainingTransitions& transitions, const GuardPrior& guard);
 
-/// Raises the expected log posterior of the switches, T and the logit's weights together: sum over transitions of
-/// posterior.pairs log P(j | i, z), prior.counts on every log T_ij, weights and memory with their normal priors. One
-/// step of Newton's method on the concave objective (McCullagh & Nelder 1989, section 5.2), halved until it rises: a
-/// generalised maximisation (Dempster, Laird & Rubin 1977), which suffices for the likelihood never to fall. Returns
-/// what is gained [nats].
+/// Raises the expected log posterior of the switches over T and the logit's weights together: the sum over transitions
+/// of posterior.pairs log P(j | i, z), with prior.counts on every log T_ij and normal priors on weights and memory. It
+/// takes one Newton step on the concave objective (McCullagh & Nelder 1989, section 5.2), halved until the objective
+/// rises. This generalised maximisation (Dempster, Laird & Rubin 1977) suffices for the likelihood never to fall.
+/// Returns the gain [nats].
 double raise_switching(const TrainingTransitions& transitions, const ModePosterior& posterior,
                        const SwitchingPrior& prior, SwitchingRegression& model);
 

@@ -6,13 +6,13 @@
 
 #include "filter/step/equations/bounds.hpp"
 
-/// Products and factorisation of small matrices in one fixed order of summation. Eigen's own products add in another
-/// order for fixed than for dynamic sizes; with these, both give the same bits, and no call allocates.
+/// Products and factorisation of small matrices with a fixed order of summation and without allocation. Eigen's
+/// products sum in different orders for fixed and dynamic sizes; these give the same bits for both.
 namespace modebank::small {
 
 using Eigen::Index;
 
-/// out = a b' where all but the first `seen` columns of b are zero. Requires seen >= 1; out must not alias.
+/// out = a b', where only the first `seen` columns of b are nonzero. Requires seen >= 1; out must not alias.
 template <class Out, class A, class B>
 void multiply_transposed(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.rows(); ++j)
@@ -29,9 +29,9 @@ void multiply_transposed(Out& out, const A& a, const B& b) {
   multiply_transposed(out, a, b, a.cols());
 }
 
-/// out = a b where row i of `a` is that of a shift from row i - full on, for every i >= full: e_{i - full}', and where
-/// b is zero outside its first `inner` rows and columns, as columns of `out` then are, which are left as they stand.
-/// The same bits as multiply, as long as b is finite. full = a.rows(): any a.
+/// out = a b for an `a` whose rows i >= full are shifts: row i is e_{i - full}'. b is zero outside its first `inner`
+/// rows and columns; the corresponding columns of `out` are not written. The bits equal those of multiply if b is
+/// finite. full = a.rows(): any a.
 template <class Out, class A, class B>
 void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
   for (Index j = 0; j < std::min(inner, b.cols()); ++j) {
@@ -55,8 +55,8 @@ void multiply(Out& out, const A& a, const B& b) {
     }
 }
 
-/// out += a b' for such a b and an a whose columns from `inner` on are zero, where the product is known to be symmetric
-/// (add_symmetric_product).
+/// out += a b' for b as above and an `a` whose columns from `inner` on are zero, where the product is known to be
+/// symmetric (add_symmetric_product).
 template <class Out, class A, class B>
 void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
   const Index rows = std::min(a.rows(), inner + full);
@@ -74,8 +74,8 @@ void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full
     }
 }
 
-/// out = a b where `a` differs from the identity in its first `seen` columns alone. The same bits as multiply, as long
-/// as b is finite. seen = a.cols(): any a.
+/// out = a b, where `a` differs from the identity only in its first `seen` columns. The bits equal those of multiply if
+/// b is finite. seen = a.cols(): any a.
 template <class Out, class A, class B>
 void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.cols(); ++j)
@@ -86,7 +86,7 @@ void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
     }
 }
 
-/// out += a b' for such a b, where the product is known to be symmetric (add_symmetric_product).
+/// out += a b' for b as above, where the product is known to be symmetric (add_symmetric_product).
 template <class Out, class A, class B>
 void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.rows(); ++j)
@@ -98,7 +98,7 @@ void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) 
     }
 }
 
-/// out += a b' where the product is known to be symmetric: the lower triangle is computed and mirrored, so `out` stays
+/// out += a b' for a product that is known to be symmetric. The lower triangle is computed and mirrored, so `out` stays
 /// symmetric to the bit.
 template <class Out, class A, class B>
 void add_symmetric_product(Out& out, const A& a, const B& b) {
@@ -139,7 +139,7 @@ struct Cholesky {
     }
   }
 
-  /// v := L^-1 v: the part of each component that earlier ones do not explain, with variance D.
+  /// v := L^-1 v: each component minus its prediction from earlier ones; its variance is D.
   template <class Vector>
   void decorrelate(Vector&& v) const {
     for (Index i = 1; i < D.size(); ++i)
@@ -156,7 +156,7 @@ struct Cholesky {
     }
   }
 
-  /// v' S^-1 v of a decorrelated v.
+  /// v' S^-1 v for a decorrelated v.
   template <class Vector>
   double squared_distance(const Vector& v) const {
     double sum = 0.0;

@@ -4,23 +4,27 @@
 
 #include "filter/step/equations/imm.hpp"
 
-/// Modes whose coefficients wander within a run, where the state is measured exactly (R = 0). Each mode k keeps its own
-/// Gaussian of theta, mean m_k and covariance s P_k, s the noise scale, from theta_k and P0_k at a start; it is never
-/// mixed with another mode's. With G the regressors' matrix, x[k+1] = x + G' theta + w,
-///   y:  mean of mode k with m_k for theta, S_k = s (Q_k + G_k' P_k G_k);
-///   theta, had mode k ruled the step: m_k + g, P_k - D with gain D G.. of the Kalman filter; else as it was; both
-///       with their probabilities mu_k and 1 - mu_k after the measurement, matched in mean and covariance:
-///       m_k + mu_k g,   P_k - mu_k D + mu_k (1 - mu_k) g g' / s;
-///   then time passes: m_k <- theta_k + leak (m_k - theta_k),   P_k <- leak^2 P_k + W_k.
-/// Where nothing was measured the state's error is correlated with theta's (`cross`), which predictions several steps
-/// ahead take into account to first order: the extended Kalman filter of (theta, x). W = P0 = 0 is the bank that does
-/// not drift. One mode of diagonal Q is DriftingRecursion.
-/// Modes of one theta, which differ in noise alone (`one_motion`), keep one Gaussian of it: with g_k and D_k what it
-/// would move and know had mode k ruled the step,
+/// Modes with coefficients that drift within a run, for an exactly measured state (R = 0). Each mode k has its own
+/// Gaussian of theta with mean m_k and covariance s P_k, where s is the noise scale. It starts from theta_k and P0_k,
+/// and is never mixed with another mode's. G is the regressors' matrix in x[k+1] = x + G' theta + w.
+///
+/// - Prediction of y: the mean of mode k uses m_k for theta; S_k = s (Q_k + G_k' P_k G_k).
+/// - Update: if mode k ruled the step, theta has mean m_k + g and covariance P_k - D, with the Kalman filter's g and D.
+///   Otherwise theta is unchanged. These cases have the probabilities mu_k and 1 - mu_k after the measurement. Matching
+///   mean and covariance gives
+///       m_k + mu_k g,   P_k - mu_k D + mu_k (1 - mu_k) g g' / s.
+/// - Then time passes: m_k <- theta_k + leak (m_k - theta_k),   P_k <- leak^2 P_k + W_k.
+///
+/// Without a measurement the state's error is correlated with theta's (`cross`). Predictions several steps ahead
+/// include this to first order, as the extended Kalman filter of (theta, x) does. W = P0 = 0 gives the bank without
+/// drift. One mode of diagonal Q is DriftingRecursion.
+///
+/// Modes that share theta (`one_motion`) have one Gaussian of it. g_k and D_k are the change of mean and covariance if
+/// mode k ruled the step:
 ///   m + sum_k mu_k g_k,   P + sum_k mu_k ((g_k - g)(g_k - g)' / s - D_k),  g = sum_k mu_k g_k.
 namespace modebank::drift {
 
-/// [A B (c)] of a mode from its theta; companion rows stay.
+/// Sets [A B (c)] of a mode from its theta; companion rows are unchanged.
 template <class Mode, class Theta>
 void set_coefficients(const LinearStructure& s, const Theta& theta, Mode& mode) {
   const Eigen::Index n = s.dimension(), m = s.acting_inputs(), r = s.regressors();
@@ -34,8 +38,8 @@ void set_coefficients(const LinearStructure& s, const Theta& theta, Mode& mode) 
   }
 }
 
-/// step.drift.mixed: of mode j's theta, the covariance with the error of the state that its prediction starts from. Of
-/// that state what mode j made goes with its theta; where modes have one theta, all of it.
+/// step.drift.mixed: covariance of mode j's theta with the error of the state at which its prediction starts. Only mode
+/// j's own part of that state is correlated with its theta; with a shared theta, all of it.
 template <int N, int NY>
 void mix_cross(const FilterModel<N, NY>& model, const FilterState<N>& state, std::size_t j, FilterStep<N, NY>& step) {
   const auto k = static_cast<Eigen::Index>(j);
@@ -50,7 +54,7 @@ void mix_cross(const FilterModel<N, NY>& model, const FilterState<N>& state, std
     mixed = step.mixing.matrix(k, k) * state.drift.cross[j];
 }
 
-/// What errors of theta add to the prediction of mode j that was made with its mean; after mix_cross.
+/// Adds the effect of theta's errors to the prediction of mode j made with its mean; call after mix_cross.
 template <int N, int NY, class U>
 void add_errors(const FilterModel<N, NY>& model, const FilterState<N>& state, std::size_t j, const Gaussian<N>& from,
                 const U& u, FilterStep<N, NY>& step) {
@@ -85,7 +89,7 @@ void add_errors(const FilterModel<N, NY>& model, const FilterState<N>& state, st
   make_usable(kalman.predicted);
 }
 
-/// Step 3 of imm.hpp with the modes' coefficients as they stand.
+/// Step 3 of imm.hpp with the modes' present coefficients.
 template <int N, int NY, class U>
 void predict_modes(const FilterModel<N, NY>& model, const FilterState<N>& state, const std::vector<Gaussian<N>>& from,
                    const U& u, FilterStep<N, NY>& step) {
@@ -99,7 +103,7 @@ void predict_modes(const FilterModel<N, NY>& model, const FilterState<N>& state,
   }
 }
 
-/// Between two samples: coefficients leak to where they came from, and wander.
+/// Advances time between two samples: coefficients leak towards theta_k and drift.
 inline void pass_time(const DriftModel& model, DriftState& state) {
   if (model.leak != 1.0) state.theta = model.theta0 + model.leak * (state.theta - model.theta0);
   for (std::size_t k = 0; k < state.P.size(); ++k) {
@@ -110,14 +114,14 @@ inline void pass_time(const DriftModel& model, DriftState& state) {
     for (Eigen::MatrixXd& cross : state.cross) cross *= model.leak;
 }
 
-/// Nothing was measured: theta is what it was, and the predicted state's error goes with its error.
+/// Without a measurement theta is unchanged; the predicted state's error stays correlated with theta's.
 template <int N, int NY>
 void keep_prediction(const FilterModel<N, NY>& model, const FilterStep<N, NY>& step, FilterState<N>& state) {
   for (std::size_t j = 0; j < state.drift.cross.size(); ++j) state.drift.cross[j] = step.drift.cross[j];
   pass_time(model.drift, state.drift);
 }
 
-/// step.drift.gain and .move: what mode j's theta learns of the measurement had the mode made it.
+/// step.drift.gain and .move: the update of mode j's theta if mode j made the measurement.
 template <int N, int NY, class Sensor>
 void match(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step) {
   DriftWorkspace<N, NY>& at = step.drift;
@@ -131,7 +135,7 @@ void match(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step) {
   small::multiply(at.move, at.gain, kalman.innovation);
 }
 
-/// P + weight (spread move move' - gain G'), after match.
+/// P + weight (spread move move' - gain G'); call after match.
 template <int N, int NY>
 void learn_covariance(const DriftWorkspace<N, NY>& at, double weight, double spread, Eigen::MatrixXd& P) {
   for (Eigen::Index b = 0; b < P.cols(); ++b)
@@ -143,7 +147,7 @@ void learn_covariance(const DriftWorkspace<N, NY>& at, double weight, double spr
     }
 }
 
-/// What the error of mode j's state has to do with theta once both have learned, after match.
+/// Covariance of mode j's state error with theta after both updates; call after match.
 template <int N, int NY, class Sensor>
 void learn_cross(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step, DriftState& state) {
   DriftWorkspace<N, NY>& at = step.drift;
@@ -153,12 +157,12 @@ void learn_cross(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step, D
     state.cross[j].noalias() -= at.gain.col(i) * at.seen.col(i).transpose();
 }
 
-/// Mode j's theta after a measurement which it made with probability mu; `scale`: of the noise in its prediction.
+/// Updates mode j's theta with a measurement that it made with probability mu; `scale`: noise scale of its prediction.
 template <int N, int NY, class Sensor>
 void learn_mode(const Sensor& sensor, std::size_t j, double mu, double scale, FilterStep<N, NY>& step,
                 DriftState& state) {
   match(sensor, j, step);
-  if (!step.drift.move.allFinite()) {  // an overflowing correction is no information
+  if (!step.drift.move.allFinite()) {  // an overflowing correction is ignored
     state.cross[j] = step.drift.cross[j];
     return;
   }
@@ -168,7 +172,7 @@ void learn_mode(const Sensor& sensor, std::size_t j, double mu, double scale, Fi
   learn_cross(sensor, j, step, state);
 }
 
-/// The one theta of all modes after a measurement which they made with probabilities mu.
+/// Updates the shared theta with a measurement that the modes made with probabilities mu.
 template <int N, int NY, class Sensor>
 void learn_together(const Sensor& sensor, const Eigen::VectorXd& mu, double scale, FilterStep<N, NY>& step,
                     DriftState& state) {
@@ -192,7 +196,7 @@ void learn_together(const Sensor& sensor, const Eigen::VectorXd& mu, double scal
   make_usable(state.P[0]);
 }
 
-/// After Bayes' rule: every mode's theta learns by its probability.
+/// After Bayes' rule: updates every mode's theta by its probability.
 template <int N, int NY, class Sensor>
 void learn(const FilterModel<N, NY>& model, const Sensor& sensor, double scale, FilterStep<N, NY>& step,
            FilterState<N>& state) {

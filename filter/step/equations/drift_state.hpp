@@ -6,32 +6,33 @@
 
 #include "filter/step/bank.hpp"
 
-/// What modes that drift (drift.hpp) have beside those that do not. p = parameters(), n = dimension(), K modes.
+/// Additional state of modes that drift (drift.hpp). p = parameters(), n = dimension(), K modes.
 namespace modebank {
 
 template <int N, int NY>
 struct FilterModel;
 
-/// What a filter knows of the modes' coefficients; covariances of coefficients in units of the noise scale. Modes of
-/// one theta (DriftModel::shared) have one column and one P. Where noise runs (DriftingRecursion), theta is of scaled
-/// regressors, each output has its own P (r x r, the lower triangle counts), over its variance, and cross is empty.
+/// Estimates of the modes' coefficients; covariances are in units of the noise scale. Modes that share theta
+/// (DriftModel::shared) have one column and one P. With running noise (DriftingRecursion), theta is for scaled
+/// regressors, each output has its own P (r x r, lower triangle) divided by its variance, and cross is empty.
 struct DriftState {
   Eigen::MatrixXd theta = {};               ///< p x K
   std::vector<Eigen::MatrixXd> P = {};      ///< K of p x p
-  std::vector<Eigen::MatrixXd> cross = {};  ///< K of p x n: of theta with the state's error; 0 where it is known
-  Eigen::VectorXd variance = {};            ///< n, of the noise that runs; empty otherwise
+  std::vector<Eigen::MatrixXd> cross = {};  ///< K of p x n: covariance of theta with the state's error; 0 if the state
+                                            ///< is known
+  Eigen::VectorXd variance = {};            ///< n, running noise variance; empty otherwise
 };
 
-/// How the bank's coefficients wander, laid out for stepping.
+/// The bank's drift in the layout for stepping.
 struct DriftModel {
   double leak = 1.0;
-  bool shared = false;              ///< modes that differ in noise alone: what one of them learns of theta all know
-  Eigen::MatrixXd theta0;           ///< p x K, p x 1 where shared; empty: nothing drifts
-  std::vector<Eigen::MatrixXd> W;   ///< K (1) of p x p, what a step adds to P
+  bool shared = false;              ///< modes differ in noise alone and share all learning of theta
+  Eigen::MatrixXd theta0;           ///< p x K, p x 1 if shared; empty: no drift
+  std::vector<Eigen::MatrixXd> W;   ///< K (1) of p x p, added to P per step
   std::vector<Eigen::MatrixXd> P0;  ///< K (1) of p x p, P at a start
 
-  /// W_k = q Q_k (x) D^-2 and P0_k the same with p0: D the regressors' scales, Q_k of the measured states; for modes of
-  /// one theta their mean Q, weighted as the modes are.
+  /// W_k = q Q_k (x) D^-2 and P0_k = p0 Q_k (x) D^-2. D holds the regressors' scales, Q_k is that of the measured
+  /// states. Modes that share theta use their mean Q, weighted as the modes are.
   explicit DriftModel(const Bank& bank) : modes_(bank.modes.size()) {
     if (bank.drift.empty()) return;
     leak = bank.drift.rates.leak;
@@ -50,7 +51,7 @@ struct DriftModel {
   }
 
   bool on() const { return theta0.size() > 0; }
-  /// Which theta mode k has.
+  /// Index of mode k's theta.
   std::size_t owner(std::size_t k) const { return shared ? 0 : k; }
 
   void restart(DriftState& state) const {
@@ -80,13 +81,14 @@ struct DriftModel {
   }
 };
 
-/// Where a step of modes that drift is worked out, sized once.
+/// Workspace for a step of modes that drift, sized once.
 template <int N, int NY>
 struct DriftWorkspace {
-  std::vector<typename FilterModel<N, NY>::Mode> modes;  ///< K, as their coefficients stand
-  std::vector<Eigen::MatrixXd> cross;                    ///< K of p x n, of theta with the predicted state's error
+  std::vector<typename FilterModel<N, NY>::Mode> modes;  ///< K, with their present coefficients
+  std::vector<Eigen::MatrixXd> cross;                    ///< K of p x n, covariance of theta with the predicted state's
+                                                         ///< error
   Eigen::VectorXd regressor, move, together;             ///< r, p, p
-  Eigen::MatrixXd mixed;              ///< p x n, of theta with the state that a prediction starts from
+  Eigen::MatrixXd mixed;              ///< p x n, covariance of theta with the state at which a prediction starts
   Eigen::MatrixXd through;            ///< states x n, (I (x) phi') cross
   Eigen::MatrixXd PG, G, gain, seen;  ///< p x states, p x n_y, p x n_y, n x n_y
   Eigen::VectorXd row;                ///< n_y
@@ -111,8 +113,8 @@ struct DriftWorkspace {
 
 namespace drift {
 
-/// A covariance that rounding made indefinite (samples of very different sizes) keeps its variances and loses its
-/// correlations; so variances never grow but by what a step adds, and nothing overflows.
+/// Repairs a covariance that rounding made indefinite (samples of very different sizes): it keeps its variances and
+/// loses its correlations. So variances grow only by the additions per step, and nothing overflows.
 inline void make_usable(Eigen::MatrixXd& P) {
   if (P.diagonal().minCoeff() >= 0.0) return;
   for (Eigen::Index j = 0; j < P.cols(); ++j)

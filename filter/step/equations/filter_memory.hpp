@@ -8,7 +8,7 @@
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/equations/imm.hpp"
 
-/// A state of the equations as what any filter remembers, and back.
+/// Conversion between the state of the equations and the memory common to all filters.
 namespace modebank {
 
 template <int N>
@@ -26,7 +26,7 @@ void save(const FilterState<N>& state, FilterMemory& memory) {
   memory.drift = state.drift;
 }
 
-/// How many rows of these estimates are uncertain: from there on all have the same mean and no covariance.
+/// Number of uncertain rows of these estimates; in later rows all have the same mean and no covariance.
 template <int N>
 Eigen::Index uncertain_rows_of(const std::vector<Gaussian<N>>& modes) {
   Eigen::Index rows = modes.front().mean.size();
@@ -39,7 +39,7 @@ Eigen::Index uncertain_rows_of(const std::vector<Gaussian<N>>& modes) {
   return rows;
 }
 
-/// `state`: of the memory's sizes. `exact`: FilterModel's.
+/// `state` has the memory's sizes. `exact`: that of FilterModel.
 template <int N>
 void restore(const FilterMemory& memory, bool exact, FilterState<N>& state) {
   const Eigen::Index n = memory.means.rows();

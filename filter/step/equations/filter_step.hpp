@@ -9,9 +9,9 @@
 #include "filter/step/equations/noise_scale.hpp"
 #include "filter/step/equations/salvi2025.hpp"
 
-/// One step of the filters of FilterVariant, a function of model, state, input and measurement: nothing is remembered
-/// between calls but FilterState, and nothing is allocated once FilterState and FilterStep exist. After start, each
-/// sample is predict and then update, or skip_measurement where nothing was measured.
+/// One step of the filters of FilterVariant, as a function of model, state, input and measurement. Only FilterState
+/// persists between calls, and nothing is allocated once FilterState and FilterStep exist. After start, each sample is
+/// predict and then update, or skip_measurement if nothing was measured.
 namespace modebank {
 
 /// A state of the model's sizes.
@@ -21,8 +21,8 @@ FilterState<N> initial_state(const FilterModel<N, NY>& model) {
           model.initial_probability, 1.0, 0.0, model.drift.start(model.structure.dimension())};
 }
 
-/// x[0] = start_gain y[0], P[0] = start_covariance, mode probabilities from the bank. `y`: the first measurement; with
-/// lags the first whole z of measurements.
+/// x[0] = start_gain y[0], P[0] = start_covariance, mode probabilities from the bank. `y`: first measurement; with lags
+/// the first complete z of measurements.
 template <int N, int NY, class Y>
 void start(const FilterModel<N, NY>& model, const Y& y, FilterState<N>& state) {
   small::multiply(state.modes[0].mean, model.start_gain, y);
@@ -43,7 +43,7 @@ FilterState<N> start(const FilterModel<N, NY>& model, const Y& y) {
   return state;
 }
 
-/// Where each mode's prediction starts, and how probable each mode is before the measurement.
+/// Start of each mode's prediction, and the mode probabilities before the measurement.
 template <int N, int NY, class U>
 const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
                                     FilterStep<N, NY>& step) {
@@ -62,14 +62,14 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
   return step.mixed;
 }
 
-/// Fills what is known before the measurement: each mode's prediction and S, and the predicted probabilities.
+/// Computes everything before the measurement: each mode's prediction and S, and the predicted probabilities.
 template <int N, int NY, class U>
 void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
   if (model.drift.on()) return drift::predict_modes(model, state, mix(model, state, u, step), u, step);
   predict_modes(model, mix(model, state, u, step), noise_of_step(model, state, u, step), u, step);
 }
 
-/// A missing measurement: the prediction is all there is.
+/// For a missing measurement: the prediction becomes the estimate.
 template <int N, int NY>
 void skip_measurement(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, FilterState<N>& state) {
   keep_prediction(step, state);
@@ -78,11 +78,11 @@ void skip_measurement(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, 
   if (model.drift.on()) drift::keep_prediction(model, step, state);
 }
 
-/// What `sensor` measured is taken in: the model itself, or what is left of it where signals are missing.
+/// Updates with the measurement of `sensor`: the model, or its part for the available signals.
 template <int N, int NY, class Sensor, class Y>
 double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y, FilterStep<N, NY>& step,
                FilterState<N>& state) {
-  const double noise_scale = state.noise_scale;  // that the prediction was made with
+  const double noise_scale = state.noise_scale;  // scale of the prediction
   correct(sensor, y, step, state.modes);
   if (model.adaptive) adapt_noise_scale(model, sensor, step.predicted_probability, step, state);
   if (model.mode_count() == 1) {
@@ -96,8 +96,9 @@ double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y
   return log_density;
 }
 
-/// Takes the measurement in after `predict` and returns the log predictive density of its signals that are there, which
-/// uses nothing but what was known before it. Without any signal that is a prediction only; the result is then NaN.
+/// Updates with the measurement after `predict`. Returns the log predictive density of the available signals, which
+/// uses only information from before the measurement. Without any signal it is a prediction only, and the result is
+/// NaN.
 template <int N, int NY, class Y>
 double update(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, FilterState<N>& state) {
   step.partial.missing = missing_entries(y);

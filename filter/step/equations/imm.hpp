@@ -17,29 +17,29 @@
 
 /// The interacting multiple model filter: Blom & Bar-Shalom 1988, "The interacting multiple model algorithm for systems
 /// with Markovian switching coefficients", IEEE Transactions on Automatic Control 33(8). Equation numbers are those of
-/// Bar-Shalom, Li & Kirubarajan 2001, "Estimation with Applications to Tracking and Navigation", section 11.6.6, whose
-/// five steps follow each other here:
+/// Bar-Shalom, Li & Kirubarajan 2001, "Estimation with Applications to Tracking and Navigation", section 11.6.6. Its
+/// five steps are:
 ///   1  mixing probabilities    mixing_weights
 ///   2  mixing                  mix
 ///   3  mode-matched filtering  predict_modes, correct (kalman.hpp)
 ///   4  mode probabilities      bayes, floor_probabilities
 ///   5  combination             merge
-/// What the book leaves open is said where it is decided: modes that T forbids, likelihoods that underflow, signals
-/// that are missing. filter_step.hpp makes one step of it, and of the variants that differ in one of these steps.
+/// The book leaves some cases open: modes that T forbids, likelihoods that underflow, missing signals. Comments below
+/// state how each is handled. filter_step.hpp combines the steps, also for variants that differ in one of them.
 namespace modebank {
 
-/// All that a filter knows: one Gaussian per mode, how probable each mode is, and the present scale of the noise.
+/// The state of a filter: one Gaussian per mode, the mode probabilities, and the present noise scale.
 template <int N>
 struct FilterState {
   std::vector<Gaussian<N>> modes;    ///< K
   Eigen::VectorXd mode_probability;  ///< K, mu
   double noise_scale = 1.0;          ///< multiplies every mode's Q in the next prediction
-  double noise_samples = 0.0;        ///< how many samples the scale rests on (noise_scale.hpp)
-  DriftState drift = {};             ///< what is known of coefficients that wander (drift.hpp); empty otherwise
+  double noise_samples = 0.0;        ///< number of samples behind the scale (noise_scale.hpp)
+  DriftState drift = {};             ///< estimates of drifting coefficients (drift.hpp); empty otherwise
 };
 
-/// Column j holds what each mode i contributes to the start of mode j: mu_{i|j}. Never to be confused with a
-/// TransitionMatrix, whose rows sum to one.
+/// Column j holds the contribution of each mode i to the start of mode j: mu_{i|j}. Unlike a TransitionMatrix, its
+/// columns sum to one.
 struct MixingWeights {
   Eigen::MatrixXd matrix;  ///< K x K
 };
@@ -47,18 +47,18 @@ struct MixingWeights {
 /// Intermediate results of one step, sized once.
 template <int N, int NY>
 struct FilterStep {
-  Eigen::VectorXd predicted_probability;  ///< K, c: before the measurement
+  Eigen::VectorXd predicted_probability;  ///< K, c, before the measurement
   std::vector<KalmanStep<N, NY>> kalman;  ///< K
-  std::vector<Gaussian<N>> mixed;         ///< K, where each mode's prediction starts
+  std::vector<Gaussian<N>> mixed;         ///< K, start of each mode's prediction
   MixingWeights mixing;
   TransitionWorkspace transition;
   Eigen::VectorXd log_likelihood;          ///< K
-  PartialSensor<N, NY> partial;            ///< of the last measurement; `missing` is 0 when that was whole
+  PartialSensor<N, NY> partial;            ///< of the last measurement; `missing` is 0 if it was complete
   Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
   double noise_factor = 1.0;               ///< NoiseFactor of the last prediction
   Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
 
-  DriftWorkspace<N, NY> drift;  ///< of modes that drift; empty otherwise
+  DriftWorkspace<N, NY> drift;  ///< for modes that drift; empty otherwise
 
   explicit FilterStep(const FilterModel<N, NY>& model)
       : predicted_probability(model.mode_count()),
@@ -83,8 +83,8 @@ void combine_means(const FilterState<N>& state, Eigen::Matrix<double, N, 1>& mea
     mean += state.mode_probability(static_cast<Eigen::Index>(i)) * state.modes[i].mean;
 }
 
-/// The scale of every mode's Q in the step that starts from `state` under the acting inputs `u`: the noise scale times
-/// the noise factor at the combined estimate, which is exact where the state is measured exactly.
+/// The scale of every mode's Q in the step from `state` under the acting inputs `u`: noise scale times noise factor.
+/// The factor is evaluated at the combined estimate, which is exact for exactly measured states.
 template <int N, int NY, class U>
 double noise_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
                      FilterStep<N, NY>& step) {
@@ -94,8 +94,8 @@ double noise_of_step(const FilterModel<N, NY>& model, const FilterState<N>& stat
   return state.noise_scale * step.noise_factor;
 }
 
-/// T of the step that starts from `state` under the acting inputs `u`: for a logit at the combined estimate, which is
-/// exact where the state is measured exactly.
+/// T of the step from `state` under the acting inputs `u`. A logit is evaluated at the combined estimate, which is
+/// exact for exactly measured states.
 template <int N, int NY, class U>
 const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
                                           FilterStep<N, NY>& step) {
@@ -104,8 +104,8 @@ const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const
   return transition_at(model.transition.matrix(), model.transition_logit, step.difference, u, step.transition);
 }
 
-/// Step 1. c_j = sum_i T_ij mu_i (11.6.6-8) and mu_{i|j} = T_ij mu_i / c_j (11.6.6-7). An impossible mode keeps its own
-/// state. T: row-stochastic.
+/// Step 1: c_j = sum_i T_ij mu_i (11.6.6-8) and mu_{i|j} = T_ij mu_i / c_j (11.6.6-7). An impossible mode keeps its own
+/// state. T is row-stochastic.
 inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, Eigen::VectorXd& c,
                            MixingWeights& weights) {
   for (Eigen::Index j = 0; j < mu.size(); ++j) {
@@ -119,7 +119,7 @@ inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, 
   }
 }
 
-/// The rows that are uncertain in any of `parts` (Gaussian::uncertain).
+/// Number of rows that are uncertain in any of `parts` (Gaussian::uncertain).
 template <int N>
 Eigen::Index uncertain_rows(std::span<const Gaussian<N>> parts) {
   Eigen::Index most = 0;
@@ -133,11 +133,11 @@ bool has_one_mean(std::span<const Gaussian<N>> parts, Eigen::Index row) {
                      [&](const Gaussian<N>& part) { return part.mean(row) == parts.front().mean(row); });
 }
 
-/// Steps 2 and 5. Mean and covariance of the mixture sum_i weights(i) N(parts[i]) (moment matching): with mu_{i|j} what
-/// mode j starts from (11.6.6-9, -10), with mu the combined estimate (11.6.6-17, -18). The spread of means is taken
-/// about the finished mean. Weights need not sum to one: [S25, eq. 12-13] is the same sum with other weights. (One sum
-/// after the other, not one part after the other: sums then live in registers.) `exact`: FilterModel's; a row of one
-/// mean in all parts then keeps it without rounding, which would look like a spread that other rows share.
+/// Steps 2 and 5: mean and covariance of the mixture sum_i weights(i) N(parts[i]) (moment matching). With mu_{i|j} it
+/// is the start of mode j (11.6.6-9, -10), with mu the combined estimate (11.6.6-17, -18). Differences of means are
+/// taken about the final mean. Weights need not sum to one: [S25, eq. 12-13] is the same sum with other weights.
+/// The loops run sum by sum, not part by part, so that sums stay in registers. `exact`: that of FilterModel. A row with
+/// the same mean in all parts then keeps it without rounding, which would look like a difference that other rows share.
 template <int N, class Weights>
 void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights, Gaussian<N>& merged,
            bool exact = false) {
@@ -163,7 +163,7 @@ void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weigh
     }
 }
 
-/// Step 2. Every mode j starts from x0_j = sum_i mu_{i|j} x_i (11.6.6-9) with the covariance of that mixture
+/// Step 2: every mode j starts from x0_j = sum_i mu_{i|j} x_i (11.6.6-9) with the covariance of that mixture
 /// (11.6.6-10).
 template <int N>
 void mix(const FilterState<N>& state, const MixingWeights& weights, bool exact, std::vector<Gaussian<N>>& mixed) {
@@ -181,8 +181,8 @@ void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N
   }
 }
 
-/// Step 3, after it: every mode takes the measurement `y` of `sensor` in: its estimate, and its log likelihood
-/// log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) of the signals that are there; of quantised ones interval.hpp.
+/// Step 3, after the measurement: updates every mode's estimate with `y` of `sensor`. Computes its log likelihood log
+/// Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) for the available signals; interval.hpp for quantised ones.
 template <int N, int NY, class Sensor, class Y>
 void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vector<Gaussian<N>>& estimates) {
   const double excess = 0.5 * log_two_pi * static_cast<double>(step.partial.missing);
@@ -197,9 +197,9 @@ void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vec
   }
 }
 
-/// Step 4. mu_j = Lambda_j c_j / c (11.6.6-15), c = sum_j Lambda_j c_j (11.6.6-16): Bayes' rule in the log domain,
-/// posterior_j proportional to prior_j exp(log_likelihood_j). Returns log c. The largest term is taken out first, so
-/// nothing underflows to 0/0. Requires at least one possible mode.
+/// Step 4: mu_j = Lambda_j c_j / c (11.6.6-15), c = sum_j Lambda_j c_j (11.6.6-16). This is Bayes' rule in the log
+/// domain: posterior_j is proportional to prior_j exp(log_likelihood_j). Returns log c. The largest term is factored
+/// out first, so nothing underflows to 0/0. Requires at least one possible mode.
 template <class Prior, class LogLikelihood>
 double bayes(const Prior& prior, const LogLikelihood& log_likelihood, Eigen::VectorXd& posterior) {
   double largest = -std::numeric_limits<double>::infinity();
@@ -221,7 +221,7 @@ inline void floor_probabilities(Eigen::VectorXd& mu) {
   mu *= 1.0 / sum;
 }
 
-/// Steps 3 and 4 where nothing was measured: the prediction is all there is.
+/// Steps 3 and 4 without a measurement: the prediction becomes the estimate.
 template <int N, int NY>
 void keep_prediction(const FilterStep<N, NY>& step, FilterState<N>& state) {
   for (std::size_t j = 0; j < state.modes.size(); ++j) state.modes[j] = step.kalman[j].predicted;

@@ -8,19 +8,18 @@
 #include "filter/step/equations/kalman.hpp"
 #include "filter/step/truncated_normal.hpp"
 
-/// Quantised measurements: a signal that comes in multiples of q says that C x + v lies in [y - q/2, y + q/2], and no
-/// more. The state is latent. A mode's prediction of the signal is N(C x, s), so the interval's probability is a
-/// difference of normal distribution functions, and what is known of the signal afterwards is a truncated normal, whose
-/// mean and variance reach the state by the Kalman gain:
+/// Quantised measurements: a value in multiples of q means only that C x + v lies in [y - q/2, y + q/2]. A mode
+/// predicts the signal as N(C x, s). So the interval's probability is a difference of normal distribution functions,
+/// and the signal's posterior is a truncated normal. Its mean and variance update the state by the Kalman gain:
 ///   x <- x + K (E[C x + v | interval] - C x),   P <- P + K (Var[C x + v | interval] - s) K',   K = P C' / s.
-/// For one signal these are the exact moments. Several are taken in one after another, each time with what is then
-/// known taken for a Gaussian (assumed density filtering: Maybeck 1982, "Stochastic Models, Estimation and Control",
-/// volume 2, chapter 12), as every later step takes it. A signal of quantum zero is measured as it stands.
+/// For one signal these moments are exact. Several signals are processed one after another, each time approximating the
+/// posterior by a Gaussian (assumed density filtering: Maybeck 1982, "Stochastic Models, Estimation and Control",
+/// volume 2, chapter 12). A signal of quantum zero is measured exactly as recorded.
 namespace modebank {
 
-/// Observes and corrects in one (kalman.hpp), after expect. `sensor` has C, diagonal R and quantum. Leaves the signals'
-/// innovations given the signals before them in `decorrelated` and their variances in `cholesky.D`, which is all that
-/// is left of the factor.
+/// Observes and corrects in one (kalman.hpp); call after expect. `sensor` has C, diagonal R and quantum. Stores the
+/// signals' innovations given the previous signals in `decorrelated` and their variances in `cholesky.D`; the rest of
+/// the factor is overwritten.
 template <int N, int NY, class Sensor, class Y>
 void correct_intervals(const Sensor& sensor, const Y& y, KalmanStep<N, NY>& kalman, Gaussian<N>& posterior) {
   const Eigen::Index n = posterior.mean.size();
@@ -53,11 +52,11 @@ void correct_intervals(const Sensor& sensor, const Y& y, KalmanStep<N, NY>& kalm
     kalman.log_density += said.log_density;
   }
   if (!(kalman.log_density > lowest_log_density)) kalman.log_density = lowest_log_density;
-  if (!is_finite(posterior)) posterior = kalman.predicted;  // an overflowing correction is no information
+  if (!is_finite(posterior)) posterior = kalman.predicted;  // an overflowing correction is ignored
   bound_variances(kalman.predicted, posterior);
 }
 
-/// The noise scale's sums of one Kalman step (noise_scale.hpp) after correct_intervals: signal by signal, e^2 / s
+/// The noise scale's sums of one Kalman step (noise_scale.hpp) after correct_intervals: for each signal e^2 / s is
 /// replaced by its expectation given the interval.
 struct IntervalSums {
   double share = 0.0, square = 0.0;

@@ -18,7 +18,8 @@ template <int N>
 struct Gaussian {
   Eigen::Matrix<double, N, 1> mean;
   Eigen::Matrix<double, N, N> covariance;
-  /// Rows from here on are known: no covariance, and the same mean in every mode. Lags of an exact sensor are.
+  /// Rows from this index on are known: zero covariance, and the same mean in every mode. Lags of an exact sensor are
+  /// known.
   Eigen::Index uncertain;
 
   explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size), uncertain(size) {
@@ -27,20 +28,20 @@ struct Gaussian {
   }
 };
 
-/// One mode's Kalman step with the workspace it needs, sized once. Call in order: predict, expect, observe, correct.
+/// One mode's Kalman step with its workspace, sized once. Call in this order: predict, expect, observe, correct.
 template <int N, int NY>
 struct KalmanStep {
   Gaussian<N> predicted;                                ///< x, P before the measurement
-  Eigen::Matrix<double, N, N> process_noise;            ///< Q as it entered P
+  Eigen::Matrix<double, N, N> process_noise;            ///< Q as added to P
   Eigen::Matrix<double, NY, 1> measured;                ///< y of an exact sensor
   Eigen::Matrix<double, NY, 1> innovation;              ///< e = y - C x
-  Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e, of variance cholesky.D
+  Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e, with variance cholesky.D
   Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S = C P C' + R
-  small::Cholesky<NY> cholesky;                         ///< of S; a singular S is regularised there
+  small::Cholesky<NY> cholesky;                         ///< of S; a singular S is regularised
   double log_density = 0.0;                             ///< log N(e; 0, S)
-  // Of quantised measurements alone (interval.hpp).
-  Eigen::Matrix<double, NY, 1> signal_log_density;  ///< of each signal given those before
-  Eigen::Matrix<double, NY, 1> second_moment;       ///< E[e^2 / s | interval] of each signal given those before
+  // For quantised measurements only (interval.hpp).
+  Eigen::Matrix<double, NY, 1> signal_log_density;  ///< of each signal given the previous ones
+  Eigen::Matrix<double, NY, 1> second_moment;       ///< E[e^2 / s | interval] of each signal given the previous ones
   Eigen::Matrix<double, N, 1> column;               ///< workspace
 
   KalmanStep(Eigen::Index n, Eigen::Index n_y, Eigen::Index regressors)
@@ -61,19 +62,19 @@ struct KalmanStep {
         NY_(n, n_y),
         phi_(regressors) {}
 
-  /// x = x + A x + B u + c, P = F P F' + noise_scale Q. With terms g these are
-  /// added to x, and F has their derivative at the mean: the extended Kalman filter, exact where P is zero.
+  /// x = x + A x + B u + c, P = F P F' + noise_scale Q. Terms g are added to x, and F includes their derivative at the
+  /// mean (extended Kalman filter, exact for P = 0).
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
                const U& u, double noise_scale = 1.0);
-  /// What will be measured: S and its factor. Here and below `sensor` has C and R: the model, or what is left of it
-  /// when parts of a measurement are missing.
+  /// Predicts the measurement: S and its factor. Here and below `sensor` has C and R: the model, or its part for the
+  /// available signals.
   template <class Sensor>
   void expect(const Sensor& sensor);
-  /// e and its log density.
+  /// Innovation e and its log density.
   template <class Sensor, class Y>
   void observe(const Sensor& sensor, const Y& y);
-  /// The state after the measurement, covariance in Joseph's form.
+  /// State after the measurement, covariance in Joseph's form.
   template <class Sensor>
   void correct(const Sensor& sensor, Gaussian<N>& posterior);
   /// log N(residual; 0, S) of any residual; `residual` is decorrelated in place.
@@ -89,18 +90,18 @@ struct KalmanStep {
   TermValues terms_;
   Eigen::Matrix<double, N, N> bent_F_;
 
-  /// The rows that an exact sensor sees, without the rounding of a correction.
+  /// Copies the rows that an exact sensor measures, without the rounding of a correction.
   template <class Sensor>
   void take_exactly(const Sensor& sensor, Gaussian<N>& posterior) const;
-  /// Adds terms to the predicted mean; F with their derivatives.
+  /// Adds terms to the predicted mean, and their derivatives to F.
   template <class U>
   const Eigen::Matrix<double, N, N>& bend(const FilterModel<N, NY>& model,
                                           const typename FilterModel<N, NY>::Mode& mode,
                                           const Eigen::Matrix<double, N, 1>& x, const U& u);
 };
 
-/// Keeps a prediction usable: what diverges is scaled down, and a covariance that rounding made indefinite (possible
-/// when variances differ by more than double precision) keeps its variances and loses its correlations.
+/// Repairs a prediction. Diverging values are scaled down. A covariance that rounding made indefinite (possible if
+/// variances differ by more than double precision) keeps its variances and loses its correlations.
 template <int N>
 void make_usable(Gaussian<N>& g) {
   double largest = g.covariance(0, 0), least = largest, mean = std::abs(g.mean(0));
@@ -118,8 +119,8 @@ void make_usable(Gaussian<N>& g) {
   if (mean > largest_mean) g.mean *= largest_mean / mean;
 }
 
-/// A measurement never enlarges a variance. Where rounding made one negative (S near singular: R = 0 and singular Q),
-/// the estimate keeps its variances within those bounds and loses its correlations.
+/// Bounds the variances after a measurement, which cannot enlarge them. If rounding made one negative (S near singular:
+/// R = 0 and singular Q), the estimate keeps its variances within those bounds and loses its correlations.
 template <int N>
 void bound_variances(const Gaussian<N>& predicted, Gaussian<N>& posterior) {
   if ((posterior.covariance.diagonal().array() >= 0.0).all()) return;
@@ -129,7 +130,7 @@ void bound_variances(const Gaussian<N>& predicted, Gaussian<N>& posterior) {
           i == j ? std::clamp(posterior.covariance(i, i), 0.0, std::max(0.0, predicted.covariance(i, i))) : 0.0;
 }
 
-/// Whether every number is finite: a sum is, unless one of its terms is not (terms are far below overflow).
+/// Whether every number is finite, by their sum (terms are far below overflow).
 template <int N>
 bool is_finite(const Gaussian<N>& g) {
   double sum = 0.0;
@@ -199,7 +200,7 @@ double KalmanStep<N, NY>::log_normal(Vector& residual) const {
   cholesky.decorrelate(residual);
   const double value = -0.5 * (static_cast<double>(residual.size()) * log_two_pi + cholesky.log_determinant() +
                                cholesky.squared_distance(residual));
-  return value > lowest_log_density ? value : lowest_log_density;  // NaN from overflow is the lowest, too
+  return value > lowest_log_density ? value : lowest_log_density;  // NaN from overflow also gives the lowest
 }
 
 template <int N, int NY>
@@ -212,7 +213,7 @@ void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
     posterior.uncertain = 0;
     return take_exactly(sensor, posterior);
   }
-  for (Eigen::Index i = 0; i < gain_.rows(); ++i) {  // row i of K = P C' S^-1, as S is symmetric
+  for (Eigen::Index i = 0; i < gain_.rows(); ++i) {  // row i of K = P C' S^-1; S is symmetric
     gain_.row(i) = PCt_.row(i);
     cholesky.solve(gain_.row(i));
   }
@@ -226,7 +227,7 @@ void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
   small::add_symmetric_product_seeing(posterior.covariance, NN_, closed_loop_, sensor.seen_columns);
   small::multiply(NY_, gain_, sensor.R);
   small::add_symmetric_product(posterior.covariance, NY_, gain_);
-  if (!is_finite(posterior)) posterior = predicted;  // an overflowing correction is no information
+  if (!is_finite(posterior)) posterior = predicted;  // an overflowing correction is ignored
   bound_variances(predicted, posterior);
   if (sensor.exact) take_exactly(sensor, posterior);
 }

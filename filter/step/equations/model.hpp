@@ -11,7 +11,8 @@
 
 namespace modebank {
 
-/// A bank laid out for stepping: N states and NY measurements, fixed or Eigen::Dynamic. Built once, then only read.
+/// A bank in the layout for stepping: N states and NY measurements, fixed or Eigen::Dynamic. Built once, then
+/// read-only.
 template <int N, int NY>
 struct FilterModel {
   struct Mode {
@@ -25,35 +26,35 @@ struct FilterModel {
 
   LinearStructure structure;
   FilterVariant variant;
-  bool adaptive;                     ///< whether the noise scale follows the run
-  NoiseAdaptation noise_adaptation;  ///< how, if it does
+  bool adaptive;                     ///< whether the noise scale adapts to the run
+  NoiseAdaptation noise_adaptation;  ///< settings of the adaptation
   std::vector<Mode> modes;           ///< K
   Eigen::Matrix<double, NY, N> C;
   Eigen::Matrix<double, NY, NY> R;
   Eigen::Matrix<double, NY, 1> quantum;  ///< 0: continuous
-  bool quantised;                        ///< whether any signal is
+  bool quantised;                        ///< whether any signal is quantised
   TransitionMatrix transition;
   TransitionLogit transition_logit;
   Eigen::VectorXd initial_probability;                  ///< K
-  Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0], y[0] all of z with lags
+  Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0]; with lags y[0] is all of z
   Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
-  DriftModel drift;                                     ///< how the modes' coefficients wander
-  MotionTerms terms;                                    ///< what bends the motion; empty: nothing
-  NoiseFactor noise_factor;                             ///< on every mode's Q; empty: one
-  /// Rows of every F that are no shift of older samples by one: the measured states where there are lags, else n.
+  DriftModel drift;                                     ///< drift of the modes' coefficients
+  MotionTerms terms;                                    ///< nonlinear terms; empty: none
+  NoiseFactor noise_factor;                             ///< factor on every mode's Q; empty: one
+  /// Rows of every F that are not a shift of older samples by one: the measured states if there are lags, else n.
   Eigen::Index full_rows;
-  /// Columns of C that are not zero, all others being to their right.
+  /// Number of leading columns of C that contain all nonzero entries.
   Eigen::Index seen_columns;
-  /// Whether a measurement says exactly where the state is that lags repeat, so that covariances are zeros.
+  /// Whether a measurement determines the state that lags repeat, so that covariances are zero.
   bool exact;
 
-  /// Requires check_sizes(bank). Throws std::invalid_argument for FilterVariant::kf of several modes.
+  /// Requires check_sizes(bank). Throws std::invalid_argument for FilterVariant::kf with several modes.
   FilterModel(const Bank& bank, const FilterOptions& options);
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
 };
 
-/// A bank of another make may have lags whose rows are not shifts.
+/// A bank from another source may have lags whose rows are not shifts.
 template <int N, int NY>
 Eigen::Index full_rows_of(const FilterModel<N, NY>& model) {
   const Eigen::Index n = model.structure.dimension(), states = model.structure.states;
@@ -105,9 +106,9 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
   start_covariance = start.covariance;
 }
 
-/// Calls f.template operator()<N, NY>() with fixed sizes where they pay: one state and one signal step three times as
-/// fast (K = 9, GPB2: 1.5 us against 4.9 us), two and three states only 1.7 and 1.5 times, and the IMM of those sizes
-/// has vector kernels. The one place where run-time sizes become compile-time sizes.
+/// Calls f.template operator()<N, NY>() with fixed sizes where they pay. One state and one signal run three times as
+/// fast (K = 9, GPB2: 1.5 us against 4.9 us). Two and three states gain only 1.7 and 1.5 times, and the IMM of those
+/// sizes has vector kernels. This is the only place where run-time sizes become compile-time sizes.
 template <class F>
 auto with_sizes(Eigen::Index states, Eigen::Index measurements, F&& f) {
   if (states == 1 && measurements == 1) return f.template operator()<1, 1>();

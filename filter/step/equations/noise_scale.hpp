@@ -9,15 +9,15 @@
 #include "filter/step/equations/interval.hpp"
 #include "filter/step/equations/model.hpp"
 
-/// The scale of the process noise that a filter with adaptive noise learns as it goes: every mode's Q is multiplied by
-/// one factor s, because runs of the same motion differ in roughness. s is the ratio of discounted sums, as in the
-/// variance learning of West & Harrison 1997, "Bayesian Forecasting and Dynamic Models", section 10.8 (variance
-/// discounting), pulled to one as the memory of a run fades:
+/// The scale s of the process noise, which a filter with adaptive noise learns within a run. Every mode's Q is
+/// multiplied by s, because runs of the same motion differ in roughness. s is a ratio of discounted sums, similar to
+/// variance discounting in West & Harrison 1997, "Bayesian Forecasting and Dynamic Models", section 10.8. It returns to
+/// one as older samples are forgotten:
 ///   weight  <- f weight + (1 - f) n0 + sum_j mu_j tr(G_j) / n_y,      G_j = S_j^-1 C s Q_j C'
 ///   squares <- f squares + (1 - f) n0 + s sum_j mu_j e_j' S_j^-1 C s Q_j C' S_j^-1 e_j / n_y,   s = squares / weight.
-/// With R = 0 and a known state the squares are those of the standardised innovations; what measurement noise or an
-/// uncertain state explains is left out in proportion, and n_y counts the signals that are not missing. The plug-in s
-/// takes the place of the Student t of the exact conjugate update.
+/// With R = 0 and a known state the squares are those of the standardised innovations. The part of an innovation that
+/// measurement noise or an uncertain state explains is left out in proportion. n_y counts the available signals. The
+/// estimate s replaces the Student t of the exact conjugate update.
 namespace modebank {
 
 inline constexpr double largest_noise_scale = 1e8;
@@ -39,12 +39,13 @@ double explained_share(const Sensor& sensor, const Matrix& P, const Kalman& kalm
   return trace;
 }
 
-/// e' S^-1 C P C' S^-1 e of one Kalman step, with e' S^-1 e cut at largest_standardised^2 n_y, of the signals there.
+/// e' S^-1 C P C' S^-1 e of one Kalman step for the available signals, with e' S^-1 e limited to largest_standardised^2
+/// n_y.
 template <class Sensor, class Matrix, class Kalman, class Column>
 double explained_square(const Sensor& sensor, const Matrix& P, const Kalman& kalman, double n_y, Column& column) {
   const double nis = kalman.cholesky.squared_distance(kalman.decorrelated);
   const double most = largest_standardised * largest_standardised * n_y;
-  if (!(nis < 1e300)) return 0.0;  // an overflowing innovation says nothing about the scale
+  if (!(nis < 1e300)) return 0.0;  // an overflowing innovation carries no information about the scale
   column = kalman.innovation;
   kalman.cholesky.solve(column);
   double sum = 0.0;
@@ -60,7 +61,7 @@ double explained_square(const Sensor& sensor, const Matrix& P, const Kalman& kal
   return nis > most ? sum * (most / nis) : sum;
 }
 
-/// One sample's move of the scale. `share`, `square`: the modes' sums above; nothing moves where they overflow.
+/// Updates the scale with one sample. `share`, `square`: the sums over modes above; no update if they overflow.
 inline void move_noise_scale(const NoiseAdaptation& adaptation, double share, double square, double n_y, double& scale,
                              double& samples) {
   if (!std::isfinite(share) || !std::isfinite(square)) return;
@@ -70,13 +71,13 @@ inline void move_noise_scale(const NoiseAdaptation& adaptation, double share, do
   scale = std::clamp(squares / samples, 1.0 / largest_noise_scale, largest_noise_scale);
 }
 
-/// Moves state.noise_scale after the measurement has been taken in. `prior`: the probability of every mode
-/// before it (step.log_likelihood holds what the measurement says). `sensor` has the C that was measured with.
+/// Updates state.noise_scale after the measurement. `prior`: probability of every mode before it (step.log_likelihood
+/// has the likelihoods). `sensor` has the C of the measurement.
 template <class Model, class Sensor, class Step, class State>
 void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::VectorXd& prior, Step& step,
                        State& state) {
   const double s = state.noise_scale, n_y = static_cast<double>(step.residual.size() - step.partial.missing);
-  // As Bayes' rule has it (imm.hpp): an impossible mode takes no part, however well it fits.
+  // As in Bayes' rule (imm.hpp), an impossible mode does not take part, however well it fits.
   double largest = -std::numeric_limits<double>::infinity();
   for (Eigen::Index h = 0; h < prior.size(); ++h)
     if (prior(h) >= impossible_probability) largest = std::max(largest, step.log_likelihood(h));
@@ -86,7 +87,7 @@ void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::Ve
     const double weight =
         prior(i) >= impossible_probability ? prior(i) * std::exp(step.log_likelihood(i) - largest) : 0.0;
     if (!(weight > 0.0)) continue;
-    // The errors of coefficients that drift are known in units of the noise: the scale is theirs, too.
+    // Errors of drifting coefficients are in units of the noise, so the scale applies to them, too.
     const auto& Q = model.drift.on() ? step.kalman[h].process_noise : model.modes[h].Q;
     const double scaled = model.drift.on() ? weight : weight * s * step.noise_factor;
     total += weight;

@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// Makes signal i of a covariance one of variance one, unrelated to the others.
+/// Replaces signal i of a covariance by one of variance one without correlation.
 template <class Matrix>
 void detach(Matrix& S, Eigen::Index i) {
   S.row(i).setZero();
@@ -14,9 +14,9 @@ void detach(Matrix& S, Eigen::Index i) {
   S(i, i) = 1.0;
 }
 
-/// A sensor some of whose signals are missing: their rows of C and R become those of a signal that is always zero, of
-/// variance one, unrelated to anything, and is measured as zero. Gains, NIS and the other signals' densities are then
-/// exactly those of the signals that are there; log densities carry -log(2 pi) / 2 too much per missing signal.
+/// A sensor with missing signals. Their rows of C and R become those of a signal that is always zero, has variance one
+/// and no correlation, and is measured as zero. Gains, NIS and the other signals' densities are then exactly those of
+/// the available signals. The log density is too small by log(2 pi) / 2 per missing signal.
 template <int N, int NY>
 struct PartialSensor {
   Eigen::Matrix<double, NY, N> C;
@@ -25,8 +25,8 @@ struct PartialSensor {
   Eigen::Matrix<double, NY, 1> quantum;
   bool quantised = false;
   static constexpr bool exact = false;
-  Eigen::Index seen_columns;  ///< of C (FilterModel)
-  Eigen::Index missing = 0;   ///< signals
+  Eigen::Index seen_columns;  ///< columns of C in use (FilterModel)
+  Eigen::Index missing = 0;   ///< number of missing signals
 
   PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y), quantum(n_y), seen_columns(n) {}
 

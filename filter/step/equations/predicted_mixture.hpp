@@ -8,15 +8,16 @@
 
 #include "filter/step/equations/filter_step.hpp"
 
-/// What the modes say together: moments of the predicted mixture and the probability transform of a measurement.
+/// Combination of the modes' predictions: moments of the predicted mixture and the probability transform of a
+/// measurement.
 namespace modebank {
 
-/// Larger normalised squares are not told apart.
+/// Cap on normalised squares.
 inline constexpr double largest_nis = 1e300;
 
-/// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)'), with
-/// the variance of rounding, q^2 / 12, for quantised signals. Returns the share of the spread of the modes' predictions
-/// in the trace of S.
+/// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)').
+/// Quantised signals have the variance of rounding, q^2 / 12, added. Returns the share of the differences between the
+/// modes' predictions in the trace of S.
 template <int N, int NY, class State, class Covariance>
 double combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x, Covariance&& S) {
   const Eigen::VectorXd& c = step.predicted_probability;
@@ -32,15 +33,16 @@ double combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&&
     small::add_spread(S, weight, step.kalman[j].innovation_covariance, step.residual);
     for (Eigen::Index i = 0; i < step.residual.size(); ++i) spread += weight * step.residual(i) * step.residual(i);
   }
-  if (model.quantised) S.diagonal().array() += model.quantum.array().square() / 12.0;  // of the recorded value
+  // covariance of the recorded value
+  if (model.quantised) S.diagonal().array() += model.quantum.array().square() / 12.0;
   const double total = S.diagonal().sum();
   return total > 0.0 ? std::min(1.0, spread / total) : 0.0;
 }
 
 /// The innovation of a predicted mixture, and its normalised square; sized once.
 struct CombinedInnovation {
-  Eigen::VectorXd innovation;  ///< n_y, e = y - C x; NaN where a signal is missing
-  double nis = 0.0;            ///< e' S^-1 e, of the signals that are there; NaN without any
+  Eigen::VectorXd innovation;  ///< n_y, e = y - C x; NaN for missing signals
+  double nis = 0.0;            ///< e' S^-1 e of the available signals; NaN without any
 
   explicit CombinedInnovation(Eigen::Index n_y)
       : innovation(n_y), covariance_(n_y, n_y), residual_(n_y), cholesky_(n_y) {}
@@ -72,12 +74,12 @@ struct CombinedInnovation {
   small::Cholesky<Eigen::Dynamic> cholesky_;
 };
 
-/// Phi(x), accurate in relative terms far into the lower tail.
+/// Phi(x), with a small relative error far into the lower tail.
 inline double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-/// Probability integral transform of the measurement taken in last (Rosenblatt 1952): component i is the predictive
-/// distribution function of y_i given y_1 .. y_(i-1), whose mixture weights those components have updated; NaN where
-/// y_i is missing. `weights`: workspace, K. Overwrites step.log_likelihood.
+/// Probability integral transform of the last measurement (Rosenblatt 1952). Component i is the predictive distribution
+/// function of y_i given y_1 .. y_(i-1), which have updated the mixture weights. NaN if y_i is missing. `weights`:
+/// workspace, K. Overwrites step.log_likelihood.
 template <int N, int NY, class Y, class Pit>
 void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
   weights = step.predicted_probability;
@@ -94,20 +96,20 @@ void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd&
       sum += weights(j) * normal_cdf(z / std::sqrt(v));
       if (more) step.log_likelihood(j) = -0.5 * (std::log(v) + z * z / v);
     }
-    pit(i) = sum < 1.0 ? sum : 1.0;  // weights sum to one up to rounding
+    pit(i) = sum < 1.0 ? sum : 1.0;  // limits rounding of the weights' sum
     if (more) bayes(weights, step.log_likelihood, weights);
   }
 }
 
-/// A mode's innovation of a signal given those before it, its variance and the signal's log density.
+/// A mode's innovation of a signal given the previous ones, its variance and the signal's log density.
 struct ModeSignal {
   double e = 0.0, s = 0.0, log_density = 0.0;
 };
 
-/// Of quantised measurements: component i of the transform lies between the predictive distribution function at the
-/// lower end of the interval of y_i and that at its upper end, given the intervals of y_1 .. y_(i-1). `pit`: the middle
-/// of the two, `width`: their difference, 0 for a continuous signal or a missing one. `signal`(i, j): ModeSignal of
-/// mode j. `weights`: the modes' probabilities before the measurement, overwritten, as is `log_likelihood`.
+/// Transform of quantised measurements. Component i lies between the predictive distribution function at the lower end
+/// of y_i's interval and that at its upper end, given the intervals of y_1 .. y_(i-1). `pit`: their mean; `width`:
+/// their difference, 0 for a continuous or missing signal. `signal`(i, j): ModeSignal of mode j. `weights`: the modes'
+/// probabilities before the measurement, overwritten, as is `log_likelihood`.
 template <class Quantum, class Y, class Signal, class Pit, class Width>
 void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen::VectorXd& weights,
                         Eigen::VectorXd& log_likelihood, Pit&& pit, Width&& width) {
@@ -134,7 +136,7 @@ void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen
   }
 }
 
-/// After the general steps have taken y in.
+/// For the general steps, after the update with y.
 template <int N, int NY, class Y, class Pit, class Width>
 void interval_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights,
                         Pit&& pit, Width&& width) {

@@ -4,17 +4,17 @@
 
 #include "filter/step/equations/imm.hpp"
 
-/// The filter as printed in Salvi et al. (2025), arXiv 2505.00200, eq. 12-18, kept for comparison with the paper: what
-/// it does otherwise than the IMM (imm.hpp).
+/// The filter as published in Salvi et al. (2025), arXiv 2505.00200, eq. 12-18, for comparison with the paper. This
+/// header has its differences from the IMM (imm.hpp).
 namespace modebank::salvi2025 {
 
-/// Weights w(k-1)_i T_ij of [S25, eq. 12-13]: not divided by their sum, so mixed states shrink towards zero.
+/// Weights w(k-1)_i T_ij of [S25, eq. 12-13]; they are not normalised, so mixed states shrink towards zero.
 inline void mixing_weights(const TransitionMatrix& transition, const Eigen::VectorXd& w, MixingWeights& weights) {
   weights.matrix.noalias() = w.asDiagonal() * transition.matrix();
 }
 
-/// The modes' probabilities from log L_j = log N(C xhat_j - z; 0, S_j), with the residual taken after the update as
-/// printed in [S25, eq. 16].
+/// The modes' probabilities from log L_j = log N(C xhat_j - z; 0, S_j), with the residual after the update, as
+/// published in [S25, eq. 16].
 template <int N, int NY, class Sensor, class Y>
 void weigh_by_posterior(const Sensor& sensor, const Y& z, FilterStep<N, NY>& step, FilterState<N>& state) {
   for (std::size_t j = 0; j < state.modes.size(); ++j) {

@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Times that differ by less are equal but for rounding, as io/import takes them.
+/// Times that differ by less are equal up to rounding, as in io/import.
 double tolerance_s(double time_s, double spacing_s) {
   constexpr double share_of_spacing = 1e-6, units_in_last_place = 4.0;
   return std::max(share_of_spacing * spacing_s,
@@ -41,7 +41,7 @@ void AlignedSamples::push(const TimedSample& sample) {
   samples_.push_back({at_s, sample});
 }
 
-/// The median of the last steps tells how fast samples come: a log may begin with a pause.
+/// Estimates the sample period as the median of the last steps, because a log may begin with a pause.
 void AlignedSamples::learn_rate(double since_s) {
   constexpr std::size_t steps = 5;
   constexpr double slow = 0.75;
@@ -57,7 +57,7 @@ void AlignedSamples::learn_rate(double since_s) {
   if (steps_ > 0.0 || averages_) steps_ = 1.0;  // no whole step ends at the first sample
 }
 
-/// Time of the next sample; infinite while none has come.
+/// Time of the next output sample; infinite before the first input sample.
 double AlignedSamples::due_s() const {
   if (resamples_) return first_s_ + steps_ / alignment_.rate_hz;
   return next_ < samples_.size() ? samples_[next_].at_s : std::numeric_limits<double>::infinity();
@@ -82,7 +82,7 @@ const TimedSample* AlignedSamples::next() {
     ready_.input = samples_[next_].sample.input;
   else
     take_input_of(time_s - alignment_.lag_s);
-  // Before it is known whether samples come faster than the rate, the first one has passed.
+  // Counts the first sample, too, which passes before it is known whether samples come faster than the rate.
   steps_ += 1.0;
   ++next_;
   return &ready_;
@@ -95,7 +95,7 @@ bool AlignedSamples::in_gap(double time_s) const {
   return after->at_s - std::prev(after)->at_s > gap_periods * spacing_s_;
 }
 
-/// One signal from the last sample at or before `from_s` to the first at or after `to_s`.
+/// One signal from the last sample at or before `from_s` to the first one at or after `to_s`.
 Stream AlignedSamples::between(double from_s, double to_s, VectorXd TimedSample::*signal) const {
   auto first = std::upper_bound(samples_.begin(), samples_.end(), from_s,
                                 [](double t, const Kept& kept) { return t < kept.at_s; });
@@ -110,7 +110,7 @@ Stream AlignedSamples::between(double from_s, double to_s, VectorXd TimedSample:
   return stream;
 }
 
-/// Puts the means over the step that ends at `time_s` in the place of what was picked.
+/// Replaces picked values by means over the step that ends at `time_s`.
 void AlignedSamples::average(VectorXd TimedSample::*signal, const std::vector<Eigen::Index>& rows, double time_s) {
   if (!averages_ || rows.empty()) return;
   MatrixXd values = ready_.*signal;
@@ -132,7 +132,7 @@ void AlignedSamples::take_input_of(double time_s) {
   average(&TimedSample::input, alignment_.averaged.inputs, time_s - alignment_.averaged.further_lag_s);
 }
 
-/// Drops samples before all that the next sample is made of.
+/// Drops samples that no later output needs.
 void AlignedSamples::forget() {
   const double time_s = std::min(due_s(), newest_at_s());
   const double needed_s =

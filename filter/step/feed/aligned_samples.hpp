@@ -10,64 +10,64 @@
 
 namespace modebank {
 
-/// A sample as it comes or as a filter steps on it.
+/// A sample as recorded, or as passed to a filter.
 struct TimedSample {
   double time_s = 0.0;
   Eigen::VectorXd input;        ///< m
   Eigen::VectorXd measurement;  ///< n_y, NaN where missing
-  double rest_s = 0.0;          ///< to be added to time_s: what a double cannot hold of a time since 1970
+  double rest_s = 0.0;          ///< added to time_s: the part of a time since 1970 that a double cannot hold
 };
 
-/// How samples that come one by one become those that a bank was learned from.
+/// Conversion of live samples to the form from which a bank was learned.
 struct Alignment {
-  double rate_hz = 0.0;  ///< above 0: faster samples are brought to this rate; 0: samples keep their times
-  double lag_s = 0.0;    ///< the input in force at time t is the one recorded at t - lag_s
+  double rate_hz = 0.0;  ///< above 0: faster samples are reduced to this rate; 0: samples keep their times
+  double lag_s = 0.0;    ///< the input acting at time t is the one recorded at t - lag_s
   AveragedColumns averaged = {};
 
-  /// How far before an estimate the samples reach that later ones are made of.
+  /// How far before an estimate samples are needed for later ones.
   double reach_s() const {
     const double oldest_s = lag_s + (averaged.inputs.empty() ? 0.0 : averaged.further_lag_s);
     return std::max(0.0, oldest_s) + (rate_hz > 0.0 && averaged.any() ? 1.0 / rate_hz : 0.0);
   }
 };
 
-/// Applies a lag between inputs and states, and a rate, to samples as they come, as io/import does with whole runs:
-/// states are interpolated, inputs held, and where samples come so fast that averages are due (is_averaged_at) columns
-/// are averaged over the step that ends at the new sample. The stream that is early waits for the other: with a
-/// negative lag a state waits for the input that acts on it, which comes -lag_s later. Samples slower than three
-/// quarters of the rate pass whole.
+/// Applies a lag between inputs and states, and a rate, to live samples, as io/import does with whole runs. States are
+/// interpolated and inputs held. If samples come fast enough for averages (is_averaged_at), columns are averaged over
+/// the step that ends at the new sample. The early stream waits for the other: with a negative lag a state waits for
+/// the input that acts on it, which arrives -lag_s later. Samples slower than three quarters of the rate pass
+/// unchanged.
 class AlignedSamples {
  public:
   explicit AlignedSamples(const Alignment& alignment) : alignment_(alignment) {}
 
-  /// The next sample in the order of time.
+  /// Adds the next sample in time order.
   void push(const TimedSample& sample);
-  /// The next one that is ready, valid until the next call; null: none is. What a positive lag leaves without an input
-  /// is left out, and the first sample where no whole step ends at it.
+  /// The next finished sample, valid until the next call; null if none is ready. Samples that a positive lag leaves
+  /// without an input are dropped, as is the first sample if no whole step ends at it.
   const TimedSample* next();
   /// Forgets all samples.
   void restart() { *this = AlignedSamples(alignment_); }
-  /// Before the first sample: times at the rate go on from a sample that was taken before.
+  /// Call before the first sample: times at the rate continue from an earlier sample.
   void go_on_after(double time_s) { before_s_ = time_s; }
-  /// Time of the sample that was pushed last; NaN: none was.
+  /// Time of the last sample added; NaN if there is none.
   double newest_s() const { return samples_.empty() ? not_a_number : samples_.back().sample.time_s; }
 
  private:
   struct Kept {
-    double at_s;  ///< since origin_s_, as all times below
+    double at_s;  ///< relative to origin_s_, as all times below
     TimedSample sample;
   };
 
   Alignment alignment_;
   double origin_s_ = 0.0;
-  std::deque<Kept> samples_;  ///< that are still needed; the last one always
-  std::size_t next_ = 0;      ///< position of the next sample to pass, where samples keep their times
+  std::deque<Kept> samples_;  ///< samples still needed; always the last one
+  std::size_t next_ = 0;      ///< index of the next output sample, if samples keep their times
   std::size_t pushed_ = 0;
   bool resamples_ = false, averages_ = false;
-  double before_s_ = not_a_number;  ///< as the user has it
+  double before_s_ = not_a_number;  ///< in the user's time
   double first_s_ = 0.0, spacing_s_ = 0.0;
-  std::deque<double> recent_s_;  ///< steps, until samples are found to come faster than the rate
-  double steps_ = 0.0;           ///< of the rate, from first_s_ to the next sample
+  std::deque<double> recent_s_;  ///< steps, until samples prove faster than the rate
+  double steps_ = 0.0;           ///< number of steps at the rate from first_s_ to the next output sample
   double ready_s_ = 0.0;
   TimedSample ready_;
 

@@ -20,7 +20,8 @@ void check_run(const Bank& bank, const Trajectory& run) {
   mismatch("inputs", run.input.rows(), bank.structure.inputs);
   mismatch("input samples", run.input.cols(), run.samples());
   if (run.time_s.size() > 0) mismatch("times", run.time_s.size(), run.samples());
-  if ((run.input.leftCols(run.transitions()).array() * 0.0).sum() == 0.0) return;  // all finite, at one pass in vectors
+  // tests all entries for finiteness in one vectorised pass
+  if ((run.input.leftCols(run.transitions()).array() * 0.0).sum() == 0.0) return;
   for (Index k = 0; k < run.transitions(); ++k)
     if (!run.input.col(k).allFinite())
       throw DataError("run " + run.run + ": the input of sample " + std::to_string(k) + " is not a finite number");

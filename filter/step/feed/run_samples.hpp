@@ -8,33 +8,33 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"
 
-/// A recorded run as filters see it: sample by sample, or moment by moment for those who come back to one.
+/// A recorded run in the form for filters: sample by sample, or moment by moment for random access.
 namespace modebank {
 
-/// Throws std::invalid_argument when the sizes of the bank do not fit each other or those of the run, DataError for an
-/// input that is not finite.
+/// Throws std::invalid_argument if the bank's sizes do not fit each other or the run, and DataError for an input that
+/// is not finite.
 void check_run(const Bank& bank, const Trajectory& run);
 
-/// Of a run that was recorded without times: NaN.
+/// Time of a sample; NaN for a run without times.
 inline double sample_time_s(const Trajectory& run, Eigen::Index k) {
   return run.time_s.size() > 0 ? run.time_s(k) : not_a_number;
 }
 
-/// Samples of a run that follow each other by one model step; the first may lie further from the one before.
+/// Samples of a run that are one model step apart; the first may have a longer distance from the previous one.
 struct SampleStretch {
   Eigen::Index first = 0;                      ///< sample of the run
-  Eigen::Index steps = 1;                      ///< model steps into the first sample
-  Eigen::Ref<const Eigen::MatrixXd> inputs;    ///< acting inputs x samples: acting on the step into each
+  Eigen::Index steps = 1;                      ///< model steps to the first sample
+  Eigen::Ref<const Eigen::MatrixXd> inputs;    ///< acting inputs x samples: acting on the step to each sample
   Eigen::Ref<const Eigen::MatrixXd> measured;  ///< n_y x samples
 };
 
-/// The samples of a run as filters step on them.
+/// The samples of a run in the form for filters.
 class RunSamples {
  public:
   RunSamples(const Bank& bank, const Trajectory& run)
       : run_(run), feed_(bank), acting_(bank.structure.acting_inputs(), most_at_once) {}
 
-  /// Calls visit(feed, k, starts) for every sample k from the first start on; `starts`: the filter begins (anew) here.
+  /// Calls visit(feed, k, starts) for every sample k from the first start on; `starts`: the filter (re)starts here.
   template <class Visit>
   void for_each(Visit visit) {
     bool started = false;
@@ -47,7 +47,7 @@ class RunSamples {
     }
   }
 
-  /// The same, many samples at a time: start(feed) where the filter begins (anew), follow(stretch) for all others.
+  /// Visits many samples at a time: start(feed) where the filter (re)starts, follow(stretch) for all others.
   template <class Start, class Follow>
   void for_each_stretch(Start start, Follow follow) {
     Eigen::Index first = 0, count = 0, steps = 1;
@@ -73,20 +73,20 @@ class RunSamples {
   static constexpr Eigen::Index most_at_once = 128;
   const Trajectory& run_;
   SampleFeed feed_;
-  Eigen::MatrixXd acting_;  ///< of the stretch at work
+  Eigen::MatrixXd acting_;  ///< of the present stretch
 };
 
-/// One moment of a run at which a filter stood: a sample, or a step between two samples that lie further apart.
+/// One moment of a filtered run: a sample, or a step between two distant samples.
 struct Instant {
   Eigen::Index sample = -1;    ///< -1: between samples
-  bool starts = false;         ///< the filter begins (anew) here
-  Eigen::VectorXd start = {};  ///< from these measurements; empty elsewhere
+  bool starts = false;         ///< whether the filter (re)starts here
+  Eigen::VectorXd start = {};  ///< measurements for the start; empty elsewhere
 };
 
-/// All moments of a run with the inputs that led there, as filters step through them.
+/// All moments of a run with the acting inputs, in the order of the filter.
 struct RunInstants {
   std::vector<Instant> instants;
-  Eigen::MatrixXd inputs;  ///< m x instants: acting on the step into each
+  Eigen::MatrixXd inputs;  ///< m x instants: acting on the step to each
 
   RunInstants(const Bank& bank, const Trajectory& run) {
     std::vector<Eigen::VectorXd> acting;
@@ -109,7 +109,7 @@ struct RunInstants {
   }
 };
 
-/// Takes `state` from the moment before to moment t of a run; false when there was nothing measured.
+/// Advances `state` from the previous moment to moment t of a run; false if nothing was measured there.
 template <int N, int NY>
 bool step_to(const FilterModel<N, NY>& model, const RunInstants& run, Eigen::Index t, const Trajectory& trajectory,
              FilterState<N>& state, FilterStep<N, NY>& step) {

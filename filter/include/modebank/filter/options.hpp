@@ -4,7 +4,7 @@
 
 namespace modebank {
 
-/// imm: Blom & Bar-Shalom (1988). salvi2025: the printed equations 12-18. kf: the Kalman filter of a bank of one mode.
+/// imm: Blom & Bar-Shalom (1988). salvi2025: the published equations 12-18. kf: Kalman filter of a bank of one mode.
 enum class FilterVariant { imm, salvi2025, kf };
 
 template <>
@@ -12,7 +12,7 @@ struct EnumNames<FilterVariant> {
   static constexpr Names<3> values{"imm", "salvi2025", "kf"};
 };
 
-/// gaussian: Q as learned. adaptive: Q times a scale that follows how large the run's innovations are.
+/// gaussian: Q as learned. adaptive: Q times a scale that follows the size of the run's innovations.
 enum class FilterNoise { gaussian, adaptive };
 
 template <>
@@ -20,14 +20,13 @@ struct EnumNames<FilterNoise> {
   static constexpr Names<2> values{"gaussian", "adaptive"};
 };
 
-/// How a bank is stepped. Defaults are the recommended method. A bank is a discrete model: one of its steps takes
-/// bank.dt_s. A longer time between two samples is as many prediction steps as fit (rounded, at least one), with the
-/// input held.
+/// How a bank is run. Defaults are the recommended method. A bank is a discrete model with step bank.dt_s. A longer
+/// time between two samples becomes several prediction steps (rounded, at least one) with the input held.
 struct FilterOptions {
-  FilterVariant variant = FilterVariant::imm;  ///< how the modes exchange what they know
-  FilterNoise noise = FilterNoise::gaussian;   ///< whether the scale of the noise follows the run
+  FilterVariant variant = FilterVariant::imm;  ///< how the modes' estimates are mixed
+  FilterNoise noise = FilterNoise::gaussian;   ///< whether the noise scale follows the run
 
-  /// Equal in every member.
+  /// Equality of all members.
   bool operator==(const FilterOptions&) const = default;
 };
 

@@ -4,8 +4,9 @@
 
 namespace modebank {
 
-/// Which coefficients of a mode wander. all: every one by itself. constant: the constant. gain: one factor on those of
-/// all inputs, each keeping its share. The others of the last two are learned in a run, from their variance at a start.
+/// Which coefficients of a mode drift. all: each independently. constant: only the constant. gain: one common factor on
+/// all input coefficients, which keep their ratios. With the last two, the other coefficients are learned within a run
+/// from their starting variance.
 enum class Wandering { all, constant, gain };
 
 template <>

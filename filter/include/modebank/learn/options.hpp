@@ -11,7 +11,7 @@
 
 namespace modebank {
 
-/// Where a mode's parameters come from: weighted least squares over its transitions, or its component's mean.
+/// Source of a mode's parameters: weighted least squares over its transitions, or its component's mean.
 enum class ThetaSource { pooled, mean };
 
 template <>
@@ -19,7 +19,8 @@ struct EnumNames<ThetaSource> {
   static constexpr Names<2> values{"pooled", "mean"};
 };
 
-/// Where the modes' process noise Q comes from: each mode's own residuals, all modes' together, or a given variance.
+/// Source of the modes' process noise Q: each mode's own residuals, the residuals of all modes together, or a given
+/// variance.
 enum class NoiseSource { per_mode, shared, fixed };
 
 template <>
@@ -27,8 +28,9 @@ struct EnumNames<NoiseSource> {
   static constexpr Names<3> values{"per-mode", "shared", "fixed"};
 };
 
-/// Where the transition matrix comes from: how labels of neighbouring windows follow each other, or BankOptions::stay;
-/// logit: as labels, and in a refined bank a function of state and input where training runs left out gain by it.
+/// Source of the transition matrix. labels: transitions between labels of neighbouring windows. stay:
+/// BankOptions::stay. logit: as labels, and in a refined bank a function of state and input if that raises the score of
+/// left-out training runs.
 enum class TransitionSource { labels, stay, logit };
 
 template <>
@@ -36,10 +38,9 @@ struct EnumNames<TransitionSource> {
   static constexpr Names<3> values{"labels", "stay", "logit"};
 };
 
-/// What follows the bank of the mixture: nothing, or expectation-maximisation of the switching model. automatic: that,
-/// but nothing where it cannot be or would undo what was asked for: the modes of a motion model, and a theta, Q or T
-/// that are to be the mixture's or given ones (ThetaSource::mean, NoiseSource::shared or fixed,
-/// TransitionSource::stay).
+/// Refinement after the mixture: none, or expectation-maximisation of the switching model. automatic: em, unless it is
+/// impossible or would undo a request. It is impossible for the modes of a motion model. It would undo a theta, Q or T
+/// taken from the mixture or given (ThetaSource::mean, NoiseSource::shared or fixed, TransitionSource::stay).
 enum class Refine { automatic, none, em };
 
 template <>
@@ -47,8 +48,8 @@ struct EnumNames<Refine> {
   static constexpr Names<3> values{"auto", "none", "em"};
 };
 
-/// Whether modes keep learning within a run, each its own theta: not at all; or as fast as training runs left out gain
-/// most by, and not where they gain nothing. Only in a refined bank whose states are measured exactly.
+/// Whether each mode's theta drifts within a run. none: constant. automatic: at the rate that gains most on left-out
+/// training runs, or constant if none gains. Only for a refined bank with exactly measured states.
 enum class Drift { none, automatic };
 
 template <>
@@ -56,7 +57,7 @@ struct EnumNames<Drift> {
   static constexpr Names<2> values{"none", "auto"};
 };
 
-/// What learning that looks ahead counts of a prediction: its log density, or its squared error.
+/// The score of look-ahead learning: a prediction's log density, or its squared error.
 enum class LookAheadScore { density, error };
 
 template <>
@@ -64,59 +65,63 @@ struct EnumNames<LookAheadScore> {
   static constexpr Names<2> values{"density", "error"};
 };
 
-/// How a bank is refined. Defaults are the recommended method.
+/// Options of a bank's refinement. Defaults are the recommended method.
 struct RefineOptions {
-  std::ptrdiff_t max_iterations = 100;  ///< of expectation-maximisation
-  double tolerance = 1e-6;              ///< nats per transition: stop when the objective gains less
-  std::ptrdiff_t restarts = 2;          ///< starts from random stretches of the runs besides the mixture's, for each
+  std::ptrdiff_t max_iterations = 100;  ///< iteration limit of expectation-maximisation
+  double tolerance = 1e-6;              ///< stops when the objective gains less [nats per transition]
+  std::ptrdiff_t restarts = 2;          ///< random starts from stretches of the runs, besides the mixture's start, per
                                         ///< number of modes tried
-  std::ptrdiff_t most_modes = 0;        ///< stretches start with so many modes, three quarters, ... down to the
-                                        ///< mixture's number, which is a start and no finding; 0: with that one alone
-  std::ptrdiff_t look_ahead = 1;        ///< samples: fits are judged by predictions 1 to so many samples ahead
-  LookAheadScore look_ahead_score = LookAheadScore::density;  ///< density: of starts, modes and iterations, too
-  std::ptrdiff_t folds = 6;       ///< parts of the cross-validation; 1: none, every start runs to convergence
-  bool measurement_noise = true;  ///< R by maximum likelihood of the filter on the training runs; false: the start's R
-  bool screen = true;             ///< take unstable, starved and duplicate modes out
-  bool guards = false;            ///< switches may see state and input (TransitionSource::logit)
-  bool one_theta = false;         ///< all modes have the same theta and differ in Q: the rival that knows one motion
-  bool noise_by_input = false;  ///< every Q times one factor that follows state and input; R then stays as good as none
-  std::uint64_t seed = 1;       ///< of the random starts
-  Drift drift = Drift::none;    ///< whether theta of each mode follows a run
-  std::ptrdiff_t transitions = 20000;  ///< learn from so many at most, stretches of the runs drawn with the seed; 0:
-                                       ///< from all
+  std::ptrdiff_t most_modes = 0;        ///< random starts have this many modes, three quarters of it, ... down to the
+                                        ///< mixture's number. 0: the mixture's number only
+  std::ptrdiff_t look_ahead = 1;        ///< samples: predictions 1 to this many samples ahead are scored
+  LookAheadScore look_ahead_score = LookAheadScore::density;  ///< density: also scores starts, modes and iterations
+  std::ptrdiff_t folds = 6;       ///< parts of the cross-validation; 1: none, and every start runs to convergence
+  bool measurement_noise = true;  ///< true: R by maximum likelihood of the filter on the training runs; false: R of the
+                                  ///< start
+  bool screen = true;             ///< whether unstable, starved and duplicate modes are removed
+  bool guards = false;            ///< whether transition probabilities may depend on state and input
+                                  ///< (TransitionSource::logit)
+  bool one_theta = false;         ///< all modes share theta and differ in Q: the competitor with one motion
+  bool noise_by_input = false;    ///< whether every Q has one factor that follows state and input; R then stays
+                                  ///< negligible
+  std::uint64_t seed = 1;         ///< of the random starts
+  Drift drift = Drift::none;      ///< whether each mode's theta drifts within a run
+  std::ptrdiff_t transitions = 20000;  ///< largest number of transitions to learn from, in stretches drawn with the
+                                       ///< seed; 0: all
 
-  /// How far ahead densities decide.
+  /// Number of samples ahead at which densities are scored.
   std::ptrdiff_t densities_ahead() const { return look_ahead_score == LookAheadScore::density ? look_ahead : 1; }
 };
 
 /// How a mixture of windows becomes a bank. Defaults are the recommended method.
 struct BankOptions {
-  ThetaSource theta = ThetaSource::pooled;                 ///< of a mode's parameters
-  NoiseSource noise = NoiseSource::per_mode;               ///< of Q
-  TransitionSource transition = TransitionSource::labels;  ///< of the transition matrix
+  ThetaSource theta = ThetaSource::pooled;                 ///< source of a mode's parameters
+  NoiseSource noise = NoiseSource::per_mode;               ///< source of Q
+  TransitionSource transition = TransitionSource::labels;  ///< source of the transition matrix
   double stay = 0.95;                          ///< diagonal of the transition matrix for TransitionSource::stay
   double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
   std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; empty: the baseline's R
-  bool screen = true;                          ///< leave unstable and starved modes out
-  std::ptrdiff_t modes = 0;                    ///< at most so many: the closest components are merged; 0: no limit
-  Refine refine = Refine::automatic;           ///< whether expectation-maximisation goes on from the mixture's bank
-  RefineOptions em;                            ///< how, then
+  bool screen = true;                          ///< whether unstable and starved modes are left out
+  std::ptrdiff_t modes = 0;                    ///< largest number of modes; the closest components are merged; 0: no
+                                               ///< limit
+  Refine refine = Refine::automatic;           ///< whether expectation-maximisation follows
+  RefineOptions em;                            ///< options of the refinement
 };
 
-/// All that decides what is learned from runs. `modebank run` finds lags, delay and windows from the data unless it is
-/// told otherwise: search_lags, automatic_length and automatic_step say so here.
+/// All options of learning from runs. `modebank run` finds lags, delay and windows from the data unless they are given;
+/// search_lags, automatic_length and automatic_step do so here.
 struct LearnOptions {
   FitOptions window;              ///< how windows are cut and fitted
-  ClusterOptions mixture;         ///< how they are clustered
-  BankOptions bank;               ///< how their mixture becomes a bank
-  FilterOptions filter;           ///< that will run the bank; variant kf asks for a single Kalman filter: the baseline
-  std::uint64_t seed = 1;         ///< the one seed: takes the place of those in `window` and `bank`
-  bool search_lags = false;       ///< lags and delay are those that training runs left out prefer, whatever `window`
-                                  ///< has; not of motion models
-  bool automatic_length = false;  ///< window.length follows the number of regressors
-  bool automatic_step = false;    ///< window.step leaves 100,000 windows
-  bool noise_by_input = true;     ///< all process noise has one factor that follows states and inputs, where training
-                                  ///< runs left out gain by it
+  ClusterOptions mixture;         ///< how windows are clustered
+  BankOptions bank;               ///< how the mixture becomes a bank
+  FilterOptions filter;           ///< filter of the bank; variant kf: a single Kalman filter, the baseline
+  std::uint64_t seed = 1;         ///< the only seed: replaces those in `window` and `bank`
+  bool search_lags = false;       ///< whether lags and delay are chosen on left-out training runs, ignoring those in
+                                  ///< `window`; not for motion models
+  bool automatic_length = false;  ///< whether window.length is set from the number of regressors
+  bool automatic_step = false;    ///< whether window.step is set for about 100,000 windows
+  bool noise_by_input = true;     ///< whether process noise may have one factor that follows states and inputs, if that
+                                  ///< gains on left-out training runs
 };
 
 }  // namespace modebank

@@ -1,5 +1,4 @@
-// Modes taking a measurement in, a mode per lane. Included once per instruction
-// set (Highway's foreach_target.h).
+// Updates modes with a measurement, one mode per lane. Included once per instruction set (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_CORRECT_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_CORRECT_INL
 #undef MODEBANK_VECTOR_IMM_CORRECT_INL
@@ -27,7 +26,7 @@ HWY_INLINE void solve(const V (&L)[packed_size(NY)], const V (&inverse)[NY], V (
   }
 }
 
-/// As bound_variances of kalman.hpp does, where a variance is negative.
+/// Like bound_variances of kalman.hpp, where a variance is negative.
 template <std::size_t N>
 HWY_INLINE void bound_variances(M negative, const Moments<N>& predicted, Moments<N>& posterior) {
   for (std::size_t a = 0; a < N; ++a)
@@ -38,7 +37,7 @@ HWY_INLINE void bound_variances(M negative, const Moments<N>& predicted, Moments
     }
 }
 
-/// The estimate after the measurement; an overflowing correction is no information.
+/// The estimate after the measurement; an overflowing correction is ignored.
 template <std::size_t N>
 HWY_INLINE Moments<N> usable(const Moments<N>& predicted, Moments<N> result) {
   V check = result.x[0], least = result.P[0];
@@ -53,10 +52,10 @@ HWY_INLINE Moments<N> usable(const Moments<N>& predicted, Moments<N> result) {
   return result;
 }
 
-/// One register of modes taking a measurement in.
+/// Updates one register of modes with a measurement.
 template <std::size_t N, std::size_t NY>
 struct Correction {
-  const Moments<N> m;  // predicted
+  const Moments<N> m;  // predicted moments
   V L[packed_size(NY)], inverse[NY], e[NY], z[NY];
 
   HWY_INLINE Correction(const Prediction<N, NY>& q, const double* y) : m(q.m) {
@@ -126,7 +125,7 @@ struct Correction {
   }
 };
 
-/// tr(S^-1 C s Q C') and e' S^-1 C s Q C' S^-1 e of the modes r .., the latter with e' S^-1 e cut (noise_scale.hpp).
+/// tr(S^-1 C s Q C') and e' S^-1 C s Q C' S^-1 e of the modes r .., with e' S^-1 e limited (noise_scale.hpp).
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void explained_by_values(const ModeRows& p, const Sensor& sensor, const double* y, std::size_t r, V& share,
                                     V& square) {

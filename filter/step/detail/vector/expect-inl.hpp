@@ -1,5 +1,4 @@
-// What will be measured, a mode per lane. Included once per instruction set
-// (Highway's foreach_target.h).
+// Predicts the measurement, one mode per lane. Included once per instruction set (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_EXPECT_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_EXPECT_INL
 #undef MODEBANK_VECTOR_IMM_EXPECT_INL
@@ -12,7 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// What one register of modes predicts, and expects of the sensor: S = L D L'.
+/// Prediction of one register of modes, and of the measurement: S = L D L'.
 template <std::size_t N, std::size_t NY>
 struct Prediction {
   V prior;
@@ -20,7 +19,7 @@ struct Prediction {
   V y[NY], S[packed_size(NY)], L[packed_size(NY)], D[NY], inverse[NY];
 };
 
-/// C x, S and its factor of the modes of register r.
+/// C x, S and its factor for the modes of register r.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void expect(const Sensor& sensor, Prediction<N, NY>& q) {
   V PCt[N * NY];
@@ -65,7 +64,7 @@ HWY_INLINE void store_prediction(const Prediction<N, NY>& q, const ModeRows& p, 
   store_rows(q.inverse, p.stride, p.D_inverse + r);
 }
 
-/// What store_prediction left, but for S and D, which a correction has no use for.
+/// Reads the values of store_prediction except S and D, which a correction does not need.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE Prediction<N, NY> load_prediction(const ModeRows& p, std::size_t r) {
   Prediction<N, NY> q;

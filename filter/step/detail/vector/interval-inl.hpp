@@ -1,5 +1,5 @@
-// Modes taking quantised measurements in (equations/interval.hpp), a mode per lane. Included once per instruction set
-// (Highway's foreach_target.h).
+// Updates modes with quantised measurements (equations/interval.hpp), one mode per lane. Included once per instruction
+// set (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_INTERVAL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_INTERVAL_INL
 #undef MODEBANK_VECTOR_IMM_INTERVAL_INL
@@ -13,10 +13,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// What is known of signal i of the modes of register r, whose innovation and variance stand in their rows.
+/// Moments of signal i for the modes of register r, from the innovation and variance in their rows.
 template <std::size_t NY>
 HWY_NOINLINE void look_at_signal(const ModeRows& p, double quantum, std::size_t i, std::size_t r) {
-  const M there = hn::FirstN(D(), p.modes > r ? p.modes - r : 0);  // of the padding something that costs little
+  const M there = hn::FirstN(D(), p.modes > r ? p.modes - r : 0);  // padding lanes get values that are cheap to compute
   const V e = hn::IfThenElseZero(there, load(p.decorrelated + i * p.stride + r));
   const V s = hn::IfThenElse(there, load(p.D + i * p.stride + r), splat(quantum > 0.0 ? quantum * quantum : 1.0));
   const Signals said = signal_likelihood(e, s, quantum);
@@ -27,16 +27,16 @@ HWY_NOINLINE void look_at_signal(const ModeRows& p, double quantum, std::size_t 
   }
 }
 
-/// Number `which` of SignalLikelihood.
+/// Element `which` of SignalLikelihood.
 template <std::size_t NY>
 HWY_INLINE V said_of_signal(const ModeRows& p, std::size_t which, std::size_t i, std::size_t r) {
   return load(p.signal + (which * NY + i) * p.stride + r);
 }
 
-/// One register of modes taking signals in one after another.
+/// Updates one register of modes with the signals one after another.
 template <std::size_t N, std::size_t NY>
 struct IntervalCorrection {
-  Moments<N> m;  ///< after the signals so far
+  Moments<N> m;  ///< moments after the signals so far
   V column[N];   ///< P C_i'
   V s;           ///< C_i P C_i' + R_ii
 
@@ -57,7 +57,7 @@ struct IntervalCorrection {
     for (std::size_t a = 0; a < N; ++a) e = hn::NegMulAdd(splat(sensor.C[i * N + a]), m.x[a], e);
     return e;
   }
-  /// Of a standardised innovation of this mean and variance.
+  /// Updates with a standardised innovation of this mean and variance.
   HWY_INLINE void take(V mean, V variance) {
     const V step = hn::Div(mean, hn::Sqrt(s)), shrink = hn::Div(hn::Sub(splat(1.0), variance), s);
     for (std::size_t a = 0; a < N; ++a) {
@@ -68,7 +68,7 @@ struct IntervalCorrection {
   }
 };
 
-/// All signals of the modes of register r: decorrelated, D and signal, and the moments after them.
+/// All signals for the modes of register r: decorrelated, D and signal, and the moments after them.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE Moments<N> look_at(const ModeRows& p, const Sensor& sensor, const double* y, std::size_t r,
                               const Moments<N>& predicted) {
@@ -83,7 +83,7 @@ HWY_INLINE Moments<N> look_at(const ModeRows& p, const Sensor& sensor, const dou
   return c.m;
 }
 
-/// As correct of update-inl.hpp: exponents hold the whole log density then, which may be above zero.
+/// Like correct of update-inl.hpp. Exponents then hold the whole log density, which may be positive.
 template <std::size_t N, std::size_t NY>
 HWY_NOINLINE V correct_intervals(const ModeRows& p, const Sensor& sensor, const double* y) {
   V largest = splat(-far);
@@ -103,7 +103,7 @@ HWY_NOINLINE V correct_intervals(const ModeRows& p, const Sensor& sensor, const 
   return hn::MaxOfLanes(D(), largest);
 }
 
-/// C_i P C_i' of a packed P.
+/// C_i P C_i' for a packed P.
 template <std::size_t N>
 HWY_INLINE V along_signal(const Sensor& sensor, std::size_t i, const V (&P)[packed_size(N)]) {
   V sum = zero();
@@ -113,14 +113,14 @@ HWY_INLINE V along_signal(const Sensor& sensor, std::size_t i, const V (&P)[pack
   return sum;
 }
 
-/// E[e^2 / s | interval] of signal i.
+/// E[e^2 / s | interval] for signal i.
 template <std::size_t NY>
 HWY_INLINE V second_moment(const ModeRows& p, std::size_t i, std::size_t r) {
   const V mean = said_of_signal<NY>(p, 1, i, r);
   return hn::MulAdd(mean, mean, said_of_signal<NY>(p, 2, i, r));
 }
 
-/// As interval_sums of interval.hpp.
+/// Like interval_sums of interval.hpp.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void explained_by_intervals(const ModeRows& p, const Sensor& sensor, std::size_t r, V& share, V& square) {
   V Q[packed_size(N)];
@@ -134,7 +134,7 @@ HWY_INLINE void explained_by_intervals(const ModeRows& p, const Sensor& sensor, 
   }
 }
 
-/// The noise scale's sums of the modes r .., after the measurement has been taken in.
+/// The noise scale's sums for the modes r .., after the measurement.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void explained(const ModeRows& p, const Sensor& sensor, const double* y, std::size_t r, V& share,
                           V& square) {

@@ -1,4 +1,5 @@
-// Quantised measurements backwards, a mode per lane. Included once per instruction set (Highway's foreach_target.h).
+// Adjoint of the update with quantised measurements, one mode per lane. Included once per instruction set (Highway's
+// foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_INTERVAL_REVERSE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_INTERVAL_REVERSE_INL
 #undef MODEBANK_VECTOR_IMM_INTERVAL_REVERSE_INL
@@ -18,7 +19,7 @@ struct BySignal {
   V e, s, mean, variance;
 };
 
-/// What one register of modes said of quantised signals, backwards; look_at has been there.
+/// Adjoint of one register of modes for quantised signals; look_at has been called for it.
 template <std::size_t N, std::size_t NY>
 class IntervalUncorrection {
  public:
@@ -32,8 +33,8 @@ class IntervalUncorrection {
     }
   }
 
-  /// From derivatives by the corrected moments to those by the predicted ones, by R (added) and by Q (added), of
-  /// `by_log` times the log density and share and square times the noise scale's sums besides.
+  /// Converts derivatives by the corrected moments to those by the predicted ones. Adds derivatives by R and Q. The
+  /// objective is `by_log` times the log density, plus share and square times the noise scale's sums.
   HWY_INLINE void back(V by_log, V share, V square, const V (&Q)[packed_size(N)], Moments<N>& by,
                        V (&by_Q)[packed_size(N)], double* by_R) const {
     for (std::size_t i = NY; i-- > 0;) {
@@ -41,7 +42,7 @@ class IntervalUncorrection {
       const V root = hn::Sqrt(load(p_.D + i * p_.stride + r_));
       const V mean = said(1, i), variance = said(2, i), third = said(3, i), fourth = said(4, i);
       const V(&column)[N] = column_[i];
-      // The correction: x + column M / s, P - column column' (s - V) / s^2.
+      // The correction is x + column M / s, P - column column' (s - V) / s^2.
       V by_column[N], by_step = zero(), by_shrink = zero();
       const V step = hn::Div(mean, root), shrink = hn::Mul(hn::Sub(splat(1.0), variance), inverse);
       for (std::size_t a = 0; a < N; ++a) {
@@ -56,7 +57,7 @@ class IntervalUncorrection {
       to.s = hn::Mul(hn::Mul(by_shrink, squared), hn::MulSub(splat(2.0), variance, splat(1.0)));
       to.s = hn::NegMulAdd(hn::Mul(by_step, step), inverse, to.s);
       explained(i, share, square, Q, root, to, by_Q);
-      // What is known of the signal, by its innovation and variance.
+      // Derivatives of the signal's moments by its innovation and variance.
       const V half = splat(0.5), twice = hn::Mul(splat(2.0), mean);
       to.e = hn::Sub(hn::Mul(to.mean, hn::Sub(splat(1.0), variance)), hn::Mul(by_log, step));
       to.e = hn::NegMulAdd(hn::Mul(to.variance, root), third, to.e);
@@ -77,7 +78,7 @@ class IntervalUncorrection {
 
   HWY_INLINE V said(std::size_t which, std::size_t i) const { return said_of_signal<NY>(p_, which, i, r_); }
 
-  /// Of C_i Q C_i' / s (share + square (M^2 + V) / s), the last factor cut (interval_sums).
+  /// Adjoint of C_i Q C_i' / s (share + square (M^2 + V) / s), with the last factor limited (interval_sums).
   HWY_INLINE void explained(std::size_t i, V share, V square, const V (&Q)[packed_size(N)], V root, BySignal& to,
                             V (&by_Q)[packed_size(N)]) const {
     const V moment = second_moment<NY>(p_, i, r_), most = splat(largest_standardised * largest_standardised);
@@ -94,7 +95,7 @@ class IntervalUncorrection {
     to.variance = hn::Add(to.variance, uncut);
   }
 
-  /// column = P C_i', s = C_i column + R_ii, e = y_i - C_i x.
+  /// Adjoint of column = P C_i', s = C_i column + R_ii, e = y_i - C_i x.
   HWY_INLINE void back_to_moments(std::size_t i, const BySignal& to, V (&by_column)[N], Moments<N>& by) const {
     for (std::size_t a = 0; a < N; ++a)
       by_column[a] = hn::Mul(splat(0.5), hn::MulAdd(to.s, splat(sensor_.C[i * N + a]), by_column[a]));

@@ -1,9 +1,9 @@
-// The steps of vector_imm.hpp, once per instruction set.
+// The kernels of vector_imm.hpp, compiled once per instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/step/detail/vector/kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// After highway.h:
+// Must follow highway.h:
 #include "filter/step/detail/vector/mixture-inl.hpp"
 #include "filter/step/detail/vector/update-inl.hpp"
 

@@ -1,5 +1,5 @@
-// Where modes start from: mixtures of all that lead to them, a mode per lane.
-// Included once per instruction set (Highway's foreach_target.h).
+// Start of the modes' predictions: mixtures of all modes that lead to them, one mode per lane. Included once per
+// instruction set (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_MIXING_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_MIXING_INL
 #undef MODEBANK_VECTOR_IMM_MIXING_INL
@@ -12,8 +12,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Mode by mode d_i and P_i + d_i d_i', left in p.parts; d_i is about p.center, the mean of the modes' means. None of
-/// it waits for the probabilities, which are the last that an update finds.
+/// Stores d_i and P_i + d_i d_i' of each mode in p.parts. d_i is about p.center, the mean of the modes' means. This
+/// does not depend on the probabilities, the last results of an update, so it need not wait for them.
 template <std::size_t N>
 HWY_INLINE void center_modes(const ModeRows& p) {
   const std::size_t stride = p.stride;
@@ -38,7 +38,7 @@ HWY_INLINE void center_modes(const ModeRows& p) {
   }
 }
 
-/// p.parts of register r become mu_i d_i and mu_i (P_i + d_i d_i'): what the mixtures are sums of.
+/// Multiplies p.parts of register r by mu_i: mu_i d_i and mu_i (P_i + d_i d_i'), the summands of the mixtures.
 template <std::size_t N>
 HWY_INLINE void weigh_parts(const ModeRows& p, std::size_t r, V mu) {
   for (std::size_t k = 0; k < N + packed_size(N); ++k) {
@@ -53,7 +53,7 @@ void prepare(const ModeRows& p) {
   for (std::size_t r = 0; r < p.stride; r += hn::Lanes(D())) weigh_parts<N>(p, r, load(p.probability + r));
 }
 
-/// Means by themselves and covariances about them, for modes that differ by so much that moments about the center
+/// Computes the means first and the covariances about them, for modes so different that moments about the center
 /// cancel.
 template <std::size_t N>
 HWY_NOINLINE void mix_apart(const ModeRows& p, std::size_t r, V inverse, Moments<N>& m) {
@@ -78,8 +78,8 @@ HWY_NOINLINE void mix_apart(const ModeRows& p, std::size_t r, V inverse, Moments
   for (V& P : m.P) P = hn::Mul(P, inverse);
 }
 
-/// Where the modes of register r start from: the mixture of all modes that lead to them (Blom & Bar-Shalom 1988).
-/// `sums`: of mu_i T_ij, then of parts_i T_ij.
+/// Start of the modes of register r: the mixture of all modes that lead to them (Blom & Bar-Shalom 1988). `sums`: of
+/// mu_i T_ij, then of parts_i T_ij.
 template <std::size_t N>
 HWY_INLINE Moments<N> mixture(const ModeRows& p, std::size_t r, const V (&sums)[1 + N + packed_size(N)]) {
   const V c = sums[0];
@@ -101,7 +101,7 @@ HWY_INLINE Moments<N> mixture(const ModeRows& p, std::size_t r, const V (&sums)[
       if (a == b) cancelled = hn::Or(cancelled, hn::Lt(m.P[k], least_sound(square, center[a])));
     }
   if (HWY_UNLIKELY(!hn::AllFalse(D(), hn::And(possible, cancelled)))) {
-    Moments<N> apart;  // not m, which can then stay in registers
+    Moments<N> apart;  // separate from m, which can then stay in registers
     mix_apart(p, r, inverse, apart);
     m = apart;
   }

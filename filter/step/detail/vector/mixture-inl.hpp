@@ -1,4 +1,5 @@
-// What the modes say together, a mode per lane. Included once per instruction set (Highway's foreach_target.h).
+// Combination of the modes' predictions, one mode per lane. Included once per instruction set (Highway's
+// foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_MIXTURE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_MIXTURE_INL
 #undef MODEBANK_VECTOR_IMM_MIXTURE_INL
@@ -70,9 +71,9 @@ void combine(const ModeRows& p, const Sensor& sensor, CombinedExpectation& to) {
   to.spread = sum_of(spread);
 }
 
-/// (1 + 2 t) exp(t^2) erfc(t), t >= 0, as a polynomial in (t - 3.75) / (t + 3.75): Shepherd & Laframboise 1981,
-/// "Chebyshev approximation of (1 + 2x) exp(x^2) erfc x", Mathematics of Computation 36(153); to double precision by
-/// tests/golden/generate/normal_cdf_coefficients.py.
+/// (1 + 2 t) exp(t^2) erfc(t), t >= 0, as a polynomial in (t - 3.75) / (t + 3.75). Source: Shepherd & Laframboise 1981,
+/// "Chebyshev approximation of (1 + 2x) exp(x^2) erfc x", Mathematics of Computation 36(153). Coefficients in double
+/// precision: tests/golden/generate/normal_cdf_coefficients.py.
 inline constexpr double scaled_erfc[24] = {
     1.2375126308378275266,      -0.14024059858554701439,   0.0035854154854795751663,    0.082276738490149772563,
     -0.10880393014246644782,    0.092304321160258936107,   -0.058693398576310612527,    0.02836227742037733368,
@@ -81,7 +82,7 @@ inline constexpr double scaled_erfc[24] = {
     1.7419011945194366247e-6,   -5.741076073013915709e-8,  -2.4851108650210706133e-7,   2.3398534313040896942e-8,
     3.1953986120578180665e-8,   -3.7981897977362071919e-9, -2.6185201565031447991e-9,   3.2052623379289157079e-10};
 
-/// Phi(x), accurate in relative terms into the lower tail down to x = -37, whose value stands for all below.
+/// Phi(x), with a small relative error into the lower tail down to x = -37; smaller arguments give the value at -37.
 HWY_INLINE V normal_cdf(V x) {
   const V t = hn::Min(hn::Mul(hn::Abs(x), splat(0.70710678118654752440)), splat(26.2));
   const V s = hn::Mul(hn::Sub(t, splat(3.75)), reciprocal(hn::Add(t, splat(3.75)))), s2 = hn::Mul(s, s);
@@ -98,7 +99,7 @@ HWY_INLINE V normal_cdf(V x) {
   return hn::IfThenElse(hn::Lt(x, zero()), tail, hn::Sub(splat(1.0), tail));
 }
 
-/// Probability integral transform of the measurement taken in last (probability_transform of predicted_mixture.hpp).
+/// Probability integral transform of the last measurement (probability_transform of predicted_mixture.hpp).
 template <std::size_t NY>
 void transform(const ModeRows& p, const double* y, double* pit) {
   const std::size_t stride = p.stride;
@@ -117,7 +118,7 @@ void transform(const ModeRows& p, const double* y, double* pit) {
       nearest = hn::Min(nearest, hn::IfThenElse(hn::Ge(w, splat(impossible_probability)), hn::Mul(z, z), splat(far)));
     }
     const double below = sum_of(sum);
-    pit[i] = below < 1.0 ? below : 1.0;  // weights sum to one up to rounding
+    pit[i] = below < 1.0 ? below : 1.0;  // limits rounding of the weights' sum
     if (i + 1 == NY) return;
     nearest = hn::MinOfLanes(D(), nearest);
     sum = zero();

@@ -1,5 +1,4 @@
-// Prediction, a mode per lane. Included once per instruction set (Highway's
-// foreach_target.h).
+// Prediction, one mode per lane. Included once per instruction set (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_PREDICT_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_PREDICT_INL
 #undef MODEBANK_VECTOR_IMM_PREDICT_INL
@@ -13,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Keeps a prediction usable, as make_usable of kalman.hpp does.
+/// Repairs a prediction, as make_usable of kalman.hpp does.
 template <std::size_t N>
 HWY_INLINE void make_usable(Moments<N>& m) {
   V largest = m.P[0], least = m.P[0], mean = hn::Abs(m.x[0]);
@@ -37,7 +36,7 @@ HWY_INLINE void make_usable(Moments<N>& m) {
   for (V& x : m.x) x = hn::Mul(x, pull);
 }
 
-/// The modes of register r one step on.
+/// Advances the modes of register r by one step.
 template <std::size_t N>
 HWY_INLINE Moments<N> propagate(const ModeRows& p, std::size_t r, const double* v, V scale, const Moments<N>& from) {
   const std::size_t stride = p.stride;
@@ -52,7 +51,7 @@ HWY_INLINE Moments<N> propagate(const ModeRows& p, std::size_t r, const double* 
     m.x[a] = x;
   }
   for (std::size_t a = 0; a < N; ++a) {
-    V row[N];  // of F P
+    V row[N];  // row of F P
     for (std::size_t b = 0; b < N; ++b) {
       row[b] = hn::Mul(F[a * N], from.P[packed(0, b)]);
       for (std::size_t k = 1; k < N; ++k) row[b] = hn::MulAdd(F[a * N + k], from.P[packed(k, b)], row[b]);
@@ -67,7 +66,7 @@ HWY_INLINE Moments<N> propagate(const ModeRows& p, std::size_t r, const double* 
   return m;
 }
 
-/// J registers of modes from r on: they share what is read of the modes they come from.
+/// Processes J registers of modes from r on together; they share the loads of the previous modes.
 template <std::size_t N, std::size_t NY, std::size_t J>
 HWY_INLINE void predict_registers(const ModeRows& p, const Sensor& sensor, std::size_t r, const double* v, V scale,
                                   Prediction<N, NY> (&q)[J]) {
@@ -76,7 +75,7 @@ HWY_INLINE void predict_registers(const ModeRows& p, const Sensor& sensor, std::
   V sums[J][1 + parts];
   for (auto& of_register : sums)
     for (V& sum : of_register) sum = zero();
-  for (std::size_t i = 0; i < p.modes; ++i) {  // by itself: all else is divided by it
+  for (std::size_t i = 0; i < p.modes; ++i) {  // a separate loop, because everything else is divided by the result
     const V mu = splat(p.probability[i]);
     for (std::size_t b = 0; b < J; ++b)
       sums[b][0] = hn::MulAdd(load(p.transition + i * stride + r + b * L), mu, sums[b][0]);
@@ -98,7 +97,7 @@ HWY_INLINE void predict_registers(const ModeRows& p, const Sensor& sensor, std::
   }
 }
 
-/// As many registers together as leave room for their sums.
+/// Number of registers processed together: as many as their sums fit into registers.
 template <std::size_t N>
 inline constexpr std::size_t most_together = N == 1   ? 4
                                              : N == 2 ? 2

@@ -1,5 +1,4 @@
-// One step backwards, a mode per lane. Included once per instruction set
-// (Highway's foreach_target.h).
+// Adjoint of one step, one mode per lane. Included once per instruction set (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_REVERSE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_REVERSE_INL
 #undef MODEBANK_VECTOR_IMM_REVERSE_INL
@@ -15,12 +14,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// v' P w and so on take entries off the diagonal twice.
+/// Weight of a packed entry: v' P w and similar sums count entries off the diagonal twice.
 constexpr double times(std::size_t a, std::size_t b) { return a == b ? 1.0 : 2.0; }
 
 HWY_INLINE void add_to(double* row, V value) { store(hn::Add(load(row), value), row); }
 
-/// G' P G of a symmetric P.
+/// G' P G for a symmetric P.
 template <std::size_t N>
 HWY_INLINE void between(const V (&G)[N * N], const V (&P)[packed_size(N)], V (&result)[packed_size(N)]) {
   V PG[N * N];
@@ -37,7 +36,7 @@ HWY_INLINE void between(const V (&G)[N * N], const V (&P)[packed_size(N)], V (&r
     }
 }
 
-/// C' W of signals.
+/// C' W for signals.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void to_state(const Sensor& sensor, const V (&w)[NY], V (&result)[N]) {
   for (std::size_t a = 0; a < N; ++a) {
@@ -46,7 +45,7 @@ HWY_INLINE void to_state(const Sensor& sensor, const V (&w)[NY], V (&result)[N])
   }
 }
 
-/// result += C' W C of a symmetric W.
+/// result += C' W C for a symmetric W.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void add_to_state(const Sensor& sensor, const V (&W)[packed_size(NY)], V (&result)[packed_size(N)]) {
   for (std::size_t a = 0; a < N; ++a)
@@ -57,7 +56,7 @@ HWY_INLINE void add_to_state(const Sensor& sensor, const V (&W)[packed_size(NY)]
               hn::MulAdd(splat(sensor.C[i * N + a] * sensor.C[k * N + b]), W[packed(i, k)], result[packed(a, b)]);
 }
 
-/// What a measurement says, backwards, of one register of modes.
+/// Adjoint of the measurement's terms for one register of modes.
 template <std::size_t N, std::size_t NY>
 struct Uncorrection {
   const Correction<N, NY> c;
@@ -82,7 +81,7 @@ struct Uncorrection {
     }
   }
 
-  /// Of `by_log` times the log density: derivatives by S.
+  /// Derivatives of `by_log` times the log density by S.
   HWY_INLINE void log_density(V by_log, V (&by_S)[packed_size(NY)]) const {
     const V half = hn::Mul(splat(0.5), by_log);
     for (std::size_t i = 0; i < NY; ++i)
@@ -90,8 +89,8 @@ struct Uncorrection {
         by_S[packed(i, k)] = hn::Mul(half, hn::MulSub(pulled[i], pulled[k], S_inverse[packed(i, k)]));
   }
 
-  /// Of share tr(S^-1 C Q C') + square e' S^-1 C Q C' S^-1 e, the latter cut (noise_scale.hpp): derivatives by e, S
-  /// (added) and Q.
+  /// Derivatives of share tr(S^-1 C Q C') + square e' S^-1 C Q C' S^-1 e by e, S (added) and Q; the last term is
+  /// limited (noise_scale.hpp).
   HWY_INLINE void explained(const Sensor& sensor, const V (&Q)[packed_size(N)], V share, V square, V (&by_e)[NY],
                             V (&by_S)[packed_size(NY)], V (&by_Q)[packed_size(N)]) const {
     const V most = splat(largest_standardised * largest_standardised * sensor.signals), nis = c.distance();
@@ -113,7 +112,7 @@ struct Uncorrection {
       value = hn::MulAdd(along[i], pulled[i], value);
     }
     weigh(along, pull);
-    // The cut square is most times value / nis.
+    // The limited square is most times value / nis.
     const V by_nis = hn::IfThenElseZero(cut, hn::Div(hn::Mul(hn::Neg(square), value), hn::Max(nis, most)));
     for (std::size_t i = 0; i < NY; ++i) {
       by_e[i] = hn::Mul(splat(2.0), hn::MulAdd(square, pull[i], hn::Mul(by_nis, pulled[i])));
@@ -133,8 +132,8 @@ struct Uncorrection {
     add_to_state<N, NY>(sensor, by_M, by_Q);
   }
 
-  /// From derivatives by the corrected moments to those by the predicted ones, and of R. `by_S`, `by_e`: of what else
-  /// depends on S and e; e of the log density counts by `by_log`.
+  /// Converts derivatives by the corrected moments to those by the predicted ones and by R. `by_S`, `by_e`: derivatives
+  /// of other terms that depend on S and e. The log density's dependence on e is added with `by_log`.
   HWY_INLINE void back(const Sensor& sensor, V by_log, const V (&by_e)[NY], const V (&by_S)[packed_size(NY)],
                        Moments<N>& by, double* by_R) const {
     V gain[N][NY], closed[N * N], pull[N], from_e[N], x[N];
@@ -183,8 +182,8 @@ struct Uncorrection {
   }
 };
 
-/// From derivatives by the predicted moments of register r to those by the mixed ones and by F, B, c and Q.
-/// `by_scaled_Q`: what else depends on Q, by itself. Returns the derivative by the noise scale, lane by lane.
+/// Converts derivatives by the predicted moments of register r to those by the mixed ones and by F, B, c and Q.
+/// `by_scaled_Q`: derivative of other terms by Q. Returns the derivative by the noise scale, lane by lane.
 template <std::size_t N>
 HWY_INLINE V back_to_mixed(const ModeRows& p, const ReverseStep& step, const ReverseRows& d, std::size_t r,
                            const Moments<N>& by, const V (&by_Q)[packed_size(N)]) {
@@ -233,12 +232,12 @@ HWY_INLINE V back_to_mixed(const ModeRows& p, const ReverseStep& step, const Rev
   return by_scale;
 }
 
-/// From derivatives by what mode j starts from to those by the state before the step and by column j of T.
+/// Converts derivatives by mode j's start to those by the state before the step and by column j of T.
 template <std::size_t N>
 HWY_INLINE void back_to_state(const ModeRows& p, const ReverseRows& d, std::size_t j) {
   const std::size_t stride = p.stride;
   const double prior = p.predicted_probability[j];
-  if (!(prior >= impossible_probability)) {  // it kept its own state
+  if (!(prior >= impossible_probability)) {  // an impossible mode kept its own state
     for (std::size_t a = 0; a < N; ++a) d.mean[a * stride + j] += d.by_mixed_mean[a * stride + j];
     for (std::size_t k = 0; k < packed_size(N); ++k)
       d.covariance[k * stride + j] += d.by_mixed_covariance[k * stride + j];
@@ -276,8 +275,8 @@ HWY_INLINE void back_to_state(const ModeRows& p, const ReverseRows& d, std::size
   }
 }
 
-/// The derivatives by the probabilities before they were floored, with what the noise scale's sums add, in place;
-/// returns their mean. A floored mode's probability depends on nothing.
+/// Replaces the derivatives by those with respect to the probabilities before the floor, including the noise scale's
+/// sums; returns their mean. A floored probability is constant.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE V unfloor(const ModeRows& p, const ReverseStep& step, const ReverseRows& d) {
   V mean = zero();
@@ -296,8 +295,8 @@ HWY_INLINE V unfloor(const ModeRows& p, const ReverseStep& step, const ReverseRo
   return splat(sum_of(mean));
 }
 
-/// From derivatives by the corrected moments of register r to those by the predicted ones, R and Q. `by_log`: by the
-/// mode's log density, mu: its probability after the measurement.
+/// Converts derivatives by the corrected moments of register r to those by the predicted ones, R and Q. `by_log`: by
+/// the mode's log density. mu: its probability after the measurement.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void back_to_predicted(const ModeRows& p, const ReverseStep& step, const ReverseRows& d, std::size_t r,
                                   V by_log, V mu, Moments<N>& by, V (&by_Q)[packed_size(N)]) {

@@ -1,9 +1,9 @@
-// The steps of vector_imm.hpp backwards, once per instruction set.
+// Adjoints of the kernels of vector_imm.hpp, compiled once per instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/step/detail/vector/reverse.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// After highway.h:
+// Must follow highway.h:
 #include "filter/step/detail/vector/reverse-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,5 +1,5 @@
-// Vectors of doubles, a mode per lane, and rows of modes in them (kernels.hpp).
-// Included once per instruction set (Highway's foreach_target.h).
+// Vectors of doubles with one mode per lane, and rows of modes in them (kernels.hpp). Included once per instruction set
+// (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_ROWS_INL
 #undef MODEBANK_VECTOR_IMM_ROWS_INL
@@ -26,15 +26,14 @@ using em::HWY_NAMESPACE::in_register;
 using em::HWY_NAMESPACE::ln_2;
 using em::HWY_NAMESPACE::log2_e;
 
-// At most the padding's width (kernels.hpp), so that rows are whole registers
-// everywhere.
+// At most the width of the padding (kernels.hpp), so that rows are whole registers on every machine.
 using D = hn::CappedTag<double, 8>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
 static_assert(hn::MaxLanes(D()) <= row_multiple);
 
-inline constexpr double far = 1e300;  ///< the squared distance of an impossible mode
+inline constexpr double far = 1e300;  ///< squared distance of an impossible mode
 
 HWY_INLINE V splat(double value) { return hn::Set(D(), value); }
 HWY_INLINE V zero() { return hn::Zero(D()); }
@@ -42,9 +41,9 @@ HWY_INLINE V load(const double* p) { return hn::Load(D(), p); }
 HWY_INLINE void store(V v, double* p) { hn::Store(v, D(), p); }
 HWY_INLINE double sum_of(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 
-/// The moments of a mixture come from sums about another point, the center: variance = square - shift^2, mean = center
-/// + shift. Below this variance too many bits have cancelled (more than ten of the variance's 53, or the mean's error
-/// is no longer far below a standard deviation), and the sums have to be taken about the mean.
+/// Smallest variance for which a mixture's moments may come from sums about another point, the center: variance =
+/// square - shift^2, mean = center + shift. Below it, more than ten of the variance's 53 bits cancel, or the mean's
+/// error approaches a standard deviation. The sums must then be taken about the mean.
 HWY_INLINE V least_sound(V square, V center) {
   constexpr double least_share = 0x1p-10, least_of_center = 0x1p-80;
   return hn::Max(hn::Mul(square, splat(least_share)), hn::Mul(hn::Mul(center, center), splat(least_of_center)));
@@ -72,7 +71,7 @@ struct Moments {
   V P[packed_size(N)];
 };
 
-/// A number per mode: in R registers, or, of however many modes (R = 0), in memory.
+/// One number per mode: in R registers, or in memory for any number of modes (R = 0).
 template <std::size_t R>
 struct Row {
   V registers[R];
@@ -88,7 +87,7 @@ struct Row<0> {
   HWY_INLINE void set(std::size_t b, V value) { store(value, memory + b * hn::Lanes(D())); }
 };
 
-/// Calls visit(b, r) for every register of modes, the one of rows r .. r + lanes; R of them are written out.
+/// Calls visit(b, r) for every register of modes, with rows r .. r + lanes; a loop over R registers is unrolled.
 template <std::size_t R, class Visit>
 HWY_INLINE void for_each_register(const ModeRows& p, const Visit& visit) {
   constexpr std::size_t lanes = hn::MaxLanes(D());
@@ -100,10 +99,10 @@ HWY_INLINE void for_each_register(const ModeRows& p, const Visit& visit) {
     for (std::size_t b = 0; b * lanes < p.stride; ++b) visit(b, b * lanes);
   }
 }
-/// Of what it visits: a copy that is called would go through memory again.
+/// Inlined: a function call would spill the registers to memory.
 #define MODEBANK_INLINE_LAMBDA __attribute__((always_inline))
 
-/// P C' of a covariance.
+/// P C' for a covariance P.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void times_sensor(const V (&P)[packed_size(N)], const double* C, V (&PCt)[N * NY]) {
   for (std::size_t a = 0; a < N; ++a)

@@ -1,5 +1,5 @@
-// What is known of quantised signals (truncated_normal.hpp), a mode per lane. Included once per instruction set
-// (Highway's foreach_target.h).
+// Moments of quantised signals (truncated_normal.hpp), one mode per lane. Included once per instruction set (Highway's
+// foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_TRUNCATED_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_TRUNCATED_INL
 #undef MODEBANK_VECTOR_IMM_TRUNCATED_INL
@@ -15,14 +15,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// SignalLikelihood of as many modes as a register has lanes.
+/// SignalLikelihood for as many modes as a register has lanes.
 struct Signals {
   V log_density, mean, variance, third, fourth;
 };
 
-/// Of standard normal variables in [low, high]; no interval narrow, none beginning far out.
+/// Moments of standard normal variables in [low, high] from differences; intervals must not be narrow or far out.
 HWY_INLINE Signals by_differences(V low, V high) {
-  const V beyond = splat(38.0);  // where the density is no normal number
+  const V beyond = splat(38.0);  // beyond it the density is denormal
   low = hn::Max(low, hn::Neg(beyond));
   high = hn::Min(high, beyond);
   const V mass = hn::Sub(normal_cdf(hn::Neg(low)), normal_cdf(hn::Neg(high)));
@@ -45,7 +45,7 @@ HWY_INLINE Signals by_differences(V low, V high) {
   return s;
 }
 
-/// By Gauss-Legendre quadrature in panels, as many as the lane that needs most of them has.
+/// Moments by Gauss-Legendre quadrature in panels; the number of panels is that of the most demanding lane.
 HWY_INLINE Signals by_quadrature(V low, V width) {
   constexpr double negligible = truncated::negligible_exponent;
   const V reach =
@@ -92,7 +92,7 @@ HWY_INLINE Signals choose(M first, const Signals& a, const Signals& b) {
           of(a.fourth, b.fourth)};
 }
 
-/// signal_likelihood of truncated_normal.hpp, of innovations `e` of variances `s`.
+/// signal_likelihood of truncated_normal.hpp for innovations `e` with variances `s`.
 HWY_INLINE Signals signal_likelihood(V e, V s, double quantum) {
   const V root = hn::Sqrt(s), z = hn::Div(e, root);
   if (quantum == 0.0)
@@ -104,7 +104,7 @@ HWY_INLINE Signals signal_likelihood(V e, V s, double quantum) {
   const V width = hn::Div(splat(quantum), root);
   const M quadrature =
       hn::Or(hn::Lt(width, splat(truncated::least_width)), hn::Gt(low, splat(truncated::largest_start)));
-  // What the other way is taken for is put where it costs little.
+  // Lanes for the other method get values that are cheap to compute.
   Signals result;
   if (hn::AllTrue(D(), quadrature)) {
     result = by_quadrature(low, width);

@@ -1,5 +1,5 @@
-// The step that takes a measurement in, and whole stretches of steps, a mode
-// per lane. Included once per instruction set (Highway's foreach_target.h).
+// Update with a measurement, and whole stretches of steps, one mode per lane. Included once per instruction set
+// (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_UPDATE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_UPDATE_INL
 #undef MODEBANK_VECTOR_IMM_UPDATE_INL
@@ -15,19 +15,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Densities are far above the smallest numbers where the largest exponent exceeds this.
+/// Above this largest exponent, densities are far above the smallest numbers.
 inline constexpr double far_exponent = -100.0;
 
-/// Of a measurement whose weights sum to `sum`, relative to the exponent `reference`.
+/// Log density of a measurement whose weights sum to `sum`, relative to the exponent `reference`.
 template <std::size_t NY, class Tag>
 HWY_INLINE hn::Vec<Tag> log_density(Tag d, hn::Vec<Tag> sum, hn::Vec<Tag> reference) {
   const auto constant = hn::Set(d, -0.5 * static_cast<double>(NY) * log_two_pi);
   return hn::Add(hn::MulAdd(hn::Set(d, ln_2), reference, hn::Log(d, sum)), constant);
 }
 
-/// Every mode takes y in: the state after it, p.decorrelated, exponents (of 2, in densities) and weights, the prior
-/// over the root of S's determinant. `predicted` has the prediction of each register. Returns what exponents are
-/// relative to: the largest, or, which does as well and need not be waited for, zero where that is not far.
+/// Updates every mode with y: state, p.decorrelated, exponents (base 2, of densities) and weights (prior over the
+/// square root of S's determinant). `predicted` has the prediction of each register. Returns the reference of the
+/// exponents. That is the largest exponent; or zero if the largest is not far below, which avoids waiting for it.
 template <std::size_t N, std::size_t NY, std::size_t R, class Predicted>
 HWY_INLINE V correct(const ModeRows& p, const Sensor& sensor, const double* y, const Predicted& predicted,
                      Row<R>& exponents, Row<R>& weights) {
@@ -51,7 +51,7 @@ HWY_INLINE V correct(const ModeRows& p, const Sensor& sensor, const double* y, c
   return reference;
 }
 
-/// Bayes' rule: weights become the posterior but for its factor, which is the sum that is returned.
+/// Bayes' rule: weights become the posterior up to a factor; returns that factor, their sum.
 template <std::size_t R>
 HWY_INLINE double bayes(const ModeRows& p, V reference, const Row<R>& exponents, Row<R>& weights) {
   V sum = zero();
@@ -66,7 +66,7 @@ HWY_INLINE double bayes(const ModeRows& p, V reference, const Row<R>& exponents,
   return sum_of(sum);
 }
 
-/// p.probability of weights that sum to `sum`: no mode dies for good. And p.parts.
+/// p.probability from weights that sum to `sum`, with the floor that keeps every mode alive. Also updates p.parts.
 template <std::size_t N, std::size_t R>
 HWY_INLINE void floor_probabilities(const ModeRows& p, double sum, Row<R>& weights) {
   const V floor = splat(mode_probability_floor * sum);
@@ -92,7 +92,7 @@ HWY_INLINE void floor_probabilities(const ModeRows& p, double sum, Row<R>& weigh
   });
 }
 
-/// The sums that adaptive noise is made of (adapt_noise_scale of noise_scale.hpp), of weights that sum to `sum`.
+/// Sums for adaptive noise (adapt_noise_scale of noise_scale.hpp), from weights that sum to `sum`.
 template <std::size_t N, std::size_t NY>
 HWY_NOINLINE void explain(const ModeRows& p, const Sensor& sensor, const double* y, double noise_scale, double sum,
                           UpdateResult& result) {
@@ -124,7 +124,7 @@ UpdateResult update(const ModeRows& p, const Sensor& sensor, const double* y, do
   return result;
 }
 
-/// One sample of a stretch: predict and update of R registers, all in registers, or (R = 0) of any number.
+/// One sample of a stretch: predict and update of R registers, kept in registers, or of any number in memory (R = 0).
 template <std::size_t N, std::size_t NY, std::size_t R>
 HWY_INLINE double step(const ModeRows& p, const Sensor& sensor, const double* v, const double* y, double& reference) {
   Row<R> exponents(p.exponent), weights(p.weight);
@@ -146,7 +146,7 @@ HWY_INLINE double step(const ModeRows& p, const Sensor& sensor, const double* v,
   return sum;
 }
 
-/// Predicts and updates through a stretch; logarithms are taken of many samples at once.
+/// Predicts and updates through a stretch; logarithms are computed for many samples at once.
 template <std::size_t N, std::size_t NY, std::size_t R>
 void follow_registers(const ModeRows& p, const Sensor& sensor, const Stretch& stretch) {
   constexpr std::size_t block = 64;

@@ -9,7 +9,8 @@
 
 namespace modebank {
 
-/// VectorImm that remembers every step, to go back over them for the gradient of their log densities.
+/// VectorImm that stores every step and then computes the gradient of their log densities by reverse-mode
+/// differentiation.
 class VectorGradient {
  public:
   using Vector = Stepper::Vector;
@@ -21,29 +22,29 @@ class VectorGradient {
   void reserve(Eigen::Index samples);
   void start(const Vector& y);
   void skip(const Vector& v);
-  /// `weight`: of the log density.
+  /// `weight`: of the step's log density.
   void step(const Vector& v, const Vector& y, double weight);
-  /// Of the sum of all steps' weighted log densities. Once.
+  /// Gradient of the sum of all steps' weighted log densities. Call once.
   BankGradient go_back();
 
  private:
   enum class Kind { start, skip, step };
-  /// What a moment was reached by, and the noise scale after it.
+  /// The step to a moment, and the noise scale after it.
   struct Moment {
     Kind kind;
     double weight = 0.0;
     double noise_scale = 1.0, noise_samples = 0.0;
-    double share = 0.0, square = 0.0;  ///< of UpdateResult
+    double share = 0.0, square = 0.0;  ///< from UpdateResult
   };
 
   VectorImm filter_;
   vector_imm::Reverse reverse_;
   Eigen::Index n_, n_y_, m_, K_, packed_, stride_, state_numbers_;
   std::vector<Moment> moments_;
-  std::vector<double> states_, inputs_, measured_;  ///< state_numbers_, m_ and n_y_ numbers a moment
-  Eigen::VectorXd memory_;                          ///< of rows_ and probability_after_
+  std::vector<double> states_, inputs_, measured_;  ///< state_numbers_, m_ and n_y_ numbers per moment
+  Eigen::VectorXd memory_;                          ///< for rows_ and probability_after_
   vector_imm::ReverseRows rows_;
-  double* probability_after_ = nullptr;  ///< a row within memory_
+  double* probability_after_ = nullptr;  ///< a row in memory_
   Eigen::VectorXd by_R_;
   Eigen::MatrixXd by_start_covariance_;
   double by_noise_scale_ = 0.0, by_noise_samples_ = 0.0;

@@ -75,8 +75,8 @@ VectorImm::VectorImm(const Bank& bank, const FilterOptions& options)
   fill(bank);
 }
 
-/// One block for all rows, so that a step after a pause finds its numbers in few cache lines. Those of the state follow
-/// each other: VectorGradient copies them at once.
+/// One block of memory for all rows, so that a step after a pause loads few cache lines. Rows of the state are
+/// contiguous, because VectorGradient copies them together.
 void VectorImm::lay_out() {
   const Index m = static_cast<Index>(rows_.inputs), p = packed_size(n_), q = packed_size(n_y_);
   const Index bank_rows = n_ * n_ + n_ * m + n_ + p + K_, step_rows = 3 * (n_ + p) + 3 + 5 * n_y_ + 2 * q + 2;
@@ -99,7 +99,7 @@ void VectorImm::lay_out() {
   rows_.mean = take(n_);
   rows_.covariance = take(p);
   rows_.probability = take(1);
-  rows_.center = take(1);  // has room for n
+  rows_.center = take(1);  // has room for n numbers
   rows_.parts = take(n_ + p);
   rows_.predicted_probability = take(1);
   rows_.predicted_mean = take(n_);
@@ -116,7 +116,7 @@ void VectorImm::lay_out() {
 }
 
 void VectorImm::fill(const Bank& bank) {
-  const auto put = [&](const double* rows, Index i, Index j, double value) {  // rows of memory_ that steps only read
+  const auto put = [&](const double* rows, Index i, Index j, double value) {  // rows of memory_ that steps do not write
     memory_[count_of(rows - memory_.get()) + at(i, j)] = value;
   };
   const Index m = bank.structure.acting_inputs();
@@ -147,7 +147,7 @@ void VectorImm::start(const Vector& y) {
   noise_samples_ = adaptation_.prior_samples;
 }
 
-/// noise_of_step of imm.hpp. start_ is free between starts.
+/// noise_of_step of imm.hpp. start_ is unused between starts, so it serves as workspace.
 double VectorImm::scale_of_step(const Vector& v) {
   if (factor_.empty()) return noise_scale_;
   for (Index a = 0; a < n_; ++a) {
@@ -168,7 +168,7 @@ void VectorImm::predict(const Vector& v) {
   kernels_.predict(rows_, sensor_, v.data(), applied_scale_);
 }
 
-/// As PartialSensor: a missing signal is one that is always zero, of variance one, unrelated to anything.
+/// As in PartialSensor, a missing signal becomes one that is always zero, with variance one and no correlation.
 vector_imm::Sensor VectorImm::detach_missing(const Vector& y, Index missing) {
   partial_C_ = C_;
   partial_R_ = R_;
@@ -206,7 +206,7 @@ double VectorImm::update(const Vector& y) {
 void VectorImm::follow(const Columns& inputs, const Columns& measurements, Eigen::Ref<Eigen::VectorXd> log_density) {
   const Index samples = measurements.cols();
   for (Index k = 0; k < samples;) {
-    Index end = k;  // of the whole samples from k on
+    Index end = k;  // end of the complete samples from k on
     while (!adaptive_ && factor_.empty() && !sensor_.quantum && end < samples &&
            missing_entries(measurements.col(end)) == 0)
       ++end;

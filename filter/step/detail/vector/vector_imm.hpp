@@ -12,12 +12,12 @@ namespace vector_imm {
 inline std::size_t count_of(Eigen::Index n) { return static_cast<std::size_t>(n); }
 }  // namespace vector_imm
 
-/// The interacting multiple model filter with a mode per lane of the processor's vector registers (Highway, chosen for
-/// the machine at run time), for the sizes most robots have. It computes what equations/filter_step.hpp computes, to
-/// rounding: the same mixing, floors, adaptive noise and treatment of impossible modes, in another order of summation.
+/// The interacting multiple model filter with one mode per lane of the vector registers (Highway, chosen at run time),
+/// for the sizes of most robots. Up to rounding it equals equations/filter_step.hpp, with the same mixing, floors,
+/// adaptive noise and treatment of impossible modes. Only the order of summation differs.
 class VectorImm final : public Stepper {
  public:
-  /// Whether there are kernels for this bank run in this way.
+  /// Whether kernels exist for this bank with these options.
   static bool can_step(const Bank& bank, const FilterOptions& options);
   /// Requires can_step(bank, options) and check_sizes(bank).
   VectorImm(const Bank& bank, const FilterOptions& options);
@@ -33,7 +33,7 @@ class VectorImm final : public Stepper {
   void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override;
   Eigen::Map<const Eigen::VectorXd> predicted_probability() const override { return row(rows_.predicted_probability); }
   Eigen::Map<const Eigen::VectorXd> mode_probability() const override { return row(rows_.probability); }
-  /// After update: signal i of mode j's innovation without what earlier signals explain, and its variance.
+  /// After update: signal i of mode j's innovation minus its prediction from earlier signals. Also its variance.
   double decorrelated(Eigen::Index i, Eigen::Index j) const { return rows_.decorrelated[at(i, j)]; }
   double variance(Eigen::Index i, Eigen::Index j) const { return rows_.D[at(i, j)]; }
   double noise_scale() const { return noise_scale_; }
@@ -42,7 +42,7 @@ class VectorImm final : public Stepper {
   void restore(const FilterMemory& memory) override;
 
  private:
-  friend class VectorGradient;  // goes back over the same steps
+  friend class VectorGradient;  // computes the adjoint of the same steps
   struct Free {
     void operator()(double* memory) const;
   };
@@ -51,18 +51,18 @@ class VectorImm final : public Stepper {
   bool adaptive_;
   Eigen::VectorXd quantum_, partial_quantum_;  // empty: nothing is quantised
   NoiseAdaptation adaptation_;
-  NoiseFactor factor_;                              // empty: one
+  NoiseFactor factor_;                              // empty: factor one
   double applied_scale_ = 1.0;                      // of the last prediction: noise_scale_ times the factor
-  double noise_scale_ = 1.0, noise_samples_ = 0.0;  // of FilterMemory
-  vector_imm::UpdateResult last_;                   // update's
+  double noise_scale_ = 1.0, noise_samples_ = 0.0;  // as in FilterMemory
+  vector_imm::UpdateResult last_;                   // of the last update
   vector_imm::Kernels kernels_;
   std::unique_ptr<double[], Free> memory_;
-  vector_imm::ModeRows rows_;              // within memory_
+  vector_imm::ModeRows rows_;              // point into memory_
   Eigen::MatrixXd C_, R_;                  // transposed: row-major
-  Eigen::MatrixXd partial_C_, partial_R_;  // of the signals that are there
-  vector_imm::Sensor sensor_;              // C_ and R_
+  Eigen::MatrixXd partial_C_, partial_R_;  // of the available signals
+  vector_imm::Sensor sensor_;              // views of C_ and R_
   Eigen::VectorXd y_, packed_;
-  Eigen::VectorXd weights_, log_likelihood_;  // workspace of quantised signals' transform
+  Eigen::VectorXd weights_, log_likelihood_;  // workspace of the transform for quantised signals
   StartMoments first_;
   Eigen::VectorXd initial_probability_, start_;
 
