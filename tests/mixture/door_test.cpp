@@ -37,7 +37,7 @@ TEST(MixtureDoor, GivesTheSameBits) {
     EXPECT_TRUE(test::same_bits(outside.responsibilities, to_matrix(responsibilities(inside.mixture, set))));
     ASSERT_EQ(outside.candidates.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(outside.candidates[i].bic, inside.candidates[i].bic);
-    // There and back.
+    // Conversion to the public type and back.
     EXPECT_TRUE(test::same_bits(mixture::responsibilities(outside.mixture, to_matrix(points)),
                                 to_matrix(responsibilities(inside.mixture, points))));
     EXPECT_TRUE(test::same_bits(mixture::log_density(outside.mixture, to_matrix(points)),

@@ -15,10 +15,10 @@ namespace {
 using Eigen::Index;
 
 constexpr double law_tolerance = 1e-9;
-/// Per unit of |log L|: rounding of a sum of hundreds of terms.
+/// Relative to |log L|: rounding of a sum of hundreds of terms.
 constexpr double monotone_slack = 1e-12;
 
-/// Same mixture up to the tolerance.
+/// Checks that two mixtures are equal up to the tolerance.
 void expect_same(const GaussianMixture& actual, const GaussianMixture& expected, double tolerance) {
   EXPECT_TRUE(near(actual.weights, expected.weights, tolerance));
   EXPECT_TRUE(near(actual.means, expected.means, tolerance));
@@ -65,7 +65,7 @@ TEST(Em, LogLikelihoodNeverFallsWithActiveFloorEither) {
   }
 }
 
-/// Restarts go by extrapolated steps: they end where plain EM ends, no lower and with nothing left to gain.
+/// Restarts use extrapolated steps. They must end at the optimum of plain EM, no lower and without remaining gain.
 TEST(Em, AcceleratedRestartsEndWherePlainEmDoes) {
   for (const CovarianceType type : {CovarianceType::full, CovarianceType::diagonal})
     for (const bool noise : {false, true}) {
@@ -143,7 +143,7 @@ TEST(Em, IntegerWeightsEqualRepeatedPoints) {
   Eigen::VectorXd weights(300);
   std::vector<Index> repeated;
   for (Index i = 0; i < 300; ++i) {
-    weights(i) = static_cast<double>(i % 4);  // zero included
+    weights(i) = static_cast<double>(i % 4);  // includes zero
     repeated.insert(repeated.end(), static_cast<std::size_t>(i % 4), i);
   }
   const EmResult a = fit_em(points, weights, three_clusters(2.0), fixed_iterations(100));
@@ -175,8 +175,8 @@ TEST(Em, FindsSeparatedClustersAndOrdersThemByWeight) {
   const EmResult fit = fit_em(draw(truth, 3000, 11), unweighted, 3, EmOptions(), 1);
   EXPECT_TRUE(fit.converged);
   EXPECT_FALSE(fit.floor_active);
-  EXPECT_GE(fit.agreeing_restarts, 2);  // clusters twelve deviations apart are found again
-  // Six standard errors: of a weight 0.0091, of a mean 0.045 (600 points), of a variance 0.07.
+  EXPECT_GE(fit.agreeing_restarts, 2);  // well-separated clusters (twelve standard deviations) are found repeatedly
+  // Six standard errors: 0.0091 for a weight, 0.045 for a mean (600 points), 0.07 for a variance.
   EXPECT_TRUE(near(fit.mixture.weights, truth.weights, 6 * 0.0091));
   EXPECT_TRUE(near(fit.mixture.means, truth.means, 6 * 0.045));
   for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE(near(fit.mixture.covariances[k], truth.covariances[k], 6 * 0.07));
@@ -208,7 +208,7 @@ TEST(Em, SameSeedSameResultOtherSeedOtherStarts) {
 }
 
 TEST(Em, ResultIsBitwiseTheSameForAnyNumberOfThreads) {
-  for (const Index count : {Index(700), Index(30000)}) {  // restarts in parallel; blocks in parallel
+  for (const Index count : {Index(700), Index(30000)}) {  // parallel over restarts; parallel over blocks
     const Eigen::MatrixXd points = draw(three_clusters(2.0), count, 15);
     EmOptions options = fixed_iterations(15);
     options.restarts = 3;

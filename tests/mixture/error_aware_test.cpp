@@ -34,7 +34,7 @@ Eigen::MatrixXd random_errors(Index features, Index count, double scale, std::ui
   return errors;
 }
 
-/// What points with these errors would have been read as.
+/// The points with random errors of these covariances added.
 Eigen::MatrixXd with_errors(Eigen::MatrixXd points, const Eigen::MatrixXd& errors, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -105,7 +105,7 @@ TEST(ErrorAware, ZeroErrorsGiveThePlainFit) {
       const Eigen::MatrixXd points = draw(truth, 333, 5), none = Eigen::MatrixXd::Zero(features * features, 333);
       const EmResult plain = fit_em(PointSet(points), truth, unfloored(30, type));
       const EmResult aware = fit_em(PointSet(points, unweighted, none), truth, unfloored(30, type));
-      EXPECT_LT(difference(aware, plain), 1e-13 * 30) << features;  // rounding of thirty iterations
+      EXPECT_LT(difference(aware, plain), 1e-13 * 30) << features;  // rounding over thirty iterations
       EXPECT_NEAR(aware.log_likelihood / plain.log_likelihood, 1.0, 1e-13) << features;
       EXPECT_TRUE(
           near(responsibilities(truth, PointSet(points, unweighted, none)), responsibilities(truth, points), 1e-13));
@@ -114,8 +114,8 @@ TEST(ErrorAware, ZeroErrorsGiveThePlainFit) {
 }
 
 TEST(ErrorAware, EqualErrorsAddToTheCovariances) {
-  // N(mu, Sigma + S): for one S all points share, a mixture of inflated components has the same density.
-  for (const Index features : {2, 4, 9}) {  // the last one beyond the unrolled kernels
+  // If all points share one S, a mixture of inflated components has the same density N(mu, Sigma + S).
+  for (const Index features : {2, 4, 9}) {  // the last one exceeds the unrolled kernels
     const GaussianMixture mixture = any_mixture(features, 3);
     GaussianMixture inflated = mixture;
     const Eigen::MatrixXd error = random_errors(features, 1, 0.8, 3);
@@ -183,7 +183,8 @@ TEST(ErrorAware, AStepIsWhatTheFormulaeSay) {
 }
 
 TEST(ErrorAware, PointsFarFromEverythingKeepTheirDensity) {
-  // Their densities relative to any one number underflow; at equal errors a mixture of inflated components knows them.
+  // Densities relative to any common number would underflow. At equal errors, a mixture of inflated components gives
+  // the expected values.
   for (const Index features : {2, 6}) {
     const GaussianMixture mixture = any_mixture(features, 3);
     GaussianMixture inflated = mixture;
@@ -256,7 +257,7 @@ TEST(ErrorAware, HugeAndSingularErrorsAreSound) {
     const GaussianMixture truth = any_mixture(features, 2);
     const Eigen::MatrixXd points = draw(truth, 200, 13);
     Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(features * features, 200);
-    errors.row(0).setConstant(1e300);  // nothing known of a feature
+    errors.row(0).setConstant(1e300);  // one feature is unknown
     errors.rightCols(50) = Eigen::VectorXd::Ones(features * features).replicate(1, 50) * 1e200;  // rank one
     const PointSet set(points, unweighted, errors);
     const EmResult fit = fit_em(set, 2, EmOptions(), 1);

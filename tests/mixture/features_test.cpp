@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-/// Five windows of one state and two inputs (the sizes whose names model.hpp documents): sound, rank deficient, failed,
-/// not finite, sound.
+/// Five windows of one state and two inputs: valid, rank deficient, failed, not finite, valid. Parameter names as in
+/// linear_model.hpp.
 WindowFits five_windows() {
   WindowFits fits;
   fits.structure = LinearStructure{1, 2, false};
@@ -42,8 +42,8 @@ TEST(Features, AllLeavesOutOnlyFailedAndNonFiniteWindows) {
   EXPECT_EQ(cloud.windows, (std::vector<Index>{0, 1, 4}));
 }
 
-/// Three windows of full rank: worth two independent ones for each of three features where every second sample begins
-/// one of length one, not where every sample does.
+/// Three full-rank windows of length one. If one begins at every second sample, they are worth two independent windows
+/// per feature (of three); if at every sample, they are not.
 TEST(Features, AutomaticTakesAllWindowsOnlyWhereTooFewHaveFullRank) {
   WindowFits fits = five_windows();
   const auto automatic = [&] {
@@ -69,7 +69,7 @@ TEST(Features, TheOthersAreAssignedWithTheirErrors) {
   options.straddling = StraddlingWindows::keep;
   EXPECT_TRUE(assigned_features(fits, states, options).windows.empty()) << "no prior, no theta";
   fits.prior_sd = Eigen::Vector3d::Ones();
-  fits.step = 3;  // four features
+  fits.step = 3;  // for four features
   EXPECT_EQ(make_features(fits, states, options).windows, (std::vector<Index>{0, 4}));
   const FeatureCloud others = assigned_features(fits, states, options);
   ASSERT_EQ(others.windows, (std::vector<Index>{1}));
@@ -111,7 +111,7 @@ TEST(Features, StateNamesMustMatch) {
   EXPECT_THROW(make_features(five_windows(), FeatureSet::parameters, WindowChoice::all, {}), std::invalid_argument);
 }
 
-/// Points of four features whose central variances are 8/9 of squared spreads, in units of different errors.
+/// Points of four features whose central variances are 8/9 of their squared half-widths, in units of different errors.
 FeatureCloud four_features() {
   FeatureCloud cloud;
   cloud.names = {"a", "b", "c", "d"};

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double rounding = 1e-14;
 
-// Points that end with the expression are refused: PointSet set(x.leftCols(3)) once referred to memory that was gone.
+// The compiler rejects temporaries: PointSet set(x.leftCols(3)) once referred to freed memory.
 static_assert(std::is_constructible_v<PointSet, Eigen::MatrixXd&>);
 static_assert(!std::is_constructible_v<PointSet, Eigen::MatrixXd>);
 static_assert(!std::is_constructible_v<PointSet, decltype(std::declval<Eigen::MatrixXd&>().leftCols(3))>);
@@ -38,16 +38,16 @@ TEST(GaussianMixture, OneComponentHasTheNormalDensity) {
 }
 
 TEST(GaussianMixture, DensityFollowsItsFormulaForAnyNumberOfFeatures) {
-  for (Eigen::Index features = 1; features <= 11; ++features) {  // every specialised kernel and the general one
+  for (Eigen::Index features = 1; features <= 11; ++features) {  // covers every specialised kernel and the general one
     GaussianMixture mixture;
     mixture.weights = Eigen::VectorXd::Ones(1);
     mixture.means = Eigen::VectorXd::LinSpaced(features, -1.0, 2.0);
-    // Correlations that fall with distance (Kac, Murdock & Szego 1953): determinant (1 - 0.25)^(F - 1).
+    // Correlations that fall with distance (Kac, Murdock & Szego 1953): the determinant is (1 - 0.25)^(F - 1).
     mixture.covariances.emplace_back(features, features);
     for (Eigen::Index i = 0; i < features; ++i)
       for (Eigen::Index j = 0; j < features; ++j)
         mixture.covariances[0](i, j) = std::pow(0.5, static_cast<double>(std::abs(i - j)));
-    // d' Sigma^-1 d = d_1^2 + sum (d_i - 0.5 d_(i-1))^2 / 0.75: a first-order autoregression.
+    // d' Sigma^-1 d = d_1^2 + sum (d_i - 0.5 d_(i-1))^2 / 0.75, as for a first-order autoregression.
     const Eigen::VectorXd d = Eigen::VectorXd::LinSpaced(features, 0.3, -1.7).array().sin();
     double distance = d(0) * d(0);
     for (Eigen::Index i = 1; i < features; ++i) distance += std::pow(d(i) - 0.5 * d(i - 1), 2) / 0.75;
@@ -103,7 +103,7 @@ TEST(GaussianMixture, SampleHasTheMixturesMoments) {
   }
   const Eigen::VectorXd sample_mean = points.rowwise().mean();
   const Eigen::MatrixXd centered = points.colwise() - sample_mean;
-  // Five standard errors of a mean and, generously, of a second moment.
+  // Five standard errors of a mean, and more than that of a second moment.
   const double standard_error = std::sqrt(covariance.diagonal().maxCoeff() / count);
   EXPECT_TRUE(near(sample_mean, mean, 5.0 * standard_error));
   EXPECT_TRUE(near(centered * centered.transpose() / count, covariance,

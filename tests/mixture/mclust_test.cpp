@@ -1,4 +1,4 @@
-// Against R's mclust: tests/golden/generate/mclust.R wrote the golden file.
+// Comparison with R's mclust; tests/golden/generate/mclust.R generated the golden file.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -24,7 +24,7 @@ EmOptions options_of(const json& fit) {
   return options;
 }
 
-/// The moments of the classes that mclust's EM begins from.
+/// The moments of the classes from which mclust's EM starts.
 GaussianMixture start_of(const json& fit, const Eigen::MatrixXd& points) {
   const auto labels = fit["classification"].get<std::vector<Index>>();
   const auto components = fit["components"].get<Index>();

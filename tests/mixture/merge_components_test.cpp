@@ -1,4 +1,4 @@
-// Mixture reduction: moments are kept, the closest pair goes first, windows follow.
+// Mixture reduction: moments are preserved, the closest pair is merged first, labels of windows follow.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,7 +46,7 @@ TEST(MergeComponents, KeepsTheMomentsOfTheMixture) {
 }
 
 TEST(MergeComponents, TakesTheClosestPairFirstAndWindowsFollow) {
-  const MixtureResult after = merge_components(four_components(), 3);  // 0 and 2 overlap almost wholly
+  const MixtureResult after = merge_components(four_components(), 3);  // components 0 and 2 overlap almost completely
   EXPECT_NEAR(after.mixture.weights(0), 0.7, 1e-14);
   const Eigen::MatrixXd responsibilities = after.responsibilities.all();
   EXPECT_NEAR(responsibilities(0, 0), 0.8, 1e-14);

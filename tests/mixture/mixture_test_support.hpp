@@ -28,7 +28,7 @@ inline Eigen::MatrixXd draw(const GaussianMixture& mixture, Eigen::Index count, 
   return sample(mixture, count, generator);
 }
 
-/// That many iterations, converged or not.
+/// Options for exactly that many iterations, converged or not.
 inline EmOptions fixed_iterations(int iterations, CovarianceType type = CovarianceType::full) {
   EmOptions options;
   options.covariance = type;
@@ -37,7 +37,7 @@ inline EmOptions fixed_iterations(int iterations, CovarianceType type = Covarian
   return options;
 }
 
-/// Every entry finite, weights a distribution.
+/// Whether every entry is finite and the weights are a distribution.
 inline bool is_finite(const GaussianMixture& mixture) {
   bool finite = mixture.weights.allFinite() && mixture.means.allFinite();
   for (const Eigen::MatrixXd& covariance : mixture.covariances) finite = finite && covariance.allFinite();
@@ -45,7 +45,7 @@ inline bool is_finite(const GaussianMixture& mixture) {
          mixture.weights.minCoeff() >= 0.0;
 }
 
-/// A cloud of windows in `runs` runs of equal length, in order, each window clustered; `fits` matches it.
+/// A cloud of clustered windows in `runs` runs of equal length, in order; `fits` matches it.
 inline FeatureCloud cloud_of(const Eigen::MatrixXd& points, Eigen::Index runs) {
   FeatureCloud cloud;
   for (Eigen::Index f = 0; f < points.rows(); ++f) cloud.names.emplace_back(1, static_cast<char>('a' + f));

@@ -1,4 +1,4 @@
-// The uniform noise component, and points of no cluster.
+// The uniform noise component, and points that belong to no cluster.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -19,7 +19,7 @@ EmOptions with_noise(int iterations = 1000) {
   return options;
 }
 
-/// Clusters, a share of `noise` of the points uniform over a box much larger than they are, and the points in turn.
+/// Clusters, with a share `noise` of the points uniform over a much larger box, in alternating order.
 GaussianMixture noisy_clusters(double distance, double noise) {
   GaussianMixture mixture = three_clusters(distance);
   mixture.weights *= 1.0 - noise;
@@ -86,7 +86,7 @@ TEST(NoiseComponent, TakesWhatBelongsToNoCluster) {
     EXPECT_TRUE(near(fit.mixture.covariances[k], truth.covariances[k], 6 * 0.075)) << k;
   double largest = 0.0;
   for (const Eigen::MatrixXd& covariance : plain.mixture.covariances) largest = std::max(largest, covariance.trace());
-  EXPECT_GT(largest, 50.0);  // without it some component swallows the noise
+  EXPECT_GT(largest, 50.0);  // without a noise component, some component absorbs the noise
 }
 
 TEST(NoiseComponent, ItsWindowsGetNoLabel) {

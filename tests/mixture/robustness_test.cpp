@@ -1,4 +1,4 @@
-// Bad or degenerate clouds: a stated result or a clear error, never NaN.
+// Bad or degenerate clouds must give a defined result or a clear error, never NaN.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -33,7 +33,7 @@ TEST_P(Robustness, IdenticalPoints) {
   const EmResult result = fit(points, 4);
   expect_sound(result, points);
   EXPECT_TRUE(result.floor_active);
-  // A constant feature keeps its unit: the floor is 1e-6 of it.
+  // A constant feature keeps its unit, and the floor is 1e-6 of that.
   EXPECT_TRUE(near(result.mixture.means, points.leftCols(4), 1e-9));
   EXPECT_TRUE(near(result.mixture.covariances[0], 1e-6 * Eigen::Matrix3d::Identity(), 1e-18));
 }
@@ -75,7 +75,7 @@ TEST_P(Robustness, ExtremeOutlier) {
     points.col(17).setConstant(distance);
     const EmResult result = fit(points, 2);
     expect_sound(result, points);
-    // One component for the outlier, one for the rest.
+    // Expected: one component for the outlier, one for the rest.
     EXPECT_NEAR(result.mixture.weights(0), 499.0 / 500.0, 1e-6);
     EXPECT_NEAR(result.mixture.means(0, 1) / distance, 1.0, 1e-6);
   }
@@ -134,7 +134,7 @@ TEST_P(Robustness, TinyAndHugeUnits) {
 TEST_P(Robustness, StarvedComponentKeepsItsPlace) {
   const Eigen::MatrixXd points = draw(three_clusters(3.0), 300, 5);
   GaussianMixture start = three_clusters(3.0);
-  start.means.col(2).setConstant(1e4);  // explains nothing
+  start.means.col(2).setConstant(1e4);  // explains no point
   EmOptions options;
   options.covariance = GetParam();
   const EmResult result = fit_em(points, unweighted, start, options);
@@ -146,14 +146,14 @@ TEST_P(Robustness, StarvedComponentKeepsItsPlace) {
 TEST_P(Robustness, SinglePointComponents) {
   Eigen::MatrixXd points(2, 43);
   points.leftCols(40) = draw(three_clusters(1.0), 40, 6);
-  points.rightCols(3) << 1e3, -1e3, 0.0, 1e3, 1e3, -1e3;  // each far from all
+  points.rightCols(3) << 1e3, -1e3, 0.0, 1e3, 1e3, -1e3;  // far from all other points
   const EmResult result = fit(points, 4);
   expect_sound(result, points);
-  EXPECT_TRUE(result.floor_active);  // a single point has no spread of its own
+  EXPECT_TRUE(result.floor_active);  // a single point has no extent
 }
 
 TEST_P(Robustness, DensitiesBelowTheSmallestNumber) {
-  // Exponentials of less than -745 are zero in double precision: without the log domain all responsibilities were 0/0.
+  // exp(-745) and less is zero in double precision. Without the log domain all responsibilities would be 0/0.
   Eigen::MatrixXd points = draw(three_clusters(2.0), 200, 7);
   points.col(5) << 60.0, -70.0;
   const EmResult result = fit(points, 2);
@@ -211,7 +211,7 @@ TEST(RobustnessErrors, CallersMistakesThrow) {
   EXPECT_THROW(fit_em(points, unweighted, 2, wrong, 1), std::invalid_argument);
 }
 
-/// The floor is a share of each feature's own error variance, whatever else the points do.
+/// The floor is a share of each feature's error variance, whatever the points are.
 TEST(Robustness, TheFloorIsRelativeToThePointsErrors) {
   EmOptions options;
   options.covariance_floor = 1e-4;

@@ -33,12 +33,12 @@ Index selected(const MixtureResult& result) {
 
 TEST(EffectiveSamples, CountsByHand) {
   FeatureCloud cloud;
-  // Runs of 100, 10 and 30 windows; L = 25, step 1: 4 + max(1, 0.4) + 1.2.
+  // N_eff for runs of 100, 10 and 30 windows with L = 25, step 1: 4 + max(1, 0.4) + 1.2.
   for (const auto& [run, windows] : {std::pair<Index, int>{0, 100}, {3, 10}, {5, 30}})
     cloud.runs.insert(cloud.runs.end(), static_cast<std::size_t>(windows), run);
   EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 1), 4.0 + 1.0 + 1.2);
   EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 5), 20.0 + 2.0 + 6.0);
-  EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 50), 140.0);  // windows apart: all count, once
+  EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 50), 140.0);  // windows do not overlap, so each counts once
 }
 
 TEST(Criteria, FormulasByHand) {
@@ -73,7 +73,7 @@ TEST(Select, EveryCriterionFindsThreeSeparatedClusters) {
   const FeatureCloud cloud = cloud_of(draw(three_clusters(12.0), 1500, 1), 6);
   for (const Criterion criterion : {Criterion::bic, Criterion::icl, Criterion::heldout, Criterion::bic_naive}) {
     const MixtureResult result = select_mixture(fits_of(cloud, 1, 1), cloud, up_to(5, criterion), 1);
-    // A held-out score barely falls with superfluous components, but must see that fewer are wrong.
+    // A held-out score hardly falls with superfluous components, but must fall with too few.
     if (criterion == Criterion::heldout)
       EXPECT_GE(selected(result), 3);
     else
@@ -103,7 +103,7 @@ TEST(Select, TableRowsAgreeWithTheMixtures) {
 TEST(Select, MembershipsCoverClusteredWindowsOnly) {
   FeatureCloud cloud = cloud_of(draw(three_clusters(12.0), 300, 3), 3);
   WindowFits fits = fits_of(cloud, 1, 1);
-  for (Index& window : cloud.windows) window = 2 * window;  // every other window is left out
+  for (Index& window : cloud.windows) window = 2 * window;  // every other window is missing
   fits.windows.resize(600);
   const MixtureResult result = select_mixture(fits, cloud, up_to(4), 1);
   ASSERT_EQ(result.labels.size(), 600);
@@ -120,14 +120,14 @@ TEST(Select, MembershipsCoverClusteredWindowsOnly) {
   }
 }
 
-/// Windows that took no part get the posterior probabilities of N(mean, covariance + error), worked out here.
+/// Windows outside the fit get the posterior probabilities of N(mean, covariance + error), computed here independently.
 TEST(Select, AssignedWindowsGetTheComponentsThatSuitThem) {
   FeatureCloud cloud = cloud_of(draw(three_clusters(6.0), 300, 3), 3);
   for (Index i = 0; i < 300; ++i) cloud.windows[static_cast<std::size_t>(i)] = i + 2;
   FeatureCloud assigned;
   assigned.points = (Eigen::MatrixXd(2, 2) << 6.0, 0.0, 50.0, 1.0).finished();
   assigned.covariances = Eigen::MatrixXd::Zero(4, 2);
-  assigned.covariances(3, 0) = 1e4;  // nothing is known of this feature
+  assigned.covariances(3, 0) = 1e4;  // this feature is unknown
   assigned.windows = {0, 302};
   assigned.runs = {0, 2};
   WindowFits fits = fits_of(cloud, 25, 1);
@@ -167,7 +167,8 @@ TEST(Select, OtherCandidatesDoNotChangeARow) {
   EXPECT_EQ(one.candidates[0].iterations, all.candidates[3].iterations);
 }
 
-/// 120,000 points of three clusters: a part chooses, all points make the mixture, and threads change nothing.
+/// For 120,000 points of three clusters: a part chooses, all points are fitted, and the number of threads has no
+/// effect.
 TEST(Select, OfManyPointsAPartIsComparedAndAllAreFitted) {
   const FeatureCloud cloud = cloud_of(draw(three_clusters(6.0), 120'000, 8), 4);
   SelectionOptions options = up_to(4);
@@ -185,7 +186,7 @@ TEST(Select, OfManyPointsAPartIsComparedAndAllAreFitted) {
   EXPECT_EQ(result.candidates[1].bic, again.candidates[1].bic);
   EXPECT_NE(result.candidates[1].bic, other.candidates[1].bic) << "another part";
   EXPECT_DOUBLE_EQ(result.candidates[0].effective_samples, 4800.0) << "what all windows are worth";
-  // At the maximum of all points: from there EM gains nothing.
+  // The result must be the maximum for all points, so EM gains nothing from there.
   const double found = log_density(result.mixture, cloud.points).sum();
   const EmResult on = fit_em(PointSet(cloud.points), result.mixture, options.em);
   EXPECT_LT(on.log_likelihood - found, 0.01);
@@ -225,7 +226,8 @@ TEST(Select, ImpossibleRequestsSayWhatWouldBeRight) {
     EXPECT_NE(std::string(error.what()).find("at most 4 components"), std::string::npos) << error.what();
   }
   EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud_of(Eigen::MatrixXd(2, 0), 1), up_to(3), 1), DataError);
-  EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud, up_to(2, Criterion::heldout), 1), DataError);  // one run
+  // a single run
+  EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud, up_to(2, Criterion::heldout), 1), DataError);
   options.components = {0, 1};
   EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud, options, 1), std::invalid_argument);
   options.components.clear();

@@ -1,4 +1,4 @@
-// Selection without windows, its warnings, and what it makes of bad clouds.
+// Selection without windows, its warnings, and its results for bad clouds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ Index chosen(const std::vector<Candidate>& candidates) {
   return 0;
 }
 
-/// No NaN but in a held-out score that was not asked for, and a status that says why there is no fit.
+/// Checks that only unrequested held-out scores are NaN, and that a status explains each missing fit.
 void expect_stated(const Selection& result) {
   EXPECT_TRUE(is_finite(result.mixture));
   for (const Candidate& row : result.candidates) {
@@ -43,16 +43,16 @@ TEST(Selection, FindsThreeClustersAmongIndependentPoints) {
   const Eigen::MatrixXd points = draw(three_clusters(12.0), 600, 1);
   const Selection result = select(points, {}, from_one_to(5), 1);
   EXPECT_EQ(chosen(result.candidates), 3);
-  // Independent points: N_eff = N, and BIC is the naive one.
+  // For independent points N_eff = N, so BIC equals bic_naive.
   for (const Candidate& row : result.candidates) {
     EXPECT_DOUBLE_EQ(row.effective_samples, 600.0);
     EXPECT_DOUBLE_EQ(row.bic, row.bic_naive);
-    EXPECT_TRUE(std::isnan(row.heldout));  // no runs, nothing to leave out
+    EXPECT_TRUE(std::isnan(row.heldout));  // without runs nothing can be left out
   }
 }
 
 TEST(Selection, OverlapTakesEvidenceAway) {
-  // Clusters that 600 independent points show, but points worth 30 do not.
+  // 600 independent points show these clusters; points worth 30 do not.
   const Eigen::MatrixXd points = draw(three_clusters(3.0), 600, 2);
   SampleDesign design;
   design.effective_samples = 30.0;
@@ -66,7 +66,7 @@ TEST(Selection, OverlapTakesEvidenceAway) {
 TEST(Selection, WholeWeightsAreCopies) {
   const Eigen::MatrixXd points = draw(three_clusters(8.0), 200, 3);
   const Eigen::VectorXd twice = Eigen::VectorXd::Constant(200, 2.0);
-  SelectionOptions options = from_one_to(1);  // one component: no starts enter
+  SelectionOptions options = from_one_to(1);  // one component: starts have no effect
   const Candidate weighted = select(PointSet(points, twice), {}, options, 1).candidates[0];
   const Eigen::MatrixXd twofold = points.replicate(1, 2);
   const Candidate copied = select(twofold, {}, options, 1).candidates[0];
@@ -96,13 +96,13 @@ TEST(Selection, StartsFromAGivenMixture) {
   SelectionOptions options = from_one_to(3);
   options.em.restarts = 1;
   options.em.split_merge = 0;
-  options.em.max_iterations = 0;  // what comes out is the start
+  options.em.max_iterations = 0;  // the result is the start
   const GaussianMixture start = three_clusters(12.0);
   const Selection result = select(points, {}, options, 1, &start);
   EXPECT_NEAR(result.candidates[2].log_likelihood, log_density(three_clusters(12.0), points).sum(), 1e-8);
 }
 
-/// Three groups by hand: differences 1, 2 and 9 of weights 1, 1 and 2 about their mean of 3 per unit weight.
+/// Three groups by hand: differences 1, 2 and 9 with weights 1, 1 and 2, about their mean of 3 per unit weight.
 TEST(Selection, HeldOutDifferencesHaveAnErrorOverGroups) {
   const HeldoutScore a{Eigen::Vector3d(5.0, 5.0, 9.0), Eigen::Vector3d(1.0, 1.0, 2.0)};
   const HeldoutScore b{Eigen::Vector3d(4.0, 3.0, 0.0), a.weights};
@@ -111,7 +111,8 @@ TEST(Selection, HeldOutDifferencesHaveAnErrorOverGroups) {
   EXPECT_TRUE(std::isnan(difference_error(a, {})));
 }
 
-/// A candidate that throws (here its start is singular beyond what doubles can hold) is a row that says so.
+/// A candidate that throws (here from a start that is singular in double precision) must become a row with a failed
+/// status.
 TEST(Selection, ACandidateThatFailsIsARow) {
   const Eigen::MatrixXd points = draw(three_clusters(12.0), 300, 5);
   GaussianMixture start = three_clusters(12.0);
@@ -138,7 +139,7 @@ TEST(SelectionWarnings, NameWhatSpeaksAgainstTheChoice) {
   EXPECT_TRUE(selection_warnings(rows).empty());
   rows[1].agreeing_restarts = 2;
   rows[1].converged = false;
-  rows[2].aic = 0.0;  // says nothing
+  rows[2].aic = 0.0;  // must be ignored
   rows[2].heldout = 1.5;
   rows[2].heldout_error = 0.3;
   EXPECT_EQ(selection_warnings(rows).size(), 2u) << "half a nat is less than twice its error";
@@ -150,7 +151,8 @@ TEST(SelectionWarnings, NameWhatSpeaksAgainstTheChoice) {
   EXPECT_NE(warnings[2].find("likelier under 3 components than under 2: by 0.5 +- 0.2"), std::string::npos);
 }
 
-/// What rests on the floor has the likelihood that the floor chose: it is chosen only where all do, and not silently.
+/// The likelihood of a fit on the floor depends on the floor. It is chosen only if all fits are on the floor, and with
+/// a warning.
 TEST(SelectionWarnings, TheFloorIsNamedWhereNothingElseIsLeft) {
   std::vector<Candidate> rows(3);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -169,7 +171,8 @@ TEST(SelectionWarnings, TheFloorIsNamedWhereNothingElseIsLeft) {
   EXPECT_TRUE(named);
 }
 
-/// Twenty windows on one spot, as those of one stretch of standstill: worth a component by BIC, whatever the floor.
+/// Twenty windows at one point, as from a stretch of standstill. By BIC they would be worth a component, whatever the
+/// floor.
 TEST(Selection, AClusterWithoutExtentIsNotChosen) {
   Eigen::MatrixXd points(2, 220);
   points.leftCols(200) = draw(three_clusters(0.0), 200, 6);
@@ -195,7 +198,7 @@ TEST(SelectionWarnings, TheEdgeOfTheRange) {
     rows[i].heldout = -rows[i].bic;
   }
   rows[0].selected = true;
-  EXPECT_TRUE(selection_warnings(rows).empty());  // there are no fewer than one
+  EXPECT_TRUE(selection_warnings(rows).empty());  // a number below one cannot be suggested
   rows[0].components = 2;
   rows[1].components = 3;
   EXPECT_NE(selection_warnings(rows).at(0).find("fewest"), std::string::npos);

@@ -1,4 +1,4 @@
-// Windows of unequal excitation: what their covariances do for the mixture of their parameters.
+// Windows of unequal excitation: effect of their covariances on the mixture of their parameters.
 #include <gtest/gtest.h>
 
 #include "ident/base/not_a_number.hpp"
@@ -15,8 +15,8 @@ using Eigen::Index;
 
 constexpr Index window_length = 25;
 
-/// Runs of windows' length: in each the parameters are drawn from one of two modes, and the inputs have an amplitude of
-/// their own, log-uniform from 0.03 to 1.
+/// Runs as long as a window. In each the parameters are drawn from one of two modes, and the inputs have their own
+/// amplitude, log-uniform from 0.03 to 1.
 struct Stretches {
   GaussianMixture truth;
   Recording recording;
@@ -63,10 +63,10 @@ FeatureCloud cloud_with(const WindowFits& fits, WindowErrors errors) {
   return make_features(fits, FeatureSet::parameters, WindowChoice::all, {{"x", ""}}, StraddlingWindows::keep, errors);
 }
 
-/// Means and input parameters' covariances, against the truth.
+/// Errors of the means and of the input parameters' covariances.
 struct Misfit {
-  double mean;       ///< largest error of a mean in standard deviations of its component
-  double inflation;  ///< largest ratio of the spread of the input parameters to the true one
+  double mean;       ///< largest error of a mean, in standard deviations of its component
+  double inflation;  ///< largest ratio of the input parameters' standard deviation to the true one
 };
 
 Misfit misfit(const GaussianMixture& fit, const GaussianMixture& truth) {
@@ -103,7 +103,8 @@ TEST(WindowErrors, ThePriorIsTakenOffAgain) {
   ASSERT_EQ(a.points.cols(), b.points.cols());
   double pull = 0.0, left = 0.0;  // sums of squares in standard errors
   for (Index i = 0; i < a.points.cols(); ++i) {
-    if (held.information.col(i).minCoeff() < 0.3) continue;  // where data say less the prior is not taken off in full
+    // with less information the prior is not taken off completely
+    if (held.information.col(i).minCoeff() < 0.3) continue;
     const Eigen::ArrayXd sd = a.covariances.col(i).reshaped(3, 3).diagonal().array().sqrt();
     pull += ((a.points.col(i) - held.parameters.col(i)).array() / sd).square().sum();
     left += ((a.points.col(i) - b.points.col(i)).array() / sd).square().sum();
@@ -112,7 +113,7 @@ TEST(WindowErrors, ThePriorIsTakenOffAgain) {
   EXPECT_LT(left, 1e-16 * pull);
 }
 
-/// Robust losses weigh samples one by one, as the prior's pull makes their residuals; the mean weight is known.
+/// Robust losses weigh samples by their residuals, which depend on the prior's pull; only the mean weight is known.
 TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
   const Stretches stretches(100);
   FitOptions options;
@@ -122,7 +123,7 @@ TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
   options.prior = Prior::global;
   options.prior_sd = {0.1};
   const WindowFits held = fit_windows(stretches.recording, options);
-  WindowFits alike = held;  // as if data were weighed as they are stated
+  WindowFits alike = held;  // as if the weight in the fit equalled the stated information
   alike.weighed_information.setOnes();
   const FeatureCloud a = cloud_with(free, WindowErrors::include), b = cloud_with(held, WindowErrors::include),
                      c = cloud_with(alike, WindowErrors::include);
@@ -140,8 +141,8 @@ TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
   EXPECT_LT(left, 0.5 * left_alike);
 }
 
-/// Closed form in two states of one parameter each: information d_i of the data, weighed s_i times as much, pulls what
-/// the data say, y_i, to s d / (1 + s d) y_i about the prior's mean.
+/// Closed form for two states of one parameter each. The data have information d_i, weighed s_i times in the fit. The
+/// prior pulls the data's estimate y_i to s d / (1 + s d) y_i about its mean.
 TEST(WindowErrors, ThePriorIsTakenOffStateByState) {
   WindowFits fits;
   fits.structure = LinearStructure{2, 0, false};

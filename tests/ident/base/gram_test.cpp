@@ -1,4 +1,4 @@
-// Sums of outer products and singular values, against the plain products that they stand for.
+// Sums of outer products and singular values, compared with the plain products.
 #include "ident/base/gram.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using test::near;
 
-/// The columns fill no tile and the rows fill no block, or several; every third row is left out.
+/// The columns fill no whole tile, and the rows fill several blocks or none; every third row is left out.
 TEST(WeightedGram, IsThePlainProductOfTheRowsThatAreListed) {
   for (const Index count : {1, 5, 255, 256, 257, 1000})
     for (const Index columns : {1, 3, 4, 5, 17}) {
@@ -34,7 +34,7 @@ TEST(WeightedGram, IsThePlainProductOfTheRowsThatAreListed) {
     }
 }
 
-/// Small and large matrices take different ways.
+/// Small and large matrices use different algorithms.
 TEST(SingularValues, AreThoseThatTheMatrixWasMadeOf) {
   for (const Index n : {3, 23, 24, 60}) {
     const Eigen::MatrixXd U = thin_qr(Eigen::MatrixXd::Random(n, n)).Q, V = thin_qr(Eigen::MatrixXd::Random(n, n)).Q;

@@ -14,7 +14,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The same formula as numpy's in the same arithmetic: a few roundings of values of size ten.
+// Same formula and arithmetic as numpy: a few roundings of values of size ten.
 constexpr double interpolation_tolerance = 1e-14;
 constexpr double time_tolerance_s = 1e-12;  // sums and products of a few times
 
@@ -95,7 +95,7 @@ TEST(JointTimes, UniformGridKeepsItsEnd) {
   EXPECT_TRUE(test::near(joint_times(time_s, time_s, {6.5, 0}), time_s, time_tolerance_s));
 }
 
-/// Stamps in another unit than they are said to be in: memory for the grid would not be there.
+/// Stamps in a different unit than stated: a grid for them would need too much memory.
 TEST(JointTimes, NoGridIsFarFinerThanItsStreams) {
   const VectorXd time_s = vector({0, 1e9, 2e9, 3e9});
   EXPECT_THROW(joint_times(time_s, time_s, {1000, 0}), DataError);

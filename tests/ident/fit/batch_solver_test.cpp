@@ -69,7 +69,7 @@ TEST_P(Batch, EveryWindowIsAtAStationaryPointAndConvexOnesAtTheReference) {
     for (Index i = 0; i < fits.count(); ++i) {
       if (fits.status(i) == 2 && o.prior == Prior::none) continue;
       if (fits.status(i) == 1 && !convex(o.loss)) {
-        ++unsolved;  // says so itself
+        ++unsolved;  // has the status unsolved
         continue;
       }
       const Window window = fits.windows[static_cast<std::size_t>(i)];
@@ -104,10 +104,10 @@ TEST_P(Batch, HasTheSameLocalModelsAsCeres) {
         EXPECT_TRUE(batch.rank == ceres.rank);
         if (convex(o.loss)) {
           EXPECT_LE(batch.audit.cost_difference, WindowAudit::tolerance);
-          EXPECT_LE(batch.audit.gradient, 1.1e-10);  // Ceres alone, below, gets no nearer than some 1e-7
+          EXPECT_LE(batch.audit.gradient, 1.1e-10);  // Ceres alone, below, reaches only about 1e-7
           EXPECT_LE(batch.audit.parameter_difference, 1e-6);
         }
-        Index others = 0;  // minima, of losses that have several
+        Index others = 0;  // other minima, for losses with several
         for (Index i = 0; i < batch.count(); ++i) {
           if (!near(batch.parameters.col(i), ceres.parameters.col(i), 1e-7)) {
             ++others;
@@ -126,7 +126,7 @@ TEST_P(Batch, HasTheSameLocalModelsAsCeres) {
                 << "window " << i;
             if (convex(o.loss) && ceres.status(i) == 0) {
               const double weighed = ceres.weighed_information(0, i);
-              if (std::isnan(weighed))  // of a sandwich covariance
+              if (std::isnan(weighed))  // sandwich covariance
                 EXPECT_TRUE(std::isnan(batch.weighed_information(0, i))) << "window " << i;
               else
                 EXPECT_NEAR(batch.weighed_information(0, i), weighed, 1e-6 * weighed) << "window " << i;
@@ -149,9 +149,10 @@ TEST_P(Batch, UnitsDoNotMatter) {
     EXPECT_TRUE(fits.status == expected.status) << unit;
     EXPECT_GE(fits.audit.batch, expected.audit.batch) << unit;
     const MatrixXd back = Eigen::Vector3d(1, unit, unit).asDiagonal() * fits.parameters;
-    Index others = 0;  // minima, of losses that have several
+    Index others = 0;  // other minima, for losses with several
     for (Index i = 0; i < fits.count(); ++i) {
-      if (fits.status(i) == 2 && options().prior == Prior::none) continue;  // minimum norm depends on units
+      // the minimum-norm solution depends on units
+      if (fits.status(i) == 2 && options().prior == Prior::none) continue;
       others += near(back.col(i), expected.parameters.col(i), 1e-8) ? 0 : 1;
     }
     EXPECT_LE(others, convex(options().loss) ? 0 : fits.count() / 10) << unit;
@@ -167,7 +168,7 @@ TEST_P(Batch, ThreadsChunksAndNeighboursDoNotChangeABit) {
   }
   expect_same_bits(results[0], results[1]);
 
-  // The same windows in chunks of one to eleven, so that each meets other neighbours in other lanes.
+  // Fits the same windows in chunks of one to eleven, so that each has other neighbours in other lanes.
   FitOptions o = options();
   const ParameterPrior prior{results[0].global.theta,
                              o.prior == Prior::global ? results[0].prior_sd : VectorXd::Ones(3)};

@@ -25,7 +25,7 @@ inline Regression window_of(const Trajectory& run, Index start, Index length, co
   return {t.regressors.cast<Real>(), t.increments.col(0).cast<Real>()};
 }
 
-/// rho, rho' and rho' + 2 s rho'' at a residual in units of sigma, written from the losses' definitions.
+/// rho, rho' and rho' + 2 s rho'' at a residual in units of sigma, from the losses' definitions.
 struct ReferenceLoss {
   Real rho, weight, slope;
 };
@@ -53,7 +53,7 @@ inline ReferenceLoss reference_loss(Loss loss, Real c, Real r) {
   }
 }
 
-/// The objective, half its gradient and its second derivative, per unit of sigma^2.
+/// The objective, half of its gradient, and its second derivative, per unit of sigma^2.
 struct ReferenceTerms {
   Real cost = 0;
   RealVector gradient;
@@ -64,7 +64,7 @@ struct ReferenceTerms {
 struct ReferenceProblem {
   Loss loss;
   Real c, sigma;
-  RealVector mean, precision;  ///< of the prior; empty: none
+  RealVector mean, precision;  ///< of the prior; empty: no prior
 
   ReferenceTerms terms(const Regression& w, const RealVector& theta) const {
     const Index q = w.X.cols();
@@ -89,7 +89,7 @@ struct ReferenceProblem {
     return out;
   }
 
-  /// |Q' psi| / |psi| with Q an orthonormal basis of the regressors (and the prior's rows).
+  /// |Q' psi| / |psi|, where Q is an orthonormal basis of the regressors (and the prior's rows).
   double relative_gradient(const Regression& w, const RealVector& theta) const {
     const ReferenceTerms t = terms(w, theta);
     RealMatrix gram = w.X.transpose() * w.X / (sigma * sigma);
@@ -98,8 +98,8 @@ struct ReferenceProblem {
     return static_cast<double>(std::sqrt(std::max<Real>(square, 0) / t.psi_square));
   }
 
-  /// Newton from least squares, steps halved until the cost falls; damped where the second derivative is singular. For
-  /// convex losses.
+  /// Newton's method from least squares, for convex losses. Steps are halved until the cost falls, and damped if the
+  /// second derivative is singular.
   RealVector minimum(const Regression& w) const {
     const ReferenceProblem squares{Loss::trivial, 1, sigma, mean, precision};
     RealVector theta = mean.size() > 0 ? mean : RealVector::Zero(w.X.cols()).eval();
@@ -121,7 +121,7 @@ struct ReferenceProblem {
   }
 };
 
-/// Regime changes, 5 % outliers, a stretch of standstill and samples that are missing.
+/// Changes of regime, 5 % outliers, a stretch of standstill and missing samples.
 inline Recording hard_recording(const LinearStructure& structure, Index samples, bool missing) {
   std::mt19937_64 generator(11);
   std::vector<Trajectory> runs;

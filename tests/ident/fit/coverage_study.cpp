@@ -25,7 +25,7 @@ const LinearStructure structure{1, 2, false};
 const Eigen::Vector3d mean_theta(-0.5, -0.4, 0.5);
 const Eigen::Vector3d prior_sd(0.12, 0.3, 0.3);  // 1 + A stays inside the unit circle for 4 sd
 
-/// One independent window and the theta behind it.
+/// One independent window and its true theta.
 struct Draw {
   Eigen::Vector3d theta = mean_theta;
   Trajectory run;

@@ -7,13 +7,14 @@
 
 namespace modebank {
 
-/// Windows of L = 25 transitions of one state and two inputs, every window a run of its own, hence independent.
+/// Windows of L = 25 transitions with one state and two inputs. Each window is a run of its own, so windows are
+/// independent.
 enum class CoverageCase {
   gaussian,       ///< white inputs, Gaussian noise of sd 0.1
   outliers,       ///< 5 % of the noise terms ten times as large
   growing_noise,  ///< noise sd 0.02 + 0.3 |x|
-  poor  ///< theta drawn from the prior; every other window holds one command (rank 2 of 3), the others vary it
-        ///< by 2 % (nearly rank 2); fitted with that prior
+  poor  ///< theta drawn from the prior and fitted with it; every other window has one command (rank 2 of 3), in the
+        ///< others it varies by 2 % (nearly rank 2)
 };
 
 template <>
@@ -23,7 +24,7 @@ struct EnumNames<CoverageCase> {
 
 namespace test {
 
-/// Share of windows whose 95 % region (confidence_region) holds the true theta, sigma estimated from each window.
+/// Share of windows whose 95 % region (confidence_region) contains the true theta; sigma is estimated from each window.
 double measure_coverage(CoverageCase which, Loss loss, CovarianceKind kind, Index windows);
 
 }  // namespace test

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Index windows = 5000;  // standard error of a share: 0.003
 
-/// What docs/results/uncertainty.md promises of a case.
+/// The range that docs/results/uncertainty.md states for a case.
 struct Promise {
   CoverageCase which;
   CovarianceKind kind;
@@ -33,7 +33,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Coverage,
                                            Promise{CoverageCase::poor, CovarianceKind::model, 0.93, 0.97},
                                            Promise{CoverageCase::outliers, CovarianceKind::sandwich, 0.88, 0.97},
                                            Promise{CoverageCase::growing_noise, CovarianceKind::sandwich, 0.88, 0.97},
-                                           // HC3 costs some accuracy at L = 25 even where it is not needed.
+                                           // HC3 loses some accuracy at L = 25 even if it is not needed.
                                            Promise{CoverageCase::gaussian, CovarianceKind::sandwich, 0.88, 0.97},
                                            Promise{CoverageCase::poor, CovarianceKind::sandwich, 0.93, 0.97}),
                          [](const auto& instance) {
@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Coverage,
                                   std::string(name_of(instance.param.kind));
                          });
 
-/// The reason for the sandwich: where the noise grows with |x|, `model` is short by more than its promise allows.
+/// Reason for the sandwich covariance: if noise grows with |x|, the coverage of `model` falls below its promised range.
 TEST(ModelCovariance, IsShortWhereTheNoiseDependsOnTheState) {
   for (const Loss loss : {Loss::trivial, Loss::huber})
     EXPECT_LT(test::measure_coverage(CoverageCase::growing_noise, loss, CovarianceKind::model, windows), 0.90);

@@ -11,7 +11,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// fit_windows on one run of 60 samples; checks that nothing is printed and that numbers and status agree.
+/// fit_windows on one run of 60 samples. Checks that nothing is printed and that numbers and status agree.
 WindowFits fit_quietly(const MatrixXd& state, const MatrixXd& input, const FitOptions& options) {
   ::testing::internal::CaptureStderr();
   ::testing::internal::CaptureStdout();
@@ -100,7 +100,7 @@ TEST_P(Degenerate, MissingSamplesLeaveTheirTransitionsOut) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     Signals s = excited(0.05);
     s.state(0, 40) = bad;
-    s.input(1, 20) = bad;  // drives transition 20 only
+    s.input(1, 20) = bad;  // affects transition 20 only
     EXPECT_TRUE((fit_quietly(s.state, s.input, options()).status.array() == 0).all());
 
     s.state.middleCols(10, 30).setConstant(bad);
@@ -111,7 +111,7 @@ TEST_P(Degenerate, MissingSamplesLeaveTheirTransitionsOut) {
 }
 
 TEST_P(Degenerate, MostlyExactSamplesWithFewErrorsDoNotBreak) {
-  Signals s = excited(0.0);  // the residuals' median deviation is rounding error: sigma is at its floor
+  Signals s = excited(0.0);  // the residuals' median deviation is rounding error, so sigma is at its floor
   for (const Index k : {12, 30, 47}) s.state(0, k) += 1.0;
   const WindowFits fits = fit_quietly(s.state, s.input, options());
   if (options().loss == Loss::trivial || options().prior == Prior::none) return;

@@ -20,7 +20,7 @@ using test::near;
 
 constexpr double window_rounding = 1e-12;
 
-/// Three training runs and a test run; stretches of standstill, some outliers.
+/// Three training runs and a held-out run, with stretches of standstill and some outliers.
 Recording mixed_recording() {
   std::mt19937_64 generator(3);
   std::vector<Trajectory> runs;
@@ -85,7 +85,7 @@ TEST(FitWindows, TakeSigmaFromWhereTheyAreTold) {
     const Index i = 3;
     const Trajectory& run = recording.runs[0];
     const bool whole = source == ScaleSource::run;
-    // Scale by its definition: 1.4826 MAD of least-squares residuals, sqrt(N / (N - 3)).
+    // Scale by its definition: 1.4826 MAD of least-squares residuals, times sqrt(N / (N - 3)).
     const Index first = whole ? 0 : fits.windows[3].start, N = whole ? run.transitions() : 25;
     MatrixXd X(N, 3);
     X.col(0) = run.state.row(0).segment(first, N).transpose();
@@ -100,12 +100,12 @@ TEST(FitWindows, TakeSigmaFromWhereTheyAreTold) {
     const double sigma = 1.4826 * mad * std::sqrt(static_cast<double>(N) / static_cast<double>(N - 3));
     const LocalModel one =
         fit_window(run, fits.windows[3].start, test::skid_structure, options, VectorXd::Constant(1, sigma), nullptr);
-    constexpr double optimum_tolerance = 1e-9;  // sigma by normal equations here
+    constexpr double optimum_tolerance = 1e-9;  // this test computes sigma by normal equations
     EXPECT_TRUE(near(fits.at(i).theta, one.theta, optimum_tolerance)) << name_of(source);
   }
 }
 
-/// Windows of four lags, and one-lag fits of the same transitions, which are those of fit_windows that begin there.
+/// Windows of four lags, and one-lag fits of the same transitions. The latter must equal fit_windows of those windows.
 TEST(FitWindows, OneLagFitsAreOfTheSameTransitions) {
   const Recording recording = mixed_recording();
   FitOptions options;

@@ -11,9 +11,9 @@ using test::golden_fit;
 using test::golden_rows;
 using test::near;
 
-/// Both sides solve a well-conditioned problem of O(1) entries in double precision.
+/// Both implementations solve a well-conditioned problem with O(1) entries in double precision.
 constexpr double least_squares_tolerance = 1e-12;
-/// The golden optima are roots of the estimating equations to about 1e-13; the promise is 1e-8 relative.
+/// The golden optima are roots of the estimating equations to about 1e-13; the promised accuracy is 1e-8 relative.
 constexpr double statsmodels_tolerance = 1e-10;
 
 struct GoldenCase {
@@ -72,7 +72,7 @@ TEST(LeastSquares, SeveralStatesWithInterceptAgreeWithStatsmodels) {
 TEST(GlobalModel, AgreesWithStatsmodels) {
   for (const std::string name : {"single_state", "two_states"}) {
     const GoldenCase c(name);
-    Trajectory test_run = c.run;  // must not count
+    Trajectory test_run = c.run;  // must be ignored
     test_run.role = Role::test;
     test_run.state *= 2.0;
     const GlobalModel global = fit_global(test::make_recording({c.run, test_run}), c.structure);

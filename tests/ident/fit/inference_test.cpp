@@ -16,11 +16,11 @@ namespace {
 using test::golden_rows;
 using test::near;
 
-/// Both sides solve a well-conditioned problem of O(1) entries in double precision.
+/// Both implementations solve a well-conditioned problem with O(1) entries in double precision.
 constexpr double weighted_fit_tolerance = 1e-11;
 /// The golden optima are roots of the estimating equations to about 1e-13.
 constexpr double robust_tolerance = 1e-9;
-/// The golden slope of psi is a difference quotient.
+/// The golden slope of psi comes from a difference quotient.
 constexpr double aic_tolerance = 1e-6;
 
 struct WeightedCase {
@@ -109,7 +109,7 @@ TEST(SampleWeights, OfZeroLeaveATransitionOut) {
   c.run.weight(12) = 0.0;
   WeightedCase missing = c;
   missing.run.weight.resize(0);
-  // Transition 11 ends in sample 12; a NaN there would take transition 12 too, a NaN input takes one.
+  // Transition 11 ends in sample 12. A NaN state there would also affect transition 12; a NaN input affects only one.
   missing.run.input(0, 11) = std::nan("");
   for (const Loss loss : all_losses) {
     const LocalModel zero = c.fit(loss), left_out = missing.fit(loss);
@@ -160,7 +160,7 @@ TEST(Quality, OfAConstantStateIsUndefined) {
   EXPECT_TRUE(std::isfinite(fit.aic));
 }
 
-/// The effective number of parameters under a prior lies between none and all.
+/// Under a prior, the effective number of parameters lies between zero and all.
 TEST(Quality, OfAFitHeldByThePriorCountsNoParameters) {
   const WeightedCase c("weighted_least_squares");
   const LocalModel free = c.fit(Loss::trivial);
@@ -192,7 +192,7 @@ TEST(ConfidenceRegion, RestsOnThePriorWhereTheDataSayNothing) {
   fit.information.setOnes();
   EXPECT_NEAR(region_degrees_of_freedom(fit), 22.0, 1e-12);
   fit.information = Eigen::Vector3d(0.0, 0.0, 1.0);
-  // The mean of F(3, nu) that of (2 + 22 / 20) / 3: two directions chi-square, one on an estimated variance.
+  // The mean of F(3, nu) must equal (2 + 22 / 20) / 3: two directions are chi-square, one has an estimated variance.
   const double nu = region_degrees_of_freedom(fit);
   EXPECT_NEAR(nu / (nu - 2.0), (2.0 + 22.0 / 20.0) / 3.0, 1e-12);
   fit.information.setZero();
@@ -222,9 +222,9 @@ TEST(ConfidenceRegion, OfAnUndefinedCovarianceHoldsNothing) {
   }
 }
 
-/// Two relations in one window, 18 and 6 transitions: least squares lies between them, where every residual is beyond
-/// Tukey's cut and the cost is flat; the Huber optimum lies near the larger, and from there redescending losses end in
-/// it.
+/// One window with two relations, 18 and 6 transitions. Least squares lies between them, where every residual is beyond
+/// Tukey's cut-off and the cost is flat. The Huber optimum lies near the larger group, and redescending losses reach
+/// that group from there.
 TEST(NonConvexLosses, StartFromTheHuberOptimum) {
   constexpr Index N = 24;
   Eigen::MatrixXd x(1, N + 1), u(1, N + 1);

@@ -9,8 +9,8 @@
 
 namespace modebank::test {
 
-/// The linear increment model (without lags) as a motion model, whose fits must be those of the linear model. It starts
-/// at theta = 0: the state stays.
+/// The linear increment model (without lags) as a motion model, whose fits must equal those of the linear model. Its
+/// start theta = 0 means a constant state.
 class LinearMotion final : public MotionModel {
  public:
   explicit LinearMotion(const LinearStructure& structure) : structure_(structure) {

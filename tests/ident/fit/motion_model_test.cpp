@@ -75,7 +75,7 @@ TEST(MotionModel, NoiselessRunsGiveTheParametersBack) {
   }
 }
 
-// The models' equations by hand: the body turns about its centres of rotation.
+// The model's equations computed by hand: the body rotates about its instantaneous centres.
 TEST(MotionModel, IcrMatchesThePublishedKinematics) {
   const auto model = make_motion_model("icr", {3, 2, 1.0});
   const Eigen::VectorXd theta = (Eigen::VectorXd(5) << 0.5, -0.75, 1.0, 1.0, 0.2).finished();
@@ -119,7 +119,7 @@ TEST(MotionModel, DerivativesAreThoseOfDifferences) {
   }
 }
 
-/// Full-rank windows, and in how many of them each parameter's truth lies within three standard errors.
+/// Number of full-rank windows, and in how many of them each parameter's true value lies within three standard errors.
 struct Recovery {
   Index windows = 0;
   Eigen::ArrayXi inside;
@@ -137,7 +137,7 @@ Recovery recovery(const WindowFits& fits, const Eigen::VectorXd& theta) {
   return result;
 }
 
-// Of a t variable with 22 degrees of freedom 99.3 % lie within three.
+// A t variable with 22 degrees of freedom lies within three standard errors with probability 99.3 %.
 TEST(MotionModel, EachSlipParameterLiesWithinThreeStandardErrors) {
   std::mt19937_64 generator(17);
   for (const Exact& exact : exact_cases()) {
@@ -184,7 +184,7 @@ TEST(MotionModel, LinearModelThroughEitherDoorIsTheSame) {
         const ModelResiduals residuals(*motion, {{&run, 0, run.transitions()}});
         const LocalModel general = fit_model(residuals, make_model_estimator(*motion, options), sigma,
                                              Eigen::VectorXd::Zero(1), p, Eigen::Vector3d::Zero());
-        // Ceres ends where costs can no longer be told apart, at some sqrt(2 epsilon cost) = 5e-8 standard errors.
+        // Ceres stops where costs are equal up to rounding, at about sqrt(2 epsilon cost) = 5e-8 standard errors.
         const Eigen::ArrayXd standard_error = linear.covariance.diagonal().array().sqrt();
         EXPECT_LT(((general.theta - linear.theta).array() / standard_error).abs().maxCoeff(), 5e-7)
             << name_of(options.loss);
@@ -206,7 +206,7 @@ TEST(MotionModel, SampleWeightsEnterTheScaleAsInTheLinearDoor) {
     Trajectory run = test::gaussian_run(structure, theta, 0.1, 90, generator);
     run.weight = Eigen::VectorXd::Ones(run.samples());
     for (Index k = 0; k < run.samples(); ++k)
-      if (k % 3 == 0) {  // a third of the samples is bad, and known to be
+      if (k % 3 == 0) {  // a third of the samples is bad and has weight zero
         run.state.col(k).array() += k % 2 ? 2.0 : -1.0;
         run.weight(k) = k % 9 == 0 ? 0.0 : 0.01;
       }
@@ -250,7 +250,7 @@ TEST(MotionModel, UnexcitedWindowsAreAStatusAndTakeThePrior) {
   EXPECT_TRUE(std::isnan(fit_windows(test::make_recording({still, moving}), options).at(0).covariance(0, 0)));
 }
 
-/// docs/howto/own_model.md shows tests/ident/fit/decay.hpp.
+/// docs/howto/own_model.md prints tests/ident/fit/decay.hpp.
 TEST(MotionModel, TheExampleOfThePagesIsAWholeModel) {
   const auto model = models::make_decay({});
   const Eigen::Vector2d theta(0.7, 1.3);
@@ -258,7 +258,7 @@ TEST(MotionModel, TheExampleOfThePagesIsAWholeModel) {
   boost::random::uniform_real_distribution<double> command(-1.0, 1.0);
   Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, 60), u(1, 60);
   for (double& value : u.reshaped()) value = command(generator);
-  for (Index k = 0; k + 1 < 60; ++k)  // the closed form by hand
+  for (Index k = 0; k + 1 < 60; ++k)  // the closed form
     x(0, k + 1) = 1.3 * u(0, k) + (x(0, k) - 1.3 * u(0, k)) * std::exp(-1.0 / 0.7);
   FitOptions options;
   options.model = "decay";
@@ -266,7 +266,7 @@ TEST(MotionModel, TheExampleOfThePagesIsAWholeModel) {
   for (Index i = 0; i < fits.count(); ++i) EXPECT_LT((fits.parameters.col(i) - theta).norm(), 1e-6);
 }
 
-/// The equation of LinearMotion, whose derivatives are by hand: one state, two inputs.
+/// The equation of LinearMotion, which has hand-written derivatives: one state, two inputs.
 struct LinearFunctor {
   template <class T>
   void operator()(const T* theta, const T* x, const T* u, double, T* next) const {
@@ -305,7 +305,7 @@ TEST(AutoDiffMotionModel, FitsTheWindowsOfTheModelByHand) {
   const WindowFits ours = fit_windows(recording, options, model);
   const WindowFits by_hand = fit_windows(recording, options, test::LinearMotion(structure));
   ASSERT_EQ(ours.count(), by_hand.count());
-  for (Index i = 0; i < ours.count(); ++i) {  // sums in another order end as far apart as iterations converge
+  for (Index i = 0; i < ours.count(); ++i) {  // sums in another order differ by the convergence tolerance
     const LocalModel a = ours.at(i), b = by_hand.at(i);
     const Eigen::ArrayXd standard_error = b.covariance.diagonal().array().sqrt();
     EXPECT_LT(((a.theta - b.theta).array() / standard_error).abs().maxCoeff(), 5e-7) << i;
@@ -318,7 +318,7 @@ TEST(AutoDiffMotionModel, RefusesAnotherNumberOfParameters) {
   EXPECT_THROW(Model({}, "linear", named({"a", "b"})), std::invalid_argument);
 }
 
-/// The derivatives of a function of two numbers against central differences, which have them to some 1e-9.
+/// Derivatives of a function of two numbers against central differences, whose error is about 1e-9.
 template <class F>
 void expect_slopes(const char* name, F f) {
   constexpr double step = 1e-6;

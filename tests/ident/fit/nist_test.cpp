@@ -9,8 +9,8 @@
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/paths.hpp"
 
-// The nonlinear regression sets of NIST's StRD through the general door: a response y of one predictor u, as a "state"
-// that forgets itself.
+// Nonlinear regression sets of NIST's StRD through the public API: a response y of one predictor u, as a "state" that
+// does not depend on its past.
 namespace modebank {
 namespace {
 
@@ -80,7 +80,7 @@ struct Rat43 {
 };
 
 struct NistSet {
-  Eigen::MatrixXd starts;  ///< p x 2, the harder one first
+  Eigen::MatrixXd starts;  ///< p x 2, the harder start first
   Eigen::VectorXd certified, standard_deviation;
   Trajectory run;
 };
@@ -122,7 +122,7 @@ NistSet read_nist(const std::string& name) {
   return set;
 }
 
-/// Correct significant digits, as NIST counts them.
+/// Number of correct significant digits, in NIST's definition.
 double digits(const Eigen::VectorXd& value, const Eigen::VectorXd& certified) {
   return -std::log10(((value - certified).array() / certified.array()).abs().maxCoeff() + 1e-16);
 }

@@ -8,7 +8,7 @@
 namespace modebank {
 namespace {
 
-/// Rows of numbers, separated by anything that is no number; lines that do not begin with one are left out.
+/// Rows of numbers, separated by any other characters; lines that do not begin with a number are skipped.
 Eigen::MatrixXd read_rows(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::vector<std::vector<double>> rows;
@@ -25,8 +25,7 @@ Eigen::MatrixXd read_rows(const std::filesystem::path& path) {
   return result;
 }
 
-/// Rows i * rows .. of `lags` blocks: `signal` as it was i samples earlier than its column plus `ahead`; NaN before the
-/// run.
+/// Rows i * rows .. of `lags` blocks hold `signal` i samples before its column plus `ahead`; NaN before the run.
 Eigen::MatrixXd lagged(const Eigen::MatrixXd& signal, Index lags, Index ahead, Index columns) {
   Eigen::MatrixXd blocks = Eigen::MatrixXd::Constant(signal.rows() * lags, columns, not_a_number);
   for (Index k = 0; k < columns; ++k)
@@ -35,7 +34,7 @@ Eigen::MatrixXd lagged(const Eigen::MatrixXd& signal, Index lags, Index ahead, I
   return blocks;
 }
 
-/// z[k] of every sample, n x N, and v[k] of every transition, m x (N - 1), of the model's state space.
+/// State-space form of the model: z[k] of every sample, n x N, and v[k] of every transition, m x (N - 1).
 Eigen::MatrixXd stacked_states(const LinearStructure& s, const Trajectory& run) {
   return lagged(run.state, s.state_lags, 0, run.samples());
 }
@@ -43,10 +42,10 @@ Eigen::MatrixXd acting_inputs(const LinearStructure& s, const Trajectory& run) {
   return lagged(run.input, s.input_lags, 1 - s.input_delay, run.transitions());
 }
 
-/// ARX na, nb, nk in modebank's terms.
+/// An ARX structure na, nb, nk in modebank's form.
 LinearStructure arx(Index na, Index nb, Index nk) { return {1, 1, false, na, nb, nk}; }
 
-/// a_1 .. a_na of A(q) y = B(q) u from the increment form: y[k+1] = (1 + A_lag1) y[k] + A_lag2 y[k-1] + ...
+/// a_1 .. a_na of A(q) y = B(q) u, from the increment form y[k+1] = (1 + A_lag1) y[k] + A_lag2 y[k-1] + ...
 Eigen::VectorXd a_coefficients(const LinearStructure& s, const Eigen::VectorXd& theta) {
   Eigen::VectorXd a = -theta.head(s.state_lags);
   a(0) -= 1.0;
@@ -57,7 +56,7 @@ double fit_percent(const Eigen::VectorXd& y, const Eigen::VectorXd& prediction) 
   return 100.0 * (1.0 - (y - prediction).norm() / (y.array() - y.mean()).matrix().norm());
 }
 
-/// One-step predictions of every sample from the first that has all lags.
+/// One-step predictions of every sample from the first one that has all lags.
 Eigen::VectorXd one_step(const LinearStructure& s, const Eigen::VectorXd& theta, const Trajectory& run, Index first) {
   const LinearModel model = unpack(s, theta);
   const Eigen::MatrixXd z = stacked_states(s, run), v = acting_inputs(s, run);
@@ -66,7 +65,7 @@ Eigen::VectorXd one_step(const LinearStructure& s, const Eigen::VectorXd& theta,
   return prediction;
 }
 
-/// The model fed with its own predictions; the first samples as measured.
+/// The model driven by its own predictions; the first samples are measured.
 Eigen::VectorXd free_run(const LinearStructure& s, const Eigen::VectorXd& theta, const Trajectory& run, Index first) {
   const LinearModel model = unpack(s, theta);
   Trajectory simulated = run;
@@ -81,7 +80,7 @@ struct ArmCase {
   double fit_train, fit_test, fit_simulation;
 };
 
-// ../shared/data/sysid_classic/README.md: numpy's ordinary least squares on rows 0..511, nk = 0.
+// Reference: the README of sysid_classic in the shared data, numpy's ordinary least squares on rows 0..511 with nk = 0.
 TEST(Varx, RobotArmAsOrdinaryLeastSquaresHasIt) {
   MODEBANK_NEEDS_SHARED_DATA();
   const Eigen::MatrixXd data = read_rows(test::shared_data_dir() / "sysid_classic" / "robot_arm.dat");

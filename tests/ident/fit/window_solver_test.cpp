@@ -1,4 +1,4 @@
-// Who solves how many windows, and how that is checked.
+// Which solver solves how many windows, and the audit.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 namespace modebank::test {
 namespace {
 
-constexpr double lag_tolerance_s = 0.05;  // as the project promises on simulated data
+constexpr double lag_tolerance_s = 0.05;  // the promised accuracy on simulated data
 
 struct Case {
   double lag_s, time_constant_s, state_rate_hz;
@@ -52,8 +52,8 @@ TEST(Lag, DriftIsFoundWithTheLagInTheMiddle) {
   EXPECT_LT(fit.drift_standard_error, 5e-4);
 }
 
-/// The stated standard error is the estimates' spread but for a sixth: it is a little small, z squared 1.37 +- 0.1 over
-/// these 200 runs. One that is wrong by the root of two does not pass.
+/// The stated standard error must match the estimates' standard deviation. It is one sixth too small: the mean squared
+/// z is 1.37 +- 0.1 over these 200 runs. An error of a factor sqrt(2) would fail.
 TEST(Lag, StandardErrorIsTheSpreadOverRuns) {
   constexpr int runs = 200;
   DelayedSystem system;
@@ -90,7 +90,7 @@ TEST(Lag, WithoutExcitationThereIsNone) {
   RunPair constant = run;
   constant.inputs.values.setConstant(0.2);
   EXPECT_EQ(estimate_lag(constant.states, constant.inputs, {}).constant.status, LagStatus::not_excited);
-  RunPair foreign = run;  // inputs that have nothing to do with the states
+  RunPair foreign = run;  // inputs unrelated to the states
   foreign.inputs = simulate_delayed(system, 77).inputs;
   EXPECT_EQ(estimate_lag(foreign.states, foreign.inputs, {}).constant.status, LagStatus::not_excited);
   RunPair tiny = run;
@@ -121,7 +121,7 @@ TEST(LagTrack, FollowsADrift) {
 }
 
 TEST(PooledEstimate, IsTheRandomEffectsMean) {
-  // By hand: weights 1, 1, 1/4; fixed mean (0 + 2 + 1) / 2.25 = 4/3... of estimates 0, 2, 4.
+  // By hand: estimates 0, 2, 4 have weights 1, 1, 1/4; the fixed-effect mean is (0 + 2 + 1) / 2.25 = 4/3.
   const Eigen::Vector3d estimates(0.0, 2.0, 4.0), errors(1.0, 1.0, 2.0);
   const PooledEstimate pooled = pool(estimates, errors);
   const double fixed = 3.0 / 2.25;

@@ -8,8 +8,8 @@
 
 namespace modebank::test {
 
-/// A first-order response to held commands that come late: tau x' = b'u(t - lag(t)) - x, in exact steps of a
-/// millisecond, measured with noise. Commands change every `hold_s` on average and are quantised.
+/// First-order response to held commands that act late: tau x' = b'u(t - lag(t)) - x, in exact steps of a millisecond,
+/// measured with noise. Commands change every `hold_s` on average and are quantised.
 struct DelayedSystem {
   double time_constant_s = 0.2;
   InputClock clock;

@@ -1,4 +1,4 @@
-// The lags and the delay of systems whose structure is known.
+// Search for the lags and the delay of systems with known structure.
 #include "ident/lag/structure_search.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,8 @@ namespace {
 
 constexpr SearchedLags all_lags{true, true, true};
 
-/// y[k+1] = sum_i a_i y[k-i] + sum_j b_j u[k+1-delay-j] + e, e[k+1] = rho e[k] + noise; u held for some samples.
+/// y[k+1] = sum_i a_i y[k-i] + sum_j b_j u[k+1-delay-j] + e, with e[k+1] = rho e[k] + noise; u is held for some
+/// samples.
 struct System {
   std::vector<double> a{0.8}, b{0.3};
   Index delay = 1, hold = 4;
@@ -86,14 +87,14 @@ TEST(StructureSearch, FindsTheOrderOfASecondOrderMotion) {
   EXPECT_GE(seeds_with(second, {2, 1, 1}, 20), 18);
 }
 
-/// Multiplied by 1 - rho q^-1 it is an ARX with one more lag of each.
+/// Multiplied by 1 - rho q^-1, the system is an ARX model with one more lag of state and input.
 TEST(StructureSearch, FindsTheLagsThatColouredNoiseNeeds) {
   System coloured;
   coloured.rho = 0.7;
   EXPECT_GE(seeds_with(coloured, {2, 2, 1}, 20), 18);
 }
 
-/// Few runs are left out in stretches.
+/// With few runs, stretches are left out.
 TEST(StructureSearch, FindsTheStructureInOneRun) {
   System second;
   second.a = {1.5, -0.7};
@@ -105,7 +106,7 @@ TEST(StructureSearch, FindsTheStructureInOneRun) {
   EXPECT_EQ(found.parts, 10);
 }
 
-/// An input that acts at once must gain 0.02 nats over the best later one; held over four samples it need not.
+/// An input that acts at once must gain 0.02 nats over the best later one. An input held over four samples does not.
 TEST(StructureSearch, TakesNoDelayOnlyWhereItPays) {
   System at_once;
   at_once.delay = 0;
@@ -116,7 +117,7 @@ TEST(StructureSearch, TakesNoDelayOnlyWhereItPays) {
   EXPECT_GT(find(simulate(faint, 1)).input_delay, 0);
 }
 
-/// Outliers decide little: a hundredth of the noise is fifty times as large.
+/// Outliers have little influence: one percent of the noise is fifty times as large.
 TEST(StructureSearch, IsNotMisledByOutliers) {
   int right = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
@@ -209,7 +210,7 @@ TEST(StructureSearch, HasASmallerRangeForShortRunsAndSaysSo) {
   EXPECT_THAT(found.remark, testing::HasSubstr("searched up to"));
 }
 
-/// Nothing to learn from, nothing that moves, columns that repeat each other: a result all the same.
+/// Empty, constant and collinear data must give a result, too.
 TEST(StructureSearch, SurvivesDataThatDetermineNothing) {
   System tiny;
   tiny.runs = 1;
@@ -224,7 +225,7 @@ TEST(StructureSearch, SurvivesDataThatDetermineNothing) {
   }
   for (Trajectory& run : recording.runs) {
     run.input = run.input.replicate(2, 1).eval();
-    run.state = (run.state.array() * 5.0).round() / 5.0;  // coarse steps
+    run.state = (run.state.array() * 5.0).round() / 5.0;  // coarse rounding
   }
   recording.inputs.resize(2);
   EXPECT_GE(find(recording).state_lags, 1);
@@ -234,7 +235,7 @@ TEST(StructureSearch, SurvivesDataThatDetermineNothing) {
   for (const StructureScore& score : still.scores) EXPECT_TRUE(std::isfinite(score.log_score));
 }
 
-/// A motion without noise is predicted exactly by any structure that holds it: the smallest is taken.
+/// Any structure that contains a noise-free motion predicts it exactly; the smallest must be chosen.
 TEST(StructureSearch, TakesTheSmallestExactStructure) {
   System exact;
   exact.a = {1.5, -0.7};
@@ -249,19 +250,21 @@ TEST(StructureSearch, LeavesOutSamplesOfNoWeight) {
   for (Trajectory& run : recording.runs) {
     run.weight = Eigen::VectorXd::Ones(run.samples());
     run.state.row(0).segment(100, 30).array() += 100.0;
-    run.weight.segment(100, 45).setZero();  // of transitions that end there, or whose lags reach there
+    run.weight.segment(100, 45).setZero();  // transitions that end there, or whose lags reach there
   }
   EXPECT_EQ(lags_of(find(recording)), (std::array<Index, 3>{2, 1, 1}));
 }
 
-/// Rows at the start of runs and behind missing samples are the same for all structures: those with the most lags.
+/// All structures use the same rows at the start of runs and after missing samples: those with a full history for the
+/// most lags.
 TEST(LaggedRows, HaveTheirFullHistory) {
   Recording recording = simulate({}, 0);
   recording.runs[0].state(0, 50) = std::numeric_limits<double>::quiet_NaN();
   const StructureRanges ranges{{1, 4}, {1, 3}, {0, 5}};
   const LaggedRows rows = make_lagged_rows(recording, ranges, true);
-  const Index first = 5 + 3 - 2;    // transitions 0 .. 5 reach before the run
-  const Index lost_behind_gap = 5;  // the missing sample is in the increments of two, and a lag of three more
+  const Index first = 5 + 3 - 2;  // transitions 0 .. 5 reach before the run
+  // the missing sample is in the increments of two transitions, and in a lag of three more
+  const Index lost_behind_gap = 5;
   EXPECT_EQ(rows.count(), 6 * (399 - first) - lost_behind_gap);
   EXPECT_EQ(rows.X.cols(), 4 + 8 + 1);
   EXPECT_EQ(rows.folds(), 5);
@@ -286,7 +289,7 @@ TEST(StructureScorer, LeftOutErrorsAreThoseOfDirectLeastSquares) {
   }
 }
 
-/// Inputs that answer to what the state did a sample before, and inputs that do not.
+/// Inputs that react to the previous state, and inputs that do not.
 TEST(InputFeedback, IsSeenWhereInputsAnswer) {
   int false_alarms = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed)

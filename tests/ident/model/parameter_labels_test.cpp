@@ -1,4 +1,4 @@
-// What a parameter is called must be what its column of the regressor holds.
+// The label of a parameter must match the column of its regressor.
 #include "ident/model/parameter_labels.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(ParameterLabels, LagsAsABankNamesThem) {
                    "wz <- r (lag 1)"}));
 }
 
-/// In each row and column the label stands where the same name's entry of A, B or c does.
+/// The label's position must match that name's entry in A, B or c.
 TEST(ParameterLabels, StandInThetasOrder) {
   const LinearStructure structure{2, 2, true, 3, 2, 2};
   const Names labels = parameter_labels(structure, {"p", "q"}, {"l", "r"}), codes = structure.parameter_names();

@@ -34,10 +34,10 @@ TEST(ResidualTests, AgreeWithStatsmodels) {
   EXPECT_TRUE(near(tests.autocorrelation.transpose(), test::golden_rows(golden.at("autocorrelation")), rounding));
   EXPECT_TRUE(near(tests.cross_correlation, test::golden_rows(golden.at("cross_correlation")), rounding));
   EXPECT_NEAR(tests.autocorrelation_band, 2.5758293 / 20.0, 1e-8);
-  // statsmodels' 12 lags of 60 samples are ours: a fifth of the samples.
+  // statsmodels computes 12 lags for 60 samples; ours are a fifth of the samples, which is the same.
   EXPECT_NEAR(test_residuals(residual.leftCols(60), input.leftCols(60)).ljung_box_p(0),
               golden.at("ljung_box_p").get<double>(), rounding);
-  // The input that acts three samples later.
+  // The input acts three samples later.
   Index lag = 0, row = 0;
   tests.cross_correlation.cwiseAbs().maxCoeff(&row, &lag);
   EXPECT_EQ(row, 1);
@@ -64,7 +64,7 @@ TEST(ResidualTests, OfWhiteNoiseStayInsideTheirBands) {
   EXPECT_TRUE(within(small_p, series, 0.05)) << small_p;
 }
 
-/// Between two independent autocorrelated series +- z / sqrt(N) would be far too narrow.
+/// For two independent autocorrelated series, +- z / sqrt(N) would be much too narrow.
 TEST(ResidualTests, CrossCorrelationBandsAllowForAutocorrelation) {
   constexpr int series = 100;
   double outside = 0.0, outside_naive = 0.0;
@@ -103,7 +103,7 @@ TEST(ResidualTests, ShowTheDelayOfAnInputAtItsLag) {
   EXPECT_GT(late.maxCoeff(&lag), 5 * tests.cross_correlation_band(1, 0));
   EXPECT_EQ(lag, 2);
   EXPECT_LT(late.head(2).maxCoeff(), tests.cross_correlation_band(1, 0));
-  // Least squares leaves the residuals orthogonal to the regressors, of which the input has almost no mean.
+  // Least squares makes the residuals orthogonal to the regressors; the input's mean is nearly zero.
   EXPECT_LT(std::abs(tests.cross_correlation(0, 0)), 0.01);
 }
 

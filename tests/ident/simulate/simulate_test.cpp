@@ -31,7 +31,7 @@ SimulationOptions two_modes() {
   return options;
 }
 
-/// w[k] = x[k+1] - prediction of the mode that drives transition k, for the transitions of one mode.
+/// w[k] = x[k+1] - prediction of the mode of transition k, for the transitions of one mode.
 VectorXd process_noise(const SimulatedRun& run, const SimulationOptions& options, int mode) {
   const LinearModel model =
       unpack({options.states, options.inputs, options.intercept}, options.modes[static_cast<std::size_t>(mode)]);
@@ -199,7 +199,7 @@ TEST(InputLaw, WhiteIsUniformAndNewEverySample) {
   const MatrixXd u = inputs_of(options);
   EXPECT_LE(u.cwiseAbs().maxCoeff(), 0.5);
   EXPECT_TRUE(((u.rightCols(19999) - u.leftCols(19999)).array() != 0.0).all());
-  const double variance = 1.0 / 12;  // of uniform +-0.5
+  const double variance = 1.0 / 12;  // of a uniform variable on +-0.5
   EXPECT_NEAR(u.array().square().mean(), variance, 4 * std::sqrt(1.0 / 180 / 40000));
   EXPECT_NEAR((u.row(0).array() * u.row(1).array()).mean(), 0.0, 4 * variance / std::sqrt(20000.0));
 }
@@ -227,8 +227,8 @@ TEST(InputLaw, DriveMixesItsCommands) {
     const Eigen::Vector2d bend = u.col(k + 1) - 2 * u.col(k) + u.col(k - 1);
     ramps += u.col(k) != u.col(k + 1) && bend.cwiseAbs().maxCoeff() < simulation_rounding ? 1 : 0;
   }
-  // Shares of samples equal shares of commands because length and kind are independent; 5000 commands of geometric
-  // length: standard error about sqrt(2 p / 5000).
+  // Shares of samples equal shares of commands, because length and kind are independent. For 5000 commands of geometric
+  // length the standard error is about sqrt(2 p / 5000).
   const double samples = static_cast<double>(u.cols());
   EXPECT_NEAR(still / samples, 0.1, 4 * std::sqrt(2 * 0.1 / 5000));
   EXPECT_NEAR(equal / samples, 0.3, 4 * std::sqrt(2 * 0.3 / 5000));

@@ -135,10 +135,10 @@ TEST(Vehicle, LockedWheelsStopLikeASlidingBox) {
   EXPECT_EQ(state[At::wheel_left], 0.0);
 }
 
-// Slip velocities of the four wheels of a robot that turns on the spot are (w b - v, w a): with equal loads and a force
-// along the slip, whatever the law, the yaw moments balance at w = v b / (a^2 + b^2), so the effective track is
-// track (1 + (wheelbase / track)^2). For the Husky that is 1.867 times the track; its drivers use 1.875, and the
-// BorealTC runs show 1.03 to 1.05 m on flooring and on ice (with set-points in true m/s).
+// For a robot that turns on the spot, the slip velocities of the four wheels are (w b - v, w a). With equal loads and
+// forces along the slip, the yaw moments balance at w = v b / (a^2 + b^2) for any friction law. So the effective track
+// is track (1 + (wheelbase / track)^2). For the Husky that is 1.867 times the track; its driver software uses 1.875.
+// The BorealTC runs show 1.03 to 1.05 m on flooring and on ice (with set-points in true m/s).
 TEST(Vehicle, EffectiveTrackOnTheSpotIsGeometryWhateverTheFriction) {
   const VehicleParameters husky;
   const double ratio = 1.0 + std::pow(husky.wheelbase_m / husky.track_m, 2);
@@ -170,7 +170,7 @@ TEST(Vehicle, MotorsAreLimited) {
   const VehicleState stuck = settle(weak, grip, {-0.5, 0.5}, 5.0);
   EXPECT_LT(stuck[At::wheel_right], 0.1);
   EXPECT_GT(settle(weak, ice, {-0.5, 0.5}, 5.0)[At::wheel_right], 0.45) << "ice takes less than they give";
-  // Straight on: all of the force accelerates mass and wheels.
+  // Driving straight: the whole force accelerates mass and wheels.
   const VehicleState pushed = settle(weak, grip, {1.0, 1.0}, 0.5);
   EXPECT_NEAR(pushed[At::wheel_left], 0.5 * 2 * 20.0 / (weak.mass_kg + 2 * weak.drive_mass_kg), 0.01);
 }
@@ -203,7 +203,7 @@ TEST(Vehicle, MotionDoesNotDependOnHeading) {
   EXPECT_NEAR(turned[At::yaw_rate], state[At::yaw_rate], 1e-12);
 }
 
-/// Largest difference to the reference, integrated in much shorter steps, after half a second on ice.
+/// Largest difference from the reference (much shorter steps) after half a second on ice.
 double integration_error(double step, const VehicleState& reference, const Vehicle& robot) {
   VehicleState state;
   state[At::vx] = 0.4;

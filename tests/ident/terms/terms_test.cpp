@@ -1,4 +1,4 @@
-// Terms of a motion that bends: their values and slopes, and which are found.
+// Terms of a nonlinear motion: their values and slopes, and which of them the search finds.
 #include "ident/model/terms.hpp"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ MotionTerms example_terms() {
   return terms;
 }
 
-/// The functions by hand at two rows, through units and ranges that the rows themselves give.
+/// The functions computed by hand at two rows; units and ranges come from the rows.
 TEST(StatedTerms, AreTheFunctionsThatTheyName) {
   MatrixXd rows(2, 4);          // v, v[k-1], u[k+1] and the constant
   rows << 2.0, -1.0, 0.5, 1.0,  //
@@ -142,7 +142,7 @@ TEST(FindTerms, FindsASaturationOfTwoInputsTogether) {
       find_terms(bent_runs([](double v) { return std::clamp(v, -0.1, 0.1); }, 1), {1, 2}, FitOptions());
   EXPECT_FALSE(found.terms.empty());
   EXPECT_GT(found.gain, 0.1);
-  bool combined = false;  // some term is of the inputs' direction
+  bool combined = false;  // whether some term is in the inputs' direction
   for (Index v = 0; v < found.terms.variables(); ++v)
     combined = combined || (found.terms.direction.col(v).array() != 0.0).count() == 2;
   EXPECT_TRUE(combined);
@@ -162,7 +162,7 @@ TEST(FindTerms, TriesFewerLags) {
   ASSERT_EQ(found.tried.size(), 3U);
   EXPECT_EQ(found.tried[1].structure.state_lags, 2);
   EXPECT_EQ(found.tried[2].structure.input_lags, 3);
-  EXPECT_EQ(found.structure.state_lags, 1);  // linear lags stand in for the bend, and it is found without
+  EXPECT_EQ(found.structure.state_lags, 1);  // linear lags could replace the nonlinearity; without them it is found
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Clouds too large to be copied.
+// Clouds that are too large to copy.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -31,7 +31,7 @@ TEST(LargeCloud, BlocksLaidOutWhenReadAreThoseThatAreKept) {
   }
 }
 
-/// r, r d and r d d' (its diagonal) summed point by point.
+/// r, r d and r d d' (its diagonal), summed point by point.
 Eigen::MatrixXd sums_by_definition(const GaussianMixture& mixture, const Eigen::MatrixXd& points,
                                    const Eigen::VectorXd& weights) {
   const Index F = points.rows();

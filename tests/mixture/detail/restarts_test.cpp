@@ -1,4 +1,4 @@
-// Crossing of restarts, and climbs that are given up.
+// Crossing of restarts, and climbs that end early.
 #include "mixture/detail/restarts.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Four clusters in a row, all distances the same.
+/// Four clusters in a row at equal distances.
 GaussianMixture four_in_a_row() {
   GaussianMixture mixture;
   mixture.weights = Eigen::VectorXd::Constant(4, 0.25);
@@ -25,7 +25,7 @@ GaussianMixture four_in_a_row() {
   return mixture;
 }
 
-/// The same with one cluster in two parts and two clusters in one.
+/// The same mixture, but with one cluster split in two and two clusters merged.
 GaussianMixture with_error(Index divided, Index first, Index second) {
   GaussianMixture mixture = four_in_a_row();
   mixture.means.col(first) = 0.5 * (mixture.means.col(first) + mixture.means.col(second));
@@ -43,7 +43,7 @@ TEST(Cross, SameMixturesGiveThemselves) {
   for (std::size_t k = 0; k < 4; ++k) EXPECT_LT((result.covariances[k] - one.covariances[k]).norm(), 1e-12);
 }
 
-/// What is wrong at one end of the row in one mixture and at the other end in the other is right in the child.
+/// One mixture is wrong at one end of the row, the other at the other end; the child must be right at both.
 TEST(Cross, TakesWhatIsRightInEither) {
   const Eigen::MatrixXd points = draw(four_in_a_row(), 800, 3);
   const GaussianMixture left = with_error(3, 0, 1), right = with_error(0, 2, 3);
@@ -55,8 +55,8 @@ TEST(Cross, TakesWhatIsRightInEither) {
   EXPECT_GT(child, truth - 1.0);
 }
 
-/// What restarts agree on is what each finds by itself: as many as do so when every one of them is the only one.
-/// Crossed with the best one they nearly all would.
+/// Agreement counts the optima that each restart finds by itself: the number must equal that of separate single
+/// restarts. After crossing with the best, nearly all would agree.
 TEST(Restarts, AgreementIsCountedBeforeCrossing) {
   GaussianMixture truth;
   constexpr Index clusters = 9;
@@ -117,7 +117,7 @@ TEST(Restarts, BadOptionsAreNamed) {
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.tolerance = nan; });
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.covariance_floor = 1e300 * 1e300; });
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.restarts = 0; });
-  // What is wrong with the call is said, not taken for a candidate that failed.
+  // An invalid call must throw, and not count as a failed candidate.
   GaussianMixture other_features = three_clusters(2.0);
   other_features.means.conservativeResize(1, Eigen::NoChange);
   for (Eigen::MatrixXd& covariance : other_features.covariances) covariance = Eigen::MatrixXd::Identity(1, 1);
