@@ -4,7 +4,7 @@
 
 namespace modebank::bench {
 
-/// K modes spread around the simulated ones.
+/// K modes distributed around the simulated ones.
 inline Bank make_bank(Eigen::Index modes) {
   Bank bank;
   bank.structure = {1, 2, false};

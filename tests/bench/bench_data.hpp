@@ -7,7 +7,7 @@
 
 namespace modebank::bench {
 
-/// Runs of the three-mode ice-like system, all for training.
+/// Runs of the three-mode system similar to ice; all are training runs.
 inline Recording make_recording(Index runs, Index samples) {
   SimulationOptions options;
   options.modes = {Eigen::Vector3d(-0.60, -0.72, 0.72), Eigen::Vector3d(-0.30, -0.21, 0.21),
@@ -26,7 +26,7 @@ inline Recording make_recording(Index runs, Index samples) {
   return recording;
 }
 
-/// A benchmark that computes the wrong thing measures nothing.
+/// Stops the benchmark if its result is wrong.
 inline void check(bool condition, const std::string& what) {
   if (!condition) throw std::logic_error("benchmark result is wrong: " + what);
 }

@@ -1,6 +1,6 @@
-// EM of Gaussian mixtures beside other people's programs: same points, same start, a fixed number of iterations, one
-// thread, the programs in turn, medians of CPU time over the rounds, log-likelihoods compared. Usage:
-//   compare_em [ROUNDS]           with Armadillo, where the benchmark was built with it
+// EM of Gaussian mixtures compared with other programs. All have the same points, start and number of iterations, on
+// one thread, in alternating order. Prints medians of CPU time over the rounds, and compares log-likelihoods. Usage:
+//   compare_em [ROUNDS]           with Armadillo, if the benchmark was built with it
 //   compare_em memory             peak memory of N = 1e7, d = 3, K = 25 from a random start
 //   compare_em serve FOLDER       for em_peers.py: writes the cases to FOLDER, then answers lines on stdin
 //                                 ("case NAME", "sweep NAME THREADS KMAX RESTARTS SEED") with seconds and
@@ -29,13 +29,13 @@
 namespace modebank::bench {
 namespace {
 
-/// Largest relative difference in log-likelihood that counts as the same algorithm.
+/// Largest relative difference in log-likelihood between implementations of the same algorithm.
 constexpr double same = 1e-11;
 
-/// CPU seconds of this process: what one thread took, however busy the machine.
+/// CPU seconds of this process; they do not depend on the machine's load.
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// K overlapping components and a start that is none of them, as the peers' gmm_make.py draws them.
+/// K overlapping components, and a start different from them, drawn as in the peers' gmm_make.py.
 EmCase make_case(const std::string& name, Index points, Index features, Index components, CovarianceType type,
                  int iterations) {
   auto generator = make_generator(1, "compare_em " + std::to_string(features), static_cast<std::uint64_t>(components));
@@ -112,7 +112,7 @@ void compare(const EmCase& problem, int rounds) {
   std::fflush(stdout);
 }
 
-/// A covariance of about a tenth of the components' per point, all different.
+/// Different covariances for all points, each about a tenth of the components'.
 Eigen::MatrixXd make_errors(const EmCase& problem) {
   auto generator = make_generator(1, "compare_em errors");
   std::normal_distribution<double> normal;
@@ -155,13 +155,13 @@ void write_case(const EmCase& problem, const std::string& folder) {
   for (const Eigen::MatrixXd& covariance : problem.start.covariances) write(covariance.data(), covariance.size());
 }
 
-/// Every number of components to `most`, each from `restarts` starts, in scikit-learn's tolerance and iterations.
-/// Seconds and the sum of log-likelihoods.
+/// Fits every number of components up to `most`, each from `restarts` starts, with scikit-learn's tolerance and
+/// iterations. Returns seconds and the sum of log-likelihoods.
 EmRun sweep(const EmCase& problem, int threads, int most, int restarts, int seed) {
   EmOptions options;
   options.covariance = problem.type;
   options.restarts = restarts;
-  // scikit-learn has no moves either.
+  // scikit-learn has no split-and-merge moves.
   options.split_merge = 0;
   options.tolerance = 1e-3;
   options.max_iterations = 100;
@@ -189,7 +189,7 @@ double peak_memory_bytes() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// All of fit_em and all responsibilities of a cloud of 240 MB.
+/// fit_em and all responsibilities for a cloud of 240 MB.
 void measure_memory() {
   constexpr Index count = 10000000, components = 25;
   Eigen::MatrixXd points(3, count);

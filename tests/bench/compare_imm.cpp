@@ -1,6 +1,6 @@
-// compare_imm [ROUNDS]: the filter's step beside the plain program with dynamic Eigen matrices that everybody writes
-// first (the project's peer imm_eigen.cpp: filters in a vector, S.inverse(), Joseph's form, likelihoods in the linear
-// domain). Interleaved rounds on one thread, medians; every number is checked against the peer's.
+// compare_imm [ROUNDS]: compares the filter's step with a straightforward program that uses dynamic Eigen matrices (the
+// project's peer imm_eigen.cpp: filters in a vector, S.inverse(), Joseph's form, likelihoods in the linear domain).
+// Rounds alternate on one thread; prints medians. Every number is checked against the peer's.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -24,7 +24,7 @@ using Eigen::VectorXd;
 
 constexpr Index steps = 4000;
 
-/// The peer's models: the first state switches, others follow it; the first is measured.
+/// The peer's models: the first state switches and is measured; the other states follow it.
 Bank make_bank(Index n, Index K) {
   Bank bank;
   bank.structure = {n, 2, false};
@@ -78,7 +78,7 @@ struct PlainFilter {
   }
 };
 
-/// Log likelihood by the plain program, started as ours.
+/// Log likelihood by the plain program, with our start.
 double plain(const Bank& bank, const Trajectory& run) {
   const Index K = bank.mode_count(), n = bank.structure.states;
   const StartMoments first = start_moments(bank);
@@ -126,7 +126,7 @@ double plain(const Bank& bank, const Trajectory& run) {
   return result;
 }
 
-/// What a robot runs: estimate, innovation and its NIS, probability transform, sample by sample.
+/// The outputs that a robot needs, sample by sample: estimate, innovation, NIS and probability transform.
 double live(const Bank& bank, const Trajectory& run) {
   BankFilter filter(bank, {});
   filter.step(std::nan(""), run.input.col(0), run.state.col(0));
@@ -136,7 +136,7 @@ double live(const Bank& bank, const Trajectory& run) {
   return sum;
 }
 
-/// The equations, which every variant and size can take.
+/// The filter by the equations, which support every variant and size.
 template <int N, int NY>
 double equations(const Bank& bank, const Trajectory& run) {
   const FilterModel<N, NY> model(bank, {});
@@ -156,7 +156,7 @@ struct Contestant {
   std::vector<double> ns = {};
 };
 
-/// Processor time of this thread, which other programs do not lengthen.
+/// CPU time of this thread; it does not depend on other programs.
 double processor_ns() {
   timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

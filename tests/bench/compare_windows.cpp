@@ -1,6 +1,7 @@
-// Window fits beside other people's programs in one run: CPU time of one thread, the programs in turn, medians over the
-// rounds. Ours is what users run: robust scale, prior, rank, condition, information, R^2 and AIC as well; the peers
-// have a fixed scale and no prior, and compute theta, `model` covariance and status. usage: compare_windows [ROUNDS]
+// Window fits compared with other programs in one run: CPU time of one thread, programs in alternating order, medians
+// over the rounds. Ours includes what users get: robust scale, prior, rank, condition, information, R^2 and AIC. The
+// peers have a fixed scale and no prior; they compute theta, `model` covariance and status. Usage: compare_windows
+// [ROUNDS]
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -29,7 +30,8 @@ constexpr Index job = 1024;
 constexpr double residual_scale = 0.1;
 const LinearStructure structure{1, 2, false};
 
-/// Regimes of 200 to 1000 samples, smooth commands, 2 % outliers: the trajectory of the peers' make_data.py in kind.
+/// Regimes of 200 to 1000 samples, smooth commands and 2 % outliers, similar to the trajectory of the peers'
+/// make_data.py.
 Trajectory make_trajectory() {
   constexpr double regimes[6][3] = {{-.35, -.50, .50}, {-.60, -.80, .75}, {-.15, -.20, .25},
                                     {-.80, -1.2, 1.1}, {-.45, -.30, .60}, {-.25, -.70, .40}};
@@ -82,7 +84,7 @@ FitOptions peer_options(Loss loss) {
   return options;
 }
 
-/// Results of a job, used again by the next.
+/// Results of a job; the next job reuses the memory.
 struct JobResults {
   Eigen::MatrixXd theta{3, job}, covariance{9, job}, information{3, job};
   Eigen::VectorXd noise{job}, condition{job}, inliers{job}, r_squared{job}, aic{job};
@@ -90,7 +92,7 @@ struct JobResults {
   std::vector<batch::Verdict> verdict = std::vector<batch::Verdict>(job);
 };
 
-/// All windows job by job, staging included; `consume` sees each job's results.
+/// Fits all windows job by job, including staging; `consume` gets each job's results.
 void run_batch(const Trajectory& run, const BatchSolver& solver, Index windows,
                const std::function<void(Index, Index, const JobResults&)>& consume) {
   static BatchWorkspace workspace;
@@ -127,7 +129,7 @@ struct Entry {
   }
 };
 
-/// Of this program's one thread, so that a neighbour on the machine is not measured, too.
+/// CPU time of this program's single thread, so that other programs are not measured.
 double cpu_time_ns() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -143,7 +145,7 @@ void measure(std::vector<Entry>& entries, int rounds) {
     }
 }
 
-/// x[k+1] = x + A x + B u as the user of a motion model would write it.
+/// x[k+1] = x + A x + B u as a user would write it as a motion model.
 struct PlainModel {
   template <class T>
   void operator()(const T* theta, const T* x, const T* u, double, T* next) const {
@@ -151,7 +153,7 @@ struct PlainModel {
   }
 };
 
-/// The first windows as those of a motion model, from a start that suits none of the regimes.
+/// Fits the first windows as a motion model, from a start that fits none of the regimes.
 void run_general(const Trajectory& run, Loss loss, Index windows, Eigen::MatrixXd& theta) {
   const auto model = make_auto_diff_model<1, 2, 3>(PlainModel(), "plain", {{"A", ""}, {"B1", ""}, {"B2", ""}});
   const ModelEstimator estimator = make_model_estimator(*model, peer_options(loss));
@@ -164,7 +166,7 @@ void run_general(const Trajectory& run, Loss loss, Index windows, Eigen::MatrixX
   }
 }
 
-/// theta of the first windows against naive Ceres, which stops within 1e-3 of the optimum at worst and 1e-5 as a rule.
+/// Compares theta of the first windows with naive Ceres, which stops within 1e-3 of the optimum at worst, usually 1e-5.
 void check_against(const std::vector<PeerFit>& peers, const Trajectory& run, const BatchSolver& solver) {
   Index near = 0, solved = 0;
   const Index windows = static_cast<Index>(peers.size());
@@ -212,7 +214,7 @@ void compare(const Trajectory& run, const PeerData& data, Loss loss, int rounds)
     fmt::print("  {:<28} {:>10.1f} ns/window  {:>8.2f} x the batch\n", entry.name, entry.median(), entry.median() / ns);
 }
 
-/// Two threads against one over all of fit_windows, best of 5; writes the file that the Python peers read.
+/// Compares two threads with one for all of fit_windows, best of 5. Writes the file that the Python peers read.
 void compare_threads(const Trajectory& run) {
   Recording recording;
   recording.states = {{"x", ""}};

@@ -1,5 +1,5 @@
-// Armadillo's mixtures from the given start. The peer may use all that this machine has: CMake compiles this file with
-// -O3 -march=native.
+// Armadillo's mixtures from the given start. The peer may use all instruction sets of this machine: CMake compiles this
+// file with -O3 -march=native.
 #include "tests/bench/em_cases.hpp"
 
 #ifdef MODEBANK_HAS_ARMADILLO

@@ -16,13 +16,13 @@ struct EmCase {
   GaussianMixture start;
 };
 
-/// What a program made of a case: seconds for all iterations, and the log-likelihood it ended with.
+/// Result of a program for a case: seconds for all iterations, and the final log-likelihood.
 struct EmRun {
   double seconds = 0.0;
   double log_likelihood = 0.0;
 };
 
-/// Armadillo's gmm_full or gmm_diag; one thread. Not there when the benchmark was built without it.
+/// Armadillo's gmm_full or gmm_diag on one thread. Unavailable if the benchmark was built without Armadillo.
 bool has_armadillo();
 EmRun run_armadillo(const EmCase& problem);
 

@@ -1,8 +1,8 @@
-// How often the rule on what a model may add (filter/learn/left_out/rule.hpp) takes something that is not there, and
-// something that is: docs/results/rule.md. Prints CSV.
+// How often the rule for additions to a model (filter/learn/left_out/rule.hpp) accepts a false and a true addition:
+// docs/results/rule.md. Prints CSV.
 //
 //   measure_rule SEEDS [FIRST]     both tables, from seed FIRST (1) on
-//   measure_rule worth RUNS        what each thing gains on so many runs, at sizes about those below
+//   measure_rule worth RUNS        gain of each addition on that many runs, at sizes near those below
 #include <fmt/format.h>
 
 #include <Eigen/Core>
@@ -36,9 +36,9 @@ using modebank::Refinement;
 constexpr Index samples = 200;
 constexpr double sd = 0.1;
 
-/// One run of x[k+1] = a x[k] + 0.3 u[k] + w, and what changes from step to step.
+/// A run of x[k+1] = a x[k] + 0.3 u[k] + w, with variables that change from step to step.
 struct Step {
-  double x, u, memory;  // memory: whatever a system keeps
+  double x, u, memory;  // memory: further state of a system
 };
 using Draw = std::function<double()>;
 /// The next x; may change the step's memory.
@@ -67,7 +67,7 @@ Recording simulate(const Motion& motion, double size, double start_memory_sd, In
 
 double one_motion(Step& at, double, const Draw& normal, const Draw&) { return 0.8 * at.x + 0.3 * at.u + sd * normal(); }
 
-/// A proposal's answer.
+/// Result of a proposal.
 struct Answer {
   double gain = 0.0, standard_error = 0.0;
   bool taken = false;
@@ -75,7 +75,7 @@ struct Answer {
 
 struct Question {
   std::string proposal;
-  std::array<double, 2> sizes;  ///< worth .06 and .03 nats per sample
+  std::array<double, 2> sizes;  ///< gains .06 and .03 nats per sample
   std::function<Recording(double size, Index runs, int seed)> system;
   std::function<Answer(const Recording&)> ask;
 };

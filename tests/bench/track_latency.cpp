@@ -1,6 +1,6 @@
-// track_latency PROGRAM [SECONDS]: how long `modebank track` takes from a line in to the line out, over pipes at 1 kHz,
-// a bank of 25 modes, beside a program that only sends lines back; both are asked in every millisecond, in turn first.
-// Then the filter's step alone at the same pace.
+// track_latency PROGRAM [SECONDS]: time from a line in to the line out of `modebank track`, over pipes at 1 kHz with a
+// bank of 25 modes. For comparison it runs a program that only echoes lines. Both are queried in every millisecond, in
+// alternating order. Then measures the filter's step alone at the same rate.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Sends every line back, nothing else.
+/// Echoes every line.
 int echo() {
   char buffer[65536];
   for (ssize_t count; (count = read(STDIN_FILENO, buffer, sizeof buffer)) > 0;)
@@ -61,7 +61,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Microseconds from the line to its answer, which is left in `answer`.
+  /// Microseconds from a line to its answer, which is stored in `answer`.
   double ask(const std::string& line) {
     const auto begin = Clock::now();
     if (write(to_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))

@@ -20,10 +20,10 @@ struct PeerFit {
   double covariance[6];
 };
 
-/// What a user writes first: a ceres::Problem per window with automatic derivatives, DENSE_QR and ceres::Covariance.
+/// A user's first version: a ceres::Problem per window with automatic derivatives, DENSE_QR and ceres::Covariance.
 void fit_naive_ceres(const PeerData& data, Loss loss, double scale, Index windows, PeerFit* fits);
 
-/// ceres::TinySolver on sign(r) sqrt(rho), started from the window before; covariance of the reweighted problem.
+/// ceres::TinySolver on sign(r) sqrt(rho), started from the previous window; covariance of the reweighted problem.
 void fit_tiny_solver(const PeerData& data, Loss loss, double scale, Index windows, PeerFit* fits);
 
 }  // namespace modebank::bench

@@ -16,7 +16,7 @@ namespace modebank::test {
 
 using Eigen::Index;
 
-/// A stable drifting model of n states with `lags` samples of states and inputs, m inputs and an intercept.
+/// A stable drifting model of n states with m inputs, an intercept, and `lags` samples of states and inputs.
 inline Bank example_drifting(Index n, Index m, Index lags) {
   const LinearStructure structure{n, m, true, lags, lags, 1};
   const Index r = structure.regressors();
@@ -37,20 +37,20 @@ inline Bank example_drifting(Index n, Index m, Index lags) {
   return model;
 }
 
-/// The same motion and noise, both constant.
+/// The same model with constant motion and noise.
 inline Bank fixed(Bank model) {
   model.drift = {};
   model.running_noise = {};
   return model;
 }
 
-/// Noise of variance one as the model has it.
+/// Noise of variance one with the model's distribution.
 inline double draw_noise(double nu, std::mt19937_64& generator) {
   if (nu == 0.0) return boost::random::normal_distribution<double>()(generator);
   return boost::random::student_t_distribution<double>(nu)(generator) * std::sqrt((nu - 2.0) / nu);
 }
 
-/// A run of the model with its variance held at v0: starts at zero, coefficients drawn as cov(theta[first]) says.
+/// A run of the model with its variance held at v0. It starts at zero with coefficients drawn from cov(theta[first]).
 inline Trajectory simulate_drifting(const Bank& model, Index samples, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;
@@ -87,7 +87,7 @@ inline Trajectory simulate_drifting(const Bank& model, Index samples, std::uint6
   return run;
 }
 
-/// The run with samples and signals missing, a short gap and a long one.
+/// The run with missing samples and signals, a short gap and a long one.
 inline Trajectory holed(Trajectory run) {
   run.state.col(0).setConstant(std::nan(""));
   run.state.middleCols(20, 3).setConstant(std::nan(""));

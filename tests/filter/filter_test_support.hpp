@@ -14,7 +14,7 @@
 
 namespace modebank::test {
 
-/// A bank of K modes that differ in A, B, c and Q (by a factor of ten per mode), well conditioned, R = r I, C = I.
+/// A well-conditioned bank of K modes that differ in A, B, c and Q (by a factor of ten per mode), with R = r I, C = I.
 inline Bank example_bank(Eigen::Index n, Eigen::Index m, Eigen::Index K, double r = 1e-4) {
   Bank bank;
   bank.structure = {n, m, true};
@@ -42,7 +42,7 @@ inline Eigen::VectorXd draw_normal(const Eigen::MatrixXd& covariance, std::mt199
   boost::random::normal_distribution<double> normal;
   Eigen::VectorXd z(covariance.rows());
   for (double& value : z) value = normal(generator);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);  // a covariance may be singular, so no LLT
+  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);  // a covariance may be singular, so LLT is unsuitable
   const Eigen::VectorXd scaled = factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal() * z;
   return factor.transpositionsP().transpose() * (factor.matrixL() * scaled);
 }
@@ -54,7 +54,7 @@ inline Eigen::Index draw_index(const Eigen::VectorXd& probability, std::mt19937_
   return i;
 }
 
-/// A run of the switching system that the bank describes: y = C x + v as the filter assumes it.
+/// A run of the bank's switching system: y = C x + v as the filter assumes.
 inline Trajectory simulate_bank(const Bank& bank, Eigen::Index samples, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::uniform_01<double> uniform;
@@ -97,7 +97,7 @@ inline SimulatedTruth simulate_truth(const Bank& bank, Eigen::Index samples, std
   Eigen::Index s = draw_index(bank.initial_probability, generator);
   for (Eigen::Index k = 0; k < samples; ++k) {
     run.truth.col(k) = x;
-    result.mode(k) = static_cast<int>(s);  // of the transition into sample k
+    result.mode(k) = static_cast<int>(s);  // mode of the transition to sample k
     run.state.col(k) = bank.C * x + draw_normal(bank.R, generator);
     s = draw_index(bank.transition.matrix().row(s), generator);
     const Mode& mode = bank.modes[static_cast<std::size_t>(s)];
@@ -106,7 +106,7 @@ inline SimulatedTruth simulate_truth(const Bank& bank, Eigen::Index samples, std
   return result;
 }
 
-/// The bank that holds only mode `j`.
+/// The bank with only mode `j`.
 inline Bank single_mode(Bank bank, std::size_t j) {
   bank.modes = {bank.modes[j]};
   bank.transition = TransitionMatrix();
@@ -114,7 +114,7 @@ inline Bank single_mode(Bank bank, std::size_t j) {
   return bank;
 }
 
-/// What a filter of this variant steps of the bank: kf its first mode alone.
+/// The part of the bank that this variant can filter: for kf the first mode only.
 inline Bank steppable(Bank bank, FilterVariant variant) {
   return variant == FilterVariant::kf ? single_mode(std::move(bank), 0) : bank;
 }

@@ -19,7 +19,7 @@ inline FreeRunOptions after(Index samples, FreeRunMethod method = FreeRunMethod:
   return options;
 }
 
-/// A bank of one mode that measures its states without noise.
+/// A bank of one mode with noise-free measured states.
 inline Bank arx_bank(const LinearStructure& s, const Eigen::VectorXd& theta) {
   Bank bank;
   bank.structure = s;
@@ -34,7 +34,7 @@ inline Bank arx_bank(const LinearStructure& s, const Eigen::VectorXd& theta) {
   return bank;
 }
 
-/// theta of a stable model: -0.4 and then little from each older sample.
+/// theta of a stable model: -0.4, then small values for each older sample.
 inline Eigen::VectorXd stable_theta(const LinearStructure& s) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(s.regressors(), s.states);
   for (Index i = 0; i < s.states; ++i) {

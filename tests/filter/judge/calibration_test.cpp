@@ -1,4 +1,4 @@
-// Verdicts on filters whose truth is known, and the intervals they rest on.
+// Verdicts on filters whose truth is known, and their intervals.
 #include "filter/judge/decide/calibration.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using Eigen::Index;
 using test::example_bank;
 using test::simulate_truth;
 
-/// How many of `seeds` simulated runs get each verdict, by a filter whose Q and R are wrong by a factor.
+/// Number of simulated runs (of `seeds`) with each verdict, for a filter whose Q and R are wrong by a factor.
 std::map<Calibration, int> verdicts(const Bank& truth, double of_Q, double of_R, Index samples, int seeds,
                                     FilterNoise noise = FilterNoise::gaussian) {
   Bank filter = truth;
@@ -43,7 +43,7 @@ TEST(Calibration, VerdictsAreRightSeedBySeed) {
     EXPECT_GE(verdicts(bank, 1, 1, 1500, seeds)[Calibration::calibrated], nearly_all) << r;
     std::map<Calibration, int> few = verdicts(bank, 1, 1, 30, seeds);
     EXPECT_GE(few[Calibration::undecided] + few[Calibration::calibrated], nearly_all) << r;
-    if (r < 1e-3) {  // under ten times as much R, Q hardly shows
+    if (r < 1e-3) {  // below ten times as much R, Q hardly shows
       EXPECT_GE(verdicts(bank, 0.25, 1, 500, seeds)[Calibration::overconfident], nearly_all) << r;
       EXPECT_GE(verdicts(bank, 4, 1, 500, seeds)[Calibration::underconfident], nearly_all) << r;
     }
@@ -52,30 +52,30 @@ TEST(Calibration, VerdictsAreRightSeedBySeed) {
       EXPECT_GE(verdicts(bank, 1, 4, 500, seeds)[Calibration::underconfident], nearly_all) << r;
     }
   }
-  // No measurement noise: thirty samples are enough for a factor of four.
+  // Without measurement noise, thirty samples are enough to detect a factor of four.
   const Bank exact = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
   EXPECT_GE(verdicts(exact, 0.25, 1, 30, seeds)[Calibration::overconfident], nearly_all);
   EXPECT_GE(verdicts(exact, 4, 1, 30, seeds)[Calibration::underconfident], nearly_all);
 }
 
-/// A scale learned on the way is not known exactly: the mean NIS of a true filter then lies above n_y, which many
-/// samples would call significant.
+/// An adaptive noise scale has its own error. The mean NIS of a true filter then lies above n_y, significantly so with
+/// many samples.
 TEST(Calibration, AdaptiveNoiseIsJudgedByTailsAlone) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
-  for (const double factor : {1.0, 4.0})  // the scale makes up for it
+  for (const double factor : {1.0, 4.0})  // the adaptive scale compensates the factor
     EXPECT_EQ(verdicts(bank, factor, 1, 10000, 2, FilterNoise::adaptive)[Calibration::calibrated], 2) << factor;
-  const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // but not for measurement noise
+  const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // but not a factor on measurement noise
   EXPECT_EQ(verdicts(noisy, 1, 4, 1500, 10, FilterNoise::adaptive)[Calibration::underconfident], 10);
 }
 
-/// Many samples make a deviation significant that nobody would notice.
+/// With many samples even a negligible deviation is significant.
 TEST(Calibration, AFewPercentOfVarianceAreNoVerdict) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
   for (const double factor : {0.95, 1.05})
     EXPECT_EQ(verdicts(bank, factor, 1, 20000, 1)[Calibration::calibrated], 1) << factor;
 }
 
-/// Innovations of the right size that follow each other closely: hits come in groups, and a group is not many samples.
+/// Innovations of the right size with autocorrelation: hits come in groups, and a group counts as few samples.
 TEST(Calibration, GroupsOfHitsAreFewSamples) {
   Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-12), 0);
   bank.modes[0].model.A(0, 0) = -1.0;
@@ -93,8 +93,7 @@ TEST(Calibration, GroupsOfHitsAreFewSamples) {
   EXPECT_LE(wrong, 4);
 }
 
-/// Standard normal scores of neighbours that are alike: the scores themselves (correlation `rho`), or their sizes
-/// alone.
+/// Autocorrelated standard normal scores: either the scores themselves (correlation `rho`) or their sizes alone.
 std::vector<double> related_scores(int samples, double rho, bool sizes_alone, std::mt19937_64& generator) {
   boost::random::normal_distribution<double> normal;
   std::vector<double> scores;
@@ -107,7 +106,7 @@ std::vector<double> related_scores(int samples, double rho, bool sizes_alone, st
   return scores;
 }
 
-/// What a filter shows that states 1 for a standard deviation of `scale`.
+/// Counts of a filter that states standard deviation 1 where it is `scale`.
 BandCounts counts_of(const std::vector<double>& scores, double scale, bool with_nis) {
   BandCounts counts;
   for (HitsByRun* hits : {&counts.far, &counts.close}) hits->emplace_back();
@@ -130,7 +129,7 @@ BandCounts counts_of(const std::vector<double>& scores, double scale, bool with_
 
 Calibration calibration_on(const BandCounts& counts) { return calibration_of(counts, time_by_sizes(counts.sizes)); }
 
-/// Percentages of 100 series.
+/// Percentages over 100 series.
 std::map<Calibration, int> verdicts_of_related(int samples, double rho, bool sizes_alone, double scale, bool with_nis) {
   std::mt19937_64 generator(17);
   std::map<Calibration, int> counts;
@@ -139,8 +138,8 @@ std::map<Calibration, int> verdicts_of_related(int samples, double rho, bool siz
   return counts;
 }
 
-/// With the hits' own autocorrelation time up to half of these were wrong: a few groups of hits do not show it. Most
-/// are where 120 samples are worth two or three.
+/// With the autocorrelation time of the hits alone up to half of these verdicts were wrong, because a few groups do not
+/// show it. Errors are most frequent where 120 samples are worth two or three.
 TEST(Calibration, ShortRelatedSamplesOfATrueFilterAreSeldomJudgedWrong) {
   for (const int samples : {120, 500, 1000})
     for (const double rho : {0.0, 0.5, 0.9, 0.97})
@@ -154,7 +153,7 @@ TEST(Calibration, ShortRelatedSamplesOfATrueFilterAreSeldomJudgedWrong) {
   EXPECT_GE(verdicts_of_related(3000, 0.9, false, 1.0, false)[Calibration::calibrated], 90);
 }
 
-/// Variances off by 1.7 or more are found, and where they are not, nothing is said instead of "calibrated".
+/// Variances off by a factor of 1.7 or more must be found; otherwise the verdict must not be "calibrated".
 TEST(Calibration, AWrongFilterIsNotCalledCalibrated) {
   EXPECT_GE(verdicts_of_related(1000, 0.5, false, 1.3, false)[Calibration::overconfident], 95);
   EXPECT_GE(verdicts_of_related(3000, 0.5, false, 0.75, false)[Calibration::underconfident], 95);
@@ -165,8 +164,8 @@ TEST(Calibration, AWrongFilterIsNotCalledCalibrated) {
             << samples << " samples, " << rho << ", scale " << scale;
 }
 
-/// A mixture of quiet and rough samples: too many are close to the middle, and over 6.3 % lie outside the 95 % band.
-/// The first is harmless, the second is what users are hurt by.
+/// A mixture of small and large errors: too many samples are near the middle, and over 6.3 % lie outside the 95 % band.
+/// The second fact harms users, so it decides.
 TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   boost::random::normal_distribution<double> normal;
   std::mt19937_64 generator(5);
@@ -178,7 +177,7 @@ TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   EXPECT_EQ(calibration_on(counts), Calibration::overconfident);
 }
 
-/// Inside the central bands of a true filter lie as many as they say.
+/// The central bands of a true filter contain their nominal shares.
 TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
   const ScoreBands bands;
   for (const double side : {-1.0, 1.0}) {
@@ -197,7 +196,7 @@ TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
     EXPECT_NEAR(mean_of(as_numbers(counts.outside[b])), 1.0 - coverage_levels[b], 4e-3) << b;
 }
 
-/// Of an autoregression it is the coefficient, at lag one.
+/// For an autoregression it is the coefficient, at lag one.
 TEST(Calibration, TheLargestAutocorrelationOfAnAutoregressionIsItsCoefficient) {
   for (const double rho : {-0.6, 0.3, 0.8}) {
     std::mt19937_64 generator(8);
@@ -216,7 +215,8 @@ TEST(Calibration, TimeOfATailIsItsHits) {
     std::vector<double> hits;
     for (const double score : scores) hits.push_back(score > normal_score(0.975) ? 1.0 : 0.0);
     const double time = autocorrelation_time({hits});
-    EXPECT_NEAR(autocorrelation_time_of_tail({scores}), time, 0.12 * time) << rho;  // the hits' own scatters so
+    // the estimate itself varies by this much
+    EXPECT_NEAR(autocorrelation_time_of_tail({scores}), time, 0.12 * time) << rho;
   }
   EXPECT_TRUE(std::isnan(autocorrelation_time_of_tail({{}})));
   EXPECT_EQ(autocorrelation_time_of_tail({{1.0}}), 1.0);

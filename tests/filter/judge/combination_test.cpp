@@ -1,4 +1,4 @@
-// Forecasts of several filters, combined by how well each predicted.
+// Forecasts of several filters, combined by their past success.
 #include "filter/judge/score/combination.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using Eigen::Index;
 
 constexpr double combined_digits = 1e-12;
 
-/// Made-up forecasts of N samples, h of them ahead, of Gaussians.
+/// Artificial Gaussian forecasts of N samples, h samples ahead.
 HorizonEvaluation forecasts(Index N, const std::vector<Index>& horizons, unsigned seed, double deviation) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0.0, deviation);
@@ -42,8 +42,8 @@ TEST(Combination, ALoneFilterAndEqualOnesAreThemselves) {
   }
 }
 
-/// Two filters, written out: the log odds of sample k's forecast are the sum over samples j up to k - h of
-/// 0.99^(k - h - j) times the difference of what was said of j, over h.
+/// Two filters, written out: the log odds of sample k's forecast are a sum over samples j up to k - h. Each term is
+/// 0.99^(k - h - j) times the difference of the log densities of j, divided by h.
 TEST(Combination, AForecastHasTheWeightsOfItsOrigin) {
   const Index N = 60;
   const HorizonEvaluation a = forecasts(N, {1, 5}, 2, 1.0), b = forecasts(N, {1, 5}, 3, 1.3);
@@ -78,7 +78,7 @@ TEST(Combination, SamplesAreTheFirstFilters) {
   EXPECT_NEAR(all.predictions.error[0](0, 20), bank.error[0](0, 20), combined_digits);
 }
 
-/// A run that the bank has never seen the like of: the combination finds the competitor that has.
+/// A run unlike all runs that the bank has seen: the combination must find the competitor that fits it.
 TEST(Combination, LosesLittleAgainstTheBestOfARun) {
   const Index N = 400;
   const HorizonEvaluation bad = forecasts(N, {10}, 6, 4.0), good = forecasts(N, {10}, 7, 1.0);
@@ -92,7 +92,7 @@ TEST(Combination, LosesLittleAgainstTheBestOfARun) {
   ForecastTables tables({"bank", "drifting"}, runs);
   tables.add(0, {bad, good});
   const std::vector<HorizonRow> rows = tables.horizons();
-  ASSERT_EQ(rows.size(), 6);  // of three filters, the run and all runs
+  ASSERT_EQ(rows.size(), 6);  // three filters, for the run and for all runs
   const HorizonRow &best = rows[3], &combined = rows[5];
   EXPECT_EQ(best.filter, "drifting");
   EXPECT_EQ(combined.filter, "combined");
@@ -108,7 +108,7 @@ TEST(Combination, LosesLittleAgainstTheBestOfARun) {
   EXPECT_NEAR(weights[0].weight + weights[1].weight, 1.0, combined_digits);
 }
 
-/// A held-out run starts with the weights that make the training runs most likely.
+/// A held-out run starts with the weights that are most likely on the training runs.
 TEST(Combination, HeldOutRunsStartWithStackedWeights) {
   const Index N = 100;
   std::vector<Trajectory> runs(2);
@@ -120,7 +120,7 @@ TEST(Combination, HeldOutRunsStartWithStackedWeights) {
   tables.add(0, {bad, good});
   tables.start_as_trained();
   tables.add(1, {bad, good});
-  const double start = tables.combination()[1].start;  // of drifting
+  const double start = tables.combination()[1].start;  // of the competitor drifting
   const std::vector<double> stacked =
       stacked_weights({(Eigen::MatrixXd(2, N) << bad.log_density.row(0), good.log_density.row(0)).finished()});
   EXPECT_NEAR(start, stacked[1], combined_digits);
@@ -132,7 +132,7 @@ TEST(Combination, HeldOutRunsStartWithStackedWeights) {
   EXPECT_NEAR(rows.back().log_score, run.predictions.log_density.row(0).tail(N - 1).mean(), combined_digits);
 }
 
-/// A run too short to tell the filters apart loses next to nothing against the one that was best in training.
+/// A run too short to separate the filters must lose almost nothing against the filter that was best in training.
 TEST(Combination, ShortRunsKeepWhatTrainingFound) {
   const HorizonEvaluation good = forecasts(30, {10}, 6, 1.0), bad = forecasts(30, {10}, 7, 3.0);
   const std::vector<double> start =
@@ -144,7 +144,7 @@ TEST(Combination, ShortRunsKeepWhatTrainingFound) {
 TEST(Combination, LeftOutRowsChooseWeightsAndScoreAllTogether) {
   const HorizonEvaluation a = forecasts(60, {1, 5}, 10, 1.0), b = forecasts(60, {1, 5}, 11, 2.0);
   const std::vector<LeftOutRow> rows = left_out_rows({"bank", "baseline"}, {{a, b}, {b, a}});
-  ASSERT_EQ(rows.size(), 6);  // of three filters, two horizons
+  ASSERT_EQ(rows.size(), 6);  // three filters, two horizons
   EXPECT_EQ(rows[5].filter, "combined");
   EXPECT_EQ(rows[5].horizon, 5);
   EXPECT_EQ(rows[0].samples, 2 * 59);
@@ -155,12 +155,12 @@ TEST(Combination, LeftOutRowsChooseWeightsAndScoreAllTogether) {
               combined_digits);
   const std::vector<std::vector<double>> start = start_weights(rows, {1, 5}, {"bank", "baseline"});
   ASSERT_EQ(start.size(), 2);
-  EXPECT_NEAR(start[0][0], 0.5, 1e-3);  // alike, run for run
+  EXPECT_NEAR(start[0][0], 0.5, 1e-3);  // the filters are equally good in every run
   EXPECT_TRUE(start_weights(rows, {1, 7}, {"bank", "baseline"}).empty());
   EXPECT_TRUE(start_weights(rows, {1}, {"bank", "nonlinear"}).empty());
 }
 
-/// Two normal distributions: moments in closed form, and a band whose edges have 2.5 % of the mixture beyond them.
+/// Two normal distributions: moments in closed form, and a band with 2.5 % of the mixture beyond each edge.
 TEST(Combination, FreeRunsAreMixed) {
   FreeRun a, b;
   for (FreeRun* one : {&a, &b}) {

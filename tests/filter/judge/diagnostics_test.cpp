@@ -1,4 +1,4 @@
-// Diagnostics on simulated truth: a true filter passes, a wrong one does not.
+// Diagnostics on simulated truth: a true filter passes, a wrong one fails.
 #include "filter/judge/decide/diagnostics.hpp"
 
 #include <gmock/gmock.h>
@@ -120,13 +120,13 @@ TEST(Diagnostics, NoNeesWhereTheStateIsTheMeasurement) {
   EXPECT_THAT(row.flags, testing::HasSubstr("no NEES"));
 }
 
-/// One gyro of two says exactly what there is: the other is judged.
+/// One of two gyros is noise-free, so only the other one is judged.
 TEST(Diagnostics, NeesIsAboutTheStatesThatAreNotTheMeasurement) {
   Bank bank = test::single_mode(example_bank(2, 1, 1, 1e-4), 0);
   const std::vector<Trajectory> runs = truth_runs(bank, 2, 1500);
   bank.R(1, 1) = 1e-13;
   const DiagnosticsRow row = diagnose_runs(bank, runs).front();
-  EXPECT_NEAR(row.nees_mean, 1.0, 0.35);  // one degree of freedom; the filter trusts the other gyro too much
+  EXPECT_NEAR(row.nees_mean, 1.0, 0.35);  // one degree of freedom; the filter overrates the other gyro
   EXPECT_LT(row.nees_upper, 1.2);
   EXPECT_THAT(row.flags, testing::HasSubstr("NEES of the others alone"));
 }
@@ -148,7 +148,7 @@ TEST(Diagnostics, ASwitchingBankIsCalibratedModeByMode) {
     samples += rows[i].samples;
     EXPECT_NEAR(rows[i].usage, 1.0 / 3.0, 0.1);
     EXPECT_NEAR(rows[i].dwell_model, 20.0, 1e-9);
-    EXPECT_GT(rows[i].dwell, 15.0);  // the best sequence passes over the shortest stays
+    EXPECT_GT(rows[i].dwell, 15.0);  // the best sequence ignores the shortest stays
     EXPECT_LT(rows[i].dwell, 40.0);
   }
   EXPECT_NEAR(usage, 1.0, 1e-12);
@@ -162,24 +162,24 @@ TEST(Diagnostics, FlagsWhatStandsOut) {
   const auto flags = [&](const Bank& filter, const std::vector<Trajectory>& runs) {
     return diagnose_runs(filter, runs).front().flags;
   };
-  // One mode's runs through a bank of two that are easily told apart.
+  // Runs of one mode through a bank of two clearly different modes.
   Bank distinct = bank;
   distinct.modes[1].model.c(0) = 1.0;
   const std::string one = flags(distinct, truth_runs(test::single_mode(bank, 0), 1, 600));
   EXPECT_THAT(one, testing::AllOf(testing::HasSubstr("one mode takes all (0)"), testing::HasSubstr("mode 1 unused"),
                                   testing::Not(testing::HasSubstr("flat"))));
-  // Modes that say the same.
+  // Modes with equal predictions.
   Bank twins = bank;
   twins.modes[1] = twins.modes[0];
   EXPECT_THAT(flags(twins, truth_runs(test::single_mode(bank, 0), 1, 600)), testing::HasSubstr("probabilities flat"));
-  // Modes without noise of their own that differ in c, on a run that is in neither for long.
+  // Modes without process noise that differ in c, on a run that stays in neither for long.
   Bank apart = bank;
   for (Mode& mode : apart.modes) mode.Q.setConstant(1e-6);
   apart.modes[0].model.c(0) = 1.0;
   apart.modes[1].model.c(0) = -1.0;
   apart.transition = TransitionMatrix::sticky(2, 0.5);
   EXPECT_THAT(flags(apart, truth_runs(apart, 1, 300)), testing::HasSubstr("spread dominates S"));
-  // A model that is wrong about the motion.
+  // A model with a wrong motion.
   Bank wrong = test::single_mode(bank, 0);
   wrong.modes[0].model.A *= 0.1;
   wrong.modes[0].Q *= 4.0;

@@ -1,4 +1,4 @@
-// Predictions of the drifting model some samples ahead.
+// Predictions by the drifting model some samples ahead.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -36,7 +36,7 @@ TEST(DriftingHorizon, OneSampleAheadIsTheFilter) {
   }
 }
 
-/// Without drift the variance is that of the ARX model: v sum of squares of its impulse response.
+/// Without drift the variance is that of the ARX model: v times the sum of squares of its impulse response.
 TEST(DriftingHorizon, FixedCoefficientsHaveTheImpulseResponsesVariance) {
   Bank model = example_drifting(1, 1, 2);
   model.drift.rates = {0.0, 0.0, 1.0};
@@ -61,7 +61,7 @@ TEST(DriftingHorizon, FixedCoefficientsHaveTheImpulseResponsesVariance) {
   }
 }
 
-/// Fixed coefficients, several outputs: the same Gaussian as that of the bank of one mode.
+/// With fixed coefficients and several outputs, the result is the Gaussian of a bank with one mode.
 TEST(DriftingHorizon, FixedCoefficientsOfSeveralOutputsAreOneKalmanFilter) {
   Bank model = example_drifting(3, 2, 2);
   model.drift.rates = {0.0, 0.0, 1.0};
@@ -74,7 +74,7 @@ TEST(DriftingHorizon, FixedCoefficientsOfSeveralOutputsAreOneKalmanFilter) {
   for (std::size_t h = 0; h < 3; ++h) EXPECT_TRUE(near(drifting.error[h], bank.error[h], ahead_digits));
 }
 
-/// Where the model is true and drifts slowly, errors have the stated variance.
+/// If the model is true and drifts slowly, errors have the stated variance.
 TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
   Bank model = example_drifting(2, 1, 2);
   model.drift.rates = {2e-3, 0.05, 0.98};
@@ -92,7 +92,7 @@ TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
           ++count(h);
         }
   }
-  // 40,000 values; their autocorrelation leaves at least a tenth of them, and six standard errors are allowed.
+  // 40,000 values; with their autocorrelation they are worth at least a tenth of that. Six standard errors are allowed.
   EXPECT_NEAR(squares(0) / count(0), 1.0, 6.0 * std::sqrt(2.0 / (0.1 * count(0))));
   EXPECT_NEAR(squares(1) / count(1), 1.0, 6.0 * std::sqrt(2.0 / (0.1 * count(1))));
 }
@@ -105,7 +105,7 @@ TEST(DriftingHorizon, FactorWidensEveryVariance) {
   const DriftingForecasts f = drifting_forecasts(model, run, {1, 3, 5, 8});
   model.running_noise.horizon_factor = {{3, 4.0}, {8, 0.5}};
   const HorizonEvaluation wide = evaluate_horizons(model, run, {}, {1, 3, 5, 8});
-  const std::vector<double> factors{1.0, 4.0, 4.0, 0.5};  // 5 has that of 3
+  const std::vector<double> factors{1.0, 4.0, 4.0, 0.5};  // horizon 5 has the factor of horizon 3
   for (Index h = 0; h < 4; ++h)
     for (Index k = 10; k < run.samples(); ++k) {
       const double c = factors[static_cast<std::size_t>(h)];

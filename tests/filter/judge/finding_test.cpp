@@ -1,4 +1,4 @@
-// What is said about modes of motion, from scores whose answer is known.
+// The finding about modes of motion, from scores with a known answer.
 #include "filter/judge/decide/finding.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Scores of a filter over six held-out runs, `gain` above white noise that all filters share.
+/// Scores of a filter over six held-out runs: white noise common to all filters plus `gain`.
 Densities scores_of(const std::string& filter, double gain, double own_noise = 0.01) {
   std::mt19937_64 common(7), own(std::hash<std::string>()(filter));
   boost::random::normal_distribution<double> normal;
@@ -83,13 +83,13 @@ TEST(Finding, AGainWithinItsErrorTellsNothing) {
   for (Densities& competitor : few.competitors)
     for (VectorXd& run : competitor.of_runs) run.tail(198).setConstant(std::nan(""));
   for (Densities& competitor : few.competitors) competitor.of_runs.resize(6);
-  EXPECT_EQ(few.judged().answer, Answer::evidence);  // two samples in each of six runs still tell runs apart
+  EXPECT_EQ(few.judged().answer, Answer::evidence);  // two samples in each of six runs are enough to compare runs
   for (Densities& competitor : few.competitors)
     for (std::size_t r = 1; r < 6; ++r) competitor.of_runs[r].setConstant(std::nan(""));
   EXPECT_EQ(few.judged().answer, Answer::cannot_tell);
 }
 
-/// The gain over noise_only and one_motion is told from zero in each of these.
+/// In each of these cases the gain over noise_only and one_motion is significant.
 TEST(Finding, AGainBelowWhatCountsIsNoEvidence) {
   Case small;
   small.bank_gain = 0.115;
@@ -112,7 +112,7 @@ TEST(Finding, AGainBelowWhatCountsIsNoEvidence) {
   EXPECT_EQ(small.judged().answer, Answer::evidence);
 }
 
-/// All of the gain is from one of the runs' six: by t it may be told, by ranks it is not.
+/// The whole gain comes from one of six runs: it may be significant by t, but not by ranks.
 TEST(Finding, AGainOfOneOddRunIsNoEvidence) {
   Case odd;
   odd.bank_gain = 0.0;
@@ -126,7 +126,8 @@ TEST(Finding, AGainOfOneOddRunIsNoEvidence) {
   EXPECT_EQ(doubt_of(finding), Doubt::within_chance);
 }
 
-/// Used for 3/4 and 1/4, left every 10th and every 2nd sample: 1 / (.75 / 10 + .25 / 2) = 5.
+/// Modes used for 3/4 and 1/4 of the time, left every 10th and every 2nd sample: the stay is 1 / (.75 / 10 + .25 / 2) =
+/// 5.
 TEST(Finding, ModesHaveToStayForFiveSamplesAndTheModelsMemory) {
   Case passing;
   for (const auto& [mode, usage, stay] : {std::tuple{0, 0.75, 10.0}, {1, 0.25, 2.0}}) {
@@ -181,13 +182,13 @@ TEST(Finding, ModesOfTheSameParametersAreNoModesOfMotion) {
   same.bank.modes[1].model = same.bank.modes[0].model;
   EXPECT_FALSE(modes_differ(same.bank));
   EXPECT_EQ(same.judged().answer, Answer::no_evidence);
-  Case vague;  // parameters 0.1 apart at most
+  Case vague;  // parameters that differ by at most 0.1
   vague.bank = Case::with_errors(vague.bank, 0.1);
   EXPECT_FALSE(modes_differ(vague.bank));
   EXPECT_TRUE(modes_differ(Case().bank));
 }
 
-// Learning that looks ahead states no errors, and a theta that data leave open has none: the modes may be alike.
+// A look-ahead fit has no standard errors, nor has an undetermined theta; the modes may then be alike.
 TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   Case unknown;
   unknown.bank = Case::with_errors(unknown.bank, std::nan(""));
@@ -197,7 +198,7 @@ TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   EXPECT_EQ(unknown.judged().answer, Answer::cannot_tell);
   unknown.bank.modes[1].model = unknown.bank.modes[0].model;
   EXPECT_EQ(unknown.judged().answer, Answer::no_evidence) << "the same, whatever the errors";
-  Case some;  // one parameter that is known tells them apart
+  Case some;  // one known parameter separates them
   some.bank.modes[0].standard_error(0) = std::nan("");
   EXPECT_EQ(some.judged().answer, Answer::evidence);
   Case worse = unknown;
@@ -206,7 +207,8 @@ TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   EXPECT_EQ(worse.judged().answer, Answer::no_evidence) << "a competitor has the higher score";
 }
 
-// Baseline loses 0.4 nats in each of six runs; one run where drifting gains 2.6 more makes the t-test blind to it.
+// The baseline loses 0.4 nats in each of six runs. In one run `drifting` gains 2.6 more, which makes the t-test
+// insignificant.
 TEST(Finding, ADescriptionThatLosesInEveryRunIsNotAsGood) {
   Case even;
   even.bank_gain = 0.38;
@@ -224,13 +226,13 @@ TEST(Finding, AMotionThatBendsIsNamedWhereItBeatsAllSimplerOnes) {
   EXPECT_EQ(finding.answer, Answer::no_evidence);
   EXPECT_EQ(finding.best_competitor, "nonlinear");
   EXPECT_EQ(finding.description, Description::one_nonlinear_motion);
-  bent.competitors[3] = scores_of("drifting", 0.5);  // as good, and simpler
+  bent.competitors[3] = scores_of("drifting", 0.5);  // equally good, and simpler
   EXPECT_EQ(bent.judged().description, Description::one_drifting_motion);
   bent.bank_gain = 0.8;
   EXPECT_EQ(bent.judged().answer, Answer::evidence);
 }
 
-// With one parameter and two modes the limit is the normal quantile 1.96 of the difference over its standard error.
+// With one parameter and two modes the limit for the difference over its standard error is the normal quantile 1.96.
 TEST(Finding, TheLimitForOneComparisonIsTheNormalQuantile) {
   Bank bank = test::example_bank(1, 0, 2);
   bank.structure = {1, 0, false};
@@ -246,7 +248,7 @@ TEST(Finding, TheLimitForOneComparisonIsTheNormalQuantile) {
   EXPECT_TRUE(modes_differ(bank));
 }
 
-// One motion at steps of many lengths looks like several modes: 10 % of the median is the limit.
+// One motion with steps of many lengths looks like several modes. The limit is 10 % of the median.
 TEST(Finding, StepsThatScatterComeBeforeModes) {
   Case even;
   even.step_scatter = 0.099;
@@ -281,7 +283,8 @@ TEST(Finding, ModesAndABendThatBothGainAreBothNamed) {
   EXPECT_TRUE(modes.judged().over_linear.empty()) << "the bend gains next to nothing";
 }
 
-// Gains over competitors that lack the same lags say little of modes. 0.02 nats and two standard errors count.
+// Gains over competitors that lack the same lags prove little about modes. The pattern must gain 0.02 nats and two
+// standard errors.
 TEST(Finding, APatternThatLagsWouldTakeAwayComesBeforeModes) {
   Case patterned;
   patterned.pattern = {0.021, 0.01};

@@ -1,4 +1,4 @@
-// Predictions without measurements, to the end of a run.
+// Predictions without measurements up to the end of a run.
 #include "filter/judge/run/free_run.hpp"
 
 #include <gmock/gmock.h>
@@ -26,7 +26,7 @@ using test::single_mode;
 using test::stable_theta;
 using ::testing::HasSubstr;
 
-/// x[k+1] = x[k] + sum A_i x[k+1-i] + sum B_j u[k+1-d-j] + c after n measured samples, from theta itself.
+/// x[k+1] = x[k] + sum A_i x[k+1-i] + sum B_j u[k+1-d-j] + c after n measured samples, computed from theta.
 Eigen::MatrixXd arx_recursion(const LinearStructure& s, const Eigen::VectorXd& theta, const Trajectory& run, Index n) {
   Eigen::MatrixXd x = run.state;
   for (Index k = n; k < x.cols(); ++k)
@@ -111,7 +111,7 @@ TEST(FreeRun, PredictsThroughGapsAndMissingSamples) {
   Bank bank = single_mode(example_bank(1, 1, 1), 0);
   bank.dt_s = 1.0;
   Trajectory run = simulate_bank(bank, 20, 8);
-  run.time_s.tail(10).array() += 3.0;  // three model steps more, the input held
+  run.time_s.tail(10).array() += 3.0;  // three more model steps with the input held
   run.state(0, 15) = std::nan("");
   const FreeRun found = free_run(bank, run, {}, after(4));
   double x = found.mean(0, 9);
@@ -152,10 +152,10 @@ TEST(FreeRunScores, HaveTheirClosedForms) {
   EXPECT_DOUBLE_EQ(rows[0].coverage_90(0), 0.5);
   EXPECT_DOUBLE_EQ(rows[0].coverage_95(0), 0.75);
   EXPECT_DOUBLE_EQ(rows[0].coverage_99(0), 0.75);
-  EXPECT_TRUE(std::isnan(rows[1].nrmse(0)));  // one sample has no spread
+  EXPECT_TRUE(std::isnan(rows[1].nrmse(0)));  // undefined for one sample
   EXPECT_EQ(rows[2].run, "*");
   EXPECT_DOUBLE_EQ(rows[2].rmse(0), 1.0);
-  EXPECT_DOUBLE_EQ(rows[2].fit(0), 100.0 * (1.0 - std::sqrt(5.0 / 50.0)));  // y = 1 2 3 4 10 about 4
+  EXPECT_DOUBLE_EQ(rows[2].fit(0), 100.0 * (1.0 - std::sqrt(5.0 / 50.0)));  // y = 1 2 3 4 10 with mean 4
   EXPECT_DOUBLE_EQ(rows[2].coverage_95(0), 0.8);
 }
 

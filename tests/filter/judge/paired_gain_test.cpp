@@ -1,4 +1,4 @@
-// Gains and their standard errors: closed forms, and simulated series whose variance of the mean is known.
+// Gains and their standard errors: closed forms, and simulated series with known variance of the mean.
 #include "filter/judge/score/paired_gain.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ PairedGain gain_of(const std::vector<VectorXd>& differences) {
   return paired_gain("other", differences, zeros_like(differences));
 }
 
-/// A first-order autoregression of mean m and innovation variance one, started from its stationary law.
+/// A first-order autoregression with mean m and innovation variance one, started from its stationary distribution.
 VectorXd autoregression(double rho, double mean, Eigen::Index samples, std::mt19937_64& generator) {
   boost::random::normal_distribution<double> normal;
   VectorXd x(samples);
@@ -41,15 +41,15 @@ TEST(PairedGain, OfOneSamplePerRunIsTheMeanWithItsStandardError) {
   for (const double d : {1.0, 2.0, 3.0, 4.0, 5.0}) runs.push_back(VectorXd::Constant(1, d));
   const PairedGain gain = gain_of(runs);
   EXPECT_DOUBLE_EQ(gain.gain, 3.0);
-  EXPECT_NEAR(gain.standard_error, std::sqrt(0.5), 1e-15);  // sd sqrt(2.5), over sqrt(5)
+  EXPECT_NEAR(gain.standard_error, std::sqrt(0.5), 1e-15);  // sd sqrt(2.5), divided by sqrt(5)
   EXPECT_EQ(gain.degrees_of_freedom, 4.0);
   EXPECT_NEAR(gain.margin, 2.7764451051977934 * std::sqrt(0.5), 1e-12);  // t(0.975, 4): Abramowitz & Stegun, 26.10
   EXPECT_FALSE(gain.by_blocks);
   EXPECT_TRUE(gain.exceeds());
 }
 
-// Runs of unequal length: the linearised ratio's variance, worked by hand. Sums 2, 8, 0, 6, 4 of 2, 4, 2, 1, 1 samples:
-// m = 2, residuals -2, 0, -4, 4, 2, SE = sqrt(5 / 4 * 40) / 10.
+// Runs of unequal length: variance of the linearised ratio by hand. Sums 2, 8, 0, 6, 4 over 2, 4, 2, 1, 1 samples give
+// m = 2, residuals -2, 0, -4, 4, 2 and SE = sqrt(5 / 4 * 40) / 10.
 TEST(PairedGain, RunsCountByTheirSamples) {
   const std::vector<VectorXd> runs{VectorXd::Constant(2, 1.0), VectorXd::Constant(4, 2.0), VectorXd::Zero(2),
                                    VectorXd::Constant(1, 6.0), VectorXd::Constant(1, 4.0)};
@@ -71,7 +71,7 @@ TEST(PairedGain, OnlySamplesThatBothScoredCount) {
   const PairedGain gain = paired_gain("other", bank, other);
   EXPECT_EQ(gain.samples, 13);
   EXPECT_NEAR(gain.gain, (1.0 + 3.0 * 14.0) / 13.0, 1e-15);
-  EXPECT_EQ(gain.degrees_of_freedom, 4.0);  // the sixth run has no sample of both
+  EXPECT_EQ(gain.degrees_of_freedom, 4.0);  // the sixth run has no sample with both scores
   EXPECT_EQ(paired_gain("other", other, bank).gain, -gain.gain);
 }
 
@@ -82,11 +82,12 @@ TEST(PairedGain, BlocksKnowAboutAutocorrelation) {
     const PairedGain gain = gain_of({autoregression(rho, 0.3, samples, generator)});
     const double truth = 1.0 / (1.0 - rho) / std::sqrt(static_cast<double>(samples));
     EXPECT_TRUE(gain.by_blocks);
-    EXPECT_NEAR(gain.standard_error, truth, 0.25 * truth) << rho;  // a block of two times sees most of it
+    // a block of two autocorrelation times contains most of the correlation
+    EXPECT_NEAR(gain.standard_error, truth, 0.25 * truth) << rho;
   }
 }
 
-/// By hand: a gain of one in each of eight stretches has ranks that chance makes in one of 2^8 cases.
+/// By hand: a gain of one in each of eight stretches has the most extreme ranks, with probability 2^-8.
 TEST(PairedGain, BlocksAreRankedToo) {
   VectorXd run(4000);
   std::mt19937_64 generator(7);
@@ -111,7 +112,7 @@ TEST(PairedGain, TooFewBlocksAndNoSamplesKnowNoError) {
   EXPECT_FALSE(none.exceeds());
 }
 
-// Of two filters that are equally good, "better" is said in 2.5 % of the cases: 25 of 1000, binomial sd 4.9.
+// For two equally good filters a gain is significant in 2.5 % of the cases: 25 of 1000, binomial sd 4.9.
 TEST(PairedGain, ChanceExceedsTheMarginAsOftenAsItSays) {
   std::mt19937_64 generator(43);
   for (const int runs : {6, 3}) {

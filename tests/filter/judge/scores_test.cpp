@@ -12,16 +12,16 @@
 namespace modebank {
 namespace {
 
-/// Boost.Math against scipy: both good to a few units in the last place.
+/// Boost.Math against scipy; both are accurate to a few units in the last place.
 constexpr double special_function_tolerance = 1e-11;
-/// Standard deviations that a simulated fraction may lie off its expectation: about one in 16000 by chance, and the
-/// seeds are fixed.
+/// Allowed deviation of a simulated fraction from its expectation, in standard deviations. By chance about one in 16000
+/// exceeds it; seeds are fixed.
 constexpr double sigmas = 4.0;
 
 nlohmann::json golden() { return test::read_golden("scores"); }
 
 TEST(Calibration, ChiSquareQuantilesAgreeWithScipy) {
-  const nlohmann::json rows = golden().at("chi_square");  // outlives the loop
+  const nlohmann::json rows = golden().at("chi_square");  // must outlive the loop
   for (const auto& row : rows) {
     const double expected = row.at("value");
     EXPECT_NEAR(chi_square_quantile(row.at("p"), row.at("dof")) / expected, 1.0, special_function_tolerance);
@@ -99,7 +99,7 @@ TEST(Summary, TheTrueKalmanFilterIsCalibrated) {
 }
 
 TEST(Summary, TheTrueBankIsCalibrated) {
-  // With almost no measurement noise the mixing of histories is exact, so the bank is the true filter.
+  // With almost no measurement noise the mixing of histories is exact, so the bank is a true filter.
   for (const Eigen::Index n : {1, 2}) {
     const Bank truth = test::example_bank(n, 1, 3, 1e-10);
     expect_calibrated(score(truth, truth, 20000, 12), static_cast<double>(n));
@@ -130,7 +130,7 @@ TEST(Summary, AWrongModelIsNotWhite) {
   EXPECT_LT(score(wrong, truth, 2000, 14).whiteness_p, 1e-6);
 }
 
-/// An evaluation with given innovations (one component) and standard normal scores elsewhere.
+/// An evaluation with given innovations (one component); all other scores are standard normal.
 RunEvaluation hand_made(const Eigen::RowVectorXd& innovation, const Eigen::VectorXd& log_density) {
   RunEvaluation e;
   e.innovation = innovation;
@@ -192,7 +192,7 @@ TEST(Summary, WhitenessIsPooledOverRunsByFisher) {
   std::vector<Trajectory> runs;
   std::vector<RunEvaluation> evaluations;
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    runs.push_back(test::simulate_bank(truth, seed == 2 ? 4 : 60, seed));  // the last is too short for a lag
+    runs.push_back(test::simulate_bank(truth, seed == 2 ? 4 : 60, seed));  // the last one is too short for a lag
     evaluations.push_back(evaluate_run(truth, runs.back(), {}));
   }
   const auto rows = summarize("bank", runs, evaluations, score_runs(evaluations));

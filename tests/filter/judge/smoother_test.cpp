@@ -28,7 +28,7 @@ RunEvaluation smoothed(const Bank& bank, const Trajectory& run, const FilterOpti
   return evaluation;
 }
 
-/// Mean and covariance of all states given all measurements, from the joint normal density of the whole run.
+/// Mean and covariance of all states given all measurements, from the joint normal density of the run.
 struct Batch {
   Eigen::MatrixXd state;                    ///< n x N
   std::vector<Eigen::MatrixXd> covariance;  ///< N
@@ -59,7 +59,7 @@ Batch solve_batch(const Bank& bank, const Trajectory& run) {
 }
 
 TEST(Smoother, OneModeIsTheBatchEstimateOfEveryState) {
-  // What Rauch, Tung & Striebel's smoother computes recursively.
+  // The batch estimate must equal that of the recursive Rauch-Tung-Striebel smoother.
   for (const Index n : {1, 2, 4}) {
     const Bank bank = single_mode(example_bank(n, 1, 1, 1e-3), 0);
     Trajectory run = simulate_bank(bank, 25, 20);
@@ -125,14 +125,15 @@ TEST(Smoother, StaysFiniteWhereNoiseIsSingular) {
   }
 }
 
-/// Two states with three lags of each; `rounding`: how far rows that shift are off, after which they are any rows.
+/// Two states with three lags each. `rounding`: deviation of the shift rows from exact shifts; with it they are treated
+/// as general rows.
 Bank lagged_bank(double R, double rounding = 0.0) {
   Bank bank = example_bank(2, 1, 3, R);
   const LinearStructure one_lag = bank.structure;
   bank.structure.state_lags = 3;
   bank.C = Eigen::MatrixXd::Identity(2, 6);
   for (Mode& mode : bank.modes) {
-    Eigen::MatrixXd theta(2, bank.structure.regressors());  // as unpack has it: [A B c] by rows
+    Eigen::MatrixXd theta(2, bank.structure.regressors());  // layout of unpack: [A B c] by rows
     theta << mode.model.A, Eigen::MatrixXd::Constant(2, 2, 0.05), Eigen::MatrixXd::Constant(2, 2, -0.04), mode.model.B,
         mode.model.c;
     mode.model = unpack(bank.structure, Eigen::MatrixXd(theta.transpose()).reshaped());
@@ -174,10 +175,11 @@ void expect_alike(const Bank& a, const Bank& b, const FilterOptions& options, do
   }
 }
 
-/// Rows of lags that only shift have shorter products.
+/// Products use shorter loops for lags that only shift.
 TEST(LaggedStates, ThatShiftAreThoseOfAnyRows) { expect_alike(lagged_bank(1e-4), lagged_bank(1e-4, 1e-14), {}, 1e-10); }
 
-/// Measured exactly they are known, and nothing is computed of them: the limit of measurement noise that goes to zero.
+/// Exactly measured states are known and skip computations. The result must be the limit of vanishing measurement
+/// noise.
 TEST(LaggedStates, MeasuredExactlyAreTheLimitOfLittleNoise) {
   expect_alike(lagged_bank(0.0), lagged_bank(1e-13), {}, 1e-7);
 }
@@ -199,7 +201,7 @@ TEST(LaggedStates, EstimatesHoldTheSampleAlone) {
   }
 }
 
-/// The best of all sequences by their joint density, the state being measured exactly. `scale`: of Q, sample by sample.
+/// The best of all sequences by joint density, for exactly measured states. `scale`: factor on Q, sample by sample.
 Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& scale) {
   const int K = static_cast<int>(bank.mode_count()), samples = static_cast<int>(run.samples());
   double best = -1e300;
@@ -232,7 +234,7 @@ TEST(Viterbi, IsTheBestOfAllSequencesWhenTheStateIsMeasuredExactly) {
     EXPECT_EQ(smoothed(bank, run, {variant}).viterbi_mode, expected) << name_of(variant);
 }
 
-/// Given the scale that the filter itself had at every step.
+/// With the filter's own noise scale at every step.
 TEST(Viterbi, KeepsToTheFiltersNoiseScale) {
   Bank bank = example_bank(1, 1, 3, 1e-16);
   bank.transition = TransitionMatrix((Eigen::MatrixXd(3, 3) << 0.7, 0.2, 0.1, 0.1, 0.8, 0.1, 0.3, 0.1, 0.6).finished());
@@ -244,7 +246,7 @@ TEST(Viterbi, KeepsToTheFiltersNoiseScale) {
     for (Mode& mode : rough.modes) mode.Q *= 16.0;
     const Trajectory run = simulate_bank(rough, 7, seed);
     BankFilter filter(bank, options);
-    Eigen::VectorXd scale(7);  // of the step into each sample
+    Eigen::VectorXd scale(7);  // of the step to each sample
     for (Index k = 0; k < 7; ++k) {
       scale(k) = k > 0 ? filter.snapshot().noise_scale : 1.0;
       filter.step(run.time_s(k), run.input.col(k), run.state.col(k));

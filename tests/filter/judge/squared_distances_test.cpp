@@ -1,4 +1,4 @@
-// Mean NIS and NEES with their intervals, whatever signals are missing: by closed forms and by simulation.
+// Mean NIS and NEES with their intervals for any missing signals: closed forms and simulation.
 #include "filter/judge/score/squared_distances.hpp"
 
 #include <gtest/gtest.h>
@@ -30,13 +30,14 @@ TEST(SquaredDistances, AMeanCountsSamplesByTheirDegrees) {
   distances.add(1.0, 1);
   distances.begin_run();
   distances.add(5.0, 2);
-  distances.add(std::nan(""), 0);                        // nothing there
-  EXPECT_DOUBLE_EQ(mean_distance(distances, 3.0), 6.0);  // 12 over 6 degrees, of 3
+  distances.add(std::nan(""), 0);                        // no signal
+  EXPECT_DOUBLE_EQ(mean_distance(distances, 3.0), 6.0);  // 12 over 6 degrees, times 3
   EXPECT_TRUE(std::isnan(mean_distance({}, 1.0)));
   EXPECT_TRUE(std::isnan(mean_distance_interval({}, 1.0, true).lower));
 }
 
-/// Chi-square's own quantiles: 74.22 and 129.56 at 100 degrees of freedom, however they are dealt to samples.
+/// Quantiles of chi-square with 100 degrees of freedom: 74.22 and 129.56, however the degrees are distributed over
+/// samples.
 TEST(SquaredDistances, TheIntervalIsThatOfTheSum) {
   for (const Index degrees : {1, 4}) {
     const SquaredDistances whole =
@@ -48,7 +49,7 @@ TEST(SquaredDistances, TheIntervalIsThatOfTheSum) {
   }
 }
 
-/// Every value twice: as wide as for half as many, but for the margin.
+/// Every value twice: as wide as for half as many, apart from the margin.
 TEST(SquaredDistances, RelatedSamplesAreFewer) {
   std::mt19937_64 generator(1);
   std::vector<double> once, twice;
@@ -61,7 +62,7 @@ TEST(SquaredDistances, RelatedSamplesAreFewer) {
   EXPECT_NEAR((b.upper - b.lower) / (a.upper - a.lower), 1.0, 0.1);
 }
 
-/// Chi-square's own of any degrees, and a mixture's in closed form: variances 1 and 9 with equal chances, mean 5,
+/// 1 for chi-square with any degrees. For a mixture in closed form: variances 1 and 9 with equal probability, mean 5,
 /// variance 98.
 TEST(SquaredDistances, DispersionIsThatOfTheLaw) {
   std::mt19937_64 generator(5);
@@ -83,7 +84,7 @@ TEST(SquaredDistances, DispersionIsThatOfTheLaw) {
   EXPECT_EQ(dispersion(distances_of({0.0, 0.0})), 1.0);
 }
 
-/// A run of the bank of which signals are missing: each with this probability, on its own.
+/// A run of the bank with missing signals, each missing independently with this probability.
 Trajectory with_missing(const Bank& bank, double missing, Index samples, std::uint64_t seed) {
   Trajectory run = test::simulate_bank(bank, samples, seed);
   run.role = Role::test;
@@ -95,7 +96,7 @@ Trajectory with_missing(const Bank& bank, double missing, Index samples, std::ui
   return run;
 }
 
-/// The mean over samples that some signal is missing of, raw, would be n_y (1 - missing) or so.
+/// The plain mean over samples with missing signals would be about n_y (1 - missing).
 TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
   const Bank bank = test::single_mode(test::example_bank(3, 1, 1), 0);
   for (const double missing : {0.0, 0.3, 0.7}) {
@@ -106,7 +107,7 @@ TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
     const DiagnosticsRow row = diagnose("bank", bank, {}, runs, evaluations, scores).front();
     const double signals = 2.0 * 6000.0 * 3.0 * (1.0 - missing);
     EXPECT_NEAR(row.nis_mean, 3.0, 4.0 * 3.0 * std::sqrt(2.0 / signals)) << missing;
-    EXPECT_DOUBLE_EQ(row.nis_mean, summary.back().nis_mean) << missing;  // one definition in both tables
+    EXPECT_DOUBLE_EQ(row.nis_mean, summary.back().nis_mean) << missing;  // both tables use one definition
     EXPECT_LT(row.nis_lower, 3.0);
     EXPECT_GT(row.nis_upper, 3.0);
     EXPECT_NEAR(row.nis_upper - row.nis_lower, 2.0 * 1.96 * 3.0 * std::sqrt(2.0 / signals), 0.02) << missing;
@@ -114,7 +115,7 @@ TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
   }
 }
 
-/// The interval holds a true filter's mean in 95 % of the seeds: five standard errors of 400.
+/// The interval contains a true filter's mean for 95 % of the seeds, within five standard errors of 400.
 TEST(SquaredDistances, TheIntervalCoversWithMissingSignals) {
   std::mt19937_64 generator(9);
   boost::random::normal_distribution<double> normal;
@@ -135,7 +136,7 @@ TEST(SquaredDistances, TheIntervalCoversWithMissingSignals) {
   EXPECT_NEAR(inside / 400.0, 0.95, 5.0 * std::sqrt(0.95 * 0.05 / 400.0));
 }
 
-/// On the scale of all signals a NIS lies beyond the region's edges where it does by its own degrees.
+/// On the scale of all signals, a NIS exceeds the region's edges exactly if it does with its own degrees.
 TEST(SquaredDistances, NisOfFewerSignalsIsDrawnWhereAllWouldBe) {
   RunEvaluation e;
   const double nan = std::nan("");

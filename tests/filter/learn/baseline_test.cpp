@@ -37,7 +37,7 @@ Recording simulated(const Bank& bank, Index runs, Index samples, std::uint64_t s
   return recording;
 }
 
-/// theta fixed at the truth: how well Q and R are found is the question here.
+/// theta fixed at the true value; the test is about Q and R.
 GlobalModel model_at(const Recording& recording, const Bank& truth) {
   GlobalModel global = fit_global(recording, test::structure_of(recording));
   global.theta = truth.theta(0);
@@ -56,7 +56,7 @@ double likelihood_at(Bank bank, const Recording& recording, const Eigen::MatrixX
   return sum;
 }
 
-/// Q's lower triangle and R's diagonal as one vector.
+/// Q's lower triangle and R's diagonal in one vector.
 Eigen::VectorXd noise_vector(const Eigen::MatrixXd& Q, const Eigen::MatrixXd& R) {
   std::vector<double> values;
   for (Index j = 0; j < Q.cols(); ++j)
@@ -119,7 +119,7 @@ TEST(Baseline, NoGridPointIsMoreLikely) {
     const Recording recording = simulated(truth, 2, 200);
     const Baseline fit = learn(recording, fit_global(recording, test::structure_of(recording)));
     EXPECT_TRUE(fit.converged);
-    // 1e-7 per sample may be given away at the bound.
+    // A loss of 1e-7 per sample at the bound is allowed.
     const double slack = 1e-7 * static_cast<double>(recording.transitions(Role::train));
     const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
     for (int i = -24; i <= 4; ++i)
@@ -139,7 +139,7 @@ TEST(Baseline, AgreesWithNelderMead) {
     EXPECT_TRUE(near(global.theta, test::golden_rows(expected.at("theta")), 1e-10)) << name;
     const Baseline fit = learn(recording, global);
     EXPECT_TRUE(fit.converged) << name;
-    // The simplex stops at 1e-11 in the likelihood, so at some 1e-5 of the flattest direction.
+    // The simplex search stops at 1e-11 in the likelihood, which is about 1e-5 in the flattest direction.
     EXPECT_NEAR(fit.log_likelihood, expected.at("log_likelihood").get<double>(), 1e-7) << name;
     EXPECT_TRUE(near(fit.bank.modes[0].Q, test::golden_rows(expected.at("Q")), 1e-5)) << name;
     EXPECT_TRUE(near(fit.bank.R, test::golden_rows(expected.at("R")), 1e-5)) << name;

@@ -1,4 +1,4 @@
-// Clouds of one-lag fits of windows with many lags, and the banks that are learned from them.
+// Clouds of one-lag fits of windows with many lags, and the banks learned from them.
 #include "filter/learn/from_mixture/cluster_windows.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ namespace {
 using test::near;
 using ::testing::ElementsAre;
 
-/// Six runs of 200 samples, every other in the second of two motions.
+/// Six runs of 200 samples, alternating between two motions.
 Recording runs_of_two_motions() {
   std::mt19937_64 generator(4);
   boost::random::normal_distribution<double> normal;
@@ -76,7 +76,8 @@ TEST(ClusterWindows, OfManyLagsAreThoseOfOneLagFits) {
   }
 }
 
-/// A mode's coefficients are the pooled regression of its runs, with all lags; its spread is that of its windows.
+/// A mode's coefficients are the pooled regression of its runs with all lags; its parameter covariance is that of its
+/// windows.
 TEST(ClusterWindows, StartModesOfAllCoefficients) {
   const Clustered c(two_components(CovarianceType::full));
   BankOptions options;

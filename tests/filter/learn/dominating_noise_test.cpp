@@ -1,4 +1,4 @@
-// Measurement noise that dominates: one model with a large R is tried beside the search from exact states.
+// Dominating measurement noise: one model with a large R is tried besides the search from exact states.
 #include "filter/learn/refine/dominating_noise.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace modebank {
 namespace {
 
-/// The position of a target with white acceleration of standard deviation 0.3 m/s^2, each 0.1 s, measured with R.
+/// Position of a target with white acceleration (standard deviation 0.3 m/s^2) every 0.1 s, measured with R.
 Recording constant_velocity(double R, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;
@@ -35,7 +35,7 @@ Recording constant_velocity(double R, std::uint64_t seed) {
   return recording;
 }
 
-/// One mode of two state lags by least squares, as a bank for which no R was looked for.
+/// One mode of two state lags by least squares, as a bank before the search for R.
 struct LeastSquares {
   explicit LeastSquares(const Recording& data) : recording(data) {
     structure.state_lags = 2;
@@ -68,8 +68,9 @@ struct LeastSquares {
   Bank bank;
 };
 
-/// It ended with R = 4e-11, 0.275 nats below the same with R stated. Two lags of the position hold its velocity, so the
-/// process noise of these measurements is small beside R, and their coefficients are 1 and -1.
+/// Regression test: the search once ended with R = 4e-11, 0.275 nats below the result with R given. Two lags of the
+/// position determine its velocity. So the process noise is small beside R, and exact states give coefficients 1 and
+/// -1.
 TEST(DominatingNoise, IsFoundWithTheCoefficientsThatItHid) {
   for (const std::uint64_t seed : {0, 1, 2}) {
     const Recording recording = constant_velocity(0.0225, seed);
@@ -83,8 +84,8 @@ TEST(DominatingNoise, IsFoundWithTheCoefficientsThatItHid) {
   }
 }
 
-/// A wrong start of a search must not make measurement noise: here the position is measured to a hundredth of what the
-/// acceleration moves it in one step.
+/// A wrong start of a search must not create measurement noise. Here the measurement error is a hundredth of the
+/// movement by acceleration in one step.
 TEST(DominatingNoise, IsNotFoundWhereStatesAreExact) {
   const Recording recording = constant_velocity(1e-10, 0);
   const LeastSquares least_squares(recording);

@@ -8,7 +8,7 @@
 namespace modebank {
 namespace {
 
-/// Eight runs of one system, whose coefficients wander by these rates.
+/// Eight runs of one system whose coefficients drift at these rates.
 Recording wandering_runs(const DriftRates& rates, std::uint64_t seed) {
   Bank model = test::example_drifting(1, 1, 1);
   model.drift.scale.setOnes();

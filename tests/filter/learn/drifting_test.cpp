@@ -1,4 +1,4 @@
-// How a drifting model's settings are chosen.
+// How the settings of a drifting model are chosen.
 #include "filter/judge/run/drifting.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ Bank learn_all(const Recording& recording, const LinearStructure& structure, con
   return learn_drifting(recording, fit_global(recording, structure), structure, {1, 2, 5}, grid);
 }
 
-/// The mean log density of the training runs' scored samples.
+/// Mean log density of the scored training samples.
 double mean_training_score(const Bank& model, const Recording& recording) {
   double sum = 0.0, samples = 0.0;
   for (const Trajectory& run : recording.runs) {
@@ -61,7 +61,7 @@ TEST(DriftingLearning, TheGridScoresWhatTheFilterScores) {
   recording.runs[0].state(1, 30) = std::nan("");
   recording.runs[1].time_s.tail(40).array() += 0.3;
   recording.runs[1].time_s.tail(10).array() += 100.0;
-  recording.runs[1].state.col(50) *= 1e6;  // far from what products of eight can hold
+  recording.runs[1].state.col(50) *= 1e6;  // far beyond the range of products of eight values
   const GlobalModel global = fit_global(recording, model.structure);
   model = learn_drifting(recording, global, model.structure, {});
   const DriftingGrid grid;
@@ -97,7 +97,7 @@ TEST(DriftingLearning, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(many.drift.tuning.log_score, one.drift.tuning.log_score);
 }
 
-/// What wandering coefficients gain over constant ones on the training runs [nats/sample].
+/// Gain of drifting coefficients over constant ones on the training runs [nats/sample].
 double gain_by_drift(const Bank& truth) {
   const Recording recording = drifting_recording(truth, 4, 600);
   DriftingGrid constant;

@@ -1,4 +1,4 @@
-// What is left out of learning, in turn.
+// Splits for cross-validation.
 #include "filter/learn/left_out/folds.hpp"
 
 #include <gmock/gmock.h>

@@ -19,7 +19,7 @@ struct Guard {
   double slope;
 };
 
-/// x+ = x + a_m x + b_m u + w, the mode of a step drawn by the guard. No input lies within `gap` of `border`.
+/// x+ = x + a_m x + b_m u + w; the mode of a step is drawn from these odds. No input lies within `gap` of `border`.
 inline Recording guarded_runs(const Guard& guard, Index runs, Index samples, std::uint64_t seed, double border = 0.0,
                               double gap = 0.0) {
   std::mt19937_64 generator(seed);

@@ -1,4 +1,5 @@
-// Switches that see state and input, chosen by cross-validation: soft and hard guards found, a Markov chain left alone.
+// State-dependent transition probabilities, chosen by cross-validation: soft and hard borders are found, a Markov chain
+// is left alone.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,7 +51,7 @@ double log_odds_of_staying(const Bank& bank) {
   return std::log(T(0, 0) / T(0, 1)) + std::log(T(1, 1) / T(1, 0));
 }
 
-/// Where input alone says the mode, borders do not depend on the mode before; where the mode before matters, they do.
+/// If the input alone determines the mode, borders do not depend on the previous mode; otherwise they do.
 TEST(Guards, TheModeBeforeCountsWhereItMatters) {
   const Refinement without = refined(guarded_runs({{-0.4e6, -0.4e6}, 1e6}, 8, 400, 7), {{-3.0, 3.0}, 0.0});
   EXPECT_LT(without.switching.memory_sd, 1.0);
@@ -82,7 +83,7 @@ TEST(Guards, OfAHardGuardNoErrorIsStatedAndTheBorderLiesInTheGap) {
   }
 }
 
-/// There the prior alone curves the likelihood: of that no error may be made.
+/// In such a gap only the prior curves the likelihood, so no standard error may be stated.
 TEST(Guards, OfAHardGuardNoErrorIsStatedWhereInputsLeaveAGap) {
   const double border = 0.4, gap = 0.1;
   for (const std::uint64_t seed : {8, 9, 10}) {

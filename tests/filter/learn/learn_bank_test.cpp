@@ -18,7 +18,8 @@ using test::near;
 constexpr double bank_exact = 1e-10;
 const Eigen::MatrixXd R_given = Eigen::MatrixXd::Constant(1, 1, 1e-4);
 
-/// Runs of 40 transitions, each in one mode of x[k+1] = x + a x + 0.5 u + 0.1 w, and a test run that must not matter.
+/// Runs of 40 transitions, each in one mode of x[k+1] = x + a x + 0.5 u + 0.1 w, and a held-out run that must be
+/// ignored.
 Recording runs_in_modes(const std::vector<double>& a) {
   std::mt19937_64 generator(9);
   boost::random::normal_distribution<double> normal;
@@ -36,7 +37,7 @@ Recording runs_in_modes(const std::vector<double>& a) {
   return recording;
 }
 
-/// Windows of run i belong to component i alone.
+/// Memberships in which windows of run i belong to component i alone.
 Eigen::MatrixXd memberships_by_run(const WindowFits& fits, Index components) {
   Eigen::MatrixXd gamma = Eigen::MatrixXd::Zero(components, fits.count());
   for (Index i = 0; i < fits.count(); ++i) gamma(fits.windows[i].run, i) = 1.0;
@@ -119,7 +120,7 @@ TEST(LearnBank, MeanTakesTheComponentsMeansAndNoiseAboutThem) {
   }
 }
 
-/// By default linear modes are refined, and what refinement could not keep as asked for is not.
+/// By default linear modes are refined, unless refinement would undo a requested option.
 TEST(LearnBank, RefinementIsTheDefaultOfWhatItDoesNotUndo) {
   BankOptions options;
   EXPECT_EQ(refinement_asked(options, true), Refine::em);
@@ -219,7 +220,7 @@ TEST(Screening, WhereNoComponentIsLeftAllOfThemTogetherAreOneMode) {
   EXPECT_EQ(bank.screened[1].reason, "unstable");
 }
 
-/// One step ahead it may be right, as the global model that it competes with may: it is kept, and its users are warned.
+/// One step ahead such a mode may be right, as may the global model that it competes with. It is kept, with a warning.
 TEST(Screening, WhereAllTogetherAreUnstableTheyAreOneModeStill) {
   Case data({-0.2, -0.3});
   BankOptions options;

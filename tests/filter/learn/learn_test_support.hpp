@@ -20,7 +20,7 @@ inline Recording empty_recording(Index n, Index m) {
   return recording;
 }
 
-/// Adds a run of samples 0.1 s apart.
+/// Adds a run with samples 0.1 s apart.
 inline void add_run(Recording& recording, Eigen::MatrixXd state, Eigen::MatrixXd input, Role role = Role::train) {
   Trajectory run;
   run.run = "run" + std::to_string(recording.runs.size());
@@ -31,7 +31,7 @@ inline void add_run(Recording& recording, Eigen::MatrixXd state, Eigen::MatrixXd
   recording.runs.push_back(std::move(run));
 }
 
-/// The training runs a golden file holds, x and u one sample per row.
+/// The training runs of a golden file, x and u one sample per row.
 inline Recording golden_recording(const nlohmann::json& runs) {
   Recording recording;
   for (const nlohmann::json& run : runs) {
@@ -46,7 +46,7 @@ inline LinearStructure structure_of(const Recording& recording) {
   return {recording.state_count(), recording.input_count(), false};
 }
 
-/// Windows of every training run without any fit but the global one, as far as banks need them.
+/// Windows of every training run with only the global fit, as far as banks need them.
 inline WindowFits windows_of(const Recording& recording, Index length, Index step) {
   WindowFits fits;
   fits.structure = structure_of(recording);
@@ -57,7 +57,7 @@ inline WindowFits windows_of(const Recording& recording, Index length, Index ste
   return fits;
 }
 
-/// A mixture of K components of equal weight around the global theta whose memberships are `responsibilities` (K x M,
+/// A mixture of K components of equal weight around the global theta. Its memberships are `responsibilities` (K x M,
 /// NaN columns: not clustered).
 inline MixtureResult mixture_of(const WindowFits& fits, const Eigen::MatrixXd& responsibilities) {
   const Index K = responsibilities.rows(), p = fits.parameter_count();

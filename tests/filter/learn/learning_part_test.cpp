@@ -1,4 +1,4 @@
-// What is drawn to learn from where there is more than enough.
+// The part of long data that is drawn for learning.
 #include "filter/learn/refine/learning_part.hpp"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-/// Runs whose state at sample k of run r is 1e6 r + k, so that a stretch says where it comes from.
+/// Runs whose state at sample k of run r is 1e6 r + k, so that each stretch can be identified.
 Recording numbered(const std::vector<Index>& transitions) {
   Recording recording = test::empty_recording(1, 1);
   for (std::size_t r = 0; r < transitions.size(); ++r) {
@@ -21,7 +21,7 @@ Recording numbered(const std::vector<Index>& transitions) {
   return recording;
 }
 
-/// Drawn transitions of every run they come from.
+/// Number of drawn transitions per original run.
 std::map<Index, Index> drawn_by_run(const Recording& part) {
   std::map<Index, Index> count;
   for (const Trajectory& run : part.runs) count[static_cast<Index>(run.state(0, 0) / 1e6)] += run.transitions();
@@ -55,7 +55,7 @@ TEST(LearningPart, IsMadeOfWholeStretchesOfTheTrainingRuns) {
 TEST(LearningPart, HasEveryRunInProportionToItsLength) {
   const Recording recording = numbered({50000, 100000, 250000});
   const std::map<Index, Index> drawn = drawn_by_run(learning_part(recording, 40000, 3).value());
-  const double stretch = 400.0;  // a hundredth of what is drawn; a run's share is exact to two of them
+  const double stretch = 400.0;  // a hundredth of the drawn transitions; a run's share is exact to two stretches
   EXPECT_NEAR(static_cast<double>(drawn.at(0)), 5000.0, 2.0 * stretch);
   EXPECT_NEAR(static_cast<double>(drawn.at(1)), 10000.0, 2.0 * stretch);
   EXPECT_NEAR(static_cast<double>(drawn.at(2)), 25000.0, 2.0 * stretch);

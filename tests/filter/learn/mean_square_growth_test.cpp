@@ -1,4 +1,4 @@
-// How fast the second moments of switching systems grow, and modes that are drawn together until they do not.
+// Growth of the second moments of switching systems, and shrinking modes until they are stable.
 #include "filter/learn/switching/mean_square_growth.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using test::near;
 
-/// Largest eigenvalue of the second moments' operator as one matrix: its blocks are T_ij (F_i (x) F_i).
+/// Largest eigenvalue of the second moments' operator as one matrix with blocks T_ij (F_i (x) F_i).
 double growth_by_kronecker(const LinearStructure& structure, const SwitchingRegression& model) {
   const Index K = model.modes(), n = structure.dimension();
   Eigen::MatrixXd moments(K * n * n, K * n * n);
@@ -34,7 +34,7 @@ double growth_by_kronecker(const LinearStructure& structure, const SwitchingRegr
   return moments.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-/// Modes x[k+1] = F_j x[k].
+/// A model with modes x[k+1] = F_j x[k].
 SwitchingRegression model_of(const LinearStructure& structure, const std::vector<MatrixXd>& F, const MatrixXd& T) {
   const Index n = structure.dimension(), K = static_cast<Index>(F.size());
   SwitchingRegression model{MatrixXd(structure.parameters(), K),
@@ -54,7 +54,7 @@ MatrixXd sticky(Index modes, double stay) {
   return modes == 1 ? MatrixXd::Ones(1, 1) : TransitionMatrix::sticky(modes, stay).matrix();
 }
 
-/// Poles r e^(+-i w), as an ARX(2) has them.
+/// A system with poles r e^(+-i w), as of an ARX(2) model.
 MatrixXd oscillator(double r, double w) { return MatrixXd{{2.0 * r * std::cos(w), -r * r}, {1.0, 0.0}}; }
 
 MatrixXd block_diagonal(const MatrixXd& a, const MatrixXd& b) {
@@ -78,14 +78,14 @@ TEST(MeanSquareGrowth, OfScalarModesIsThatOfTheirSquares) {
   EXPECT_NEAR(mean_square_growth(scalar, model), moments.eigenvalues().cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// Poles of .9: the moments of one mode turn in phase, and a power iteration never settles.
+// Poles of modulus .9: the moments of one mode rotate in phase, so a power iteration never converges.
 TEST(MeanSquareGrowth, OfAnOscillatingModeIsItsSquaredRadius) {
   EXPECT_NEAR(growth_of({oscillator(0.9, 0.5)}, sticky(1, 1.0)), 0.81, 1e-12);
   EXPECT_NEAR(growth_of({oscillator(0.995, 0.5)}, sticky(1, 1.0)), 0.995 * 0.995, 1e-12);
   EXPECT_NEAR(growth_of({oscillator(0.9, 0.5), oscillator(0.9, 0.5)}, sticky(2, 0.97)), 0.81, 1e-12);
 }
 
-/// Up to 4 modes of up to 8 states: small ones are solved densely, large ones by Arnoldi's iteration.
+/// Up to 4 modes of up to 8 states: small operators are solved densely, large ones by Arnoldi's iteration.
 TEST(MeanSquareGrowth, OfRandomSystemsIsTheDenseEigenvalue) {
   std::mt19937_64 generator(5);
   boost::random::normal_distribution<double> normal;
@@ -97,7 +97,7 @@ TEST(MeanSquareGrowth, OfRandomSystemsIsTheDenseEigenvalue) {
     std::vector<MatrixXd> F;
     for (Index j = 0; j < K; ++j) {
       MatrixXd one = MatrixXd::NullaryExpr(n, n, [&] { return normal(generator) / std::sqrt(static_cast<double>(n)); });
-      if (system % 2 == 0)  // lightly damped oscillators side by side, seen in other coordinates
+      if (system % 2 == 0)  // lightly damped oscillators in transformed coordinates
         for (one = oscillator(0.9 + 0.1 * uniform(generator), 3.0 * uniform(generator)); one.rows() < n;)
           one = block_diagonal(one, oscillator(0.9 + 0.1 * uniform(generator), 3.0 * uniform(generator)));
       F.push_back(one);
@@ -110,7 +110,7 @@ TEST(MeanSquareGrowth, OfRandomSystemsIsTheDenseEigenvalue) {
   EXPECT_GE(iterated, 12);
 }
 
-// Defective operators: integrators of integrators, poles that coincide. Closed form: the squared spectral radius.
+// Defective operators: chains of integrators, coinciding poles. Closed form: the squared spectral radius.
 TEST(MeanSquareGrowth, OfDefectiveSystemsIsTheSquaredRadius) {
   const MatrixXd twice{{1.0, 0.1}, {0.0, 1.0}}, thrice{{1.0, 0.1, 0.005}, {0.0, 1.0, 0.1}, {0.0, 0.0, 1.0}};
   const MatrixXd critical = oscillator(0.9, 0.0), growing = 1.002 * twice;
@@ -120,7 +120,7 @@ TEST(MeanSquareGrowth, OfDefectiveSystemsIsTheSquaredRadius) {
       EXPECT_NEAR(growth, radius * radius, 1e-3) << K << '\n' << F;
       EXPECT_EQ(growth > 1.0 + refine_tuning.growth_slack, radius > 1.0) << "on the safe side of the threshold";
     }
-  // Integrators of different steps share their eigenvector: triangular modes grow as their diagonals do.
+  // Integrators with different steps share their eigenvector, so triangular modes grow as their diagonals do.
   const double several =
       growth_of({twice, MatrixXd{{1.0, 0.3}, {0.0, 1.0}}, MatrixXd{{1.0, -0.2}, {0.0, 1.0}}}, sticky(3, 0.9));
   EXPECT_NEAR(several, 1.0, 1e-4);
@@ -130,7 +130,7 @@ TEST(MeanSquareGrowth, OfAModeThatIsNotFiniteIsInfinite) {
   EXPECT_TRUE(std::isinf(growth_of({MatrixXd::Constant(2, 2, not_a_number), MatrixXd::Zero(2, 2)}, sticky(2, 0.9))));
 }
 
-/// Two states; mode 0 is unstable in one direction, mode 1 is not.
+/// Two states; mode 0 is unstable in one direction, mode 1 is stable.
 SwitchingRegression growing_model() {
   Eigen::MatrixXd theta(6, 2);  // rows of [A B]
   theta << 0.3, -0.2, 0.2, 0.3, 0.1, 1.0, 0.0, 0.1, -0.4, -0.3, 0.5, 0.0;
@@ -169,7 +169,7 @@ TEST(Shrinkage, LeavesStableSystemsAndHopelessOnes) {
   EXPECT_FALSE(shrunk_to_stability(structure, model, unstable, {}));
 }
 
-// Every one is mean-square stable by the dense eigenvalue: none is to be drawn anywhere.
+// All are mean-square stable by the dense eigenvalue, so none may be shrunk.
 TEST(Shrinkage, LeavesLightlyDampedOscillatorsAlone) {
   std::mt19937_64 generator(11);
   boost::random::uniform_real_distribution<double> uniform;

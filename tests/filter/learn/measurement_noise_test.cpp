@@ -1,4 +1,4 @@
-// R by the filter's likelihood, and refinement where the states are not measured exactly: theta, Q, R and T together.
+// R by the filter's likelihood, and refinement with measurement noise: theta, Q, R and T together.
 #include "filter/learn/refine/measurement_noise.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ struct SystemTruth {
   double R = 0.01;
 };
 
-/// y = x + v, x[k+1] = x + a x + b u + w in switching modes.
+/// Runs of y = x + v, x[k+1] = x + a x + b u + w with switching modes.
 Recording measured_runs(const SystemTruth& truth, Index runs, Index samples, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;
@@ -98,7 +98,7 @@ TEST_P(RefineMeasured, RecoversEverythingWithinThreeStandardErrors) {
   expect_recovery(refined.bank, truth);
 }
 
-/// Noise and rounding of one size: R is that of the noise alone.
+/// Noise and rounding of equal size: R must be that of the noise alone.
 TEST_P(RefineMeasured, TellsNoiseFromRounding) {
   const SystemTruth truth;
   Recording recording = measured_runs(truth, 6, 600, 11);
@@ -112,7 +112,7 @@ TEST_P(RefineMeasured, TellsNoiseFromRounding) {
   expect_recovery(refined.bank, truth);
 }
 
-/// Rounding alone asks for none.
+/// Rounding alone must give R = 0.
 TEST_P(RefineMeasured, TakesRoundingForNoNoise) {
   SystemTruth truth;
   truth.R = 0.0;
@@ -148,7 +148,7 @@ TEST(RefineMeasured, KeepsAGivenRAndFitsTheRest) {
   }
 }
 
-// R alone, where the likelihood is exact: one mode of a = -0.2 without input.
+// R alone, with an exact likelihood: one mode with a = -0.2 without input.
 
 constexpr double Q_true = 0.04;
 
@@ -168,7 +168,7 @@ std::optional<Bank> with_R(const Recording& recording, const Bank& bank) {
   return estimate_measurement_noise({recording, {}, std::nullopt}, bank, {}).bank;
 }
 
-/// The share of Q that was R is found whatever it is.
+/// The share of Q that is R must be found, whatever it is.
 TEST(EstimateMeasurementNoise, SplitsQAndR) {
   for (const double R : {0.005, 0.02, 0.2}) {
     const Recording recording = one_mode_with(R);
@@ -184,7 +184,7 @@ TEST(EstimateMeasurementNoise, IsNoneWhereTheDataShowNone) {
   EXPECT_FALSE(with_R(recording, one_mode(recording, Q_true)));
 }
 
-/// Starts of which some fail: R infinite, and Q with it.
+/// A search in which some starts fail because R and Q are infinite.
 MeasurementNoise searched_from(const std::array<double, 4>& shares) {
   const Recording recording = one_mode_with(0.02);
   RefineTuning tuning;
@@ -207,8 +207,8 @@ TEST(EstimateMeasurementNoise, AStartThatFailsIsCountedAndTheOthersDecide) {
   EXPECT_FALSE(all_failed.bank);
 }
 
-/// Of 50 known systems one was told R = 0 and lost 0.12 nats: with the theta of exact states no R was likelier than
-/// none.
+/// Regression test: of 50 known systems one got R = 0 and lost 0.12 nats, because R = 0 was most likely with the theta
+/// of exact states.
 TEST(RefineMeasured, FindsRThatThetaHides) {
   SystemTruth truth;
   truth.theta.col(1) = truth.theta.col(0);
@@ -238,7 +238,8 @@ TEST(RefineMeasured, FindsRThatThetaHides) {
   EXPECT_NEAR(measured.bank.theta(0)(0), truth.theta(0, 0), 0.05);
 }
 
-/// Nothing of a fit has seen the runs it is scored on, its R neither: here the last run is measured ten times as badly.
+/// No part of a fit, including R, may use the runs that score it. Here the last run is measured with ten times the
+/// noise.
 TEST(RefineMeasured, ScoresAreOfFitsThatLeaveTheRunOut) {
   SystemTruth truth;
   truth.theta.col(1) = truth.theta.col(0);

@@ -1,4 +1,4 @@
-// Noise that follows state and input: the factor on every mode's Q, and when training runs take it.
+// Noise that depends on state and input: the factor on every mode's Q, and when training runs accept it.
 #include "filter/learn/competitors/noise_by_input.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using test::near;
 
-/// Runs x[k+1] = 0.9 x[k] + 0.1 u[k] + sd w, sd a function of x[k], u[k] and of how often the run has switched.
+/// Runs of x[k+1] = 0.9 x[k] + 0.1 u[k] + sd w. sd is a function of x[k], u[k] and the number of switches so far in the
+/// run.
 Recording runs_of(const std::function<double(double x, double u, bool rough)>& sd, unsigned seed = 1, Index runs = 6,
                   Index samples = 500) {
   std::mt19937_64 generator(seed);
@@ -70,7 +71,7 @@ TEST(NoiseFactor, IsItsFormulaWithinItsBounds) {
   EXPECT_NEAR(factor.at(VectorXd::Zero(1), Eigen::Vector2d(0.0, 1e9)), 0.2, 1e-14);
 }
 
-/// One mode measured exactly: every density is that of a residual with f Q.
+/// One exactly measured mode: every density is that of a residual with covariance f Q.
 TEST(NoiseFactor, MultipliesTheCovarianceOfEveryStep) {
   const Recording recording = runs_of(follows_input, 3, 1, 60);
   const LinearStructure s = test::structure_of(recording);
@@ -88,7 +89,8 @@ TEST(NoiseFactor, MultipliesTheCovarianceOfEveryStep) {
   }
 }
 
-/// States measured exactly: the filter's likelihood is that of rows over the root of their factor, less its logarithm.
+/// With exactly measured states, the filter's likelihood is that of rows divided by the square root of their factor,
+/// minus half its logarithm.
 TEST(NoiseFactor, LikelihoodIsThatOfRowsOverTheirFactor) {
   const Recording recording = runs_of(follows_input, 4, 3, 200);
   for (const Index lags : {Index{1}, Index{2}}) {
@@ -106,7 +108,7 @@ TEST(NoiseFactor, LikelihoodIsThatOfRowsOverTheirFactor) {
 
 class ConstantNoiseFactor : public testing::TestWithParam<FilterNoise> {};
 
-/// An input that never moves makes a factor that never moves: whatever the filter does, it does as with Q times that.
+/// A constant input gives a constant factor; the filter must then behave as with Q times that factor.
 TEST_P(ConstantNoiseFactor, IsAsAnotherQ) {
   Recording recording = runs_of(follows_input, 5, 1, 150);
   recording.runs.front().input.setOnes();
@@ -216,7 +218,7 @@ TEST(FindNoiseFactor, IsNotAskedOfRoundedOrWeightedSamples) {
   EXPECT_TRUE(std::isnan(find_noise_factor(recording, test::structure_of(recording), 6, 1).gain));
 }
 
-/// Units of states and inputs change nothing.
+/// The result does not depend on the units of states and inputs.
 TEST(FindNoiseFactor, DoesNotDependOnUnits) {
   const Recording recording = runs_of(follows_input);
   Recording other = recording;
@@ -242,7 +244,7 @@ TEST(LearnRefinedBank, HasTheFactorWhereRunsLeftOutDoNotLoseByIt) {
   EXPECT_FALSE(bank.noise_factor.empty());
 }
 
-/// A bank whose start has a factor keeps it, with the Q of rows over their factor and R as good as none.
+/// A bank whose start has a factor keeps it, with the Q of rows divided by their factor and negligible R.
 TEST(NoiseFactor, OfAStartIsKeptByRefinement) {
   const Recording recording = runs_of(follows_input, 8, 6, 300);
   WindowFits fits = test::windows_of(recording, 20, 10);

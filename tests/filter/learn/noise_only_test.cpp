@@ -1,4 +1,4 @@
-// The noise-switching competitor against statsmodels, numpy and the textbook filter
+// The competitor with switching noise compared with statsmodels, numpy and the textbook filter
 // (tests/golden/generate/learn_reference.py).
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using test::near;
 
-/// Both sides iterate until theta moves by less than 1e-12.
+/// Both implementations iterate until theta moves by less than 1e-12.
 constexpr double noise_exact = 1e-10;
 
 class NoiseOnly : public testing::TestWithParam<const char*> {

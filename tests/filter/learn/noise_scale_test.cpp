@@ -1,4 +1,4 @@
-// Noise that follows the run: the scale of every mode's Q.
+// Noise that adapts to the run: the scale of every mode's Q.
 #include "filter/judge/run/evaluate.hpp"
 #include "tests/filter/learn/refine_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"

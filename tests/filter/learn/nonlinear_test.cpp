@@ -1,4 +1,4 @@
-// The competitor whose one motion bends, and how filters step a bank with terms.
+// The competitor with one nonlinear motion, and filters of a bank with terms.
 #include <gtest/gtest.h>
 
 #include <boost/random/normal_distribution.hpp>
@@ -16,7 +16,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// x[k+1] = .8 x[k] + .2 u[k] + .5 max(0, u[k] - .3) - .1 x[k]^2, of one state and one input.
+/// x[k+1] = .8 x[k] + .2 u[k] + .5 max(0, u[k] - .3) - .1 x[k]^2, with one state and one input.
 struct Bent {
   LinearStructure structure{1, 1};
   MotionTerms terms;
@@ -124,7 +124,7 @@ TEST(LearnNonlinear, RecoversCoefficientsWithinTheirErrors) {
   }
 }
 
-/// Log score of the bank that runs of `like` teach on runs of another noise [nats/sample].
+/// Log score of the bank learned from runs like `like`, on runs with another noise [nats/sample].
 double score_on(double sd, const Bent& like) {
   const Bank bank = learn_nonlinear(like.runs(8, 3), like.structure, like.terms, RefineOptions(), FilterOptions());
   Bent other = like;
@@ -138,8 +138,8 @@ double score_on(double sd, const Bent& like) {
   return sum / samples;
 }
 
-/// The true density has -ln(sd sqrt(2 pi e)). Where errors are three times as large the training runs' own level would
-/// lose (9 - 1) / 2 - ln 3 = 2.9 nats.
+/// The true density scores -ln(sd sqrt(2 pi e)). If errors are three times as large, the level of the training runs
+/// would lose (9 - 1) / 2 - ln 3 = 2.9 nats.
 TEST(LearnNonlinear, OneLevelIsWiderThanTheTrainingRuns) {
   const Bent bent;
   const auto truth = [](double sd) { return -std::log(sd * std::sqrt(2.0 * M_PI * std::exp(1.0))); };
@@ -152,7 +152,7 @@ TEST(LearnNonlinear, TakesLagsAndDelaysAsTheyAre) {
   bent.structure = {1, 1, true, 2, 2, 0};
   MotionTerms terms = bent.terms;
   terms.direction = MatrixXd::Zero(5, 2);
-  terms.direction(0, 0) = terms.direction(3, 1) = 1.0;  // u of the sample before acts
+  terms.direction(0, 0) = terms.direction(3, 1) = 1.0;  // the previous sample of u acts
   const Recording recording = bent.runs(8, 4);
   const Bank bank = learn_nonlinear(recording, bent.structure, terms, RefineOptions(), FilterOptions());
   const RunEvaluation said = evaluate_run(bank, recording.runs.front(), FilterOptions());

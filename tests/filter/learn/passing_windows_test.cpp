@@ -1,4 +1,4 @@
-// Components of windows that straddle a switch.
+// Components made of windows that contain a switch.
 #include "filter/learn/from_mixture/passing_windows.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using test::near;
 
-/// Windows of 25 transitions of runs with these labels, `step` apart, all of the same residual variance.
+/// Windows of 25 transitions of runs with these labels, `step` apart, all with equal residual variance.
 struct Labelled {
   WindowFits fits;
   MixtureResult mixture;
@@ -41,7 +41,7 @@ std::vector<int> sequence(const std::vector<std::pair<int, int>>& stretches) {
   return labels;
 }
 
-// A window of 25 transitions straddles a switch at 24 starts.
+// A switch lies inside a window of 25 transitions for 24 starts.
 TEST(PassingWindows, AComponentThatLastsNoLongerThanASwitchTakes) {
   const Labelled data({sequence({{0, 60}, {2, 24}, {1, 60}, {2, 24}, {0, 60}})}, 3, 1);
   EXPECT_TRUE(near(passing_shares(data.fits, data.mixture), Eigen::Vector3d(0.0, 0.0, 1.0), 0.0));
@@ -60,7 +60,8 @@ TEST(PassingWindows, AModeThatLastsLongerOrFillsARunDoesNotPass) {
 }
 
 TEST(PassingWindows, StartsMayBeFartherApart) {
-  const Labelled data({sequence({{0, 20}, {1, 5}, {0, 20}})}, 2, 5);  // 24 starts hold at most five in steps of five
+  // 24 starts contain at most five windows at step five
+  const Labelled data({sequence({{0, 20}, {1, 5}, {0, 20}})}, 2, 5);
   EXPECT_TRUE(near(passing_shares(data.fits, data.mixture), Eigen::Vector2d(0.0, 1.0), 0.0));
 }
 

@@ -1,5 +1,5 @@
-// Weighted regressions: against statsmodels and a general minimiser (tests/golden/generate/learn_reference.py), and by
-// law.
+// Weighted regressions compared with statsmodels and a general minimiser (tests/golden/generate/learn_reference.py),
+// and by laws.
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using test::near;
 
 /// Closed forms on well-conditioned data (condition below 1e2).
 constexpr double exact = 1e-10;
-/// The golden minimiser differences its cost: its theta is good to some 1e-7.
+/// The golden minimiser differentiates its cost numerically; its theta is accurate to about 1e-7.
 constexpr double minimiser = 2e-6;
 
 struct WeightedGolden {
@@ -45,7 +45,7 @@ TEST(WeightedMode, OfManyTransitionsIsTheSame) {
   WeightedGolden data;
   const nlohmann::json& expected = data.golden.at("plain");
   Transitions& rows = data.transitions.data;
-  const Index copies = 600'000 / rows.count();  // several blocks, the last of which is not full
+  const Index copies = 600'000 / rows.count();  // several blocks, the last one not full
   rows.regressors = rows.regressors.replicate(copies, 1).eval();
   rows.increments = rows.increments.replicate(copies, 1).eval();
   const Eigen::VectorXd weights = data.weights.replicate(copies, 1) / static_cast<double>(copies);
@@ -104,7 +104,7 @@ TEST(WeightedMode, WithoutWeightStaysAtTheGlobalModel) {
 }
 
 TEST(WeightedMode, UnexcitedDirectionsStayAtTheGlobalModel) {
-  // Two inputs that differ in the first half only: a mode of the second half knows the sum of their gains.
+  // Two inputs that differ in the first half only: a mode of the second half determines only the sum of their gains.
   std::mt19937_64 generator(4);
   boost::random::normal_distribution<double> normal;
   const Index N = 121;

@@ -15,10 +15,10 @@
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 
-/// Refinement of systems measured with noise, beside the truth that they were simulated from.
+/// Refinement of systems measured with noise, compared with the truth they were simulated from.
 namespace modebank::test {
 
-/// A bank to simulate from. `theta`: one column per mode; `stay`: of the modes, `R`: diagonal.
+/// A bank for simulation. `theta`: one column per mode; `stay`: diagonal of T; `R`: diagonal.
 inline Bank true_bank(const LinearStructure& structure, const Eigen::MatrixXd& theta,
                       const std::vector<Eigen::MatrixXd>& Q, const Eigen::VectorXd& R, double stay) {
   Bank bank = bank_frame(empty_recording(structure.states, structure.inputs), structure, R.asDiagonal());
@@ -28,7 +28,7 @@ inline Bank true_bank(const LinearStructure& structure, const Eigen::MatrixXd& t
   return bank;
 }
 
-/// A pendulum (angle, rate) driven by a torque, one mode for every damping, R as many times what such sensors have.
+/// A pendulum (angle, rate) driven by a torque, with one mode per damping; R is `R_factor` times that of such sensors.
 inline Bank true_pendulum(const std::vector<double>& dampings, double R_factor) {
   const double dt = 0.02, torque = 70.0;
   Eigen::MatrixXd theta(6, std::ssize(dampings));
@@ -39,7 +39,7 @@ inline Bank true_pendulum(const std::vector<double>& dampings, double R_factor) 
                    R_factor * Eigen::Vector2d(4e-6, 4e-4), 0.995);
 }
 
-/// Two states, two inputs, two modes, R of about Q's size times `R_factor`.
+/// Two states, two inputs, two modes; R is about `R_factor` times Q.
 inline Bank true_pair(double R_factor) {
   Eigen::MatrixXd theta(8, 2);
   theta.col(0) << -0.2, 0.1, 1.5, 0.0, 0.0, -0.3, 0.3, 1.2;
@@ -64,7 +64,7 @@ inline Recording simulated_recording(const Bank& truth, Index runs, Index sample
   return recording;
 }
 
-/// A start as clustered windows leave it: theta shrunk, measurement noise counted in Q, modes that do not last.
+/// A start similar to one from clustered windows: theta shrunk, Q including measurement noise, short-lived modes.
 inline Bank blurred(const Bank& truth, const Recording& recording) {
   Bank start = bank_frame(recording, truth.structure, 1e-3 * truth.R);
   for (Index j = 0; j < truth.mode_count(); ++j)
@@ -84,8 +84,8 @@ inline Refinement refine_blurred(const Bank& truth, const Recording& recording, 
   return refine_bank(recording, windows_of(recording, 25, 1), {blurred(truth, recording)}, options, {});
 }
 
-/// Errors of everything that was learned in its standard errors: theta, Q (lower triangles), R, T's diagonal. Modes in
-/// the truth's order, which starts keep.
+/// Errors of all learned parameters in standard errors: theta, Q (lower triangles), R, T's diagonal. Modes are in the
+/// truth's order, which starts keep.
 inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
   std::vector<double> z;
   const Index n = truth.structure.states;
@@ -104,7 +104,7 @@ inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
   return z;
 }
 
-/// Of a bank on runs that it has not seen.
+/// Diagnostics of a bank on unseen runs.
 inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, std::uint64_t seed,
                                            Index samples = 1000) {
   std::vector<Trajectory> runs = simulated_recording(truth, 4, samples, seed + 1000).runs;
@@ -116,10 +116,10 @@ inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, 
   return diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front();
 }
 
-/// Where the mean NEES of a learned bank should lie: about n, with the scatter of a true filter's (`row`'s interval)
-/// and what the bank's own error adds. That is g' Sigma g by the delta method, g the derivative of the logarithm of the
-/// mean NEES on the held-out runs by the bank's coordinates, Sigma these coordinates' covariance: the inverse of the
-/// training runs' information.
+/// Interval for the mean NEES of a learned bank: about n, with the scatter of a true filter (`row`'s interval) and the
+/// effect of the bank's own error. That effect is g' Sigma g by the delta method. g is the derivative of log mean NEES
+/// on the held-out runs by the bank's coordinates. Sigma is the coordinates' covariance, the inverse of the training
+/// runs' information.
 struct NeesInterval {
   double lower, upper;
   double parameter_sd, filter_sd;  ///< of the logarithm

@@ -1,5 +1,5 @@
-// Over many seeds: standard errors are right, true filters lie in the intervals of mean NEES and NIS, wrong ones do
-// not, and learned ones do as far as their parameters are known.
+// Statistics over many seeds. Standard errors are right. True filters lie in the intervals of mean NEES and NIS, and
+// wrong ones do not. Learned filters lie in them as far as their parameters are known.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -46,14 +46,14 @@ TEST_P(RefineRecoverySeeds, ErrorsAreAsLargeAsStated) {
   RecordProperty("in_a_true_filters_interval", std::to_string(as_true));
   EXPECT_NEAR(std::sqrt(squares / count), 1.0, 0.15);
   EXPECT_LT(beyond / count, 0.02);  // 0.27 % by the normal law; variances are skewed
-  // 95 % of 20 are 19, and less than 17 has a chance of 1.6 %. The interval of a true filter holds fewer of them (11 to
-  // 18): as many as parameters leave that are known no better than so many training samples allow.
+  // 95 % of 20 are 19; fewer than 17 have a probability of 1.6 %. The interval of a true filter contains fewer of them
+  // (11 to 18), because parameters from so few training samples have errors.
   EXPECT_GE(as_known, 17.0);
   const auto states = static_cast<double>(system.truth.structure.states);
   EXPECT_NEAR(nees, states, 0.04 * states);
 }
 
-/// Of 100 seeds, how often mean NEES and mean NIS of a filter lie in their intervals, and how often both do.
+/// Out of 100 seeds, how often mean NEES and mean NIS of a filter lie in their intervals, and how often both do.
 struct Inside {
   double nees = 0.0, nis = 0.0, both = 0.0;
 };
@@ -73,8 +73,8 @@ Inside count_inside(const Bank& filter, const Bank& truth, std::uint64_t seeds) 
   return inside;
 }
 
-/// 95 of 100 are expected, and fewer than 89 or more than 99 have chances of 1 and 0.6 %; the IMM is an approximation,
-/// too, which does not show.
+/// 95 of 100 are expected; fewer than 89 or more than 99 have probabilities of 1 and 0.6 %. The IMM's approximation has
+/// no visible effect.
 TEST_P(RefineRecoverySeeds, TrueFiltersLieInTheirIntervals) {
   const Inside inside = count_inside(GetParam().truth, GetParam().truth, 100);
   EXPECT_GE(inside.nees, 89.0);
@@ -83,8 +83,8 @@ TEST_P(RefineRecoverySeeds, TrueFiltersLieInTheirIntervals) {
   EXPECT_LE(inside.nis, 99.0);
 }
 
-/// Q or R wrong by four either way never leaves both inside. (One alone may be: where Q is far more than R the state is
-/// the measurement whatever Q is, and NIS of rare, far switches scatters.)
+/// A factor of four on Q or R must take NEES or NIS out of its interval. One of them may stay inside: if Q is far
+/// larger than R, the state is the measurement for any Q; and NIS of rare, distant switches scatters.
 TEST_P(RefineRecoverySeeds, WrongFiltersDoNot) {
   for (const double factor : {0.25, 4.0})
     for (const bool process : {true, false}) {

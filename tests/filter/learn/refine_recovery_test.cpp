@@ -1,4 +1,4 @@
-// With measurement noise refinement ends at the maximum of the filter's likelihood, and that recovers the truth.
+// With measurement noise, refinement ends at the maximum of the filter's likelihood, which recovers the truth.
 #include "tests/filter/learn/refine_recovery.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 using test::refine_blurred;
 using test::simulated_recording;
 
-/// A prior that says nothing but that theta is the global model's, as the baseline has it.
+/// A prior that only fixes theta at the global model's, as the baseline does.
 SwitchingPrior theta_known(const Recording& recording, const LinearStructure& structure) {
   const TrainingTransitions transitions = gather_training_transitions(recording, structure);
   SwitchingPrior prior = switching_prior(transitions, fit_global(recording, structure), {}, 0.0);
@@ -34,7 +34,7 @@ FreeParameters everything(const Bank& bank, double theta_unit) {
   return free;
 }
 
-/// One mode: the likelihood is exact, and the baseline maximises it over Q and R in its own way.
+/// One mode: the likelihood is exact, and the baseline maximises it over Q and R by another method.
 TEST(MaximiseLikelihood, OfOneModeReachesTheBaselinesMaximum) {
   const Bank truth = test::true_pendulum({1.0}, 1.0);
   const Recording recording = simulated_recording(truth, 2, 800, 3);
@@ -48,14 +48,14 @@ TEST(MaximiseLikelihood, OfOneModeReachesTheBaselinesMaximum) {
   EXPECT_EQ(maximum.end, MeasuredFit::converged);
   bank = maximum.bank;
   EXPECT_NEAR(training_log_likelihood(bank, recording, {}), baseline.log_likelihood, 1e-4);
-  constexpr double near_enough = 1e-2;  // a hundredth of each is far below its standard error
+  constexpr double near_enough = 1e-2;  // a hundredth of each parameter is far below its standard error
   EXPECT_TRUE(bank.modes[0].Q.isApprox(baseline.bank.modes[0].Q, near_enough)) << bank.modes[0].Q;
   EXPECT_NEAR(bank.modes[0].Q(0, 0), baseline.bank.modes[0].Q(0, 0), near_enough * bank.modes[0].Q(0, 0));
   EXPECT_NEAR(bank.R(0, 0), baseline.bank.R(0, 0), near_enough * bank.R(0, 0));
   EXPECT_NEAR(bank.R(1, 1), baseline.bank.R(1, 1), near_enough * bank.R(1, 1));
 }
 
-/// At a maximum no step to either side gains anything, whatever the number of modes.
+/// At a maximum no step in either direction gains, for any number of modes.
 TEST(MaximiseLikelihood, EndsWhereNoStepGains) {
   const Bank truth = test::true_pair(1.0);
   const Recording recording = simulated_recording(truth, 3, 300, 5);
@@ -74,7 +74,7 @@ TEST(MaximiseLikelihood, EndsWhereNoStepGains) {
     }
 }
 
-/// Only ratios of sample weights matter, and a sample of weight zero not at all.
+/// Only ratios of sample weights matter; weight zero leaves a sample out.
 TEST(MaximiseLikelihood, CountsSamplesByTheirWeights) {
   const Bank truth = test::true_scalar(1.0);
   Recording recording = simulated_recording(truth, 2, 60, 7);
@@ -125,7 +125,7 @@ TEST(BankCoordinates, HoldWhatIsKnownAndScaleQByOneFactor) {
   EXPECT_EQ(moved.transition.matrix(), truth.transition.matrix());
 }
 
-/// Where modes hardly move at all a share of their Q lies below R's bound: a variance never falls through zero.
+/// If modes hardly move, some outputs have a share of Q below R's bound; variances must not fall through zero.
 TEST(BankCoordinates, KeepRAtItsBound) {
   Bank truth = test::true_pair(1.0);
   FreeParameters noise;
@@ -141,7 +141,8 @@ TEST(BankCoordinates, KeepRAtItsBound) {
   }
 }
 
-/// By hand: R_ii by its logarithm is R_ii, and a row of T by the logarithm of one entry is T_ij (delta - T_ik).
+/// By hand: the derivative of R_ii by its logarithm is R_ii, that of a row of T by the logarithm of one entry is T_ij
+/// (delta - T_ik).
 TEST(BankCoordinates, JacobianIsThatOfTheParameters) {
   const Bank truth = test::true_scalar(1.0);
   const BankCoordinates around(truth, everything(truth, 0.1));
@@ -150,7 +151,7 @@ TEST(BankCoordinates, JacobianIsThatOfTheParameters) {
   ASSERT_EQ(J.rows(), 2 * 2 + 2 + 1 + 4);
   ASSERT_EQ(J.cols(), 2 * 2 + 2 + 1 + 2);
   EXPECT_NEAR(J(at.theta(1) + 1, 3), 0.1, 1e-11);
-  EXPECT_NEAR(J(at.Q(1), 5), 2.0 * truth.modes[1].Q(0, 0), 1e-9);  // exp(z) scales the root
+  EXPECT_NEAR(J(at.Q(1), 5), 2.0 * truth.modes[1].Q(0, 0), 1e-9);  // exp(z) scales the square root
   EXPECT_NEAR(J(at.R(), 6), truth.R(0, 0), 1e-9);
   const double T = truth.transition.matrix()(0, 1);
   EXPECT_NEAR(J(at.T(0) + 1, 7), T * (1.0 - T), 1e-9);
@@ -171,7 +172,7 @@ TEST_P(RefineRecovery, TwoModesOfTwoStatesWithinThreeStandardErrors) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RefineRecovery, testing::Values(11, 12, 13));
 
-/// The pendulum whose modes differ so much that the global residual covariance, as a prior on Q, outweighed the data.
+/// The pendulum's modes differ so much that the global residual covariance, as a prior on Q, once outweighed the data.
 TEST(RefineRecovery, PendulumOfTwoDampingsIsCalibratedOnHeldOutRuns) {
   const Bank truth = test::true_pendulum({0.2, 20.0}, 1.0);
   const Recording recording = simulated_recording(truth, 4, 1500, 2);
@@ -183,7 +184,7 @@ TEST(RefineRecovery, PendulumOfTwoDampingsIsCalibratedOnHeldOutRuns) {
   const DiagnosticsRow row = test::held_out_diagnostics(bank, truth, 2);
   EXPECT_GT(row.nees_mean, row.nees_lower);
   EXPECT_LT(row.nees_mean, row.nees_upper);
-  // Switches are rare and far: their NIS is not chi-square's, of a true filter neither.
+  // Switches are rare and large, so NIS is not chi-square, even for a true filter.
   EXPECT_NEAR(row.nis_mean, test::held_out_diagnostics(truth, truth, 2).nis_mean, 0.05);
 }
 

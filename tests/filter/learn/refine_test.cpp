@@ -1,4 +1,4 @@
-// Refinement: recovery on simulated truth, choice by cross-validation, screening.
+// Refinement: recovery of simulated truth, choice by cross-validation, screening.
 #include "filter/learn/refine/refine.hpp"
 
 #include <gmock/gmock.h>
@@ -77,7 +77,7 @@ TEST_F(Refine, ChoiceRestsOnTrainingRunsAloneForAnyNumberOfThreads) {
   EXPECT_EQ(selected, 1);
 }
 
-/// The rival that knows one motion: what its modes differ in is noise.
+/// The competitor with one motion: its modes differ only in noise.
 TEST_F(Refine, OneThetaIsThatOfAllModes) {
   truth.theta.colwise() = truth.theta.col(0).eval();
   learn_from(4, 400);
@@ -96,7 +96,7 @@ TEST_F(Refine, OneThetaIsThatOfAllModes) {
   }
 }
 
-/// The same as without folds: nothing tells whether a stronger prior on Q would pay.
+/// As without folds, no score decides whether a stronger prior on Q would gain.
 TEST_F(Refine, WithoutAnythingToLeaveOutThePriorIsWorthOneTransition) {
   learn_from(1, 30);
   RefineOptions options = quick();

@@ -18,7 +18,7 @@ struct Truth {
   Eigen::Matrix3d T{{0.96, 0.03, 0.01}, {0.02, 0.96, 0.02}, {0.02, 0.02, 0.96}};
 };
 
-/// x[k+1] = x + a x + b u + w in switching modes, measured exactly; `rough` scales the standard deviation of w.
+/// x[k+1] = x + a x + b u + w with switching modes, exactly measured; `rough` scales the standard deviation of w.
 inline void simulate(const Truth& truth, Index runs, Index samples, double rough, Role role, std::mt19937_64& generator,
                      Recording& recording) {
   boost::random::normal_distribution<double> normal;
@@ -40,7 +40,7 @@ inline void simulate(const Truth& truth, Index runs, Index samples, double rough
   }
 }
 
-/// A bank of modes near the truth's.
+/// A bank with modes near the true ones.
 inline Bank start_bank(const Recording& recording, const Eigen::MatrixXd& theta) {
   const LinearStructure structure = structure_of(recording);
   Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Zero(1, 1));
@@ -65,7 +65,7 @@ inline RefineOptions quick() {
   return options;
 }
 
-/// Runs of a system of known modes to learn from.
+/// Runs of a system with known modes for learning.
 class RefineTest : public testing::Test {
  protected:
   Truth truth;

@@ -1,4 +1,4 @@
-// What is learned from measurements that come in multiples of a quantum.
+// Learning from measurements in multiples of a quantum.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ TEST(RoundedStates, NoiseOnlyFindsWhatLeastSquaresMiss) {
   EXPECT_EQ(bank.R, R);
 }
 
-/// Most values are those before them: Huber's regression would take that for an exact law.
+/// Most values repeat the previous one; Huber's regression would take that for an exact law.
 TEST(RoundedStates, NoiseOnlyIsNotFooledByRepeats) {
   Recording recording = rounded_recording(0.9);
   const LinearStructure structure = test::structure_of(recording);

@@ -1,4 +1,4 @@
-// Standard errors of a bank by single samples' gradients: in which filter, and by which weights.
+// Standard errors of a bank by single samples' gradients: effect of the filter and of sample weights.
 #include "filter/learn/likelihood/standard_errors.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ class StandardErrors : public testing::Test {
   Bank truth = test::true_scalar(1.0);
   Recording recording = test::simulated_recording(truth, 2, 500, 9);
 
-  /// Of the truth, given a target's recording and filter; everything else is that of the whole recording.
+  /// Standard errors of the truth for a given recording and filter; everything else is from the whole recording.
   Bank errors_in(const Recording& of, const FilterOptions& filter) const {
     const TrainingTransitions transitions = gather_training_transitions(recording, truth.structure);
     const SwitchingPrior prior = switching_prior(transitions, fit_global(recording, truth.structure), {}, 1.0);
@@ -39,14 +39,14 @@ class StandardErrors : public testing::Test {
   }
 };
 
-/// Weights count in ratios, and one of zero leaves a sample out.
+/// Only ratios of weights matter, and weight zero leaves a sample out.
 TEST_F(StandardErrors, GoByTheSamplesWeights) {
   const Bank plain = errors_in(recording, {});
   Recording weighted = recording;
   for (Trajectory& run : weighted.runs) run.weight.setConstant(run.samples(), 3.0);
   expect_same(errors_in(weighted, {}), plain, 1e-12);
 
-  // The second run's samples weigh nothing: twice the first run's information per transition is not there.
+  // The second run's samples have no weight, but the first run's information per transition must not double.
   weighted.runs[1].weight.setZero();
   Recording first = recording;
   first.runs.resize(1);
@@ -54,7 +54,7 @@ TEST_F(StandardErrors, GoByTheSamplesWeights) {
   EXPECT_GT(errors_in(weighted, {}).modes[0].standard_error(1), 1.2 * plain.modes[0].standard_error(1));
 }
 
-/// Where the filter does not look at the clock gaps are as if they were not there.
+/// A filter that ignores times treats gaps as absent.
 TEST_F(StandardErrors, AreThoseOfTheFilterThatRuns) {
   truth.dt_s = recording.median_period_s();
   const Bank plain = errors_in(recording, {});
@@ -65,8 +65,8 @@ TEST_F(StandardErrors, AreThoseOfTheFilterThatRuns) {
   EXPECT_FALSE(errors_in(gaps, {}).modes[0].spread.isApprox(plain.modes[0].spread, 0.05));
 }
 
-/// A mode that only a later run has, behind more samples than errors are learned from: closed form, least squares'
-/// Q (sum of phi phi')^-1 of its own run.
+/// A mode that only a later run has, after more samples than errors are computed from. Closed form: least squares' Q
+/// (sum of phi phi')^-1 of its own run.
 TEST(StandardErrorsOfLongData, RestOnAllRuns) {
   const Bank truth = test::true_bank({1, 1, false}, Eigen::MatrixXd{{-0.2, -0.6}, {1.0, 3.0}},
                                      {Eigen::MatrixXd{{0.01}}, Eigen::MatrixXd{{0.04}}}, Eigen::VectorXd::Zero(1), 1.0);
@@ -92,8 +92,8 @@ TEST(StandardErrorsOfLongData, RestOnAllRuns) {
   }
 }
 
-/// Expectation-maximisation counts rough runs like quiet ones, so its errors are those of a filter that does, too,
-/// whatever filter the bank will run in. In the adaptive filter they were half of it (1.9 and 2.3 here).
+/// Expectation-maximisation weighs rough and quiet runs equally. So its errors are those of a filter that does so, too,
+/// whatever filter the bank will have. In the adaptive filter they would be half as large (1.9 and 2.3 here).
 TEST(StandardErrorsByDraws, AreAsLargeAsTheErrorsWhereRunsDifferInRoughness) {
   constexpr std::uint64_t draws = 30;
   const Bank truth = test::true_bank({1, 1, false}, Eigen::Vector2d(-0.3, 0.5), {Eigen::MatrixXd{{0.01}}},

@@ -1,4 +1,4 @@
-// Which lags modes take: systems whose structure is known, by what the comparison says of runs that were left out.
+// Which lags modes take: systems with known structure, by the comparison on left-out runs.
 #include "filter/learn/refine/structure_score.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,8 @@ Recording three_modes(std::uint64_t seed) {
   return recording;
 }
 
-/// One motion of second order, x[k+1] = 1.5 x[k] - .7 x[k-1] + .3 u[k] + w; w alternates between two variances.
+/// One motion of second order, x[k+1] = 1.5 x[k] - .7 x[k-1] + .3 u[k] + w; the variance of w alternates between two
+/// values.
 Recording second_order(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;
@@ -37,8 +38,8 @@ Recording second_order(std::uint64_t seed) {
   return recording;
 }
 
-/// Modes with one lag keep it, although a linear model of all of them would take more: the incumbent with eighteen
-/// regressors too many loses what each mode must learn of them.
+/// Modes with one lag must keep it, although one linear model of all of them would use more. The alternative has
+/// eighteen superfluous regressors, which each mode must learn.
 TEST(StructureScore, ModesWithOneLagLeaveTheLagsThatALinearModelWants) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const StructuresOfModes compared =
@@ -48,8 +49,8 @@ TEST(StructureScore, ModesWithOneLagLeaveTheLagsThatALinearModelWants) {
   }
 }
 
-/// x[k+1] = a x[k] + b u[k] + w, of other coefficients in each run: the scores of left-out runs differ so much that
-/// their error hides every gain.
+/// x[k+1] = a x[k] + b u[k] + w with other coefficients in each run. Scores of left-out runs differ so much that their
+/// error hides every gain.
 Recording another_mode_each_run(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;
@@ -66,8 +67,9 @@ Recording another_mode_each_run(std::uint64_t seed) {
   return recording;
 }
 
-/// Fewer lags that gain are taken without an error to exceed: a system of two states and four modes, whose linear model
-/// took three lags and a delay of five samples, kept these though one lag gained 0.2 nats per sample.
+/// Fewer lags that gain are accepted without regard to the standard error. Regression test: a system of two states and
+/// four modes kept three lags and a delay of five samples from its linear model, although one lag gained 0.2 nats per
+/// sample.
 TEST(StructureScore, FewerLagsThatGainNeedNoStandardError) {
   const StructuresOfModes compared =
       compare_structures(another_mode_each_run(1), {lags(1, 1), lags(8, 8)}, 1, false, 1);
@@ -75,7 +77,7 @@ TEST(StructureScore, FewerLagsThatGainNeedNoStandardError) {
   EXPECT_EQ(compared.chosen, 0u);
 }
 
-/// Modes, and one motion whose noise switches, keep the two lags that a motion of second order needs.
+/// Modes, and one motion with switching noise, must keep the two lags that a second-order motion needs.
 TEST(StructureScore, TwoLagsStayWhereMotionHasThem) {
   for (const bool one_theta : {false, true}) {
     const Recording recording = second_order(4);
@@ -88,8 +90,8 @@ TEST(StructureScore, TwoLagsStayWhereMotionHasThem) {
   }
 }
 
-/// Two noise levels at equal shares, known coefficients: the mean log density of a Gaussian of the level that acts is
-/// -(log(2 pi) + 1 + log(.01) + log(.1)) / 2. A switching filter has the level up to the few samples after a change.
+/// Two noise levels in equal shares with known coefficients. The mean log density under the acting level is -(log(2 pi)
+/// + 1 + log(.01) + log(.1)) / 2. A switching filter finds the level within a few samples after a change.
 TEST(StructureScore, IsTheLogDensityOfRunsLeftOut) {
   const StructuresOfModes compared = compare_structures(second_order(5), {lags(2, 1)}, 0, true, 1);
   const double truth = -0.5 * (std::log(2.0 * 3.14159265358979) + 1.0 + std::log(0.01) + std::log(0.1));

@@ -1,4 +1,4 @@
-// Switches that see state and input: closed forms, the filter's likelihood, laws of the fit.
+// State-dependent transition probabilities: closed forms, the filter's likelihood, laws of the fit.
 #include "filter/learn/switching/transition_regression.hpp"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(TransitionRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
   const SwitchingRegression model = true_model(soft);
   double expected = 0.0;
   for (const Trajectory& run : recording.runs) expected += log_likelihood(bank_of(recording, t, model), run, {});
-  EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter floors probabilities
+  EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter has a floor on probabilities
 }
 
 TEST(TransitionRegression, NoEffectIsTheConstantTransitionMatrix) {
@@ -75,7 +75,7 @@ SwitchingPrior prior_of(const Recording& recording, const TrainingTransitions& t
   return with_guard(switching_prior(t, fit_global(recording, t.structure), {}, 4.0), t, guard);
 }
 
-/// Of two modes it is a quarter of the difference between what is more likely after the one and after the other.
+/// For two modes the memory is a quarter of the difference of the log odds after the two modes.
 TEST(TransitionRegression, MemoryIsWhatRowsAndColumnsDoNotExplain) {
   const Eigen::Matrix2d log_T = Eigen::Matrix2d{{0.7, 0.3}, {0.1, 0.9}}.array().log();
   const double m = (std::log(0.7) - std::log(0.3) - std::log(0.1) + std::log(0.9)) / 4.0;
@@ -93,7 +93,7 @@ TEST(TransitionRegression, InformationOfMemoryIsTheCurvatureOfItsPrior) {
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   SwitchingPrior prior = prior_of(recording, t, {1.0, any});
   SwitchingRegression model = true_model(soft);
-  model.transition = Eigen::Matrix2d{{0.6, 0.4}, {0.6, 0.4}};  // no memory: of the log density nothing but a square
+  model.transition = Eigen::Matrix2d{{0.6, 0.4}, {0.6, 0.4}};  // no memory: the log density is a square only
   const Bank bank = bank_of(recording, t, model);
   const BankCoordinates around(
       bank, all_parameters(bank, sum_transitions(t, smooth_modes(t, model), prior), prior, false, false, {}));
@@ -128,8 +128,7 @@ TEST(TransitionRegression, EveryIterationRaisesThePenalisedLikelihood) {
   }
 }
 
-/// One Newton step from the maximum gains nothing, and near it the objective, written anew here, falls in every
-/// direction.
+/// At the maximum a Newton step gains nothing. Near it the objective, recomputed here, falls in every direction.
 TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
   const Recording recording = guarded_runs(soft, 2, 300, 4);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
@@ -169,7 +168,7 @@ TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
     }
 }
 
-/// Mode 1 twice, drawn alike: what is closest becomes one mode again, with the probabilities of both.
+/// Mode 1 twice, slightly different: the closest pair becomes one mode again, with the probabilities of both.
 TEST(TransitionRegression, TheClosestPairIsMerged) {
   const Recording recording = guarded_runs(soft, 4, 300, 11);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));

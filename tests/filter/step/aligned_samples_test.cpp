@@ -1,4 +1,4 @@
-// Samples as they come and as whole runs are joined: hold and interpolation of both are the same.
+// Live samples and whole runs must be joined in the same way, by hold and interpolation.
 #include "filter/step/feed/aligned_samples.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A stream of one state and one input whose times jitter.
+/// A stream of one state and one input with jittering times.
 struct Recorded {
   VectorXd time_s;
   MatrixXd state, input;
@@ -83,7 +83,7 @@ TEST(AlignedSamples, AverageWhatTheWholeRunAverages) {
       }
 }
 
-/// At .07 s a rate of 10 Hz is too near for averages, at .12 s it is the log that is slow.
+/// A log with a period of .07 s is too near a rate of 10 Hz for averages; one with .12 s is slower than the rate.
 TEST(AlignedSamples, AverageOnlyWhatIsFasterByHalf) {
   for (const double period_s : {0.07, 0.12}) {
     const Recorded run(50, period_s, 0.0);
@@ -100,7 +100,7 @@ TEST(AlignedSamples, OfASlowStreamKeepTheirTimes) {
   for (Index k = 0; k < 50; ++k) EXPECT_EQ(samples[static_cast<std::size_t>(k)].time_s, run.time_s(k));
 }
 
-/// A pause before a fast log costs three samples that pass whole; then come those at the rate.
+/// After a pause, three samples of a fast log pass unchanged; later ones come at the rate.
 TEST(AlignedSamples, FindTheRateAfterAPause) {
   Recorded run(400, 0.01, 0.0);
   run.time_s.tail(399).array() += 0.7;

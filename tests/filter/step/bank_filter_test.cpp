@@ -1,4 +1,4 @@
-// What the live filter makes of banks and samples that are not as they should be.
+// The live filter with unusual banks and samples.
 #include "filter/step/bank_filter.hpp"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(BankFilter, AnInputThatIsNoNumberIsTheLastKnownOne) {
   EXPECT_EQ(last(INFINITY), last(0.3));
 }
 
-/// No measurement noise and process noise of rank one or none: S becomes singular.
+/// Without measurement noise, and with process noise of rank one or zero, S becomes singular.
 TEST(BankFilter, VariancesAreNeverNegative) {
   for (const Index n : {2, 3})
     for (const double q : {0.0, 1e-4}) {

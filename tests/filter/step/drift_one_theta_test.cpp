@@ -1,4 +1,4 @@
-// Modes of one theta, which differ in noise alone: what one of them learns of it all know.
+// Modes that share theta and differ in noise alone: what one learns about theta applies to all.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,9 +40,9 @@ TEST(DriftOfOneTheta, ModesThatAreTheSameAreOneThatDrifts) {
   }
 }
 
-/// The most nats that a run costs whose theta is not known but Gaussian about another one (mean square Q of its modes,
-/// as DriftModel has it), were its noise the smallest throughout: with z a transition's regressors, log det(I + P0 sum
-/// z z' / q) / 2 + |difference|^2 / (2 P0).
+/// Largest loss of a run [nats] with unknown theta (Gaussian about another theta, mean square Q of its modes, as in
+/// DriftModel), if its noise were always the smallest. With z the regressors of a transition: log det(I + P0 sum z z' /
+/// q) / 2 + |difference|^2 / (2 P0).
 double cost_of_learning(const Bank& bank, const Bank& truth, const Trajectory& run, double mean_Q, double least_Q) {
   const Index r = bank.structure.regressors();
   Eigen::MatrixXd known = Eigen::MatrixXd::Identity(r, r);

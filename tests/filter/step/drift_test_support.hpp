@@ -8,9 +8,9 @@
 namespace modebank::test {
 
 inline constexpr double law_digits = 1e-12;
-inline constexpr double two_routes = 1e-9;  // of double precision over a few hundred samples
+inline constexpr double two_routes = 1e-9;  // two computations in double precision over a few hundred samples
 
-/// K modes of n states, measured exactly.
+/// K modes of n states, exactly measured.
 inline Bank exact_bank(Index n, Index K) {
   Bank bank = test::example_bank(n, 2, K, 0.0);
   bank.dt_s = 1.0;
@@ -29,10 +29,10 @@ inline Trajectory with_holes(Trajectory run) {
   return run;
 }
 
-/// What a bank says of a run of one mode whose coefficients drift, its variance known.
+/// A bank with one drifting mode and known variance, and its results on a run.
 struct OneMode {
-  Bank model;  ///< with running noise that is held
-  Bank bank;   ///< the same by the equations of all banks
+  Bank model;  ///< with constant running noise
+  Bank bank;   ///< the same model by the general equations
   Trajectory run;
 };
 

@@ -1,4 +1,4 @@
-// The drifting model live: snapshots, what it refuses, samples as they should not be.
+// The drifting model live: snapshots, rejected inputs, unusual samples.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +77,7 @@ TEST(DriftingFilter, RefusesWhatIsNone) {
   EXPECT_THROW(filter.restore(odd), std::invalid_argument);
 }
 
-/// Whatever comes in, numbers come out.
+/// Any input gives finite numbers.
 TEST(DriftingFilter, StaysFiniteOnWildSamples) {
   for (const double huge : {1e8, 1e25}) {
     Bank model = example_drifting(1, 1, 2);

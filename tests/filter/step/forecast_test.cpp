@@ -1,4 +1,4 @@
-// Predictions without measurements from where a filter stands, and going on from what it remembers.
+// Predictions without measurements from a filter's state, and continuing from a snapshot.
 #include "filter/step/forecast.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using test::Index;
 
-constexpr double two_texts = 1e-10;  // vector registers and equations differ by rounding
+constexpr double two_texts = 1e-10;  // vector kernels and equations differ by rounding
 
 struct NamedBank {
   std::string name;
@@ -143,7 +143,7 @@ TEST(Forecast, OfTheNextSampleIsThePredictionOfTheNextStep) {
 
 TEST(Forecast, IsWhatStepsWithoutMeasurementsPredict) {
   for (const auto& [name, bank, options] : banks()) {
-    if (name.starts_with("drift")) continue;  // coefficients that are unstable are contracted where nothing is measured
+    if (name.starts_with("drift")) continue;  // unstable coefficients are contracted in predictions
     SCOPED_TRACE(name);
     filter::BankFilter live(installed(bank), options);
     for (Index k = 0; k < 20; ++k) take(live, bank, k);
@@ -178,7 +178,7 @@ TEST(Forecast, IsWhatTheJudgeScores) {
     filter::BankFilter live(installed(bank), options);
     for (Index k = 0; k + steps < samples; ++k) {
       take(live, bank, k);
-      if (k >= 9 && k <= 12) continue;  // the gap lies ahead: the judge takes more steps
+      if (k >= 9 && k <= 12) continue;  // the gap lies ahead, where evaluation takes more steps
       const std::vector<filter::Forecast> ahead = live.forecast(planned(bank, k, steps), steps);
       for (Index h = 1; h <= steps && live.started(); ++h) {
         const VectorXd error = judged.error[static_cast<std::size_t>(h - 1)].col(k + h);
@@ -255,7 +255,7 @@ TEST(Snapshot, GoesOnToTheBit) {
       SCOPED_TRACE(name + " after " + std::to_string(stop));
       filter::BankFilter first(installed(bank), options), second(installed(bank), options);
       for (Index k = 0; k < stop; ++k) take(first, bank, k);
-      take(second, bank, 3);  // has a past of its own
+      take(second, bank, 3);  // has another history
       second.restore(first.snapshot());
       EXPECT_EQ(second.started(), first.started());
       for (Index k = stop; k < 25; ++k) expect_same_bits(take(second, bank, k), take(first, bank, k));
@@ -278,7 +278,7 @@ TEST(Snapshot, IsRefusedWhereItDoesNotFit) {
   EXPECT_EQ(live.snapshot(), good);
 }
 
-// A bank whose numbers were read and written down again filters to the same bits: each part that may be off, on.
+// A bank that was described and rebuilt must filter to the same bits; every optional part is on.
 TEST(BankDescription, GivesTheSameBankBack) {
   for (const auto& [name, bank, options] : banks()) {
     SCOPED_TRACE(name);

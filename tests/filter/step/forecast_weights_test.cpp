@@ -1,4 +1,4 @@
-// Weights of several forecasters by what they said.
+// Weights of several forecasters by their log densities.
 #include "modebank/filter/forecast_weights.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ constexpr double silent = std::numeric_limits<double>::quiet_NaN();
 
 double log_odds(const ForecastWeights& weights) { return std::log(weights.weights()[0] / weights.weights()[1]); }
 
-/// Raftery et al.: the odds of two are the densities' ratios so far, each to the power of 0.99 per sample since.
+/// Raftery et al.: the odds of two forecasters are the product of past density ratios, each to the power of 0.99 per
+/// sample since.
 TEST(ForecastWeights, OddsAreForgottenRatiosOfDensities) {
   ForecastWeights weights(2);
   EXPECT_EQ(weights.weights(), (std::vector<double>{0.5, 0.5}));
@@ -34,7 +35,7 @@ TEST(ForecastWeights, MayStartUnequal) {
   weights.observe({0.5, 0.25});
   EXPECT_NEAR(log_odds(weights), std::log(1.0 / 3.0) + 0.25, digits);
   weights.observe({0.0, 0.0});
-  EXPECT_NEAR(log_odds(weights), std::log(1.0 / 3.0) + 0.99 * 0.25, digits);  // the start is not forgotten
+  EXPECT_NEAR(log_odds(weights), std::log(1.0 / 3.0) + 0.99 * 0.25, digits);  // the starting weights are not discounted
   weights.restart();
   EXPECT_NEAR(weights.weights()[1], 0.75, digits);
 }
@@ -45,7 +46,7 @@ TEST(ForecastWeights, OverlappingForecastsCountAsOneTogether) {
   EXPECT_NEAR(log_odds(far), 0.1, digits);
 }
 
-/// Only what two said of the same sample moves their odds.
+/// Odds change only if both have a value for a sample.
 TEST(ForecastWeights, TheSilentKeepTheirWeight) {
   ForecastWeights weights(3);
   weights.observe({0.3, -0.2, 0.1});
@@ -76,13 +77,14 @@ TEST(ForecastWeights, DensitiesAreMixedByWeight) {
   EXPECT_NEAR(ForecastWeights::mixed_log_density({0.5, 0.5}, {-1e6, -1e6}), -1e6, digits);
 }
 
-/// Where each sample has one forecaster of density zero, the likeliest constant weights are the shares of samples.
+/// If each sample has one forecaster of density zero, the most likely constant weights are the shares of samples.
 TEST(ForecastWeights, StackedWeightsAreTheLikeliest) {
   const double never = -std::numeric_limits<double>::infinity();
   const std::vector<double> stacked = ForecastWeights::stacked({{1.0, 2.0, 0.5, never}, {never, never, never, 3.0}});
   EXPECT_NEAR(stacked[0], 0.75, 1e-12);
   EXPECT_NEAR(stacked[1], 0.25, 1e-12);
-  // d/dw of log(2 w + 1 - w) + 2 log(w + 3 (1 - w)) is zero at w = -1/6: all weight but the least goes to the second.
+  // The derivative of log(2 w + 1 - w) + 2 log(w + 3 (1 - w)) is zero at w = -1/6, so the second gets all weight except
+  // the minimum.
   const double ln2 = std::log(2.0), ln3 = std::log(3.0);
   EXPECT_NEAR(ForecastWeights::stacked({{ln2, 0.0, 0.0}, {0.0, ln3, ln3}})[0], 0.001, 2e-4);
   EXPECT_NEAR(ForecastWeights::stacked({{0.0, silent, ln2}, {silent, 1.0, 0.0}})[0], 1.0, 2e-3);

@@ -19,7 +19,7 @@ using test::near;
 using test::simulate_bank;
 using test::single_mode;
 
-/// Two double-precision routes to one number of order one.
+/// Two computations of one number of order one in double precision.
 constexpr double law_rounding = 1e-12;
 constexpr FilterOptions imm{}, kf{FilterVariant::kf};
 
@@ -32,7 +32,7 @@ void expect_same_estimates(const RunEvaluation& a, const RunEvaluation& b) {
   EXPECT_TRUE(near(a.pit, b.pit, law_rounding));
 }
 
-/// Products for lagged samples leave out factors of zero and one.
+/// Products for lagged samples skip factors of zero and one.
 TEST(SmallProducts, OfShiftsAndOfPartsThatAreSeenHaveThePlainOnesBits) {
   const Eigen::Index n = 7, full = 2;
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n), gain = Eigen::MatrixXd::Random(n, full), P(n, n);
@@ -57,7 +57,7 @@ TEST(SmallProducts, OfShiftsAndOfPartsThatAreSeenHaveThePlainOnesBits) {
   EXPECT_EQ(plain_sum, quick_sum);
 }
 
-/// Where only the newest samples are uncertain the rest of a product is zeros.
+/// If only the newest samples are uncertain, the rest of a product is zero.
 TEST(SmallProducts, OfAPartThatIsUncertainAreThoseOfTheWhole) {
   const Eigen::Index n = 7, full = 2, uncertain = 3;
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n), P = Eigen::MatrixXd::Zero(n, n);
@@ -107,7 +107,7 @@ TEST(Imm, OneModeIsTheKalmanFilter) {
   expect_same_estimates(evaluate_run(bank, run, imm), evaluate_run(bank, run, kf));
 }
 
-/// Which of the modes it ought to be would be a guess.
+/// Any choice among the modes would be arbitrary.
 TEST(Kf, RefusesSeveralModes) {
   const Bank bank = example_bank(1, 2, 3);
   const Trajectory run = simulate_bank(bank, 60, 3);
@@ -128,7 +128,7 @@ TEST(Imm, ProbabilitiesSumToOne) {
   }
 }
 
-/// Multiple model adaptive estimation (Magill 1965): modes that never change (bank.stay = 1).
+/// Multiple model adaptive estimation (Magill 1965): modes that never switch (bank.stay = 1).
 TEST(Imm, ThatNeverSwitchesIsBayesRuleOverSeparateFilters) {
   Bank bank = example_bank(2, 1, 3);
   for (std::size_t j = 0; j < 3; ++j) bank.modes[j] = bank.modes[0];
@@ -161,7 +161,7 @@ TEST(Kf, WithoutProcessNoiseIsBatchLeastSquares) {
   Bank bank = single_mode(example_bank(2, 1, 1, 0.01), 0);
   bank.modes[0].Q.setZero();
   const Trajectory run = simulate_bank(bank, 30, 6);
-  // y_k = F^k x_0 + d_k + v_k: normal equations for x_0, then the estimate carried to the last sample.
+  // y_k = F^k x_0 + d_k + v_k: normal equations for x_0; the estimate is then propagated to the last sample.
   const LinearModel& model = bank.modes[0].model;
   const Eigen::Matrix2d F = model.full_form();
   Eigen::Matrix2d power = Eigen::Matrix2d::Identity(), information = Eigen::Matrix2d::Zero();

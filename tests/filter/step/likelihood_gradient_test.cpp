@@ -1,4 +1,4 @@
-// The gradient of the filter's likelihood against differences of the likelihood itself.
+// The gradient of the filter's likelihood compared with differences of the likelihood.
 #include "filter/step/likelihood_gradient.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using Eigen::Index;
 
 using Change = std::function<void(Bank&, double)>;
 
-/// Every number of a bank by itself; of T a pair in a row, which goes on to sum to one.
+/// Every number of a bank separately; for T a pair of entries in a row, so that the sum stays one.
 std::vector<std::pair<std::string, Change>> all_changes(const Bank& bank) {
   std::vector<std::pair<std::string, Change>> changes;
   const Index n = bank.structure.dimension(), m = bank.structure.acting_inputs(), K = bank.mode_count();

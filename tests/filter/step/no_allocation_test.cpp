@@ -99,7 +99,7 @@ TEST(NoAllocation, EveryVariantAndSize) {
   }
 }
 
-/// Switches that see state and input are worked out anew at every step.
+/// The transition matrix of a logit is recomputed at every step.
 TEST(NoAllocation, NorWithATransitionLogit) {
   const Bank bank = with_logit(test::example_bank(2, 2, 3));
   step_without_allocation<2, 2>(bank, {});

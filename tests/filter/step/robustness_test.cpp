@@ -1,4 +1,4 @@
-// No number makes the filter give NaN, and one code serves fixed and dynamic sizes.
+// No input makes the filter return NaN, and one code serves fixed and dynamic sizes.
 #include <gtest/gtest.h>
 
 #include "filter/judge/run/evaluate.hpp"
@@ -25,7 +25,7 @@ std::vector<FilterOptions> all_options() {
   return all;
 }
 
-/// Everything from sample 1 on must be finite when every measurement is there.
+/// Everything from sample 1 on must be finite if no measurement is missing.
 void expect_finite(const Bank& modes, const Trajectory& run, const std::string& what) {
   for (const FilterOptions& options : all_options()) {
     const Bank bank = test::steppable(modes, options.variant);
@@ -90,7 +90,7 @@ TEST(NeverNaN, TinyAndHugeUnits) {
       mode.model.c *= unit;
     }
     expect_finite(scaled, scaled_run, "unit " + std::to_string(unit));
-    // The units of a signal do not change which mode it speaks for.
+    // A signal's units do not change the mode probabilities.
     constexpr double relative = 1e-9;
     EXPECT_TRUE(test::near(evaluate_run(scaled, scaled_run, {}).mode_probability,
                            evaluate_run(bank, run, {}).mode_probability, relative));
@@ -120,7 +120,7 @@ TEST(NeverNaN, AMillionStepsAtConstantInput) {
   EXPECT_TRUE(result.state.allFinite() && result.covariance.allFinite() && result.mode_probability.allFinite());
   EXPECT_TRUE(result.log_density.tail(samples - 1).allFinite());
   EXPECT_GT(result.covariance.minCoeff(), 0.0);
-  // Long settled: the same numbers for ever.
+  // After settling, the numbers are constant.
   EXPECT_NEAR(result.log_density(samples - 1), result.log_density(1000), 1e-9);
 }
 
@@ -140,7 +140,7 @@ TEST(NeverNaN, AMillionStepsAtConstantInputInEveryVariant) {
   }
 }
 
-/// Weights that every archive may hold: finite ones, whose log odds overflow.
+/// Finite weights of any size, as an archive may contain; their log odds overflow.
 TEST(NeverNaN, LogOddsOfAnySize) {
   for (const double weight : {1e3, 1e150, 1e308}) {
     Bank bank = example_bank(2, 2, 3);
@@ -173,7 +173,7 @@ TEST(DeadMode, ComesBackWhenTheMotionChanges) {
   EXPECT_GT(result.mode_probability(1, 419), 0.99);
 }
 
-/// Steps through `run` with the given sizes; the last state and the log densities, bit for bit.
+/// Filters `run` with the given sizes; returns the last state and the log densities, for comparison of bits.
 template <int N, int NY>
 std::vector<double> trace(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   const FilterModel<N, NY> model(bank, options);

@@ -1,4 +1,4 @@
-// Samples as they come: starts, missing signals, uneven times, and going on from a snapshot.
+// Live samples: starts, missing signals, uneven times, and continuing from a snapshot.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -17,7 +17,7 @@ using test::example_bank;
 using test::near;
 using test::simulate_bank;
 
-constexpr double digits = 1e-12;  // two double-precision routes to one number of order one
+constexpr double digits = 1e-12;  // two computations of one number of order one in double precision
 
 TEST(Start, IsTheFirstMeasurementWithItsCovariance) {
   const Bank bank = example_bank(3, 2, 2);
@@ -72,7 +72,7 @@ TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
     Trajectory run = simulate_bank(bank, 3, 9);
     run.state(1, 2) = std::nan("");
     const RunEvaluation partial = evaluate_run(bank, run, {variant});
-    // The same step with a sensor that has no such signal, from the same start.
+    // The same step by a sensor without that signal, from the same start.
     BankFilter filter(bank, {variant}), reduced(measuring(bank, {0, 2}), {variant});
     filter.step(0.0, run.input.col(0), run.state.col(0));
     filter.step(1.0, run.input.col(1), run.state.col(1));
@@ -95,7 +95,7 @@ TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
   }
 }
 
-/// An outlier counts as no larger than some standard deviations of the signals that are there.
+/// An outlier counts as at most some standard deviations of the available signals.
 TEST(MissingMeasurement, OfSomeSignalsMovesTheNoiseScaleByTheOthers) {
   Bank bank = example_bank(3, 1, 2);
   bank.R(0, 1) = bank.R(1, 0) = 0.4 * bank.R(0, 0);
@@ -141,7 +141,7 @@ TEST(TimeSteps, ALongerTimeIsSeveralPredictionsWithTheInputHeld) {
   bank.dt_s = 0.1;
   Trajectory run = simulate_bank(bank, 12, 13), every = run;
   run.time_s *= 0.1;
-  // The run that had all samples, but measured nothing at two of them and held the input.
+  // The same run with all times, but without measurements at two of them and with the input held.
   every.time_s = run.time_s;
   every.state.middleCols(5, 2).setConstant(std::nan(""));
   every.input.col(5) = every.input.col(6) = every.input.col(4);

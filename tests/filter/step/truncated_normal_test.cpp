@@ -11,7 +11,7 @@
 namespace modebank {
 namespace {
 
-/// Moments in long double: integrals of t^i exp(-low t - t^2 / 2), piece by piece of the fall of its logarithm.
+/// Moments in long double: integrals of t^i exp(-low t - t^2 / 2), in pieces of equal decrease of its logarithm.
 struct Reference {
   long double log_mass, mean, variance, third, fourth;
 
@@ -29,7 +29,7 @@ struct Reference {
       cubes += moment(3);
       fourths += moment(4);
     };
-    const auto walk = [&](long double until) {  // from the peak, by pieces of half a unit of scale
+    const auto walk = [&](long double until) {  // from the peak, in pieces of half a unit of scale
       const long double scale = 0.5L / std::max(1.0L, std::abs(peak)), sign = until < 0.0L ? -1.0L : 1.0L;
       for (long double t = 0.0L; t < std::abs(until) && t < 140.0L * scale; t += scale) {
         const long double end = std::min(t + scale, std::abs(until));
@@ -75,7 +75,7 @@ TEST(TruncatedNormal, HasTheMassOfBoost) {
   }
 }
 
-/// What the header says of derivatives, against differences.
+/// The derivatives stated in the header, compared with differences.
 TEST(SignalLikelihood, ItsMomentsAreItsDerivatives) {
   const auto moments = [](const SignalLikelihood& said, double s) {
     return std::array{said.log_density, std::sqrt(s) * said.mean, s * said.variance};
@@ -95,8 +95,8 @@ TEST(SignalLikelihood, ItsMomentsAreItsDerivatives) {
         const auto down_e = moments(signal_likelihood(e - h * root, s, quantum), s);
         const auto up_s = moments(signal_likelihood(e, s * (1.0 + h), quantum), s * (1.0 + h));
         const auto down_s = moments(signal_likelihood(e, s * (1.0 - h), quantum), s * (1.0 - h));
-        const std::array unit{1.0, root, s};  // of what is derived
-        // Differences see the bounds' own rounding.
+        const std::array unit{1.0, root, s};  // units of the derivatives
+        // Differences contain the rounding of the bounds.
         const double rounding = share > 0.0 ? 1e-15 * (1.0 + std::abs(z)) / (share * h) : 0.0;
         for (std::size_t i = 0; i < 3; ++i) {
           const double scale = unit[i] * (1.0 + (i == 0 ? z * z : std::abs(z)));

@@ -1,4 +1,4 @@
-// The filter with a mode per lane of the vector registers against the general steps, everything it says.
+// The vector filter (one mode per lane) compared with the general steps in all results.
 #include "filter/step/detail/vector/vector_imm.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 
 constexpr int any = Eigen::Dynamic;
 
-/// Steps both through the run and compares everything; `relative` to the size of each number.
+/// Steps both filters through the run and compares all results, relative to the size of each number.
 void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptions& options, double relative) {
   ASSERT_TRUE(VectorImm::can_step(bank, options));
   const FilterModel<any, any> model(bank, options);
@@ -62,7 +62,7 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
       for (Index i = 0; i < n_y; ++i) {
         ASSERT_EQ(std::isnan(pit(i)), std::isnan(expected_pit(i)));
         if (std::isnan(pit(i))) continue;
-        // Relative to the smaller tail, of which the upper one has the bits that 1 - pit leaves.
+        // Relative to the smaller tail; for the upper tail 1 - pit leaves fewer bits.
         const double tail = std::min(expected_pit(i), 1.0 - expected_pit(i));
         ASSERT_NEAR(pit(i), expected_pit(i), 1e-15 + 1e3 * relative * tail) << "sample " << k << ", signal " << i;
       }
@@ -78,7 +78,7 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
   }
 }
 
-/// The example's modes, slowed down so that many of them are stable, and noises of one order.
+/// The example's modes, slowed down so that many of them are stable, with noises of one order of magnitude.
 Bank many_modes(Index n, Index K) {
   Bank bank = test::example_bank(n, 2, K);
   for (Index j = 0; j < K; ++j) {
@@ -101,9 +101,9 @@ TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
     for (const Index K : {2, 8, 9, 25}) {
       const Bank bank = many_modes(n, K);
       Trajectory run = test::simulate_bank(bank, 70, 51);
-      run.state(0, 30) = std::nan("");  // of some signals, with one of all
+      run.state(0, 30) = std::nan("");  // some signals are missing, later all of them
       run.state.col(40).setConstant(std::nan(""));
-      run.state(0, 50) = std::nan("");  // with an outlier in what is there
+      run.state(0, 50) = std::nan("");  // an outlier in the available signals
       run.state(n - 1, 50) += n > 1 ? 0.5 : 0.0;
       run.state(n - 1, 60) += 3.0;
       SCOPED_TRACE(std::to_string(n) + " states, " + std::to_string(K) + " modes");
@@ -112,7 +112,7 @@ TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
     }
 }
 
-/// Quanta of about a standard deviation, tiny ones, and one signal that has none.
+/// Quanta of about a standard deviation, tiny ones, and one continuous signal.
 TEST(VectorImm, TakesIntervalsAsTheGeneralStepsDo) {
   for (const Index n : {1, 2, 3})
     for (const Index K : {2, 8, 9})
@@ -133,7 +133,7 @@ TEST(VectorImm, TakesIntervalsAsTheGeneralStepsDo) {
       }
 }
 
-/// Whatever kernels a stretch goes through, whether or not something is missing in it.
+/// All kernels give the same results for a stretch, with or without missing signals.
 TEST(VectorImm, AStretchIsItsSamples) {
   for (const Index n : {1, 2, 3})
     for (const Index K : {2, 5, 9, 16, 17, 25})
@@ -165,7 +165,7 @@ TEST(VectorImm, AStretchIsItsSamples) {
         }
 }
 
-/// As many as fill one register of any width, one more and one less, and more than eight registers.
+/// Numbers of modes that fill one register of any width, one more, one fewer, and more than eight registers.
 TEST(VectorImm, AnyNumberOfModes) {
   for (const Index K : {2, 3, 4, 5, 7, 8, 9, 16, 17, 60}) {
     const Bank bank = many_modes(1, K);
@@ -202,7 +202,7 @@ TEST(VectorImm, CorrelatedNoiseAndImpossibleModes) {
   expect_agreement(bank, run, adaptive(), 1e-11);
 }
 
-/// The scale follows the modes that can be, however well one that cannot be fits.
+/// The noise scale follows the possible modes, however well an impossible mode fits.
 TEST(VectorImm, AnImpossibleModeHasNoSayInTheNoise) {
   Bank bank = many_modes(1, 3);
   bank.transition = TransitionMatrix((MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());
@@ -217,10 +217,10 @@ TEST(VectorImm, AnImpossibleModeHasNoSayInTheNoise) {
   FilterState<any> state = start(model, run.state.col(0));
   predict(model, state, run.input.col(0), step);
   update(model, run.state.col(1), step, state);
-  EXPECT_GT(state.noise_scale, 1.5);  // one step of a hundred standard deviations, counted as five
+  EXPECT_GT(state.noise_scale, 1.5);  // one step of a hundred standard deviations, which counts as five
 }
 
-/// Modes that nothing leads to, that explode, no noise at all: there is always a number.
+/// Unreachable modes, diverging modes, no noise: all results are finite.
 TEST(VectorImm, NeverSaysNaN) {
   const Bank usual = many_modes(1, 3);
   Bank dead = usual, exact = usual, unstable = usual, none = usual;
@@ -247,7 +247,7 @@ TEST(VectorImm, NeverSaysNaN) {
   expect_agreement(dead, test::simulate_bank(dead, 100, 33), {}, 1e-11);
 }
 
-/// Phi(z) to 20 digits (mpmath), far into the lower tail. All modes agree, so the transform is that of one normal
+/// Phi(z) to 20 digits (mpmath), far into the lower tail. All modes are equal, so the transform is that of one normal
 /// distribution.
 TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
   Bank bank = test::example_bank(1, 1, 3);
@@ -273,17 +273,17 @@ TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
     const VectorXd y = VectorXd::Constant(1, z);
     kernel.update(y);
     kernel.transform(y, pit, width);
-    // z itself is rounded, which the tail feels as z^2.
+    // z itself is rounded, which changes the tail in proportion to z^2.
     EXPECT_NEAR(pit(0), probability, (1e-14 + 2.3e-16 * z * z) * probability) << z;
   }
 }
 
-/// Modes that predict far apart, each with a small variance: moments about their common mean cancel.
+/// Modes with distant predictions and small variances: moments about their common mean cancel.
 TEST(VectorImm, ModesFarApartKeepTheirVariances) {
   Bank bank = many_modes(2, 9);
   for (Mode& mode : bank.modes) mode.Q *= 1e-6;
   bank.R.setIdentity();
-  bank.R *= 1e4;  // nothing measured pulls them together
+  bank.R *= 1e4;  // no measurement draws them together
   bank.transition = TransitionMatrix::sticky(9, 1.0 - 1e-9);
   for (Index j = 0; j < 9; ++j) bank.modes[static_cast<std::size_t>(j)].model.c.setConstant(static_cast<double>(j));
   const Trajectory run = test::simulate_bank(bank, 60, 55);
