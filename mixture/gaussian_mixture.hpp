@@ -58,10 +58,9 @@ void check_errors(const PointSet& points);
 /// any was below.
 bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type);
 
-// The functions below throw std::invalid_argument for sizes that do not fit, for points, means or weights that are not
-// finite, for a negative weight and for an invalid error covariance. They also throw NotPositiveDefinite. For a point
-// with error covariance S, component k has density N(mu_k, Sigma_k + S) (Bovy, Hogg & Roweis 2011, eq. 9). Weights of
-// points are ignored.
+// The functions below throw std::invalid_argument for sizes that do not fit, values that are not finite, a negative
+// weight and an invalid error covariance. They also throw NotPositiveDefinite. For a point with error covariance S,
+// component k has density N(mu_k, Sigma_k + S) (Bovy, Hogg & Roweis 2011, eq. 9). Weights of points are ignored.
 
 /// Log density of every point, computed in the log domain: N values, finite for finite points. The value is about
 /// -1e300 where the distance itself overflows.

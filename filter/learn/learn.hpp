@@ -52,9 +52,9 @@ Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, 
                             const BankOptions& options, const FilterOptions& filter);
 
 /// The competitor with one nonlinear motion. theta of linear regressors and terms comes from expectation-maximisation
-/// with one theta shared by all noise levels, as in learn_one_motion, from up to four levels and one wide level. The
-/// terms of each transition are then known inputs, because states count as measured exactly (R is negligible). `em`:
-/// its prior, iterations and folds. `structure`: with the lags of the terms. `filter`: its filter.
+/// with one theta shared by all noise levels, as in learn_one_motion. It starts from up to four levels and one wide
+/// level. The terms of each transition are then known inputs, because states count as measured exactly (R is
+/// negligible). `em`: its prior, iterations and folds. `structure`: with the lags of the terms. `filter`: its filter.
 Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
                      const RefineOptions& em, const FilterOptions& filter);
 

@@ -16,11 +16,12 @@ struct ParameterPrior {
 
 /// Default prior standard deviations: 3 x the robust standard deviation over windows. The windows are full-rank robust
 /// fits without prior (`parameters` p x M, one per column; non-finite ones do not count).
-/// The robust standard deviation is 1.4826 times the median absolute deviation per parameter, because windows near the
-/// rank tolerance have extreme estimates that would dominate a sample standard deviation. If it is zero (more than half
-/// of the windows agree exactly), the sample standard deviation is used. If that is zero, too, or without full-rank
-/// windows: the standard deviation that noise alone would give windows of `length` transitions, global standard error x
-/// sqrt(N / length). If that is zero or undefined: 1.
+///
+/// The robust standard deviation is 1.4826 times the median absolute deviation per parameter. Windows near the rank
+/// tolerance have extreme estimates that would dominate a sample standard deviation. If the robust one is zero (more
+/// than half of the windows agree exactly), the sample standard deviation is used. If that is zero, too, or without
+/// full-rank windows, noise decides: the standard deviation of windows of `length` transitions by noise alone, global
+/// standard error x sqrt(N / length). If that is zero or undefined: 1.
 Eigen::VectorXd default_prior_sd(const Eigen::MatrixXd& parameters, const GlobalModel& global, Index length);
 
 /// Prior standard deviations from the options, one per parameter or one for all; otherwise default_prior_sd of

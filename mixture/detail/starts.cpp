@@ -119,8 +119,8 @@ std::vector<Eigen::MatrixXd> scatter(const PointBlocks& points, const Labels& la
 }
 
 /// A start for EM from the moments of clusters. Each covariance is shrunk towards the pooled within-cluster covariance
-/// with the strength of F + 1 points of mean weight, and each weight towards 1/K with the strength of one point. So an
-/// empty or one-point cluster gives a usable start. An empty cluster stays at its column of `centers` (F x K).
+/// with the strength of F + 1 points of mean weight. Each weight is shrunk towards 1/K with the strength of one point.
+/// So an empty or one-point cluster gives a usable start. An empty cluster stays at its column of `centers` (F x K).
 GaussianMixture mixture_of_clusters(const PointBlocks& points, const Labels& labels, Eigen::MatrixXd centers,
                                     const EmOptions& options) {
   GaussianMixture start;

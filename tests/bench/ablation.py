@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What each feature of a configuration is worth on held-out runs, both ways round.
+"""Gain of each feature of a configuration on held-out runs, with either half of the runs training.
 
 usage: ablation.py MODEBANK CONFIG [--sets ICE,FLOORING] [--cache FILE.json] [--jobs 2] [--only TEXT] [--key value ...]
 
@@ -47,7 +47,7 @@ FEATURES = [
     ("the same bank in salvi2025", {"bank:filter.variant": "salvi2025"}),
     ("one Kalman filter (kf)", {"filter.variant": "kf"}),
 ]
-EARLY = ("data.", "window.", "mixture.", "job.")  # what windows and mixture depend on
+EARLY = ("data.", "window.", "mixture.", "job.")  # sections that windows and mixture depend on
 
 
 class Failed(RuntimeError):
@@ -55,7 +55,7 @@ class Failed(RuntimeError):
 
 
 class Bench:
-    """The program, the configuration and what is known already."""
+    """The program, the configuration and the results so far."""
 
     def __init__(self, program, config, cache):
         self.program, self.config, self.cache_file = program, config, cache
@@ -90,7 +90,7 @@ class Bench:
 
 
 def configured(text, key):
-    """A key's value in [data]; only paths are looked up so."""
+    """Value of a key in [data]; used for paths only."""
     found = re.search(r"^\s*%s\s*=\s*([^#\n]*)" % key, text, re.M)
     return found.group(1).strip() if found else ""
 
@@ -107,7 +107,7 @@ def data_files(text, options):
 
 
 class Stages:
-    """Windows and mixture, and the first row's bank, of each fold: made when they are first needed, and only once."""
+    """Windows, mixture and the first row's bank of each fold; each is made once, at its first use."""
 
     def __init__(self, bench, folder):
         self.bench, self.folder = bench, folder
@@ -137,7 +137,7 @@ class Stages:
                         "--archive.output", path)
 
     def rows(self, given, feature):
-        """Held-out rows of the summary by filter."""
+        """Held-out rows of the summary, by filter."""
         key = self.bench.key({**given, **feature})
         if key in self.bench.cache:
             return self.bench.cache[key]
@@ -166,7 +166,7 @@ def flags(options):
 
 
 def halves(bench, given):
-    """The options of the two folds: as configured, and with training and test runs exchanged."""
+    """Options of the two folds: as configured, and with training and held-out runs exchanged."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "runs.h5")
         bench.call("identify", bench.config, *flags({**{k: v for k, v in given.items() if k.startswith(("data.", "window."))}, "window.step": "100"}),

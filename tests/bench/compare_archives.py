@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What differs between two archives of the same data and configuration, made on different machines.
+"""Differences between two archives of the same data and configuration, made on different machines.
 
   compare_archives.py A.h5 B.h5
 

@@ -28,7 +28,7 @@ SAME = 1e-11
 
 
 class FromStart(GaussianMixture):
-    """Iterates from given parameters."""
+    """EM iterations from given parameters."""
 
     def _initialize_parameters(self, X, random_state):
         pass

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How fast recordings are read of which 99 % are images that nobody asks for, against cat and the compressors' own programs.
+"""Speed of reading recordings with 99 % unneeded images, against cat and the compressors' own programs.
 
 Usage: large_recordings.py PROGRAM BAG FOLDER [MEGABYTES]
 
@@ -34,14 +34,14 @@ disorder = sort
 
 
 def image(number):
-    """900 kB, of which a compressor finds about half."""
+    """An image of 900 kB that compresses to about half."""
     made = Image()
     made.data = numpy.random.default_rng(number % 7).integers(0, 16, 921600, numpy.uint8).tobytes()
     return made
 
 
 def drive(bag_path, megabytes):
-    """(topic, message, time) with images in between, evenly."""
+    """(topic, message, time), with images evenly in between."""
     with rosbag.Bag(bag_path) as bag:
         messages = list(bag.read_messages())
     images = [image(i) for i in range(7)]
@@ -60,7 +60,7 @@ def write_bag(path, bag_path, megabytes, compression):
 
 
 class Messages:
-    """The drive as ros2_writers wants it, without keeping it in memory."""
+    """The drive in the form for ros2_writers, generated without storing it."""
 
     def __init__(self, bag_path, megabytes):
         self.bag_path, self.megabytes = bag_path, megabytes
@@ -91,7 +91,7 @@ def write_mcap(path, bag_path, megabytes, compression):
 
 
 def spent(command):
-    """Processor seconds and seconds by the clock."""
+    """CPU seconds and wall-clock seconds."""
     before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     with open(os.devnull, "wb") as nothing:
         done = subprocess.run(command, stdout=nothing, stderr=subprocess.PIPE)
@@ -122,7 +122,7 @@ def main():
             if not file.exists():
                 write(str(file), bag_path, size, named)
         packed = path
-        if compression != "none":  # what the peer unpacks is the uncompressed recording as one stream
+        if compression != "none":  # the peer unpacks the uncompressed recording as one stream
             plain, packed = folder / f"plain_{less}.{form}", folder / f"plain_{less}.{form}.{compression}"
             if not plain.exists():
                 write(str(plain), bag_path, megabytes / less, "none" if form == "bag" else "")

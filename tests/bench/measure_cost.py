@@ -24,7 +24,7 @@ STAGES = ["structure", "windows", "mixture", "drifting", "bank", "one_motion", "
 
 
 def system(draw, states, inputs, lags):
-    """Two motions x[k+1] = sum_i A_i x[k+1-i] + B u[k], the second with other poles and inputs."""
+    """Two motions x[k+1] = sum_i A_i x[k+1-i] + B u[k] with different poles and inputs."""
     first = np.diag(draw.uniform(0.3, 0.8, states)) + 0.03 * draw.standard_normal((states, states))
     gain = 0.2 * draw.standard_normal((states, inputs))
     older = [0.15 ** (i + 1) * (-1) ** i * np.eye(states) for i in range(lags - 1)]
@@ -61,7 +61,7 @@ def write(folder, name, runs, samples, states, inputs, lags, settings):
 
 
 def stages_of(text):
-    """Seconds by the name that begins a line of progress."""
+    """Seconds per stage; a line of progress begins with the stage's name."""
     seconds = dict.fromkeys(STAGES, 0.0)
     for line in text.splitlines():
         found = re.match(r"(\w+): .* in ([0-9.]+) s", line)

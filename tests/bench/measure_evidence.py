@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How often modes of motion are claimed: where there are none, where one motion bends, and where there are some (make evidence).
+"""How often modes of motion are reported: without modes, with one nonlinear motion, and with modes (make evidence).
 
   measure_evidence.py build/modebank [--table docs/results/evidence.csv] [--seeds N] [--first 0] [--jobs N] [--only NAME,NAME] [--quantum auto]
 
@@ -30,7 +30,7 @@ COLUMNS = ["group", "system", "seed", "answer", "description", "modes", "modes_t
 
 
 def modes_apart(g, dwell=None):
-    """Two to four modes, each pair of which predicts apart by at least its noise, root mean square."""
+    """Two to four modes; predictions of each pair differ by at least its noise, root mean square."""
     while True:
         system = Switching.drawn(g)
         u, x = system.simulate(np.random.default_rng(1), 0, 2000)

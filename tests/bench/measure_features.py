@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Which features of windows with many lags find the modes: the table of docs/results/mixture.md.
+"""Which features of windows with many lags separate the modes: the table of docs/results/mixture.md.
 
 measure_features.py MODEBANK FOLDER [SEEDS]
 
@@ -24,7 +24,7 @@ def motion(A, B, sd=0.02):
     return np.atleast_2d(A), np.atleast_2d(B), sd
 
 
-SYSTEMS = {  # stays in samples (0: one mode per run), variance of the measurement, modes
+SYSTEMS = {  # stay in samples (0: one mode per run), measurement variance, modes
     "four modes": (60, 0.0, [motion([0.8], [-0.1, 0.1]), motion([0.5], [-0.3, 0.3]), motion([0.7], [-0.6, 0.2]), motion([0.3], [-0.2, 0.6])]),
     "measured": (80, 4e-4, [motion([0.8], [-0.1, 0.15]), motion([0.4], [-0.5, 0.5])]),
     "by run": (0, 0.0, [motion([0.8], [-0.2, 0.2]), motion([0.6], [-0.4, 0.4]), motion([0.7], [-0.6, 0.2])]),
@@ -50,7 +50,7 @@ def modes_of(draw, count, stay, run):
 
 
 def commands(draw, inputs, run):
-    """Redrawn at each sample in two runs of four, held for 3 to 24 samples in the others."""
+    """Inputs: drawn at each sample in two of four runs, held for 3 to 24 samples in the others."""
     u, k = np.zeros((SAMPLES, inputs)), 0
     while k < SAMPLES:
         held = 1 if run // 2 % 2 else int(draw.integers(3, 25))
@@ -80,7 +80,7 @@ def write(folder, name, seed):
 
 
 def adjusted_rand(a, b):
-    """Hubert & Arabie 1985."""
+    """Adjusted Rand index (Hubert & Arabie 1985)."""
     table = np.zeros((a.max() + 1, b.max() + 1))
     np.add.at(table, (a, b), 1)
     pairs = lambda counts: (counts * (counts - 1) / 2).sum()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Switches that see state and input (bank.transition = logit) on systems that are known, over seeds (make guards).
+"""State-dependent transition probabilities (bank.transition = logit) on known systems, over seeds (make guards).
 
   measure_guards.py build/modebank [DATA] [--seeds 50] [--hybrid-seeds 10] [--first 1] [--jobs N] [--only NAME] [--system NAME] [--rows FILE]
 
@@ -65,7 +65,7 @@ def simulate(kind, seed, folder):
 
 
 def order_of(bank):
-    """Position in the bank of each true mode, None where they are not as many."""
+    """Position in the bank of each true mode; None if the numbers of modes differ."""
     found = np.c_[bank["A"][:, 0, 0], bank["B"][:, 0, 0]]
     distance = ((found[:, None] - np.c_[A, B][None]) ** 2).sum(2)
     nearest = distance.argmin(1)
@@ -73,7 +73,7 @@ def order_of(bank):
 
 
 def learned_guard(bank, kind):
-    """In the order of the true modes: what is known of the border."""
+    """Estimates of the border between modes, in the order of the true modes."""
     order = order_of(bank)
     if order is None or len(order) != 2 or "transition_weights" not in bank:
         return {}

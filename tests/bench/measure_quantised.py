@@ -28,7 +28,7 @@ MODES = [([[-.15]], [[-.15, .15]], 1.0), ([[-.5]], [[.3, .1]], 1.0)]
 
 
 def settings(likelihood, quantum):
-    """interval: by the intervals; Gaussian: values as they stand, R learned; exact: values as they stand, measured exactly."""
+    """interval: likelihood of intervals; Gaussian: values as recorded, R learned; exact: values taken as exact."""
     if likelihood == "interval":
         return ["--data.quantum", f"{quantum:.9g}"]
     return ["--data.quantum", "none"] + (["--bank.measurement_variance", f"{1e-9 * SD ** 2:.9g}"] if likelihood == "exact" else [])
@@ -63,7 +63,7 @@ def trial(program, likelihoods, scale, modes, deviations, seed):
 
 
 def standardised(said, modes, scale):
-    """Errors of theta in stated ones, mode by mode in the true order; None where the number of modes is another."""
+    """Errors of theta in standard errors, mode by mode in the true order; None if the number of modes differs."""
     if "failed" in said or len(said["theta"]) != modes:
         return None
     truth = np.array([np.concatenate([np.ravel(A), scale * np.ravel(B)]) for A, B, _ in MODES[:modes]])

@@ -54,7 +54,7 @@ def stated(function, theta, covariance):
 
 
 def errors(bank, system):
-    """Errors over stated ones of theta, Q, gains and time constants of each mode against its nearest truth's; each truth once, else None."""
+    """Errors of theta, Q, gains and time constants in standard errors, each mode against the nearest true one. None unless each true mode is matched once."""
     n, q = system.n, system.n + system.B[0].shape[1]
     of = lambda theta: theta.reshape(n, q)  # noqa: E731  theta is archived row by row as (A, B) of a state
     theta, covariance = bank["parameters"][:], bank["parameter_covariance"][:]
@@ -105,7 +105,7 @@ def row(name, results):
 
 
 def coverage(results):
-    """Rows of how many 95 % intervals hold the truth."""
+    """Rows of the share of 95 % intervals that contain the true value."""
     right = [r["z"] for r in results if r.get("z")]
     lines = ["\n| 95 % intervals of | hold the truth | of |\n|---|---|---|"]
     for name in right[0] if right else []:

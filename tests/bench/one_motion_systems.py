@@ -1,4 +1,4 @@
-"""Systems that have one motion: linear ones with a trouble that has been taken for modes, and bent ones.
+"""Systems with one motion: linear ones with a disturbance that was once mistaken for modes, and nonlinear ones.
 
 Each function draws twelve runs of (inputs, states), 400 samples of one or two states and two inputs, from a numpy generator.
 """
@@ -109,7 +109,7 @@ def outliers(g):
 
 
 def feedback(g):
-    """The inputs hold the state at a level that changes: u answers x of the same sample."""
+    """The inputs control the state to changing levels: u reacts to x of the same sample."""
     runs = []
     for run in range(RUNS):
         level, u, x = inputs(g, run, SAMPLES)[:, 0] * 0.4, np.zeros((SAMPLES, 2)), np.zeros(SAMPLES)
@@ -127,7 +127,7 @@ def unseen_input(g):
 
 
 def two_states(g):
-    """Coupled, with heavy tails."""
+    """Two coupled states with heavy-tailed noise."""
     pair, gain = np.array([[-0.3, 0.1], [-0.15, -0.2]]), np.array([[-0.2, 0.2], [0.15, 0.1]])
     runs = []
     for run in range(RUNS):

@@ -107,7 +107,7 @@ def make_demo(program, folder):
 
 
 def paint_times(browser, page):
-    """Seconds to the first paint, of five openings."""
+    """Seconds to the first paint in five openings."""
     times = []
     for _ in range(5):
         browser.driver.get("about:blank")

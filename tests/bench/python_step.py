@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a step of the filter costs from Python: the least of many short batches [microseconds].
+"""Cost of a filter step from Python: the minimum over many short batches [microseconds].
 
 Usage: PYTHONPATH=build/python python_step.py [ARCHIVE]. Without an archive a bank of eight modes, one state and two inputs
 steps; the same bank in C++ is bench_modebank's business.

@@ -94,7 +94,7 @@ def row(command, folder, archive=None):
 
 
 def check_readable(path):
-    """Every dataset opens in h5py, by the paths that the layout promises."""
+    """Checks that every dataset of the layout opens in h5py."""
     with h5py.File(path) as archive:
         samples = archive["data/runs"]["samples"].sum()
         assert archive["evaluation/bank/prediction"].shape[0] == archive["data/time"].shape[0] == samples

@@ -1,4 +1,4 @@
-"""Systems that switch among linear modes, simulated by numpy, their filter with the true parameters, and the program run on them."""
+"""Systems that switch between linear modes (simulated by numpy), the filter with the true parameters, and runs of the program."""
 import math
 import subprocess
 
@@ -9,7 +9,7 @@ SD = 0.02
 
 
 def inputs(g, run, samples):
-    """Redrawn at each sample in odd runs, held for 3 to 24 samples in even ones."""
+    """Inputs: drawn at each sample in odd runs, held for 3 to 24 samples in even ones."""
     u = np.zeros((samples, 2))
     k = 0
     while k < samples:
@@ -20,7 +20,7 @@ def inputs(g, run, samples):
 
 
 def sticky(g, count, stay_samples, samples):
-    """Modes that last for exponentially distributed times; the next is any other, equally likely."""
+    """Modes with exponentially distributed stays; the next mode is any other with equal probability."""
     z = np.zeros(samples, int)
     k, mode = 0, int(g.integers(count))
     while k < samples:
@@ -40,7 +40,7 @@ class Switching:
 
     @staticmethod
     def drawn(g):
-        """Of 2 to 4 modes and one or two states, stays of 50 to 400 samples, with and without measurement noise."""
+        """A random system with 2 to 4 modes, one or two states, stays of 50 to 400 samples, with and without measurement noise."""
         K, n, dwell = int(g.integers(2, 5)), int(g.integers(1, 3)), float(g.uniform(50, 400))
         A = [np.diag(g.uniform(-0.6, -0.1, n)) + (0.08 * g.standard_normal((n, n)) * (1 - np.eye(n))) for _ in range(K)]
         B = [0.2 * g.standard_normal((n, 2)) for _ in range(K)]
@@ -55,7 +55,7 @@ class Switching:
         return u, x + math.sqrt(self.R) * g.standard_normal(x.shape)
 
     def log_density(self, u, y):
-        """Of every sample but the first given those before, by the IMM filter (exact for R = 0) with the true parameters."""
+        """Log density of every sample after the first, given the previous ones, by the IMM filter with the true parameters (exact for R = 0)."""
         K, n = self.K, self.n
         T = np.full((K, K), 1 / self.dwell / max(1, K - 1))
         np.fill_diagonal(T, 1 - 1 / self.dwell)

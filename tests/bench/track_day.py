@@ -28,20 +28,20 @@ BLOCK = 600 * RATE_HZ  # ten minutes
 CHECKPOINT = 2000  # samples: ten seconds
 
 
-VARIANTS = 7  # blocks differ, but not all of them: making them would take longer than filtering them
+VARIANTS = 7  # number of different blocks; generating all would take longer than filtering them
 
 
 @functools.lru_cache(VARIANTS)
 def values(variant, size):
-    """Of a block's lines what follows the time, and what disturbs them."""
+    """Contents of a block's lines after the time, and the disturbances among them."""
     random = np.random.default_rng([7, variant])
     k = variant * size + np.arange(size)
     left, right = np.sin(k / 170.0), np.sin(k / 230.0 + 1.0)
-    gain = np.where((k // 3000) % 2 == 0, 0.9, 0.4)  # two modes that take turns
+    gain = np.where((k // 3000) % 2 == 0, 0.9, 0.4)  # two alternating modes
     state = gain * (right - left) + random.normal(0.0, 0.02, size)
     table = np.column_stack([state, left, right])
     lines = (",%.6f,%.6f,%.6f\n" * size % tuple(table.ravel())).splitlines(keepends=True)
-    for i in range(0, size - 3, 997):  # a state, then an input, that is missing; now and then a line that is no sample
+    for i in range(0, size - 3, 997):  # a missing state, then a missing input; sometimes a line that is not a sample
         lines[i] = "," + lines[i][lines[i].index(",", 1):]
         lines[i + 1] = ",".join([*lines[i + 1].split(",")[:2], "", lines[i + 1].split(",")[3]])
         if i % (997 * 16) == 0:
@@ -50,7 +50,7 @@ def values(variant, size):
 
 
 def block(number, size):
-    """The lines of a block; some samples come twice."""
+    """The lines of a block; some samples are repeated."""
     times = ("%.3f\n" * size % tuple((number * size + np.arange(size)) / RATE_HZ)).splitlines()
     lines = list(map(operator.add, times, values(number % VARIANTS, size)))
     for i in range(2, size, 997):
@@ -59,7 +59,7 @@ def block(number, size):
 
 
 class Filter:
-    """A `modebank track` with a thread that reads what it writes."""
+    """A `modebank track` process with a thread that reads its output."""
 
     def __init__(self, command):
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -95,7 +95,7 @@ class Filter:
             sys.exit(f"status {status}: {self.said.decode()}")
 
     def take(self):
-        """The whole lines so far."""
+        """The complete lines so far."""
         with self.lock:
             end = self.written.rfind(b"\n") + 1
             lines = bytes(self.written[:end])
@@ -112,7 +112,7 @@ def stamp_of(line):
 
 
 def up_to(lines, time_s):
-    """Of lines in the order of time those at or before it."""
+    """The lines at or before a time, from lines in time order."""
     kept = lines.splitlines(keepends=True)
     low, high = 0, len(kept)
     while low < high:
@@ -125,7 +125,7 @@ def up_to(lines, time_s):
 
 
 class Killed:
-    """The filter that is killed and goes on; `digest` is of what it wrote, each estimate once."""
+    """The filter that is killed and continued; `digest` covers its output, each estimate once."""
 
     def __init__(self, command, header, folder):
         self.command, self.header = command, header
@@ -153,7 +153,7 @@ class Killed:
 
     def kill(self):
         if not os.path.exists(self.checkpoint):
-            return  # nothing to go on from yet
+            return  # no checkpoint to continue from yet
         self.filter.end(kill=True)
         self.collect()
         self.start([f"--track.resume={self.checkpoint}"])
@@ -171,7 +171,7 @@ class Killed:
         self.kills += 1
 
     def forget(self):
-        """What lies long before the last checkpoint is not sent again."""
+        """Drops samples long before the last checkpoint, which are not sent again."""
         self.sent = self.sent[-10 * CHECKPOINT:] if len(self.sent) > 20 * CHECKPOINT else self.sent
         self.collect()
 

@@ -1,4 +1,4 @@
-"""What the benchmarks share: their arguments, one run of the program, scores out of its archive, tables with where they come from.
+"""Common parts of the benchmarks: arguments, one run of the program, scores from its archive, tables with their provenance.
 
 Every script of this folder is called NAME.py MODEBANK OUT_FOLDER [SHARED_DATA] and prints one Markdown table; the archives stay in
 OUT_FOLDER. The data are those of SHARED_DATA (else of MODEBANK_DATA), whose README files say where they come from and what others got.
@@ -18,7 +18,7 @@ sys.path.insert(0, str(SOURCES / "tests" / "bench"))
 
 
 class Arguments:
-    """Of a script's command line."""
+    """Arguments of a script's command line."""
 
     def __init__(self, doc):
         if not 3 <= len(sys.argv) <= 4:
@@ -32,11 +32,11 @@ class Arguments:
 
 
 class Failed(RuntimeError):
-    """A run of the program ended with an error; its last line."""
+    """Error of a run of the program, with its last line."""
 
 
 def run(program, config, archive, **options):
-    """One `modebank run` on one thread; option names have a double underscore for the dot."""
+    """One `modebank run` on one thread. A double underscore in an option name stands for the dot."""
     flags = [text for key, value in options.items() for text in ("--" + key.replace("__", "."), str(value))]
     done = subprocess.run([program, "run", config, "--archive.output", archive, "--job.threads", "1", *flags], capture_output=True, text=True)
     if done.returncode != 0:
@@ -49,18 +49,18 @@ def decoded(value):
 
 
 def filters(archive, *but):
-    """The filters that the archive scored, the bank first and `combined` last, without some."""
+    """The filters scored in the archive except the given ones, the bank first and `combined` last."""
     with h5py.File(archive) as file:
         return [name for name in map(decoded, file["evaluation"].attrs["filters"]) if name not in but]
 
 
 def rows_of_runs(file, role):
-    """Names of an open archive's runs of a role, and their rows in arrays over samples."""
+    """Names of an archive's runs of one role, and their rows in arrays over samples."""
     return {decoded(row["name"]): slice(row["first"], row["first"] + row["samples"]) for row in file["data/runs"][:] if decoded(row["role"]) == role}
 
 
 def title_of(name):
-    """The name of a filter's row beside those of banks."""
+    """Name of a filter's row among rows of banks."""
     return "all of them combined" if name == "combined" else f"competitor: {name}"
 
 
@@ -108,7 +108,7 @@ def preamble(program, title, protocol):
 
 
 def head(program, title, protocol, columns):
-    """Title, protocol and provenance, and the head of the table."""
+    """Prints title, protocol, provenance and the head of the table."""
     preamble(program, title, protocol)
     print("| " + " | ".join(columns) + " |\n|" + "---|" * len(columns), flush=True)
 

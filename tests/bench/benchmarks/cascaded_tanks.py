@@ -23,9 +23,9 @@ import subprocess
 import sys
 
 CONFIG = pathlib.Path(__file__).resolve().parents[3] / "configs" / "cascaded_tanks.ini"
-TRAINING, QUARTERS = 700, 4  # samples that the protocol learns from; parts of the cross-validation
+TRAINING, QUARTERS = 700, 4  # training samples of the protocol; parts of the cross-validation
 Choice = collections.namedtuple("Choice", "knee, lags, modes, ahead, score")
-# Fits of several modes to errors have free runs without bounds, see the results' page.
+# Free runs of several modes fitted to errors can diverge; see the page of results.
 CHOICES = [Choice(None, *rest, "density") for rest in itertools.product((2, 3), (1, 2, 3), (1, 10, 30)) if rest[1] > 1 or rest[2] == 1]
 CHOICES += [Choice(knee, lags, 1, ahead, "error") for knee, lags, ahead in itertools.product((None, 3, 3.5, 4, 4.5), (2, 3), (60, 120))]
 FILTERS = ("bank", "one_motion")
@@ -42,7 +42,7 @@ def prepare(data, folder):
 
 
 def scored(program, folder, choice, train, test):
-    """Of each filter: one-step RMSE, log score and shares too far and too close, and the free run's RMSE, on the one test record."""
+    """For each filter on the held-out record: one-step RMSE, log score, shares too far and too close, and RMSE of the free run."""
     archive = folder / f"tanks_{test}_{'_'.join(train)}_{'_'.join(map(str, choice))}.h5"
     derived = ["--data.derive", f"pump_over=max(pump - {choice.knee}, 0)", "--data.input", "pump,pump_over"] if choice.knee else []
     done = subprocess.run([program, "run", CONFIG, "--data.root", folder, "--data.inputs", "tanks_*.csv", "--data.train", ",".join(train), "--data.test", test,
@@ -61,7 +61,7 @@ def scored(program, folder, choice, train, test):
 
 
 def cross_validated(program, folder, choice):
-    """Of each filter in every quarter: what `scored` says of it, learned from the others."""
+    """Results of `scored` for each filter in every quarter, learned from the other quarters."""
     names = [f"quarter{i}" for i in range(QUARTERS)]
     left_out = [scored(program, folder, choice, [n for n in names if n != test], test) for test in names]
     return {name: [scores[name] for scores in left_out] for name in FILTERS}
@@ -76,7 +76,7 @@ def mean_log_score(quarters):
 
 
 def fewest_as_good(results, losses):
-    """Of the fewest modes that the quarters do not tell from the best (within one standard error: Breiman et al. 1984) what loses least."""
+    """The best candidate with the fewest modes as good as the best over quarters (one standard error: Breiman et al. 1984)."""
     mean = {choice: statistics.mean(losses(of["bank"])) for choice, of in results.items()}
     best = min(mean, key=mean.get)
 

@@ -16,7 +16,7 @@ JUMP = 0.5
 
 
 def jump_errors(archive, name):
-    """A filter's errors of the mean one step ahead where the driver's v_steer jumped, held-out samples that all filters score."""
+    """One-step errors of a filter's mean where the driver's v_steer jumped, at held-out samples that all filters score."""
     every, found = filters(archive), []
     with h5py.File(archive) as file:
         for rows in rows_of_runs(file, "test").values():
@@ -51,7 +51,7 @@ def main():
     head(given.program, "DART", PROTOCOL, ["predictor", "A: 1 step", "A: 10 steps", "A: jumps", "B: 1 step", "B: 10 steps", "B: jumps"])
     line(f"bank, {modes(folds[0])} and {modes(folds[1])} modes that may drift", *cells(folds[0], "bank"), *cells(folds[1], "bank"))
     line(f"bank, {modes(steady[0])} and {modes(steady[1])} modes, bank.drift = none", *cells(steady[0], "bank"), *cells(steady[1], "bank"))
-    names = list(dict.fromkeys(filters(folds[0], "combined") + filters(folds[1])))  # terms may be taken in one fold alone
+    names = list(dict.fromkeys(filters(folds[0], "combined") + filters(folds[1])))  # terms may be accepted in one fold only
     for name in names[1:]:
         line(title_of(name), *cells(folds[0], name), *cells(folds[1], name))
     for reference in REFERENCE:

@@ -20,16 +20,16 @@ LARGEST_DELAY = 10  # samples
 
 
 def difference(inputs):
-    """The right wheel less the left one."""
+    """Speed of the right wheel minus that of the left."""
     return inputs[:, 1] - inputs[:, 0]
 
 
 def odometry(inputs):
-    """The yaw rate that the robot computed from its wheels."""
+    """The yaw rate from the robot's wheel odometry."""
     return inputs[:, 1]
 
 
-# Title, configuration, samples in 5 s, seconds from one start moment to the next, what of the inputs turns the robot.
+# Title, configuration, samples in 5 s, seconds between start moments, function of the inputs that turns the robot.
 SETS = [("ICE", "husky_ice", 33, 5, difference), ("FLOORING", "flooring", 33, 5, difference),
         ("DRIVE", "drive_husky", 100, 1, difference), ("Husky bag", "husky_outdoor", 50, 2, odometry)]
 
@@ -42,7 +42,7 @@ def command(program, *words):
 
 
 def learned(given, name, archive, ahead, roles):
-    """Runs the chain; the name of the forecast so many samples ahead."""
+    """Runs the chain; returns the named filter for forecasts this many samples ahead."""
     options = [text for key, value in roles.items() for text in (f"--data.{key}", ",".join(value))]
     screen = command(given.program, "run", SOURCES / "configs" / f"{name}.ini", "--archive.output", archive, "--filter.horizon", f"1,{ahead}",
                      "--job.threads", 1, "--force", "--json", *options)
@@ -50,12 +50,12 @@ def learned(given, name, archive, ahead, roles):
 
 
 def delayed(turning, delay):
-    """The value `delay` samples before; at the start of a run the first one."""
+    """The value `delay` samples earlier; at the start of a run, the first value."""
     return np.concatenate([np.full(min(delay, len(turning)), turning[0]), turning[:max(0, len(turning) - delay)]])
 
 
 def wheels_of(training):
-    """Factor and delay that describe the training runs best, from pairs (turning, yaw rate)."""
+    """Factor and delay that fit the training runs best, from pairs (turning, yaw rate)."""
     def fit(delay):
         u, y = (np.concatenate(column) for column in zip(*((delayed(u, delay), y) for u, y in training)))
         factor = u @ y / (u @ u)

@@ -8,7 +8,7 @@ from ablation import FEATURES, Bench, Stages, cells, halves, outcome, replaced, 
 
 
 def both_halves(given, title, protocol, config, old="", new="", recipe=None, more=()):
-    """`old`, `new`: what the configuration's data paths say, and what to put in its place. `recipe`: name and configuration of a published
+    """`old`, `new`: text in the configuration's data paths and its replacement. `recipe`: name and configuration of a published
     recipe that gets a row of its own. `more`: further rows, as ablation.py's FEATURES."""
     os.environ["MODEBANK_DATA"] = str(given.data)
     preamble(given.program, title, protocol)

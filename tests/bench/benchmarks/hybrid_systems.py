@@ -32,7 +32,7 @@ def simulator(data):
 
 
 def seed_scores(program, simulate, system, seed, folder, transition="logit"):
-    """What the bank scores on the held-out runs of one seed, beside the true parameters with the true guard and with a Markov chain."""
+    """Held-out scores of one seed: the bank, and the true parameters with the true transitions and with a Markov chain."""
     runs = [simulate.simulate(system, 1500, seed, i) for i in range(12)]
     folder.mkdir(parents=True, exist_ok=True)
     simulate.write(system, runs, folder, False)
@@ -71,8 +71,8 @@ def errors_stated(archive):
 
 
 def accuracy(archive, truth):
-    """Share of samples whose most probable filtered mode is the true one that led to it, each of the bank's modes taken for the true one
-    that it meets most often. The true filter's is 1: states are measured exactly, so that it knows what the guard says."""
+    """Share of samples whose most probable filtered mode is the true mode of the step. Each mode of the bank stands for the true one
+    with which it coincides most often. The true filter reaches 1, because states are measured exactly."""
     with h5py.File(archive) as file:
         said = [np.argmax(file["evaluation/bank/mode_probability"][rows], axis=1)[1:] for rows in rows_of_runs(file, "test").values()]
     said, led = np.concatenate(said), np.concatenate([m[:-1] for m in truth])

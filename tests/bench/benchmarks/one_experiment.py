@@ -46,7 +46,7 @@ class Arx:
         return self.design(u, y, np.arange(self.start, len(y))) @ self.theta
 
     def free_run(self, u, y):
-        """The first samples are measured, the rest follows from the inputs."""
+        """Free run: the first samples are measured, the rest follows from the inputs."""
         x = y.copy()
         for k in range(self.start, len(y)):
             x[k] = self.regressor(u, x, k) @ self.theta
@@ -75,7 +75,7 @@ def filter_rows(archive, held):
 
 
 def experiment(given, title, protocol, u, y, period_s, order, trains, intercept, reference, quantum="none"):
-    """`order`: na, nb, delay. `trains`: so many samples at the front."""
+    """`order`: na, nb, delay. `trains`: number of training samples at the beginning."""
     arx = Arx(*order)
     for name, part in (("a", slice(0, trains)), ("b", slice(trains, None)), ("whole", slice(None))):
         table = np.c_[period_s * np.arange(len(y[part])), u[part], y[part]]
