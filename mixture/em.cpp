@@ -40,7 +40,7 @@ void check(const GaussianMixture& start, Index features) {
   check_sizes(start);
   if (start.features() != features)
     throw std::invalid_argument(
-        fmt::format("EM is given points of {} features and a start of {}", features, start.features()));
+        fmt::format("points have {} features, but the start has {}", features, start.features()));
 }
 
 void order_by_weight(GaussianMixture& mixture) {
@@ -71,11 +71,11 @@ GaussianMixture usable_start(const GaussianMixture& start, const ScaledCloud& cl
   scaled.type = options.covariance;
   cloud.set_noise(scaled);
   for (Eigen::MatrixXd& covariance : scaled.covariances) {
-    if (!covariance.allFinite()) throw std::invalid_argument("EM is given a start whose covariance is not finite");
+    if (!covariance.allFinite()) throw std::invalid_argument("the start has a covariance that is not finite");
     raise_to_floor(covariance, options.covariance_floor, options.covariance);
   }
   if (!scaled.means.allFinite() || !(scaled.weights.minCoeff() >= 0.0))
-    throw std::invalid_argument("EM is given a start with a mean or weight that is not finite, or a negative weight");
+    throw std::invalid_argument("the start has a mean or weight that is not finite, or a negative weight");
   return scaled;
 }
 
@@ -93,7 +93,8 @@ void check_points(const PointSet& set) {
         fmt::format("EM of {} features needs as many typical errors, finite and nonnegative, or none", set.features()));
   if (set.weights.size() == 0) return;
   if (set.weights.size() != set.count())
-    throw std::invalid_argument(fmt::format("EM is given {} points but {} weights", set.count(), set.weights.size()));
+    throw std::invalid_argument(fmt::format("{} points have {} weights; expected one weight per point, or none",
+                                            set.count(), set.weights.size()));
   if (!set.weights.allFinite() || set.weights.minCoeff() < 0.0 || !(set.weights.sum() > 0.0))
     throw std::invalid_argument("EM needs finite, nonnegative weights that are not all zero");
 }

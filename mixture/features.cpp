@@ -72,7 +72,8 @@ class CloudBuilder {
       : fits_(fits), with_errors_(errors == WindowErrors::include) {
     const Index p = fits.parameter_count(), n = fits.structure.states;
     if (static_cast<Index>(states.size()) != n)
-      throw std::invalid_argument(fmt::format("features of {} states are given {} state names", n, states.size()));
+      throw std::invalid_argument(
+          fmt::format("{} states have {} names; expected one name per state", n, states.size()));
     noises_ = features == FeatureSet::parameters ? 0 : n;
     cloud_.names = fits.parameter_names();
     for (Index i = 0; i < noises_; ++i)

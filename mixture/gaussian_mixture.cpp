@@ -24,7 +24,7 @@ void check_numbers(const GaussianMixture& mixture) {
     throw std::invalid_argument("mixture with a mean or weight that is not finite, or a negative weight");
   if (mixture.noise.present() && !(mixture.noise.weight >= 0.0 && std::isfinite(mixture.noise.weight)))
     throw std::invalid_argument(
-        fmt::format("mixture whose noise component has the weight {}, which is no probability", mixture.noise.weight));
+        fmt::format("noise component has the weight {}; expected a probability", mixture.noise.weight));
 }
 
 /// Evaluates a mixture block by block. With errors it uses units in which the mixture's numbers are near one.
@@ -60,7 +60,7 @@ class BlockEvaluation {
     if (set.features() != mixture.features())
       throw std::invalid_argument(
           fmt::format("points have {} features, the mixture has {}", set.features(), mixture.features()));
-    if (!set.points.allFinite()) throw std::invalid_argument("a mixture is evaluated at points that are not finite");
+    if (!set.points.allFinite()) throw std::invalid_argument("a mixture needs finite points for its evaluation");
     check_errors(set);
     return set.has_errors() ? FeatureScale::near_one(mixture) : FeatureScale::identity(set.features());
   }
@@ -117,7 +117,10 @@ void check_errors(const PointSet& set) {
         const double most = std::sqrt(S(f, f)) * std::sqrt(S(g, g));
         sound = std::abs(S(f, g) - S(g, f)) <= rounding * most && std::abs(S(f, g)) <= (1.0 + rounding) * most;
       }
-    if (!sound) throw std::invalid_argument(fmt::format("the error covariance of point {} is no covariance", i));
+    if (!sound)
+      throw std::invalid_argument(fmt::format(
+          "the error covariance of point {} is invalid: expected a finite, symmetric, positive semidefinite matrix",
+          i));
   }
 }
 

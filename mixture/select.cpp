@@ -190,7 +190,7 @@ GaussianMixture fitted_to_all(const PointSet& points, const GaussianMixture& cho
   const Index fewest = candidates.front().components;
   if (fewest > task.distinct_points)
     throw DataError(
-        fmt::format("the fewest components asked for are {}, but there are {} distinct points among {}: ask for at "
+        fmt::format("mixture.components begins at {}, but {} of {} points are distinct: choose at "
                     "most {}",
                     fewest, task.distinct_points, task.points.count(), task.distinct_points));
   if (task.options.criterion == Criterion::heldout)
@@ -207,10 +207,10 @@ void check_enough(const WindowFits& fits, const FeatureCloud& cloud, const Selec
   const Index points = cloud.points.cols();
   if (fewest == options.components.end() || *fewest <= points) return;
   const std::string fewer = points > 0 ? fmt::format("ask for at most {} components, or ", points) : "";
-  throw DataError(fmt::format(
-      "the fewest components asked for are {}, but {} of {} windows can be clustered: {}have more windows clustered (a "
-      "prior for windows that are not excited, all ranks, shorter windows, more data)",
-      *fewest, points, fits.count(), fewer));
+  throw DataError(
+      fmt::format("mixture.components begins at {}, but {} of {} windows can be clustered: {}cluster more windows (a "
+                  "prior for windows that are not excited, all ranks, shorter windows, more data)",
+                  *fewest, points, fits.count(), fewer));
 }
 
 MixtureResult with_memberships(const FeatureCloud& cloud, const FeatureCloud& assigned, Index windows,
@@ -236,11 +236,11 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
   if (points.count() == 0) throw DataError("there are no points to be clustered");
   check_points(points);
   if (!design.runs.empty() && std::ssize(design.runs) != points.count())
-    throw std::invalid_argument(
-        fmt::format("selection is given {} points and the runs of {}", points.count(), design.runs.size()));
+    throw std::invalid_argument(fmt::format("{} points have runs for {}; expected one run per point, or none",
+                                            points.count(), design.runs.size()));
   if (!(design.effective_samples >= 0.0) || !std::isfinite(design.effective_samples))
     throw std::invalid_argument(fmt::format(
-        "selection is given {} effective samples: a finite number above 0, or 0 where all points are independent",
+        "effective_samples = {} is out of range: a finite number above 0, or 0 if all points are independent",
         design.effective_samples));
   std::vector<Index> positions;
   const std::optional<PointPart> part = part_to_compare(points, seed, positions);

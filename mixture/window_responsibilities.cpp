@@ -68,7 +68,7 @@ WindowResponsibilities WindowResponsibilities::merged(Index into, Index absorbed
 }
 
 Eigen::MatrixXd WindowResponsibilities::fitted_block(Index first, Index count) const {
-  if (first < 0 || count < 0 || first + count > windows_) throw std::invalid_argument("there are no such windows");
+  if (first < 0 || count < 0 || first + count > windows_) throw std::invalid_argument("windows out of range");
   if (!source_) return stored_.middleCols(first, count);
   Eigen::MatrixXd result = Eigen::MatrixXd::Constant(fitted(), count, not_a_number);
   for (const FeatureCloud& cloud : source_->clouds) fill_block(source_->mixture, cloud, first, count, result);

@@ -42,7 +42,8 @@ void check_numbers(const Mode& mode, const std::string& of_mode) {
   require(mode.model.A.allFinite() && mode.model.B.allFinite() && mode.model.c.allFinite(),
           "model" + of_mode + " is not finite");
   require(mode.bend.allFinite(), "coefficients of terms" + of_mode + " are not finite");
-  require(is_covariance(mode.Q), "Q" + of_mode + " is no covariance");
+  require(is_covariance(mode.Q),
+          "Q" + of_mode + " is not a covariance matrix: expected a finite, symmetric, positive semidefinite one");
 }
 
 void check_logit_sizes(const Bank& bank) {
@@ -55,9 +56,9 @@ void check_logit_sizes(const Bank& bank) {
 
 void check_adaptation(const NoiseAdaptation& adaptation) {
   const double f = adaptation.forgetting, n0 = adaptation.prior_samples;
-  require(f > 0.0 && f <= 1.0, "noise forgetting is " + std::to_string(f) + ", must lie above 0 and not above 1");
+  require(f > 0.0 && f <= 1.0, "noise forgetting is " + std::to_string(f) + "; expected a value above 0, at most 1");
   require(n0 > 0.0 && std::isfinite(n0),
-          "noise adaptation starts from " + std::to_string(n0) + " prior samples, must be above 0");
+          "noise adaptation starts from " + std::to_string(n0) + " prior samples; expected a value above 0");
 }
 
 void check_noise_factor(const Bank& bank) {
@@ -75,40 +76,45 @@ void check_drift(const Bank& bank) {
   const LinearStructure& s = bank.structure;
   const DriftRates& rates = bank.drift.rates;
   expect_size("scale of the drift", bank.drift.scale.size(), 1, s.regressors(), 1);
-  require(bank.drift.scale.allFinite() && bank.drift.scale.minCoeff() > 0.0, "drift needs a positive scale");
-  require(rates.q >= 0.0 && rates.p0 >= 0.0 && std::isfinite(rates.q + rates.p0), "drift q and p0 must be variances");
-  require(rates.leak > 0.0 && rates.leak <= 1.0, "drift leak must lie above 0 and not above 1");
+  require(bank.drift.scale.allFinite() && bank.drift.scale.minCoeff() > 0.0,
+          "drift needs a finite positive scale for each regressor");
+  require(rates.q >= 0.0 && rates.p0 >= 0.0 && std::isfinite(rates.q + rates.p0),
+          "drift q and p0 must be finite and at least 0");
+  require(rates.leak > 0.0 && rates.leak <= 1.0, "drift leak must be above 0 and at most 1");
   require(bank.motion_parameters.empty(), "drift needs linear modes, not those of " + bank.model);
-  require((bank.R.array() == 0.0).all(), "drift needs states measured exactly: R must be 0");
-  require(bank.C.isIdentity(0.0) && bank.C.rows() == s.states, "drift needs each state measured by itself");
-  require(bank.terms.empty(), "drift is of linear coefficients alone, and it has terms");
+  require((bank.R.array() == 0.0).all(), "drift needs exactly measured states: R must be 0");
+  require(bank.C.isIdentity(0.0) && bank.C.rows() == s.states,
+          "drift needs each state measured directly: C must be the identity");
+  require(bank.terms.empty(), "drift needs linear modes without terms");
   require(bank.noise_factor.empty(), "drift needs noise that does not depend on state and input");
   if (!has_one_theta(bank)) return;
   double weight = 0.0;
   for (const Mode& mode : bank.modes) {
-    require(mode.weight >= 0.0, "modes of one theta that drifts need weights that are none below 0");
+    require(mode.weight >= 0.0, "modes that share a drifting theta need weights of at least 0");
     weight += mode.weight;
   }
-  require(weight > 0.0 && std::isfinite(weight), "modes of one theta that drifts need weights, not all of them 0");
+  require(weight > 0.0 && std::isfinite(weight), "modes that share a drifting theta need a positive weight");
 }
 
 void check_running_noise(const Bank& bank) {
   const RunningNoise& noise = bank.running_noise;
   const Wandering wandering = bank.drift.wandering;
-  require(wandering == Wandering::all || !noise.empty(), "drift of a part of its coefficients needs running noise");
+  require(wandering == Wandering::all || !noise.empty(),
+          "drift of some coefficients (constant or gain) needs running noise");
   if (noise.empty()) return;
   const LinearStructure& s = bank.structure;
   const auto positive = [](const auto& x) { return x.allFinite() && (x.array() > 0.0).all(); };
   expect_size("least variance of the running noise", noise.floor.size(), 1, s.states, 1);
   require(positive(noise.floor), "running noise needs a positive least variance of each state");
-  require(bank.mode_count() == 1, "running noise is that of one mode");
-  require(positive(bank.noise_variance()), "running noise starts from a positive variance");
+  require(bank.mode_count() == 1, "running noise needs exactly one mode");
+  require(positive(bank.noise_variance()), "running noise needs a positive diagonal of Q");
   require(!bank.drift.empty(), "running noise needs a mode that drifts");
-  require(wandering != Wandering::constant || s.intercept, "structure has no constant that could wander");
-  require(wandering != Wandering::gain || s.inputs > 0, "structure has no inputs whose gain could wander");
+  require(wandering != Wandering::constant || s.intercept, "structure has no constant that could drift");
+  require(wandering != Wandering::gain || s.inputs > 0, "structure has no inputs whose gain could drift");
   require(noise.lam >= 0.0 && noise.lam <= 1.0, "running noise needs lam in [0, 1]");
   for (const auto& [ahead, factor] : noise.horizon_factor)
-    require(ahead > 1 && factor > 0.0 && std::isfinite(factor), "factor of a horizon is positive, and 1 at horizon 1");
+    require(ahead > 1 && factor > 0.0 && std::isfinite(factor),
+            "horizon factors must be finite and positive, for horizons of at least 2");
   StudentNoise{noise.nu};
 }
 
@@ -142,7 +148,7 @@ TransitionMatrix::TransitionMatrix(Eigen::MatrixXd row_stochastic) : matrix_(std
 }
 
 TransitionMatrix TransitionMatrix::sticky(Eigen::Index modes, double stay) {
-  if (modes < 1) throw std::invalid_argument("a transition matrix of " + std::to_string(modes) + " modes");
+  if (modes < 1) throw std::invalid_argument("a transition matrix needs at least 1 mode, not " + std::to_string(modes));
   if (!(stay >= 0.0 && stay <= 1.0))
     throw std::invalid_argument("stay is " + std::to_string(stay) + ", must be a probability");
   if (modes == 1) return {};
@@ -192,13 +198,14 @@ bool has_one_theta(const Bank& bank) {
 
 void validate(const Bank& bank) {
   check_sizes(bank);
-  require(is_covariance(bank.R), "R is no covariance");
+  require(is_covariance(bank.R),
+          "R is not a covariance matrix: expected a finite, symmetric, positive semidefinite one");
   require(bank.C.allFinite(), "C is not finite");
-  require(bank.quantum.allFinite() && (bank.quantum.array() >= 0.0).all(), "quanta are no sizes");
-  require(!bank.is_quantised() || bank.R.isDiagonal(0.0), "R is not diagonal, as quantised measurements need it");
+  require(bank.quantum.allFinite() && (bank.quantum.array() >= 0.0).all(), "quanta must be finite and at least 0");
+  require(!bank.is_quantised() || bank.R.isDiagonal(0.0), "R is not diagonal, which quantised measurements require");
   require(bank.initial_probability.allFinite() && bank.initial_probability.minCoeff() >= 0.0 &&
               bank.initial_probability.sum() > 0.0,
-          "initial probabilities are none");
+          "initial probabilities are not nonnegative numbers with sum 1");
   for (std::size_t j = 0; j < bank.modes.size(); ++j) check_numbers(bank.modes[j], " of mode " + std::to_string(j));
   require(bank.transition_logit.weights.allFinite() && bank.transition_logit.reference.allFinite(),
           "weights of the transition are not finite");

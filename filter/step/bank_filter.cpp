@@ -26,16 +26,16 @@ const Bank& validated(const Bank& bank) {
 void check_memory(const FilterMemory& memory, Index n, Index K) {
   if (memory.means.rows() != n || memory.means.cols() != K || memory.covariances.rows() != n * n ||
       memory.covariances.cols() != K || memory.mode_probability.size() != K)
-    throw std::invalid_argument("the snapshot is not of a filter of " + std::to_string(K) + " modes and " +
+    throw std::invalid_argument("the snapshot does not fit a filter of " + std::to_string(K) + " modes and " +
                                 std::to_string(n) + " states");
   const auto is_positive = [](double value) { return value > 0.0 && std::isfinite(value); };
   if (!memory.means.allFinite() || !memory.covariances.allFinite() || !memory.mode_probability.allFinite() ||
       memory.mode_probability.minCoeff() < 0.0 || !is_positive(memory.mode_probability.sum()) ||
       !is_positive(memory.noise_scale) || !(memory.noise_samples >= 0.0 && std::isfinite(memory.noise_samples)))
-    throw std::invalid_argument("the snapshot holds numbers that no filter has");
+    throw std::invalid_argument("the snapshot has a number that is not finite or out of range");
   for (Index k = 0; k < K; ++k)
     if (!is_covariance(memory.covariances.col(k).reshaped(n, n)))
-      throw std::invalid_argument("the snapshot holds a matrix that is no covariance");
+      throw std::invalid_argument("the snapshot has a matrix that is not a covariance");
 }
 
 /// The same check for drifting coefficients; `own`: state of this filter.
@@ -47,13 +47,13 @@ void check_memory(const DriftState& drift, const DriftState& own) {
   };
   if (drift.theta.rows() != own.theta.rows() || drift.theta.cols() != own.theta.cols() || !same(drift.P, own.P) ||
       !same(drift.cross, own.cross) || drift.variance.size() != own.variance.size())
-    throw std::invalid_argument("the snapshot is not of a filter whose modes drift as these do");
+    throw std::invalid_argument("the snapshot is from a filter with other drifting modes");
   const auto finite = [](const Eigen::MatrixXd& x) { return x.allFinite(); };
   const auto variances = [](const Eigen::MatrixXd& P) { return P.allFinite() && (P.diagonal().array() >= 0.0).all(); };
   if (!drift.theta.allFinite() || !std::all_of(drift.P.begin(), drift.P.end(), variances) ||
       !std::all_of(drift.cross.begin(), drift.cross.end(), finite) || !drift.variance.allFinite() ||
       (drift.variance.array() <= 0.0).any())
-    throw std::invalid_argument("the snapshot holds numbers that no drifting mode has");
+    throw std::invalid_argument("the snapshot has drift values that are not finite or out of range");
 }
 
 }  // namespace

@@ -30,9 +30,9 @@ modebank::Mode inside(const Mode& mode, Index n, Index m) {
 }
 
 LinearStructure structure_of(const BankDescription& d) {
-  if (d.modes.empty()) throw std::invalid_argument("a bank needs a mode");
+  if (d.modes.empty()) throw std::invalid_argument("a bank needs at least one mode");
   if (d.state_lags < 1 || d.modes.front().A.rows % d.state_lags != 0)
-    throw std::invalid_argument("A has " + std::to_string(d.modes.front().A.rows) + " rows, no multiple of " +
+    throw std::invalid_argument("A has " + std::to_string(d.modes.front().A.rows) + " rows, not a multiple of " +
                                 std::to_string(d.state_lags) + " state lags");
   return {d.modes.front().A.rows / d.state_lags, d.inputs, d.intercept, d.state_lags, d.input_lags, d.input_delay};
 }
@@ -40,7 +40,7 @@ LinearStructure structure_of(const BankDescription& d) {
 modebank::RunningNoise inside(const RunningNoise& noise) {
   modebank::RunningNoise result{noise.forgetting, noise.degrees_of_freedom, view(noise.floor)};
   if (noise.horizon.size() != noise.factor.size())
-    throw std::invalid_argument("running noise has a factor for each horizon");
+    throw std::invalid_argument("running noise needs one factor per horizon");
   for (std::size_t i = 0; i < noise.horizon.size(); ++i)
     result.horizon_factor.emplace_back(static_cast<Index>(noise.horizon[i]), noise.factor[i]);
   return result;
@@ -210,7 +210,7 @@ std::vector<double> BankFilter::snapshot() const {
 void BankFilter::restore(const std::vector<double>& snapshot) {
   constexpr double most_samples = 9007199254740992.0;  // 2^53
   if (snapshot.empty() || !(snapshot.back() >= 0.0 && snapshot.back() <= most_samples))
-    throw std::invalid_argument("the snapshot is not one that a filter has made: its last number counts no samples");
+    throw std::invalid_argument("the snapshot is damaged: its last number is not a number of samples");
   inside_->filter.restore(snapshot_of({snapshot.begin(), snapshot.end() - 1}));
   inside_->samples = static_cast<Index>(snapshot.back());
 }

@@ -82,7 +82,7 @@ Forecaster::~Forecaster() = default;
 
 std::vector<StateForecast> Forecaster::ahead(const FilterSnapshot& from,
                                              const Eigen::Ref<const Eigen::MatrixXd>& inputs, Index steps) {
-  if (steps < 1) throw std::invalid_argument("steps: a forecast takes at least 1 step, not " + std::to_string(steps));
+  if (steps < 1) throw std::invalid_argument("steps: a forecast needs at least 1 step, not " + std::to_string(steps));
   if (inputs_ > 0 && (inputs.rows() != inputs_ || inputs.cols() < steps - input_delay_))
     throw std::invalid_argument("inputs: a forecast of " + std::to_string(steps) + " steps takes " +
                                 std::to_string(inputs_) + " inputs of " +

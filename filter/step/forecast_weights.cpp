@@ -31,11 +31,12 @@ ForecastWeights::ForecastWeights(const std::vector<double>& start, std::ptrdiff_
   if (start.empty() || horizon < 1)
     throw std::invalid_argument("weights need a forecaster, and a horizon of at least one sample");
   for (const double weight : start) {
-    if (!(weight >= 0.0) || std::isinf(weight)) throw std::invalid_argument("a weight to start with is negative");
+    if (!(weight >= 0.0) || std::isinf(weight))
+      throw std::invalid_argument("a starting weight is negative or not finite");
     start_.push_back(std::max(std::log(weight), least_log_weight));
   }
   if (*std::max_element(start_.begin(), start_.end()) <= least_log_weight)
-    throw std::invalid_argument("no weight to start with is positive");
+    throw std::invalid_argument("the starting weights have no positive value");
   restart();
 }
 

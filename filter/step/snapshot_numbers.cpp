@@ -81,7 +81,7 @@ class NumbersReader {
   std::size_t at_ = 0;
 
   [[noreturn]] static void refuse() {
-    throw std::invalid_argument("the snapshot is not one that a filter has made: its numbers do not fit each other");
+    throw std::invalid_argument("the snapshot is damaged: its sizes do not fit its numbers");
   }
   Index left() const { return static_cast<Index>(numbers_.size() - at_); }
   double next() {
@@ -109,7 +109,7 @@ FilterSnapshot snapshot_of(const std::vector<double>& numbers) {
   double format = 0.0;
   reader(format);
   if (format != numbers_format)
-    throw std::invalid_argument("the snapshot was made by another version of the library, or by no filter");
+    throw std::invalid_argument("the snapshot comes from another version of the library, or not from a filter");
   FilterSnapshot snapshot;
   for_each_part(snapshot, [&](auto& part) { reader(part); });
   reader.require_end();

@@ -25,7 +25,7 @@ double student_log_constant(double degrees) {
 StudentNoise::StudentNoise(double degrees) : degrees_(degrees), log_constant_(0.0) {
   if (degrees != 0.0 && !(degrees > 2.0 && std::isfinite(degrees)))
     throw std::invalid_argument(
-        "Student's t needs more than 2 degrees of freedom for a variance, or 0 for the normal: " +
+        "degrees of freedom of Student's t must be above 2, or 0 for the normal distribution: " +
         std::to_string(degrees));
   log_constant_ = student_log_constant(degrees);
 }

@@ -231,7 +231,8 @@ WindowFits collect(Fitting&& fitting) {
 
 FitOptions options_for(const MotionModel& model, const Recording& recording, FitOptions options) {
   options.model = model.name();
-  if (is_linear(options)) throw std::invalid_argument("a motion model cannot be called " + options.model);
+  if (is_linear(options))
+    throw std::invalid_argument("the name of a motion model must not be that of a linear model: " + options.model);
   if (model.states() != recording.state_count() || model.inputs() != recording.input_count())
     throw std::invalid_argument("the motion model " + options.model + " has other states or inputs than the runs");
   return options;

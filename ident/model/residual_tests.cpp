@@ -55,7 +55,7 @@ double bartlett_variance(const VectorXd& a, const VectorXd& b) {
 
 void check(const MatrixXd& residual, const MatrixXd& input, const ResidualTestOptions& options) {
   if (residual.rows() < 1 || residual.cols() != input.cols())
-    throw std::invalid_argument("residual tests need a residual and as many samples of it as of the inputs");
+    throw std::invalid_argument("residual tests need residuals and inputs with the same number of samples");
   if (options.lags < 1) throw std::invalid_argument("residual tests need at least one lag");
   if (!(options.level > 0.0 && options.level < 1.0))
     throw std::invalid_argument("the level of a band lies between 0 and 1");

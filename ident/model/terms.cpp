@@ -41,9 +41,9 @@ void check_terms(const MotionTerms& terms, Index regressors) {
   require(terms.direction.allFinite() && terms.low.allFinite() && terms.high.allFinite() && terms.unit.allFinite(),
           "variables are not finite");
   require((terms.low.array() <= terms.high.array()).all() && (terms.unit.array() > 0.0).all(),
-          "ranges are none or units are not positive");
+          "ranges are empty or units are not positive");
   for (const Term& term : terms.terms)
-    require(fits(term, V) && std::abs(term.knot) < 1e300, "variables or knots are none of theirs");
+    require(fits(term, V) && std::abs(term.knot) < 1e300, "variables or knots are out of range");
 }
 
 MotionTerms used_part(const MotionTerms& terms, const std::vector<Term>& used) {

@@ -22,7 +22,7 @@ LinearStructure structure_of(const SimulationOptions& o) { return {o.states, o.i
 
 void check_modes(const SimulationOptions& o) {
   require_setting(!o.modes.empty(), "no mode is given");
-  require_setting(o.states >= 1 && o.inputs >= 0, "there must be at least one state and no negative number of inputs");
+  require_setting(o.states >= 1 && o.inputs >= 0, "expected at least one state and zero or more inputs");
   const Index p = structure_of(o).parameters();
   for (const Eigen::VectorXd& theta : o.modes)
     require_setting(
@@ -102,8 +102,7 @@ Eigen::MatrixXd drive_states(const SimulationOptions& o, const Eigen::VectorXi& 
     const std::size_t s = static_cast<std::size_t>(modes(k));
     states.col(k + 1) = models[s].next(states.col(k), inputs.col(k)) +
                         draw_noise(o.states, o.process_sd.size() == 1 ? o.process_sd[0] : o.process_sd[s], generator);
-    require_setting(states.col(k + 1).allFinite(),
-                    "mode " + std::to_string(s) + " is unstable: the state leaves all bounds");
+    require_setting(states.col(k + 1).allFinite(), "mode " + std::to_string(s) + " is unstable: the state overflows");
   }
   return states;
 }

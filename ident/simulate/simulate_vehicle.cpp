@@ -62,7 +62,7 @@ void check_sensors(const SensorOptions& s) {
   require_setting(std::isfinite(s.gyro_bias), "gyro_bias is not finite");
   require_setting(std::isfinite(s.lag_s), "lag_s is not finite");
   require_setting(std::isfinite(s.drift) && s.drift > -1.0,
-                  "drift = " + std::to_string(s.drift) + " would stop the clock or turn it back");
+                  "drift = " + std::to_string(s.drift) + " is out of range: above -1");
 }
 
 void check(const VehicleOptions& o) {

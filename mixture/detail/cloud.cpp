@@ -81,7 +81,7 @@ void PointBlocks::lay_out(Index block, double* to) const {
 }
 
 PointBlocks PointBlocks::for_starts(Index most, std::mt19937_64& generator) const {
-  if (!set_) throw std::logic_error("points for starts are chosen from points that are gone");
+  if (!set_) throw std::logic_error("starts need the original points, which this copy no longer has");
   const PointSet& set = *set_;
   const Index chosen = std::min(most, count_);
   const double stride = static_cast<double>(count_) / static_cast<double>(chosen);

@@ -58,7 +58,7 @@ TEST(MixtureDoor, BadArgumentsAreNamed) {
   mixture::Points bad{points, {}, {}, {}};
   bad.values.rows = 3;
   EXPECT_EQ(refusal(bad, {}), "values is 3 x 20 but holds 40 numbers");
-  EXPECT_EQ(refusal({points, {1.0}, {}, {}}, {}), "EM is given 20 points but 1 weights");
+  EXPECT_EQ(refusal({points, {1.0}, {}, {}}, {}), "20 points have 1 weights; expected one weight per point, or none");
   SelectionOptions none;
   none.components.clear();
   EXPECT_EQ(refusal({points, {}, {}, {}}, none), "selection needs candidate numbers of components, each at least 1");

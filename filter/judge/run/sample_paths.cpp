@@ -42,7 +42,8 @@ SamplePaths::SamplePaths(const Bank& bank, Index paths, std::uint64_t seed, Tran
       probability_(bank.mode_count()),
       regressor_(bank.structure.regressors()),
       next_(bank.structure.dimension()) {
-  if (!bank.drift.empty()) throw std::invalid_argument("sample paths know no modes that drift");
+  if (!bank.drift.empty())
+    throw std::invalid_argument("sample paths do not support drifting modes; use method = moments");
   if (paths < 2) throw std::invalid_argument("at least two sample paths, not " + std::to_string(paths));
 }
 

@@ -25,7 +25,8 @@ constexpr double upper_probability = 0.975;
 SeriesByRun differences(const std::vector<Eigen::VectorXd>& better, const std::vector<Eigen::VectorXd>& other) {
   SeriesByRun result;
   for (std::size_t r = 0; r < better.size(); ++r) {
-    if (better[r].size() != other.at(r).size()) throw std::invalid_argument("log densities of runs of two lengths");
+    if (better[r].size() != other.at(r).size())
+      throw std::invalid_argument("log densities of one run have different lengths");
     std::vector<double> run;
     for (Index k = 0; k < better[r].size(); ++k)
       if (const double d = better[r](k) - other[r](k); !std::isnan(d)) run.push_back(d);

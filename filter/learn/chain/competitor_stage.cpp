@@ -76,7 +76,7 @@ FoundTerms take_stated(const Recording& recording, const LinearStructure& struct
   std::vector<std::string> names = state_names(recording, structure);
   for (const std::string& input : input_names(recording, structure)) names.push_back(input);
   const TermRows rows = gather_term_rows(recording, structure, enough_rows);
-  if (rows.count() == 0) throw DataError("no training run has a transition to learn window.terms from");
+  if (rows.count() == 0) throw DataError("no training run has a usable transition for window.terms");
   FoundTerms found;
   found.structure = structure;
   found.terms = stated_terms(read_terms(terms), names, rows.X);

@@ -107,7 +107,8 @@ HeldNoise hold_at_bounds(const NoiseSearch& search, const Bank& exact, Likelihoo
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
   // All samples have equal weight, because other filters' scores are compared with this likelihood.
   const Recording training = unweighted_training_part(recording);
-  if (training.transitions(Role::train) == 0) throw DataError("no training run has a transition to learn from");
+  if (training.transitions(Role::train) == 0)
+    throw DataError("no training run has a usable transition (two successive samples without missing values)");
   const Index n = structure.states, p = structure.parameters();
   Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Zero(n, n));
   bank.modes.push_back(make_mode(structure, global.theta, global.residual_covariance, Eigen::MatrixXd::Zero(p, p),

@@ -19,7 +19,8 @@ namespace modebank {
 
 Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructure& structure) {
   const Transitions transitions = stack_training(unweighted_training_part(recording), structure);
-  if (transitions.count() == 0) throw DataError("no training run has a transition to learn from");
+  if (transitions.count() == 0)
+    throw DataError("no training run has a usable transition (two successive samples without missing values)");
   const Eigen::VectorXd scale =
       (transitions.regressors.colwise().squaredNorm() / static_cast<double>(transitions.count())).cwiseSqrt();
   return scale.unaryExpr([](double rms) { return rms > 0.0 ? rms : 1.0; });

@@ -116,7 +116,7 @@ Index DriftingScores::best() const {
 DriftingScores score_drifting_grid(const Bank& start, const Recording& recording, const DriftingGrid& grid) {
   const std::array<Index, 6> size = grid.sizes();
   for (const Index values : size)
-    if (values == 0) throw std::invalid_argument("a setting of the drifting model has no value to choose from");
+    if (values == 0) throw std::invalid_argument("the drifting model's grid has a setting without values");
   const std::vector<GridRun> runs = training_instants(start, recording);
   const Index drifts = size[0] * size[1] * size[2], rest = size[3] * size[4] * size[5];
   DriftingScores scores{Eigen::VectorXd(drifts * rest), 0, Eigen::MatrixXd(start.structure.states, drifts)};
@@ -144,7 +144,7 @@ DriftingScores score_drifting_grid(const Bank& start, const Recording& recording
     scores.error_ratio.col(d) = scores.error_ratio.col(first);
   }
   scores.samples = samples.front();
-  if (scores.samples == 0) throw DataError("no training run has a sample to score a drifting model on");
+  if (scores.samples == 0) throw DataError("no training run has a sample that scores a drifting model");
   scores.log_score /= static_cast<double>(scores.samples);
   return scores;
 }

@@ -82,7 +82,8 @@ Bank learn_noise_levels(const Recording& recording, const LinearStructure& struc
   Bank bank = bank_frame(recording, structure, R);
   bank.noise_factor = factor;
   Transitions transitions = unweighted(stack_training(recording, structure));
-  if (transitions.count() == 0) throw DataError("no training run has a transition to learn from");
+  if (transitions.count() == 0)
+    throw DataError("no training run has a usable transition (two successive samples without missing values)");
   divide_by_noise(factor, structure, transitions);
   const Regression fit = regression(recording, structure, transitions);
   const Eigen::MatrixXd variances =

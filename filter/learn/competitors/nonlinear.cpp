@@ -156,7 +156,8 @@ void add_wide_level(Bank& bank) {
 Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
                      const RefineOptions& options, const FilterOptions& filter) {
   const Recording known = with_known_terms(recording, structure, terms);
-  if (known.runs.empty()) throw DataError("no training run has a transition to learn from");
+  if (known.runs.empty())
+    throw DataError("no training run has a usable transition (two successive samples without missing values)");
   WindowFits frame;
   frame.structure = with_known_terms(structure, terms);
   frame.global = fit_global(known, frame.structure);

@@ -28,7 +28,7 @@ void check(const BankOptions& options, const WindowFits& fits, const MixtureResu
     throw std::invalid_argument("the mixture's features do not begin with the model's parameters");
   if (!of_parameters && options.theta == ThetaSource::mean)
     throw ConfigurationError(
-        "theta = mean takes modes from the means of components, which are over other features than the model's "
+        "theta = mean takes modes from the components' means, but these have other features than the model's "
         "parameters here: set mixture.features = parameters+noise, or theta = pooled");
   if (options.noise == NoiseSource::fixed && !(options.process_variance >= 0.0))
     throw std::invalid_argument("process variance " + std::to_string(options.process_variance) + " is negative");
@@ -270,7 +270,8 @@ Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, co
                           const std::optional<FilterOptions>& filter, const MotionModel* motion) {
   const bool refined = refinement_asked(options, motion == nullptr) == Refine::em;
   if (refined && motion)
-    throw std::invalid_argument("refine = em fits linear modes, not those of the motion model " + fits.model);
+    throw std::invalid_argument("refine = em needs linear modes; expected refine = none or auto for the motion model " +
+                                fits.model);
   Refinement learned = refined ? learn_refined_bank(recording, fits, mixture, options, R, filter.value())
                                : Refinement{learn_bank(recording, fits, mixture, options, R, motion), {}, {}, {}, {}};
   if (motion) return learned;

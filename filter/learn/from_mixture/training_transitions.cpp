@@ -81,7 +81,8 @@ TrainingTransitions gather_training_transitions(const Recording& recording, cons
   }
   all.log_noise_factor = divide_by_noise(factor, structure, all.data);
   blank_unusable(all);
-  if (all.usable.sum() == 0.0) throw DataError("no training run has a transition to learn from");
+  if (all.usable.sum() == 0.0)
+    throw DataError("no training run has a usable transition (two successive samples without missing values)");
   return all;
 }
 

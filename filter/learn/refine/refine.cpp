@@ -96,10 +96,10 @@ TrainingFit fit_exactly(const RefineInput& in, const Fit& chosen, const Switchin
 
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& banks,
                        const RefineOptions& options, const FilterOptions& filter) {
-  if (banks.empty()) throw std::invalid_argument("no bank to refine");
+  if (banks.empty()) throw std::invalid_argument("refinement needs at least one bank");
   if (!banks.front().motion_parameters.empty())
     throw std::invalid_argument("a bank of the motion model " + banks.front().model +
-                                " cannot be refined, a linear one can");
+                                " cannot be refined; expected linear or varx");
   const Bank frame = frame_of(banks.front(), options);
   const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure, frame.noise_factor);
   const RefineInput in{recording, fits, frame, transitions, options, filter};

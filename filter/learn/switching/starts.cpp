@@ -21,8 +21,8 @@ Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const E
   const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(Q);
   if (!Q_inverse)
     throw DataError(
-        "the states' residuals of the training runs depend on each other exactly: one state follows from "
-        "others, and should be left out");
+        "the states' residuals in the training runs are linearly dependent: one state follows from "
+        "the others; leave it out of data.state");
   Eigen::MatrixXd information = Eigen::kroneckerProduct(*Q_inverse, G);
   information.diagonal().array() += least_information * information.diagonal().maxCoeff();
   return information;

@@ -81,18 +81,19 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
       terms(bank.terms),
       noise_factor(bank.noise_factor) {
   if (variant == FilterVariant::kf && bank.mode_count() != 1)
-    throw std::invalid_argument("a Kalman filter (kf) steps a bank of one mode, this one has " +
+    throw std::invalid_argument("a Kalman filter (kf) needs a bank of one mode; this one has " +
                                 std::to_string(bank.mode_count()));
   if (variant == FilterVariant::salvi2025 && !transition_logit.empty())
-    throw std::invalid_argument("the paper's equations (salvi2025) know no switching by state and input");
+    throw std::invalid_argument(
+        "the paper's equations (salvi2025) do not support switching by state and input; use imm");
   if (variant == FilterVariant::salvi2025 && quantised)
-    throw std::invalid_argument("the paper's equations (salvi2025) know no quantised measurements");
+    throw std::invalid_argument("the paper's equations (salvi2025) do not support quantised measurements; use imm");
   if (variant == FilterVariant::salvi2025 && !noise_factor.empty())
     throw std::invalid_argument(
-        "the paper's equations (salvi2025) take constant noise, this bank's follows state and input");
+        "the paper's equations (salvi2025) need constant noise; this bank's depends on state and input");
   if (quantised) quantum = bank.quantum;
   if (drift.on() && variant != FilterVariant::imm && variant != FilterVariant::kf)
-    throw std::invalid_argument("modes that drift are filtered by imm or kf, not by " + std::string(name_of(variant)));
+    throw std::invalid_argument("drifting modes need the variant imm or kf, not " + std::string(name_of(variant)));
   for (const modebank::Mode& mode : bank.modes) {
     modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q, mode.bend});
   }

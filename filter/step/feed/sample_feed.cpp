@@ -36,11 +36,11 @@ void SampleFeed::push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& in
 void SampleFeed::restore(const Memory& memory) {
   if (memory.inputs.rows() != recent_.rows() || memory.inputs.cols() != recent_.cols() ||
       memory.measurements.rows() != measurements_.rows() || memory.measurements.cols() != measurements_.cols())
-    throw std::invalid_argument("the remembered samples are not those of this bank");
+    throw std::invalid_argument("the stored samples do not fit this bank");
   constexpr Index most_samples = Index(1) << 53;  // a million years at 285 Hz
   if (!memory.inputs.allFinite() || memory.samples < 0 || memory.samples > most_samples || memory.whole < 0 ||
       memory.whole > memory.samples)
-    throw std::invalid_argument("the remembered samples are none that a filter has");
+    throw std::invalid_argument("the stored samples have invalid counts");
   recent_ = memory.inputs;
   measurements_ = memory.measurements;
   samples_ = memory.samples;

@@ -246,7 +246,7 @@ TEST(Forecast, RefusesMissingInputsByTheNameOfTheArgument) {
   EXPECT_NE(refusal(live, {}, 4), "");
   EXPECT_NE(refusal(live, Matrix(2, 4), 4), "");
   EXPECT_EQ(refusal(live, Matrix(1, 4, std::nan("")), 4), "inputs: planned inputs must be finite");
-  EXPECT_EQ(refusal(live, planned(bank, 9, 3), 0), "steps: a forecast takes at least 1 step, not 0");
+  EXPECT_EQ(refusal(live, planned(bank, 9, 3), 0), "steps: a forecast needs at least 1 step, not 0");
 }
 
 TEST(Snapshot, GoesOnToTheBit) {

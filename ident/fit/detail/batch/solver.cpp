@@ -102,7 +102,7 @@ bool BatchSolver::handles(const LinearStructure& structure, Index length) {
 
 BatchSolver::BatchSolver(batch::Settings settings) : settings_(std::move(settings)), kernel_(choose_kernel(settings_)) {
   if (!kernel_ || settings_.length <= settings_.regressors || settings_.length > longest_window)
-    throw std::invalid_argument("no batch solver for such windows");
+    throw std::invalid_argument("the batch solver has no kernel for these windows");
   if (settings_.own_scale && settings_.sort.empty()) {
     settings_.sort = sorting_network(settings_.length);
     settings_.median = median_network(settings_.sort, settings_.length);
