@@ -14,7 +14,7 @@ namespace modebank {
 struct FeatureCloud {
   std::vector<std::string> names;     ///< F: parameter names, then "log_noise_variance_<state>" when noise is included
   Eigen::MatrixXd points;             ///< F x N, physical units
-  Eigen::MatrixXd covariances;        ///< F*F x N, of the points' errors; empty unless asked for
+  Eigen::MatrixXd covariances;        ///< F*F x N, covariance of each point's error; empty unless requested
   Eigen::VectorXd typical_error;      ///< F, median standard deviation of the windows' errors; 0: unknown
   std::vector<Eigen::Index> windows;  ///< N, window of each point
   std::vector<Eigen::Index> runs;     ///< N, run of that window

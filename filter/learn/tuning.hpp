@@ -59,7 +59,7 @@ struct RefineTuning {
   std::ptrdiff_t iterations_after_screening =
       10;  ///< equal to the first checkpoint; the other modes adapt to the removal
 
-  // Learning that looks ahead.
+  // Look-ahead learning.
   /// Weights of the prior towards one motion that are tried for the best start, in transitions.
   std::array<double, 5> theta_transitions{3.0, 30.0, 300.0, 3e3, 3e5};
   std::ptrdiff_t one_motion_iterations = 20;  ///< iterations with one theta, which give the target of shrinking
@@ -77,7 +77,8 @@ struct RefineTuning {
   std::array<double, 3> drift_leaks{1.0, 0.97, 0.9};                     ///< factor per step on the deviation
   /// With drifting coefficients the noise scale can use few samples (DART: 0.9; banks without drift: 0.98).
   std::array<double, 8> drift_forgettings{0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0};
-  std::array<double, 5> drift_noise_prior_samples{1e-3, 1e-2, 0.1, 1.0, 5.0};  ///< that a run's start is worth
+  std::array<double, 5> drift_noise_prior_samples{1e-3, 1e-2, 0.1, 1.0,
+                                                  5.0};  ///< weight of scale one at a run's start, in samples
 
   // Measurement noise.
   double least_R_share = 1e-9;  ///< of the global residual variance: the smallest R in refinement, negligible

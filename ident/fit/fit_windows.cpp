@@ -113,7 +113,7 @@ class Fitting {
     common_.audit.ceres_method = fitter_->method();
     if (batch_) common_.audit.batch_method = BatchWindows::method();
   }
-  Fitting(const Fitting&) = delete;  // the fitter refers to the global model
+  Fitting(const Fitting&) = delete;  // not copied: the fitter refers to the global model
   Fitting& operator=(const Fitting&) = delete;
 
   Index count() const { return plan_.count(); }

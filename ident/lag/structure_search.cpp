@@ -58,7 +58,7 @@ bool leaves_enough(const LaggedRows& rows) {
 class StructureClimb {
  public:
   StructureClimb(LaggedRows rows, const Eigen::VectorXd& quantum) : rows_(std::move(rows)), scorer_(rows_, quantum) {}
-  StructureClimb(const StructureClimb&) = delete;  // the scorer refers to the rows
+  StructureClimb(const StructureClimb&) = delete;  // not copied: the scorer refers to the rows
   StructureClimb& operator=(const StructureClimb&) = delete;
 
   const LaggedRows& rows() const { return rows_; }

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr std::array degrees_tried{2.0, 4.0, 8.0, 30.0, 1000.0};
 constexpr int most_steps = 100;
-constexpr double tolerance = 1e-9;  // relative, of the squared scale
+constexpr double tolerance = 1e-9;  // relative tolerance of the squared scale
 
 double weighted_mean(const ArrayXd& values, const VectorXd& weight) {
   return weight.size() > 0 ? (values * weight.array()).sum() / weight.sum() : values.mean();

@@ -13,7 +13,7 @@ namespace modebank {
 /// Errors of the robot's sensors.
 struct SensorOptions {
   double gyro_noise_density = 5e-4;  ///< [rad/s/sqrt(Hz)]; a sample's standard deviation is density * sqrt(rate)
-  double gyro_bias = 0.0;            ///< at the start of a run [rad/s]
+  double gyro_bias = 0.0;            ///< bias at the start of a run [rad/s]
   double gyro_bias_walk = 0.0;       ///< random walk of the bias [rad/s/sqrt(s)]
   double speed_noise_sd = 0.02;      ///< noise of a measured forward or sideways speed, as from satellites or lidar
                                      ///< [m/s]
@@ -25,9 +25,9 @@ struct SensorOptions {
 /// A skid-steer robot (ident/simulate/vehicle.hpp) on a plane of square tiles of ground (ident/simulate/ground.hpp).
 struct VehicleSimulationOptions {
   VehicleParameters vehicle;
-  std::vector<double> friction{0.06, 0.6};  ///< one per kind of ground, each above 0
-  std::vector<double> shear_m{0.005};       ///< one per kind, or one for all
-  std::vector<double> resistance{0.02};     ///< one per kind, or one for all
+  std::vector<double> friction{0.06, 0.6};  ///< friction coefficient of each kind of ground, above 0
+  std::vector<double> shear_m{0.005};       ///< shear modulus of each kind, or one for all
+  std::vector<double> resistance{0.02};     ///< motion resistance of each kind, or one for all
   double patch_m = 4.0;  ///< side of a tile; 0: run i stays on kind (i / 2) mod K, so that training and held-out runs
                          ///< contain every kind
   double forward_speed_m_s = 0.2;  ///< added to every command except standstill
@@ -40,7 +40,7 @@ struct VehicleSimulationOptions {
   Index measured = 1;  ///< number of measured signals among yaw rate, forward and sideways speed (in this order), 1 to
                        ///< 3
   Index runs = 12;
-  double dt_s = 1.0 / 6.5;  ///< of commands and wheel speeds
+  double dt_s = 1.0 / 6.5;  ///< sample period of commands and wheel speeds
   double state_rate_hz = 65.0;
 };
 

@@ -13,8 +13,8 @@ namespace modebank {
 struct VehicleParameters {
   double mass_kg = 60.0;
   double yaw_inertia_kg_m2 = 7.0;  ///< a uniform box of the robot's 0.99 m x 0.67 m has 7.1
-  double track_m = 0.55;           ///< between left and right wheels
-  double wheelbase_m = 0.512;      ///< between front and rear axle
+  double track_m = 0.55;           ///< distance between left and right wheels
+  double wheelbase_m = 0.512;      ///< distance between front and rear axle
   double contact_m = 0.1;          ///< length of a tyre's contact patch
   double slip_speed_m_s = 0.05;    ///< added to the wheel speed that slip is relative to; see tyre_force
   double drive_mass_kg = 10.0;     ///< inertia of one side's wheels and gears, divided by the wheel radius squared

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 constexpr Index most_regressors = 8, most_directions = 4, newest_inputs = 2;
 constexpr int knots = 13;
 constexpr double first_quantile = 0.05, quantile_step = 0.075;
-constexpr double regressor_ridge = 1e-8;  // of the rows, on columns of unit root mean square
+constexpr double regressor_ridge = 1e-8;  // share of the number of rows; columns have unit root mean square
 
 /// The regressors (without the constant) that a forward linear fit of the targets selects first.
 std::vector<Index> leading_regressors(const LinearStructure& s, const MatrixXd& X, const MatrixXd& targets) {

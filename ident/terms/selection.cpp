@@ -24,7 +24,7 @@ constexpr Index most_terms = 16;
 constexpr double clipped_errors = 6.0;  // in robust standard deviations
 // of the errors' standard deviation, because more than half of the errors may be zero
 constexpr double least_share = 0.02;
-constexpr double ridge = 1e-6;        // of the rows, on columns of unit root mean square
+constexpr double ridge = 1e-6;        // share of the number of rows; columns have unit root mean square
 constexpr double new_share = 1e-3;    // smallest part of a column that is independent of the previous columns
 constexpr double least_gain = 0.002;  // smallest gain per further term [nats/sample]
 constexpr double exact_share = 1e-9;  // of the increments; a smaller error counts as an exact prediction

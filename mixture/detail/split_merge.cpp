@@ -49,7 +49,7 @@ GaussianMixture halves(const GaussianMixture& mixture, Index k) {
 
 /// Splits a component into a dense core and a wide shell, for clouds with heavier tails than a Gaussian's.
 GaussianMixture core_and_shell(const GaussianMixture& mixture, Index k) {
-  constexpr double core = 0.1, shell = 1.9;  // variances; their mean is the component's
+  constexpr double core = 0.1, shell = 1.9;  // variances; the mean of both is the component's variance
   GaussianMixture pair = pair_of(mixture, k);
   pair.covariances[0] *= core;
   pair.covariances[1] *= shell;

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double negligible_R = 1e-6;  // of the innovations' variance
+constexpr double negligible_R = 1e-6;  // share of the innovations' variance
 
 /// Sets a fraction of hits and its interval.
 void set_fraction(const HitsByRun& hits, double time, double& fraction, double& lower, double& upper) {
@@ -93,7 +93,7 @@ DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   return row;
 }
 
-constexpr double takes_all = 0.99;         // usage of one mode
+constexpr double takes_all = 0.99;         // smallest usage of one mode for the flag
 constexpr double unused = 1e-3;            // usage
 constexpr double flat_entropy = 0.95;      // of log K
 constexpr double dominating_spread = 0.5;  // share of trace S

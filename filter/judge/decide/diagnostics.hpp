@@ -36,8 +36,8 @@ struct DiagnosticsRow {
   double too_far = 0.0, too_far_lower = 0.0, too_far_upper = 0.0;        ///< z^2 above its 97.5 % quantile
   double too_close = 0.0, too_close_lower = 0.0, too_close_upper = 0.0;  ///< z^2 below its 2.5 % quantile
   double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< mean_distance, and its interval for a true filter
-  double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< of the state after the measurement, with truth;
-  ///< NaN where R is next to nothing: the state is then the measurement, and its stated covariance R no judgement of it
+  double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< NEES of the state after the measurement, if the
+  ///< truth is known; NaN if R is negligible, because the state is then the measurement itself
   Eigen::VectorXd state_rmse;    ///< n_y, state minus truth; NaN without truth
   double whiteness_p = 0.0;      ///< Ljung & Box, as in the summary
   double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value, at this lag; only for the whole

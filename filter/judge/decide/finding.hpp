@@ -67,7 +67,7 @@ inline constexpr double negligible_gain = 0.02;
 struct ErrorPattern {
   double gain = not_a_number;            ///< gain from predicting the errors, on left-out parts [nats/sample]; NaN:
                                          ///< unknown
-  double standard_error = not_a_number;  ///< over those parts [nats/sample]
+  double standard_error = not_a_number;  ///< of the gain, over those parts [nats/sample]
 
   /// Whether the gain is not negligible and exceeds two standard errors.
   bool told() const { return gain >= negligible_gain && gain > 2.0 * standard_error; }
@@ -85,7 +85,7 @@ struct Resolution {
   double quantum = 0.0;        ///< spacing of the values; 0: none found
   double repeated = 0.0;       ///< share of samples in motion equal to the previous one
   double innovation_sd = 0.0;  ///< median standard deviation of the bank's predictions in motion [state unit]
-  double sd = 0.0;             ///< of the samples [state unit]; 0: not known
+  double sd = 0.0;             ///< standard deviation of the samples [state unit]; 0: unknown
 };
 
 /// Share of repeated samples above which densities are not compared. Measured noise hardly ever repeats to the last

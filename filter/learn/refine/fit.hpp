@@ -27,7 +27,7 @@ struct Fit {
   GuardPrior guard = {};             ///< prior of the logit
   std::size_t row = 0;               ///< row of the start in the table
   Eigen::Index iterations = 0;       ///< iterations of expectation-maximisation that score best on left-out runs
-  LeftOutScores scores = {};         ///< on the left-out runs
+  LeftOutScores scores = {};         ///< scores on the left-out runs
   std::vector<Bank> of_splits = {};  ///< the fit without each split's runs; empty if nothing is left out
   BankDrift drift = {};              ///< drift of the modes; empty: none
   NoiseAdaptation adaptation = {};   ///< of the filter with drifting modes

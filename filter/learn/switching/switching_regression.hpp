@@ -48,7 +48,7 @@ struct ModePosterior {
   Eigen::MatrixXd probability;  ///< N x K, also for unusable transitions
   Eigen::MatrixXd switches;     ///< K x K expected counts of (i, then j)
   Eigen::VectorXd first;        ///< K, expected counts of each run's first mode
-  double log_likelihood = 0.0;  ///< nats, of all runs
+  double log_likelihood = 0.0;  ///< log-likelihood of all runs [nats]
   Eigen::MatrixXd pairs = {};   ///< K*K x N, P(i, then j) at each transition, column-major; only with a logit
 };
 

@@ -185,7 +185,7 @@ TEST(BankFilter, GoesOnFromASnapshotAsIfNothingHadHappened) {
       EXPECT_TRUE(near(a.state, b.state, 0.0));
     }
   }
-  // before there was anything to know
+  // a snapshot from before the start
   BankFilter fresh(bank, {}), restored(bank, {});
   EXPECT_NO_THROW(restored.restore(fresh.snapshot()));
   EXPECT_FALSE(restored.started());

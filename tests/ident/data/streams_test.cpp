@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 // Same formula and arithmetic as numpy: a few roundings of values of size ten.
 constexpr double interpolation_tolerance = 1e-14;
-constexpr double time_tolerance_s = 1e-12;  // sums and products of a few times
+constexpr double time_tolerance_s = 1e-12;  // rounding of sums and products of a few times
 
 Stream golden_stream(const char* name) {
   const std::string path = (test::golden_dir() / name).string();

@@ -93,7 +93,7 @@ TEST(LinearResidual, JacobianPassesTheGradientChecker) {
   const Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(problem.unknowns(), -1.0, 1.0);
   const double* blocks[] = {z.data()};
   ceres::NumericDiffOptions numeric;
-  constexpr double relative_precision = 1e-8;  // of central differences of a linear function
+  constexpr double relative_precision = 1e-8;  // accuracy of central differences of a linear function
   for (const auto& [first, count] : {std::pair<Index, Index>{6, 2}, {problem.sample_rows(), problem.prior_rows()}}) {
     const LinearResidual residual(problem, first, count);
     ceres::GradientChecker checker(&residual, static_cast<std::vector<const ceres::Manifold*>*>(nullptr), numeric);

@@ -17,7 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Sums over the residuals at the optimum. omega = rho' is a sample's robust weight, y its increment.
 struct Ending {
   V psi_square, slope, slope_square, weighted_square, inliers;
-  V omega, omega_y, omega_y_square;  // y about the window's first increment
+  V omega, omega_y, omega_y_square;  // y is taken relative to the window's first increment
   V cost;                            // sum rho, zero for zero residuals
 };
 

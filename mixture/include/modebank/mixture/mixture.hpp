@@ -33,7 +33,7 @@ struct Mixture {
 
 /// The chosen mixture and the candidates.
 struct Clusters {
-  Mixture mixture;                    ///< of the selected candidate
+  Mixture mixture;                    ///< mixture of the selected candidate
   std::vector<Candidate> candidates;  ///< in increasing number of components, each number once
   Matrix responsibilities;            ///< K x N, posterior probability of each component at each point
 };
