@@ -30,7 +30,7 @@
 
 namespace modebank {
 
-/// Where an archive comes from.
+/// Origin of an archive: program, libraries, inputs.
 struct Provenance {
   std::string modebank_version;
   std::string created;  ///< UTC, ISO 8601
@@ -46,62 +46,63 @@ struct FilterEvaluation {
   std::string filter;  ///< bank or a competitor
   std::vector<RunEvaluation> runs;
   std::vector<FreeRun> free_runs = {};  ///< with filter.simulate; archives hold neither pit nor log_density nor notes
-  bool streamed = false;                ///< the runs are in the file in the making; here is what later stages read
+  bool streamed = false;                ///< the runs are in an unfinished file; memory has only what later stages read
 
   using Fields = std::set<std::string>;  ///< names of arrays in the archive
-  /// Reads these of a run; its other arrays stay empty.
+  /// Reads these fields of a run; its other arrays stay empty.
   using Reading = std::function<void(std::size_t run, const Fields& fields, RunEvaluation& said, FreeRun& free_run)>;
-  Reading in_file = {};  ///< where the runs were left in their file (Evaluations::in_file)
+  Reading in_file = {};  ///< reader of runs that were left in their file (Evaluations::in_file)
 
-  /// Hands on what the filter said of a run: what is in memory, or these fields of what is in the file.
+  /// Calls with the evaluation of one run: the one in memory, or these fields from the file.
   void with_run(std::size_t run, const Fields& fields, const std::function<void(const RunEvaluation&)>& body) const;
   void with_free_run(std::size_t run, const std::function<void(const FreeRun&)>& body) const;
 };
 
-/// Takes what a filter said of a run, by its position in the recording, so that not all of it need be in memory.
+/// Takes one run's evaluation, with its position in the recording. So not all evaluations need to be in memory.
 using EvaluationSink =
     std::function<void(const std::string& filter, std::size_t run, const RunEvaluation& said, const FreeRun* free_run)>;
 
 /// Residual tests of one model over all runs of the recording, in its order.
 struct ResidualTestSet {
-  std::string model;  ///< global (its one-step residuals), or a filter: bank or a competitor (its scores z)
+  std::string model;  ///< global (tests of its residuals one step ahead), or a filter: bank or a competitor (tests of
+                      ///< its scores z)
   std::vector<ResidualTests> runs;
 };
 
-/// How many samples that a label stands at had one mode of a filter as their most probable.
+/// Number of samples with one label for which one mode of a filter is the most probable.
 struct ConfusionRow {
   std::string filter;
   Role role = Role::test;
   std::string label;
   Index mode = 0;
   Index samples = 0;
-  double share = 0.0;  ///< of the label's samples
+  double share = 0.0;  ///< share of the label's samples
 };
 
 /// The data that an execution read.
 struct DataPart {
   std::optional<Recording> recording;
   std::optional<RunLabels> labels;  ///< with data.label
-  double step_scatter = 0.0;        ///< of the recording's steps, in their median (io/import/sampling.hpp)
+  double step_scatter = 0.0;        ///< scatter of the recording's steps over their median (io/import/sampling.hpp)
   std::optional<LagReport> lag;     ///< with data.lag_s = auto
 };
 
-/// The results of one execution, stage by stage; absent stages did not run. (terms_asked is stored as Finding's.)
+/// The results of one execution, stage by stage; absent stages did not run. (terms_asked is stored in the Finding.)
 struct Archive : DataPart, Learning {
   Provenance provenance;
   std::string config;                        ///< fully resolved, itself a valid configuration file
-  std::vector<std::string> mode_names = {};  ///< of the bank, where modes have names; empty where one has none
+  std::vector<std::string> mode_names = {};  ///< names of the bank's modes; empty for a mode without one
   std::vector<FilterEvaluation> evaluations;
   std::vector<SummaryRow> summary;
   std::vector<HorizonRow> horizons;              ///< with filter.horizon
-  std::vector<CombinationRow> combination = {};  ///< how much each filter counted in combined_name's forecasts
+  std::vector<CombinationRow> combination = {};  ///< weight of each filter in the combined forecasts
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<ResidualTestSet> residual_tests;
   std::vector<FreeRunRow> free_runs = {};    ///< with filter.simulate
-  std::vector<ConfusionRow> confusion = {};  ///< with data.label, where a bank was scored
-  std::optional<Finding> finding = {};       ///< where a bank was scored
+  std::vector<ConfusionRow> confusion = {};  ///< with data.label and a scored bank
+  std::optional<Finding> finding = {};       ///< with a scored bank
 
-  /// Whether modes of the bank are components of the mixture: neither refined nor left out because steps scatter.
+  /// Whether modes of the bank are components of the mixture: the bank is not refined, and steps do not scatter.
   bool mixture_makes_bank() const { return mixture && !unrefined && step_scatter == 0.0; }
   bool one_motion_drifts() const { return one_motion && !one_motion->drift.empty(); }
 };
@@ -109,38 +110,38 @@ struct Archive : DataPart, Learning {
 /// Writes under a temporary name in the same folder, flushes, closes, hashes, renames. Throws DataError on failure and
 /// leaves nothing behind. The layout is described in docs/reference/archive.md; every number is stored as computed.
 void write_archive(const std::filesystem::path& path, const Archive& archive);
-/// The same, with the archive made in the file system rather than in memory; write_archive does so for evaluations
-/// of more than 128 MB, and for responsibilities of more than 256 MB, which then are never in memory as a whole.
+/// The same, with the archive made on disk rather than in memory. write_archive does so by itself for evaluations above
+/// 128 MB and responsibilities above 256 MB, which then are never in memory as a whole.
 void write_large_archive(const std::filesystem::path& path, const Archive& archive);
 
-/// The same for an archive of data and windows alone whose `count` windows come from `produce` part by part
-/// (stream_windows): nothing of the size of the archive is held in memory. Returns what `produce` returns.
+/// The same for an archive of data and windows alone. `produce` yields its `count` windows in parts (stream_windows),
+/// so memory holds only a part at a time. Returns the result of `produce`.
 WindowFits write_archive(const std::filesystem::path& path, const Archive& archive, Index count,
                          const std::function<WindowFits(const WindowSink&)>& produce);
 
-/// The same for an archive whose evaluations are written while they are made: `make` hands them to the sink, from one
-/// thread, and returns the archive of the rest. Throws what `make` throws.
+/// The same for an archive whose evaluations are written while they are made. `make` passes them to the sink, from one
+/// thread, and returns the rest of the archive. Throws what `make` throws.
 void write_archive(const std::filesystem::path& path, const Recording& recording,
                    const std::function<const Archive&(const EvaluationSink&)>& make);
 
-/// Where the evaluations of an archive that is read are: `in_file`: read when they are asked for
-/// (FilterEvaluation::with_run); of windows, arrays that no page shows are left out, too.
+/// Location of an archive's evaluations. `in_file`: they are read on demand (FilterEvaluation::with_run), and windows
+/// lack the arrays that no page shows.
 enum class Evaluations { in_memory, in_file };
 
-/// Reads all stages that the file holds, bit by bit as written. Throws DataError where shapes disagree or a position
-/// lies outside of what it points into; values are verification's (verify_archive).
+/// Reads all stages in the file, bit by bit as written. Throws DataError where shapes disagree or a position lies
+/// outside its array. Values are checked by verify_archive alone.
 Archive read_archive(const OpenArchive& file, Evaluations evaluations = Evaluations::in_memory);
 
-/// What verification found; empty `problems` means the archive is whole.
+/// Result of a verification; no `problems` means that the archive is complete and valid.
 struct Verification {
   std::vector<std::string> problems;
   bool ok() const { return problems.empty(); }
 };
 
-/// Checks hash, format and schema version, that the layout's required members are there, and every value: finite,
-/// definite, summing to one. Throws ConfigurationError when the file is missing.
+/// Checks hash, format and schema version, the layout's required members, and every value: finite, definite, summing to
+/// one. Throws ConfigurationError when the file is missing.
 Verification verify_archive(const std::filesystem::path& path);
-/// Problems of the members and values of an open archive.
+/// Problems in the members and values of an open archive.
 std::vector<std::string> problems_of(const OpenArchive& file);
 
 }  // namespace modebank

@@ -10,11 +10,11 @@ namespace modebank {
 
 namespace {
 
-constexpr std::size_t growth_bytes = std::size_t{4} << 20;  ///< memory is taken in steps of this
+constexpr std::size_t growth_bytes = std::size_t{4} << 20;  ///< memory grows by this much at a time
 
 hdf5::Handle file_access() {
   hdf5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the archive");
-  // The 1.8 format has checksums on all metadata and is read by every HDF5 since 2008, MATLAB's and Octave's included.
+  // The 1.8 format has checksums on all metadata, and every HDF5 since 2008 reads it, also those of MATLAB and Octave.
   hdf5::check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18), "choose the file format");
   return access;
 }
@@ -32,7 +32,7 @@ hdf5::Handle create_file(const std::string& name, const hdf5::Handle& access) {
   return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose, "create the archive"};
 }
 
-/// HDF5 knows files in memory by their names, too: two threads' images must not share one.
+/// HDF5 identifies files in memory by name, too, so each image needs a name of its own.
 std::string image_name() {
   static std::atomic<unsigned> count{0};
   return "modebank " + std::to_string(count++);
@@ -48,7 +48,7 @@ hdf5::Handle create_archive_file(const std::filesystem::path& path) {
 
 std::string_view ArchiveImage::content() const {
   hdf5::check(H5Fflush(file_.id(), H5F_SCOPE_GLOBAL), "complete the archive");
-  const ssize_t bytes = H5Fget_file_image(file_.id(), nullptr, 0);  // of the content alone, without the user block
+  const ssize_t bytes = H5Fget_file_image(file_.id(), nullptr, 0);  // size of the content, without the user block
   hdf5::check(bytes < 0 ? -1 : 0, "measure the archive");
   void* memory = nullptr;
   hdf5::check(H5Fget_vfd_handle(file_.id(), access_.id(), &memory), "find the archive in memory");

@@ -8,18 +8,18 @@
 
 namespace modebank {
 
-/// An empty archive in a file of its own, to be filled piece by piece; its user block is zero until the hash is known.
+/// An empty archive in a file, to be filled part by part; its user block is zero until the hash is computed.
 hdf5::Handle create_archive_file(const std::filesystem::path& path);
-/// Fills in the user block of such a file once it is closed.
+/// Writes the hash into the user block of a closed archive file.
 void stamp_hash(const std::filesystem::path& path);
 
-/// An archive in the making. It lives in memory, so a full disk cannot leave HDF5 with a half-flushed file, and its
-/// bytes depend on its content alone.
+/// An archive that is being made. It is in memory, so that a full disk cannot leave HDF5 with a half-flushed file, and
+/// so that its bytes depend on its content alone.
 class ArchiveImage {
  public:
   ArchiveImage();
   const hdf5::Handle& file() const { return file_; }
-  /// All bytes after the user block; valid until something is written. Flushes.
+  /// All bytes after the user block; valid until the next write. Flushes the file.
   std::string_view content() const;
 
  private:

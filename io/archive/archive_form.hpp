@@ -6,11 +6,11 @@
 
 namespace modebank {
 
-/// An archive as check_output recognises one, whole or damaged: by the hash or HDF5's signature behind it. A study's
-/// table is none.
+/// How check_output recognises an archive, complete or damaged: by the hash, or by HDF5's signature behind it. A
+/// study's table is not an archive.
 FileForm archive_form();
 
-/// Whether a file is a study's table or plan. One that cannot be read is neither.
+/// Whether a file is a study's table or plan. False for an unreadable file.
 bool is_table_of_runs(const std::filesystem::path& path);
 
 }  // namespace modebank

@@ -8,13 +8,13 @@
 
 namespace modebank::hdf5 {
 
-/// Every value of an array, nested as its shape; a table is a list of row objects. Integers stay exact, what JSON
-/// cannot hold (NaN, infinities, references, opaque bytes) becomes null, text that is not UTF-8 is repaired.
+/// Every value of an array, nested by its shape; a table is a list of row objects. Integers stay exact. Values that
+/// JSON lacks (NaN, infinities, references, opaque bytes) become null; text that is not UTF-8 is repaired.
 nlohmann::json to_json(const StoredArray& array);
-/// Values of some rows.
+/// The same for some rows.
 nlohmann::json to_json(const StoredArray& array, const Rows& rows);
 
-/// A table's columns in their order, as the row objects name them.
+/// A table's columns in order, with the names of the row objects.
 std::vector<std::string> column_names(const StoredArray& table);
 
 /// Text as JSON, with U+FFFD for bytes that are not UTF-8.

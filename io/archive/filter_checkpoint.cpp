@@ -18,7 +18,7 @@ using nlohmann::json;
 
 constexpr const char* checkpoint_format = "modebank checkpoint 2";
 
-/// Of all that a checkpoint holds but this.
+/// SHA-256 of a checkpoint without its digest.
 std::string digest_of(json stored) {
   stored.erase("sha256");
   return sha256_hex(stored.dump());
@@ -68,7 +68,7 @@ std::vector<Eigen::MatrixXd> matrices_of(const json& stored) {
   return matrices;
 }
 
-/// Of filters whose modes drift; others have none.
+/// State of a filter whose modes drift; empty for others.
 DriftState drift_of(const json& stored) {
   if (!stored.contains("drift")) return {};
   const json& drift = stored.at("drift");
@@ -111,16 +111,17 @@ void save_checkpoint(const std::filesystem::path& path, const std::string& ident
 FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::string& identity) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error))
-    throw ConfigurationError(path.string() + ": no such checkpoint, or it is not a regular file");
+    throw ConfigurationError(path.string() + ": the checkpoint does not exist or is not a regular file");
   std::ifstream file(path);
-  if (!file) throw ConfigurationError(path.string() + ": no such checkpoint, or it cannot be read");
+  if (!file) throw ConfigurationError(path.string() + ": the checkpoint does not exist or cannot be read");
   try {
     const json stored = json::parse(file);
     if (stored.at("format") != checkpoint_format) throw DataError(path.string() + ": is not a checkpoint of track");
     if (stored.at("sha256") != digest_of(stored))
-      throw DataError(path.string() + ": was damaged or changed after it was written (its SHA-256 is another)");
+      throw DataError(path.string() +
+                      ": the checkpoint was damaged or changed after it was written (its SHA-256 does not match)");
     if (stored.at("identity") != identity)
-      throw DataError(path.string() + ": is a checkpoint of another bank or of other filter settings");
+      throw DataError(path.string() + ": the checkpoint was made with another bank or other filter settings");
     FilterSnapshot snapshot;
     snapshot.started = stored.at("started").get<bool>();
     snapshot.means = matrix_of(stored.at("means"));

@@ -8,14 +8,14 @@
 
 namespace modebank {
 
-/// A checkpoint of any version, as check_output recognises one.
+/// How check_output recognises a checkpoint, of any version.
 FileForm checkpoint_form();
 
-/// Writes what a filter remembers as JSON, complete or not at all, every number as it is. `identity`: what bank and
-/// settings it is a filter of. Throws DataError when the file cannot be written.
+/// Writes a filter's state as JSON, with exact numbers. The file is complete or not written at all. `identity`:
+/// identifies bank and settings of the filter. Throws DataError when the file cannot be written.
 void save_checkpoint(const std::filesystem::path& path, const std::string& identity, const FilterSnapshot& snapshot);
 
-/// Reads it back. Throws ConfigurationError when there is no such file, DataError when it is not a checkpoint or one of
+/// Reads it back. Throws ConfigurationError when the file does not exist, DataError when it is not a checkpoint or has
 /// another identity.
 FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::string& identity);
 

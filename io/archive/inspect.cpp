@@ -37,7 +37,7 @@ bool is_hard_link(const hdf5::Handle& group, const std::string& name) {
   return info.type == H5L_TYPE_HARD;
 }
 
-/// The run that was asked for, if any: its row of /data/runs and its rows in arrays over samples.
+/// The requested run, if any: its row of /data/runs and its rows in arrays over samples.
 struct AskedRun {
   std::string name;
   json row;
@@ -52,14 +52,14 @@ bool is_of_samples(const std::string& group) {
                               group != "/evaluation/evidence");
 }
 
-/// Whether it is an array of such a group with a row per sample.
+/// Whether an array of such a group has a row per sample.
 bool has_samples(const std::string& group, const std::string& name) {
   return is_of_samples(group) && !(group == "/data" && (name == "runs" || name == "quantum"));
 }
 
 json members_of(const hdf5::Handle& group, const std::string& path, const AskedRun& run, int levels);
 
-/// How a member appears in the listing of its group.
+/// The entry of a member in the listing of its group.
 json listing(const hdf5::Handle& group, const std::string& path, const std::string& name, const AskedRun& run,
              int levels) {
   if (!is_hard_link(group, name)) return {{"kind", "link"}};
@@ -94,12 +94,12 @@ json members_of(const hdf5::Handle& group, const std::string& path, const AskedR
 }
 
 [[noreturn]] void refuse_run(const std::string& path) {
-  throw ConfigurationError(path +
-                           " holds nothing of single runs; --run goes with /data, /evaluation/FILTER, what is in them, "
-                           "and tables with the column run");
+  throw ConfigurationError(
+      path +
+      " has nothing by run; --run works with /data, /evaluation/FILTER, their members, and tables with the column run");
 }
 
-/// The rows of a table that are of the run.
+/// The rows of a table that belong to the run.
 json rows_of_run(const json& rows, const std::string& path, const AskedRun& run) {
   const char* const key = path == "/data" ? "name" : "run";
   json kept = json::array();
@@ -140,18 +140,18 @@ std::vector<std::string> components(const std::string& path) {
   return parts;
 }
 
-/// Goes down group by group, so that a wrong path can be answered with what is there.
+/// Descends group by group, so that the error for a wrong path lists the existing members.
 json json_at(hdf5::Handle group, const std::string& path, const AskedRun& run) {
   std::string so_far = "/";
   const std::vector<std::string> parts = components(path);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const bool found = parts[i] != "." && hdf5::has_link(group.id(), parts[i]);
     if (!found)
-      throw ConfigurationError(fmt::format("there is no '{}' in {}, which holds: {}", parts[i], so_far,
+      throw ConfigurationError(fmt::format("there is no '{}' in {}; its members are: {}", parts[i], so_far,
                                            fmt::join(hdf5::member_names(group.id()), ", ")));
     if (H5Iget_type(open_object(group, parts[i]).id()) == H5I_DATASET) {
       if (i + 1 < parts.size())
-        throw ConfigurationError(fmt::format("'{}' in {} is a dataset and has no members", parts[i], so_far));
+        throw ConfigurationError(fmt::format("'{}' in {} is a dataset, which has no members", parts[i], so_far));
       return dataset_json(group, so_far, parts[i], run);
     }
     group = hdf5::open_group(group.id(), parts[i]);
@@ -162,7 +162,7 @@ json json_at(hdf5::Handle group, const std::string& path, const AskedRun& run) {
 
 AskedRun asked_run(const hdf5::Handle& root, const std::string& name) {
   if (name.empty()) return {};
-  if (!hdf5::has_link(root.id(), "data")) throw ConfigurationError("holds no data, and so no run " + name);
+  if (!hdf5::has_link(root.id(), "data")) throw ConfigurationError("has no data, and so no run " + name);
   const hdf5::Handle data = hdf5::open_group(root.id(), "data");
   const hdf5::StoredArray runs(data.id(), hdf5::Place::dataset, "runs");
   hdf5::TableColumn column{"name", std::vector<std::string>()};
@@ -171,12 +171,12 @@ AskedRun asked_run(const hdf5::Handle& root, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     throw ConfigurationError(
-        fmt::format("holds no run '{}'{}; its runs are {}", name, did_you_mean(name, names), fmt::join(names, ", ")));
+        fmt::format("has no run '{}'{}; its runs are {}", name, did_you_mean(name, names), fmt::join(names, ", ")));
   const json row = hdf5::to_json(runs, {static_cast<hsize_t>(found - names.begin()), 1}).front();
   return {name, row, {row.at("first").get<hsize_t>(), row.at("samples").get<hsize_t>()}};
 }
 
-/// All that the archive holds of a run.
+/// All arrays and table rows of a run.
 json overview_of(const hdf5::Handle& root, const AskedRun& run) {
   json members = json::object();
   const auto add = [&](const std::string& path) {

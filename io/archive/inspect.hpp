@@ -14,8 +14,8 @@ namespace modebank {
 /// With the name of a run, arrays over samples have the run's rows alone, and tables with the column `run` its rows;
 /// the root becomes {"run": its row of /data/runs, "members": of /data and of every filter's evaluation, by path}.
 ///
-/// Throws ConfigurationError when the path is not in the file (naming the members of the deepest group that exists),
-/// when the run is unknown (naming those that exist), and for a path that holds nothing of single runs.
+/// Throws ConfigurationError for a path that the file lacks (with the members of the deepest existing group), for an
+/// unknown run (with the known ones), and for a path without arrays by run.
 nlohmann::json inspect(const OpenArchive& archive, const std::string& path, const std::string& run = "");
 
 }  // namespace modebank

@@ -10,16 +10,16 @@
 #include "io/archive/layout_evaluation.hpp"
 #include "io/archive/stored.hpp"
 
-/// The one description of the archive's layout; its other parts are layout_data.hpp, layout_evaluation.hpp and, for
-/// programs that load banks alone, bank/layout_bank.hpp. Every function names members once; `Io` is GroupWriter or
-/// GroupReader, or for arrays over samples SampleWriter or SampleReader, so writing, reading and verification cannot
-/// drift apart. Above a function, `/// - NAME: text` describes a member or a column and `/// /PATH: text` its group:
-/// the archive's reference page is made of them (docs/_ext/archive_layout.py). Letters: M windows, K modes, n states, m
-/// inputs, n_y outputs, p parameters, S samples of all runs, F features.
+/// The one description of the archive's layout. Its other parts are layout_data.hpp, layout_evaluation.hpp and, for
+/// programs that only load banks, bank/layout_bank.hpp. Every function names members once. `Io` is GroupWriter or
+/// GroupReader, for arrays over samples SampleWriter or SampleReader, so writing, reading and verification agree. Above
+/// a function, `/// - NAME: text` describes a member or a column and `/// /PATH: text` its group;
+/// docs/_ext/archive_layout.py makes the reference page from these. Letters: M windows, K modes, n states, m inputs,
+/// n_y outputs, p parameters, S samples of all runs, F features.
 namespace modebank::layout {
 
 /// /windows/global: one model of all training runs.
-/// - residual_covariance: of its residuals
+/// - residual_covariance: covariance of its residuals
 template <class Io, class G>
 void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& states) {
   io.attribute("transitions", global.transitions, rule::count_of("samples"));
@@ -57,19 +57,19 @@ void exchange_audit(Io& io, A& audit) {
 /// - step: transitions from one window to the next
 /// - run: name of the run
 /// - start: row of the window's first sample, within its run
-/// - parameters: theta
-/// - covariance: of theta
-/// - noise_variance: of the residuals
+/// - parameters: parameters theta of each window
+/// - covariance: covariance of theta
+/// - noise_variance: variance of the residuals
 /// - condition: condition number of the regressors
-/// - information: of each parameter
+/// - information: information of each parameter
 /// - inlier_fraction: share of transitions that the loss does not down-weight
 /// - status: 0: converged, 1: iteration limit, 2: rank deficient, 3: failed
 /// - aic: Akaike's criterion
-/// - transitions: those that entered the fit
-/// - weighed_information: information of the data as theta was weighed with it against the prior: takes the prior off
-///   again
+/// - transitions: number of transitions in the fit
+/// - weighed_information: the data's information by which theta was weighed against the prior; it serves to take
+///   the prior's share off
 /// - prior_sd: standard deviations of the prior
-/// - parameter_labels: what each parameter weighs on what, `wz <- velL`
+/// - parameter_labels: output and regressor of each parameter, `wz <- velL`
 template <class Io, class W>
 void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& units) {
   const std::vector<Trajectory>& runs = recording.runs;
@@ -119,7 +119,7 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
 
 /// - candidates: one row for each number of components that was compared
 /// - parameters: free parameters
-/// - effective_samples: number of independent samples that the windows are worth
+/// - effective_samples: number of independent samples to which the windows amount
 /// - heldout: log likelihood of windows that were left out
 /// - heldout_error: standard error of its difference from the selected row's
 /// - agreeing_restarts: random starts that reached the best likelihood
@@ -147,8 +147,8 @@ void exchange_candidates(Io& io, C& candidates) {
 /// `features`: units of the features.
 /// - labels: component of each window; -1: not clustered, or noise
 /// - weights: sum to one, or to 1 - `noise_weight`
-/// - features: what was clustered, where it is not `/windows/parameters`; NaN where a window has none
-/// - compared_windows: windows on which candidates were compared, where these are not all
+/// - features: the clustered features, where these are not `/windows/parameters`; NaN where a window has none
+/// - compared_windows: number of windows for the comparison of candidates, where these are not all
 /// - responsibilities: NaN where not clustered; rows sum to one, or to one minus the probability of noise
 /// - noise_weight: weight of the noise component
 /// - noise_lower: lower corner of its box
@@ -181,12 +181,12 @@ void exchange_mixture(Io& io, X& result, const Unit& features) {
 /// /bank: the modes.
 /// /baseline: one Kalman filter.
 /// /noise_only: one model with switching noise.
-/// /one_motion: one motion that is learned as the bank is.
-/// /nonlinear: one motion with terms, where terms gain on training runs.
-/// /bank/unrefined: the bank that refinement started from.
+/// /one_motion: one motion, learned as the bank is.
+/// /nonlinear: one motion with nonlinear terms, where these gain on training runs.
+/// /bank/unrefined: the bank from which refinement started.
 /// /residual_tests: correlations of the residuals, and of residuals with inputs.
 /// - measured_fit: stage with measurement noise: `none`, `converged`, `iteration_limit` or `stalled`
-/// - learned_transitions: training transitions that the bank was learned from, where these are not all
+/// - learned_transitions: number of training transitions for learning, where these are not all
 /// - mode_names: names of the modes; empty where a mode has none
 template <class Io, class A>
 void exchange_archive(Io& io, A& archive) {

@@ -11,14 +11,13 @@
 #include "io/archive/stored.hpp"
 #include "io/files/run_names.hpp"
 
-/// The layout of where everything comes from, of the data, and of what data.lag_s = auto found; see
-/// io/archive/layout.hpp.
+/// Layout of provenance, data, and the results of data.lag_s = auto; see io/archive/layout.hpp.
 namespace modebank::layout {
 
 /// /provenance: versions of libraries and compiler as attributes.
 /// - inputs: files that were read
-/// - path: of the file
-/// - sha256: of its content
+/// - path: path of the file
+/// - sha256: SHA-256 of its content
 template <class Io, class P>
 void exchange_provenance(Io& io, P& provenance) {
   io.attributes(provenance.versions);
@@ -26,7 +25,7 @@ void exchange_provenance(Io& io, P& provenance) {
            column("sha256", &InputFile::sha256));
 }
 
-/// The root attributes, the configuration and where everything comes from; every archive has them.
+/// The root attributes, the configuration and the provenance; every archive has them.
 /// - format: `modebank`
 /// - created: UTC, ISO 8601
 /// - config_hash: SHA-256 of the resolved keys that change results
@@ -66,7 +65,7 @@ void exchange_channels(Io& io, R& recording) {
 /// - state: measured states; NaN: missing
 /// - input: input that acts from this sample on
 /// - truth: true states, where the data have them
-/// - weight: of the transition that ends in the sample
+/// - weight: weight of the transition that ends in the sample
 /// - label: position in `label_names`; -1: unknown
 template <class Io, class T, class L>
 void exchange_run(Io& samples, T& run, L& label, const Units& units) {
@@ -75,18 +74,18 @@ void exchange_run(Io& samples, T& run, L& label, const Units& units) {
   samples.field("input", run.input, {"S", "m"}, units.inputs(), rule::finite_or_missing);
   samples.optional_field("truth", run.truth, {"S", "n"}, units.states(), rule::finite_or_missing);
   samples.optional_field("weight", run.weight, {"S"}, {}, rule::not_negative_or_missing);
-  samples.optional_field("label", label, {"S"});  // positions in label_names
+  samples.optional_field("label", label, {"S"});  // indices in label_names
 }
 
 /// `labels`: with data.label.
 /// /data: all samples of all runs, one run after the other.
-/// - runs: which rows belong to which run
+/// - runs: the rows of each run
 /// - role: `train` or `test`
 /// - first: row of the run's first sample
-/// - lag_s: that was applied to the run's inputs
+/// - lag_s: lag that was applied to the run's inputs
 /// - time_origin_ns: time zero, since 1970; 0: no stamps
 /// - step_scatter: scatter of the log's time steps over their median, above 0.1
-/// - label_names: what `label` counts
+/// - label_names: names of the numbers in `label`
 /// - quantum: step of the values of each state; 0: continuous
 template <class Io, class R, class L, class S>
 void exchange_recording(Io& io, R& recording, L& labels, S& step_scatter) {
@@ -117,7 +116,7 @@ void exchange_recording(Io& io, R& recording, L& labels, S& step_scatter) {
   });
 }
 
-/// /lag: what data.lag_s = auto found.
+/// /lag: result of data.lag_s = auto.
 template <class Io, class P>
 void exchange_pooled(Io& io, const std::string& name, P& pooled) {
   io.attribute(name, pooled.mean);

@@ -12,10 +12,10 @@
 #include "io/archive/groups/over_runs.hpp"
 #include "io/archive/stored.hpp"
 
-/// The layout of what filters and models said of the runs; see io/archive/layout.hpp. T lags, from 0 on.
+/// Layout of evaluations by filters and models; see io/archive/layout.hpp. T lags, from 0 on.
 namespace modebank::layout {
 
-/// - merged: what the limit `bank.modes` cost
+/// - merged: cost of the limit `bank.modes`
 template <class Io, class R>
 void exchange_merging(Io& io, R& rows) {
   io.optional_table("merged", rows, column("role", &MergingCost::role),
@@ -41,17 +41,17 @@ void exchange_left_out(Io& io, R& rows, const Unit& states) {
 
 /// - prediction: one step ahead, all modes combined
 /// - innovation: measurement minus prediction
-/// - innovation_covariance: of the combined prediction
-/// - state: after the measurement
-/// - covariance: after the measurement
+/// - innovation_covariance: covariance of the combined prediction
+/// - state: estimate after the measurement
+/// - covariance: its covariance after the measurement
 /// - nis: normalised innovation squared
 /// - pit: probability integral transform, uniform where the filter is consistent
-/// - log_density: of the measurement
-/// - mode_probability_predicted: before the measurement
-/// - mode_probability: after the measurement
+/// - log_density: log density of the measurement
+/// - mode_probability_predicted: probabilities before the measurement
+/// - mode_probability: probabilities after the measurement
 /// - spread_share: share of the modes' differences in the trace of `innovation_covariance`
-/// - smoothed_state: given the whole run, with `filter.smooth`
-/// - smoothed_covariance: given the whole run
+/// - smoothed_state: estimate given the whole run, with `filter.smooth`
+/// - smoothed_covariance: covariance given the whole run
 /// - viterbi_mode: most probable sequence of modes; -1: not started
 template <class Io, class E>
 void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
@@ -79,10 +79,10 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
     });
 }
 
-/// - free_run_mean: with `filter.simulate`: without measurements after the run's start
+/// - free_run_mean: prediction without measurements after the run's start, with `filter.simulate`
 /// - free_run_sd: standard deviation
-/// - free_run_lower: of the 95 % band
-/// - free_run_upper: of the 95 % band
+/// - free_run_lower: lower end of the 95 % band
+/// - free_run_upper: upper end of the 95 % band
 /// - free_run_mode: most probable mode
 template <class Io, class F>
 void exchange_free_run(Io& io, F& run, const Unit& states) {
@@ -98,7 +98,7 @@ void exchange_free_run(Io& io, F& run, const Unit& states) {
     });
 }
 
-/// One filter's evaluation of one run, or of all where arrays are judged as a whole.
+/// One filter's evaluation of one run, or of all runs where whole arrays are checked.
 template <class Io, class E, class F>
 void exchange_filter_run(Io& samples, E& evaluation, F& free_run, const Unit& states) {
   exchange_run_evaluation(samples, evaluation, states);
@@ -112,7 +112,7 @@ void exchange_filter_run(Io& samples, E& evaluation, F& free_run, const Unit& st
 template <class Io, class F>
 void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Unit& states) {
   const std::vector<hdf5::Rows> rows = rows_of(recording.runs);
-  std::conditional_t<Io::reads, FreeRun, const FreeRun> none{};  // where there are none: empty, and left out
+  std::conditional_t<Io::reads, FreeRun, const FreeRun> none{};  // empty and left out where there are none
   if constexpr (Io::reads) {
     evaluation.runs.resize(rows.size());
     if (io.has("free_run_mean")) evaluation.free_runs.resize(rows.size());
@@ -134,15 +134,15 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Un
 
 /// - summary: scores by filter and run
 /// - run: `*`: all runs of the role
-/// - samples: that were scored
-/// - log_score: per sample
+/// - samples: number of scored samples
+/// - log_score: mean log score per sample
 /// - nis_above: share of samples whose NIS is above the 97.5 % quantile of chi-square
 /// - nis_below: share of samples whose NIS is below the 2.5 % quantile
 /// - coverage_95: share of samples inside the 95 % band
 /// - too_far: share of samples whose z^2 is above its 97.5 % quantile
 /// - too_close: share of samples whose z^2 is below its 2.5 % quantile
 /// - pit_distance: Kolmogorov distance of `pit` from uniform
-/// - whiteness_p: Ljung and Box, of the standardised innovations
+/// - whiteness_p: p-value of the Ljung-Box test on the standardised innovations
 template <class Io, class S>
 void exchange_summary(Io& io, S& summary, const Unit& states) {
   io.optional_table(
@@ -157,7 +157,7 @@ void exchange_summary(Io& io, S& summary, const Unit& states) {
       share_column("whiteness_p", &SummaryRow::whiteness_p));
 }
 
-/// - horizon: with `filter.horizon`: scores that many samples ahead
+/// - horizon: scores that many samples ahead, with `filter.horizon`
 /// - run: `*`: all runs of the role
 template <class Io, class R>
 void exchange_horizon(Io& io, R& rows, const Unit& states) {
@@ -237,17 +237,17 @@ void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
 
 /// /evaluation/evidence: whether held-out runs show evidence for modes.
 /// - answer: `evidence`, `cannot tell`, `no evidence`, `one mode`, `not yet`, `not comparable`
-/// - without_noise: one linear model leaves rounding
-/// - gain: of the bank over `best_competitor` [nat] per sample
+/// - without_noise: 1: one linear model leaves only rounding errors
+/// - gain: gain of the bank over `best_competitor` [nat] per sample
 /// - description: `several modes`, `one linear motion`, `one drifting motion`, `one nonlinear motion`, `none`
 /// - stay: harmonic mean length of a visit to a mode [samples]
 /// - stay_asked: least length that counts as a mode [samples]
 /// - terms_asked: 1: terms of one nonlinear motion were compared
-/// - pattern_gain: what past errors and inputs predict of the bank's errors [nat] per sample on training runs; NaN: not
-///   asked
+/// - pattern_gain: gain of predicting the bank's errors from past errors and inputs [nat] per sample on training
+///   runs; NaN: not computed
 /// - text: the finding as a sentence
 /// - equations: lines of one nonlinear motion
-/// - gains: of the bank over each competitor
+/// - gains: gains of the bank over each competitor
 /// - better_means: competitors whose mean errors are smaller
 template <class Io, class F>
 void exchange_finding(Io& io, F& finding) {
@@ -283,8 +283,8 @@ void exchange_finding(Io& io, F& finding) {
 }
 
 /// - confusion: labels against modes, with `data.label`
-/// - samples: whose most probable mode it was
-/// - share: of the label's samples
+/// - samples: number of samples of the label with this most probable mode
+/// - share: share of the label's samples
 template <class Io, class R>
 void exchange_confusion(Io& io, R& rows) {
   using Row = ConfusionRow;

@@ -5,8 +5,8 @@
 
 namespace modebank {
 
-/// Which columns of an archive's data were averaged when they were brought to data.rate_hz; none where nothing was.
-/// Nothing else of the file is decoded. Throws as load_bank does.
+/// The columns of an archive's data that were averaged to data.rate_hz; empty if none was. Decodes nothing else of the
+/// file. Throws as load_bank does.
 AveragedColumns load_averaged(const OpenArchive& archive);
 
 }  // namespace modebank

@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// How much each filter of an archive counted in their combined forecasts; none where nothing was combined. Nothing
-/// else of the file is decoded. Throws as load_bank does.
+/// Weights of an archive's filters in their combined forecasts; empty where nothing was combined. Decodes nothing else
+/// of the file. Throws as load_bank does.
 std::vector<CombinationRow> load_combination(const OpenArchive& archive);
 
 }  // namespace modebank

@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// The lag report of an archive made with data.lag_s = auto; empty for others. Nothing else of the file is decoded.
-/// Throws as load_bank does.
+/// The lag report of an archive made with data.lag_s = auto; empty for others. Decodes nothing else of the file. Throws
+/// as load_bank does.
 std::optional<LagReport> load_lag(const OpenArchive& archive);
 
 }  // namespace modebank

@@ -12,7 +12,7 @@ namespace {
 
 using Fields = FilterEvaluation::Fields;
 
-/// Evaluations that stay in the file of an archive.
+/// Evaluations that stay in the archive's file.
 class EvaluationsInFile {
  public:
   EvaluationsInFile(OpenArchive file, const Archive& archive)

@@ -169,7 +169,7 @@ constexpr std::array filters{"bank", "baseline", "noise_only", "one_motion", "dr
 
 bool is_filter(const std::string& name) { return std::find(filters.begin(), filters.end(), name) != filters.end(); }
 
-/// Of rows that have a filter and a run.
+/// Checks rows that name a filter and a run.
 template <class Row>
 void check_rows(const std::vector<Row>& rows, const std::set<std::string>& runs, const std::string& table) {
   for (const Row& row : rows) {
@@ -180,14 +180,14 @@ void check_rows(const std::vector<Row>& rows, const std::set<std::string>& runs,
   }
 }
 
-/// None where it could not be read: verification goes on without.
+/// Nullopt for an unreadable bank: verification continues without it.
 std::optional<Bank> whole_bank(const Archive& archive, const std::string& filter) try {
   return archive.bank_of(filter);
 } catch (const std::invalid_argument&) {
   return std::nullopt;
 }
 
-/// Of rows that have a filter and one of its modes.
+/// Checks rows that name a filter and one of its modes.
 template <class Row>
 void check_modes(const std::vector<Row>& rows, const Archive& archive, const std::string& table) {
   std::map<std::string, Index> modes;
@@ -206,7 +206,7 @@ void check_labels(const Archive& archive) {
     if (!known.contains(row.label)) throw DataError("confusion names the unknown label '" + row.label + "'");
 }
 
-/// The names of competitors in what was found; empty where there was none to name.
+/// Checks the names of competitors in a finding; a name may be empty.
 void check_competitors(const Finding& finding) {
   const auto known = [](const std::string& name, bool may_be_empty) {
     if ((name.empty() && may_be_empty) || (is_filter(name) && name != combined_name)) return;
@@ -223,7 +223,7 @@ void check_finding(const Archive& archive) {
   check_competitors(*archive.finding);
   const auto compare = [](Index said, Index there, bool fits, const char* of) {
     if (!fits)
-      throw DataError("evidence speaks of " + std::to_string(said) + " " + of + ", there are " + std::to_string(there));
+      throw DataError("evidence is about " + std::to_string(said) + " " + of + ", there are " + std::to_string(there));
   };
   const Index runs = archive.recording ? std::ssize(archive.recording->runs) : archive.finding->runs;
   const Index modes = archive.bank ? archive.bank->mode_count() : archive.finding->modes;

@@ -16,7 +16,7 @@
 
 namespace modebank {
 
-/// Stored forms (io/archive/bank/stored_bank.hpp) of what stands in an archive beside banks.
+/// Stored forms (io/archive/bank/stored_bank.hpp) of an archive's parts other than banks.
 
 StoredChannels store_channels(const std::vector<Channel>& channels);
 std::vector<Channel> restore_channels(const StoredChannels& stored);
@@ -25,58 +25,58 @@ std::vector<Channel> restore_channels(const StoredChannels& stored);
 struct RunRow {
   std::string name;
   Role role = Role::train;
-  Index first = 0;  ///< row of its first sample in all arrays over samples
+  Index first = 0;  ///< index of its first sample in all arrays over samples
   Index samples = 0;
   double lag_s = 0.0;
   std::int64_t time_origin_ns = 0;
   std::string file;
 };
 std::vector<RunRow> store_runs(const std::vector<Trajectory>& runs);
-/// Without their samples. The rows must follow each other without a gap.
+/// Runs without their samples. The rows must follow each other without a gap.
 std::vector<Trajectory> restore_runs(const std::vector<RunRow>& rows);
 std::vector<hdf5::Rows> rows_of(const std::vector<RunRow>& rows);
-/// Rows of runs that are in memory, one after the other.
+/// Rows of runs in memory, one run after another.
 std::vector<hdf5::Rows> rows_of(const std::vector<Trajectory>& runs);
 
-/// A run's labels, -1 where nothing is known; throws DataError for one that none of so many names belongs to.
+/// A run's labels, -1 where unknown. Throws DataError for an index outside the names.
 Eigen::VectorXi restore_label(const Eigen::VectorXi& stored, const RunRow& run, std::size_t names);
 
-/// Windows by the name of their run.
+/// Windows, with the name of their run.
 struct StoredWindows {
   std::vector<std::string> run;                          ///< M
   Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> start;  ///< M
 };
 StoredWindows store_windows(const std::vector<Window>& windows, const std::vector<Trajectory>& runs);
-/// Every window must lie within its run.
+/// Throws unless every window lies within its run.
 std::vector<Window> restore_windows(const StoredWindows& stored, const std::vector<Trajectory>& runs, Index length);
 
-/// restore_structure for windows, whose arrays have one entry per measured state; p is that of the motion model if
-/// there is one.
+/// restore_structure for windows, whose arrays have one entry per measured state; p is the number of parameters of the
+/// motion model if there is one.
 void restore_window_structure(WindowFits& fits, Index states, Index parameters);
-/// No count of the audit exceeds that of the windows.
+/// Throws if a count of the audit exceeds the number of windows.
 void check_audit(const WindowFits& fits);
 
 /// The components' covariances, F*F x K.
 Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances);
 std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, Index features);
 
-// What arrays that were read one by one must be together; each throws DataError.
+// Check arrays against each other that were read one by one; each throws DataError.
 void check_mixture(const MixtureResult& result);
 
-/// The members of these sizes, which may be missing, are all there or none is.
+/// Throws unless all members of these sizes exist or none does.
 void check_together(const char* what, std::initializer_list<Eigen::Index> sizes);
-/// Tables name modes that are there.
+/// Checks that tables name existing modes.
 void check_modes(const Archive& archive);
-/// Tables name runs and labels that are there and filters that are known.
+/// Checks that tables name existing runs and labels and known filters.
 void check_score_names(const Archive& archive);
-/// Groups of these names are there once each.
+/// Checks that groups of these names exist once each.
 void check_different(const std::string& what, const std::vector<std::string>& names);
 
-/// How many samples all runs have together, which no count of them exceeds.
+/// Binds the number of samples of all runs, the bound of every count of samples.
 void set_samples(Sizes& sizes, const Recording& recording);
-/// Extents that a filter's evaluation has from its bank and from the data, as far as the archive holds them.
+/// Extents of a filter's evaluation, from its bank and the data, if the archive has them.
 Sizes sizes_of_filter(const Archive& archive, const std::string& filter);
-/// Of the tables over all filters.
+/// Extents of the tables over all filters.
 Sizes sizes_of_evaluation(const Archive& archive, const Recording& recording);
 
 /// Residual tests as two tables: one row per model and run, and one per lag of these.
@@ -94,7 +94,7 @@ struct ResidualLagRow {
   Eigen::VectorXd autocorrelation;    ///< n
   Eigen::VectorXd cross_correlation;  ///< n*m, row by row
 };
-/// The rows of both tables, one model after the other.
+/// Makes the rows of both tables, one model after the other.
 void store_residual_runs(const std::vector<ResidualTestSet>& sets, const std::vector<Trajectory>& runs,
                          const std::function<void(const std::vector<ResidualRunRow>&)>& append);
 void store_residual_lags(const std::vector<ResidualTestSet>& sets, const std::vector<Trajectory>& runs,

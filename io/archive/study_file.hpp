@@ -25,14 +25,14 @@ struct NamedTable {
 };
 
 /// A table of runs in a file with the root of an archive: the study's resolved /config, /provenance with the inputs,
-/// the hash in the user block, one compound dataset, and the tables of what it answers.
+/// and the hash in the user block. It has one compound dataset, and tables of answers.
 struct StudyFile {
   Provenance provenance;
   std::string config;
-  std::string table;  ///< the dataset's name
+  std::string table;  ///< name of the dataset
   std::vector<NamedColumn> columns;
-  std::vector<std::pair<std::string, std::filesystem::path>> archives;  ///< appear as /trials/<name>
-  std::vector<NamedTable> answers;  ///< drawn from the table; appear as /answers/<name>
+  std::vector<std::pair<std::string, std::filesystem::path>> archives;  ///< stored as /trials/<name>
+  std::vector<NamedTable> answers;  ///< computed from the table; stored as /answers/<name>
 };
 
 /// Whether /trials/<name> are external links, relative to the file's folder, or copies of the archives' content.
@@ -41,18 +41,18 @@ enum class ArchiveUse { link, copy };
 /// Writes under a temporary name, hashes, renames, as write_archive does.
 void write_study_file(const std::filesystem::path& path, const StudyFile& study, ArchiveUse use = ArchiveUse::link);
 
-/// Reads everything but the archives. Throws as read_archive does, and DataError when there is no such table.
+/// Reads all but the archives. Throws as read_archive does, and DataError when the table does not exist.
 StudyFile read_study_file(const OpenArchive& file, const std::string& table);
 
-/// What a study's table takes from a trial's archive.
+/// The parts of a trial's archive that a study's table takes.
 struct TrialScores {
   std::string modebank_version, config_hash, data_hash;
-  std::int64_t modes = 0;                              ///< of the bank
-  std::string evidence;                                ///< the finding's answer; empty where nothing was found out
+  std::int64_t modes = 0;                              ///< number of the bank's modes
+  std::string evidence;                                ///< the finding's answer; empty without a finding
   std::vector<std::pair<std::string, double>> pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's "*"
 };
 
-/// Reads those alone. Throws as read_archive does.
+/// Reads only these parts. Throws as read_archive does.
 TrialScores read_trial_scores(const OpenArchive& archive);
 
 /// The names and values of pooled scores, from a summary in memory.

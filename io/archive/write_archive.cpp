@@ -13,9 +13,9 @@
 namespace modebank {
 namespace {
 
-/// Numbers of all evaluations, which are most of an archive of long recordings.
+/// Number of values in all evaluations, the largest part of an archive of long recordings.
 Index evaluated_numbers(const Archive& archive) {
-  constexpr Index numbers_beside_covariances = 64;  // of a sample
+  constexpr Index numbers_beside_covariances = 64;  // per sample
   if (!archive.recording) return 0;
   Index samples = 0, per_sample = 0;
   for (const Trajectory& run : archive.recording->runs) samples += run.samples();
@@ -26,10 +26,10 @@ Index evaluated_numbers(const Archive& archive) {
   return samples * per_sample;
 }
 
-/// Beyond this much an archive is made in the file system rather than in memory.
+/// Whether an archive is made on disk rather than in memory.
 bool is_large(const Archive& archive) {
   constexpr Index most_in_memory = Index{2} << 20;  // doubles
-  constexpr Index numbers_per_parameter = 8;        // of a window: value, error and what describes the fit
+  constexpr Index numbers_per_parameter = 8;        // per window: value, error and description of the fit
   if (evaluated_numbers(archive) > most_in_memory / 2) return true;
   if (archive.windows &&
       numbers_per_parameter * archive.windows->parameters.size() + archive.windows->covariance.size() > most_in_memory)
@@ -39,7 +39,7 @@ bool is_large(const Archive& archive) {
   return responsibilities.windows() * responsibilities.components() > most_in_memory;
 }
 
-/// The file of an archive in the making, closed in the end whatever happens.
+/// The unfinished file of an archive; the destructor closes it.
 class FileInTheMaking {
  public:
   explicit FileInTheMaking(const std::filesystem::path& path) {
@@ -74,7 +74,7 @@ void write_in_file(const std::filesystem::path& path, const std::function<void(c
   });
 }
 
-/// Evaluations that come one by one.
+/// Writes evaluations one by one.
 class EvaluationFile {
  public:
   EvaluationFile(const hdf5::Handle& file, const Recording& recording)
@@ -116,7 +116,7 @@ class EvaluationFile {
   std::string latest_;
 };
 
-/// Stands for an exception of the caller's while the archive was made, which is not a failure of writing.
+/// Marks an exception of the caller's function, which is not a failure of writing.
 struct NotMade {};
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace modebank {
 
 namespace {
 
-/// Columns, by position in the store, that share their rows.
+/// Columns with the same rows, as indices in the store.
 struct Block {
   std::string group;
   std::uint64_t rows = 0;
@@ -44,7 +44,7 @@ bool is_above(const std::string& group, const std::string& below) {
   return group.empty() ? !below.empty() : below.starts_with(group + ".") || below.starts_with(group + "[");
 }
 
-/// Blocks without times join the nearest group above that has some of that length.
+/// Merges blocks without times into the nearest group above that has times of the same length.
 std::vector<Block> joined(const std::vector<Block>& blocks) {
   std::vector<Block> result;
   for (const Block& block : blocks)
@@ -91,7 +91,7 @@ class ArrayReader : public TableReader {
   std::vector<Block> blocks_;
   std::vector<TableInfo> tables_;
 
-  /// A group's table has its name; of several lengths in it each but the first says its own.
+  /// A table has the name of its group. If a group has several lengths, all but the first are named by length, too.
   TableInfo table_of(std::size_t b) const {
     const Block& block = blocks_[b];
     TableInfo table;
@@ -132,7 +132,7 @@ class ArrayReader : public TableReader {
     return table;
   }
 
-  /// One note for the columns that lack the same rows.
+  /// Adds one note for all columns that lack the same rows.
   void note_unwritten(const TableRequest& request, Table& table) const {
     std::vector<std::string> names = request.numbers;
     names.insert(names.end(), request.texts.begin(), request.texts.end());
@@ -142,7 +142,7 @@ class ArrayReader : public TableReader {
       if (const auto ranges = store_->unwritten(stored(request, name)); !ranges.empty())
         by_rows[rows_text(ranges)].push_back(name);
     for (const auto& [rows, columns] : by_rows)
-      table.notes.push_back(fmt::format("{} of {} were never written: they read as the file's fill value", rows,
+      table.notes.push_back(fmt::format("{} of {} were never written, so they read as the file's fill value", rows,
                                         fmt::join(columns, ", ")));
   }
 
@@ -171,7 +171,7 @@ class ArrayReader : public TableReader {
     return result;
   }
 
-  /// A row whose time was never written and reads as NaN has no place: where values may miss, it is left out.
+  /// A row whose time was never written reads as NaN; it is left out if values may be missing.
   static void leave_out_untimed(const TableRequest& request, const std::vector<double>& times, Table& table) {
     const bool may_miss = std::find(request.may_miss.begin(), request.may_miss.end(), true) != request.may_miss.end();
     if (!may_miss || table.unwritten.empty() || times.empty()) return;

@@ -55,7 +55,7 @@ class Hdf5Columns : public ColumnStore {
     return found == unwritten_.end() ? std::string() : found->second;
   }
   std::vector<LineRange> unwritten(std::size_t column) const override {
-    if (columns_.at(column).step_s > 0.0) return {};  // computed, not stored
+    if (columns_.at(column).step_s > 0.0) return {};  // such a column is computed, not stored
     return at_column(column, [](hid_t data, const Hdf5Place& place) {
       return hdf5_unwritten_lines(data, place.rows_along, place.element);
     });
@@ -82,7 +82,7 @@ class Hdf5Columns : public ColumnStore {
         const Handle data(H5Dopen2(file.id(), place.object.c_str(), H5P_DEFAULT), H5Dclose, "open the dataset");
         hdf5_read(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, &result[group]);
       } catch (const DataError&) {
-        result.erase(group);  // no sample time then
+        result.erase(group);  // the group has no sample time
       }
     return result;
   }
@@ -90,18 +90,18 @@ class Hdf5Columns : public ColumnStore {
   void refuse_archive(hid_t root) const {
     if (hdf5_text_attribute(root, "format").starts_with("modebank"))
       throw ConfigurationError(
-          fmt::format("{} is an archive of modebank, not a log: `modebank show` and `modebank report` read it, and "
-                      "--archive.input takes its stages",
+          fmt::format("{} is an archive of modebank, not a log; use `modebank show` or `modebank report`, or continue "
+                      "from its stages with --archive.input",
                       path_));
   }
 
   [[noreturn]] void fail_empty(const Hdf5Walk& walk) const {
     std::string why;
     for (const std::string& line : walk.left_out) why += "; " + line;
-    throw ConfigurationError(fmt::format("{}: no column of numbers of two rows or more{}", path_, why));
+    throw ConfigurationError(fmt::format("{}: no column has numbers in two rows or more{}", path_, why));
   }
 
-  /// The columns of a file that holds one table alone need not say which.
+  /// Removes the group's name from columns if the file has only one table.
   void leave_out_only_group() {
     const std::string group = columns_.front().group;
     for (const StoredColumn& column : columns_)
@@ -111,7 +111,7 @@ class Hdf5Columns : public ColumnStore {
 
   template <class T>
   std::vector<T> read(std::size_t column, hid_t memory) const {
-    if (columns_[column].type.starts_with("bits")) {  // HDF5 converts them to longer bits alone
+    if (columns_[column].type.starts_with("bits")) {  // HDF5 converts bits only to longer bits
       const std::vector<std::uint64_t> bits = read_as<std::uint64_t>(column, H5T_NATIVE_B64);
       return std::vector<T>(bits.begin(), bits.end());
     }

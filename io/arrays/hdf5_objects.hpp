@@ -6,20 +6,20 @@
 #include "io/hdf5/array.hpp"
 #include "io/table/table_reader.hpp"
 
-/// What logs in HDF5 are made of: types, attributes and lines of datasets that others wrote.
+/// Elements of foreign HDF5 logs: types, attributes and lines of datasets.
 namespace modebank {
 
 haddr_t hdf5_address(hid_t object);
 std::string hdf5_path(hid_t object);
-/// A text of fixed length; empty when there is no such attribute, or it is something else.
+/// A text of fixed length; empty when the attribute does not exist or has another type.
 std::string hdf5_text_attribute(hid_t object, const std::string& name);
-/// Of the attributes units, unit or Units.
+/// Value of the attribute units, unit or Units.
 std::string hdf5_unit(hid_t object);
 hdf5::Shape hdf5_shape(hid_t dataset);
 
 /// Whether values convert to numbers: integers, floats, enumerations (h5py's booleans) and bits.
 bool hdf5_is_number(hid_t type);
-/// Bits, 64 at most: PyTables and pandas store truth values so.
+/// Whether a type is a bit field of at most 64 bits, in which PyTables and pandas store truth values.
 bool hdf5_is_bits(hid_t type);
 bool hdf5_is_whole(hid_t type);
 bool hdf5_is_text(hid_t type);
@@ -28,26 +28,26 @@ std::string hdf5_type_name(hid_t type);
 std::string hdf5_member_name(hid_t compound, unsigned member);
 hsize_t hdf5_array_elements(hid_t array_type);
 
-/// Opens a log for reading, also one that is being written in SWMR mode.
+/// Opens a log for reading, even while it is written in SWMR mode.
 hdf5::Handle hdf5_open_log(const std::string& path);
 /// Whether a dataset's values are in another file or in other datasets.
 bool hdf5_lies_outside(hid_t dataset);
 
-/// H5Dread. Throws DataError with HDF5's reason; where a filter is not installed, with the line that copies the file
+/// H5Dread. Throws DataError with HDF5's reason; if a filter is not installed, with the line that copies the file
 /// without it.
 void hdf5_read(hid_t dataset, hid_t memory_type, hid_t memory_space, hid_t file_space, void* to);
 
-/// Rows (from 1) whose chunks were never written, of a line of a dataset of one or two dimensions: HDF5 gives the fill
-/// value for them.
+/// Rows (from 1) whose chunks were never written, along one line of a dataset of one or two dimensions. HDF5 returns
+/// the fill value for them.
 std::vector<LineRange> hdf5_unwritten_lines(hid_t dataset, hsize_t along, hsize_t across);
 
-/// The type of a member of a compound; names lead through compounds in compounds. No name: the type itself.
+/// The type of a member of a compound; `member` lists names through nested compounds. Without names, the type itself.
 hdf5::Handle hdf5_member_type(hid_t compound, const std::vector<std::string>& member);
-/// A type of rows in memory that hold that member alone, as `cell`.
+/// An in-memory type of rows with this member alone, of type `cell`.
 hdf5::Handle hdf5_only_member(const std::vector<std::string>& member, hdf5::Handle cell);
 
-/// Texts of a list that Python pickled in its oldest, plain form (protocol 0), as PyTables does; empty for any other
-/// content: nothing is executed.
+/// Texts of a list that Python pickled in its oldest, plain form (protocol 0), as PyTables does. Nothing is executed;
+/// any other content gives an empty list.
 std::vector<std::string> pickled_names(const std::string& pickle);
 
 /// One line of a dataset of one or two dimensions.
@@ -69,7 +69,7 @@ std::vector<T> hdf5_read_line(hid_t dataset, hsize_t along, hsize_t line, hid_t 
   return values;
 }
 
-/// One element of a member of every row of a table.
+/// One element of a member, in every row of a table.
 template <class T>
 std::vector<T> hdf5_read_member(hid_t dataset, const std::vector<std::string>& member, hsize_t element, hid_t memory,
                                 std::size_t rows) {
@@ -86,7 +86,7 @@ std::vector<T> hdf5_read_member(hid_t dataset, const std::vector<std::string>& m
   return values;
 }
 
-/// All texts of a dataset, or of a member of a table, without blanks and zeros at their ends.
+/// All texts of a dataset, or of a table's member, without blanks and zeros at the end.
 std::vector<std::string> hdf5_read_texts(hid_t dataset, const std::vector<std::string>& member = {});
 
 }  // namespace modebank

@@ -23,9 +23,9 @@ void Hdf5Walk::group(hid_t id, const std::string& path, const std::string& name,
   if (hdf5::has_attribute(id, "OCTAVE_NEW_FORMAT") && hdf5::has_link(id, "value"))
     return octave_variable(id, path, name, depth);
   for (const std::string& member : hdf5::member_names(id)) {
-    if (member.starts_with("#")) continue;  // where MATLAB keeps what others refer to
+    if (member.starts_with("#")) continue;  // MATLAB's folder for values that others refer to
     if (columns.size() > most_objects)
-      throw DataError(fmt::format("more than {} columns: too many for a log", most_objects));
+      throw DataError(fmt::format("more than {} columns, which is too many for a log", most_objects));
     link(id, member, path + "/" + member, name, depth);
   }
 }
@@ -100,7 +100,7 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
   column.whole = hdf5_is_whole(type.id());
   const bool table = H5Tget_class(type.id()) == H5T_COMPOUND;
   if (!table && !column.text && !hdf5_is_number(type.id())) return;
-  if (hdf5::element_count(shape) > 1 && H5Dget_storage_size(id) == 0) {  // HDF5 allocates late: nothing was written
+  if (hdf5::element_count(shape) > 1 && H5Dget_storage_size(id) == 0) {  // HDF5 allocates late: no value was written
     unwritten[full] = fmt::format("its {} values were never written", hdf5::element_count(shape));
     return left_out.push_back(fmt::format("{} is left out: {}", full, unwritten[full]));
   }
@@ -207,7 +207,7 @@ void Hdf5Walk::fixed_block(hid_t id, const std::string& path, const std::string&
   const Handle data(H5Dopen2(id, member.c_str(), H5P_DEFAULT), H5Dclose, "open '" + member + "'");
   const Handle type(H5Dget_type(data.id()), H5Tclose, "read the type of '" + member + "'");
   const Shape shape = hdf5_shape(data.id());
-  if (!hdf5_is_number(type.id()) || shape.size() != 2 || shape[0] < 2) return;  // text lies there as a pickle
+  if (!hdf5_is_number(type.id()) || shape.size() != 2 || shape[0] < 2) return;  // a pickle, which may contain texts
   const Handle names(H5Dopen2(id, fmt::format("block{}_items", block).c_str(), H5P_DEFAULT), H5Dclose,
                      "open the items");
   const std::vector<std::string> items = hdf5_read_texts(names.id());

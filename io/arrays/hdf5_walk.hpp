@@ -10,33 +10,33 @@
 
 namespace modebank {
 
-/// Where a column lies: a line of a dataset of one or two dimensions, or an element of a member of a table's rows.
+/// Location of a column: a line of a dataset of one or two dimensions, or an element of a member in a table's rows.
 struct Hdf5Place {
-  std::string object;  ///< the dataset's path in HDF5
-  std::vector<std::string>
-      member;              ///< of a compound type, in compounds; empty: the dataset is of numbers or texts itself
-  hsize_t element = 0;     ///< of a member that is an array; else which line of a matrix
-  hsize_t rows_along = 0;  ///< the dimension along which rows run
+  std::string object;               ///< path of the dataset in the file
+  std::vector<std::string> member;  ///< path of the member in compounds; empty: the dataset itself has numbers or texts
+  hsize_t element = 0;              ///< index in a member that is an array; else the line of a matrix
+  hsize_t rows_along = 0;           ///< the dimension along which rows run
 };
 
 /// Walks through a file and lists its columns.
 class Hdf5Walk {
  public:
-  /// `named`: the file, in lines on objects.
+  /// `named`: the file's name, for lines on objects.
   explicit Hdf5Walk(std::string named) : file(std::move(named)) {}
 
   const std::string file;
   std::vector<StoredColumn> columns;
   std::vector<Hdf5Place> places;
   std::map<std::string, std::string> labels;
-  std::vector<std::string> left_out;              ///< a line for each object that gives no columns
-  std::map<std::string, std::string> unwritten;   ///< by name of a column: datasets that were never written, why
-  std::map<std::string, Hdf5Place> sample_times;  ///< of groups that hold a scalar Ts
-  int tables = 0;                                 ///< of pandas or of compound rows
+  std::vector<std::string> left_out;              ///< one line for each object without columns
+  std::map<std::string, std::string> unwritten;   ///< for datasets that were never written: reason by column name
+  std::map<std::string, Hdf5Place> sample_times;  ///< groups with a scalar Ts
+  int tables = 0;                                 ///< number of tables of pandas or compound rows
 
   void group(hid_t id, const std::string& path, const std::string& name, int depth);
 
-  /// Rows of a matrix run along the dimension that a vector of the file has, else as its maker's habit is.
+  /// Chooses the dimension of matrix rows: the one whose length a vector of the file has, else the usual one of the
+  /// program that wrote the file.
   void turn_matrices();
 
  private:
@@ -58,7 +58,7 @@ class Hdf5Walk {
 
   void note_foreign(const std::string& path);
 
-  /// A group that Octave's `save -hdf5` makes of a variable.
+  /// A group in which Octave's `save -hdf5` stores a variable.
   void octave_variable(hid_t id, const std::string& path, const std::string& name, int depth);
 
   void link(hid_t parent, const std::string& member, const std::string& path, const std::string& group_name, int depth);
@@ -67,13 +67,13 @@ class Hdf5Walk {
 
   void plain(StoredColumn column, const std::string& path, const hdf5::Shape& shape, hsize_t habit);
 
-  /// Members of a table's rows, those of compounds in them too; `names`: of a member's elements.
+  /// Adds members of a table's rows, also those in nested compounds. `names`: names of a member's elements.
   void compound(hid_t type, const hdf5::Shape& shape, const Hdf5Place& place, const std::string& group_name,
                 const std::map<std::string, std::vector<std::string>>& names);
   void member(hid_t type, hsize_t rows, const Hdf5Place& place, const std::string& group_name,
               const std::vector<std::string>& names);
 
-  /// Each field of MATLAB's array of structs is a dataset of references, one per struct.
+  /// MATLAB stores each field of a struct array as a dataset of references, one per struct.
   void struct_array(hid_t id, hid_t type, const hdf5::Shape& shape, const std::string& group_name,
                     const std::string& name, int depth);
 

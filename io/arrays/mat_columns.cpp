@@ -21,7 +21,7 @@ struct FreeVariable {
 using MatFile = std::unique_ptr<mat_t, CloseFile>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
-thread_local std::string last_reason;  ///< matio's last words in this thread
+thread_local std::string last_reason;  ///< last message of matio in this thread
 
 /// A template, because matio 1.5.28 passes its text as `const`.
 template <class Text>
@@ -36,7 +36,7 @@ MatFile open_mat(const std::string& path) {
   MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
   if (file) return file;
   throw DataError(
-      fmt::format("{}: not a MATLAB file that matio reads{}{}; in MATLAB or Octave: s = load('{}'); save plain "
+      fmt::format("{}: matio cannot read this MATLAB file{}{}; in MATLAB or Octave: s = load('{}'); save plain "
                   "-struct s -v7",
                   path, last_reason.empty() ? "" : ": ", last_reason, path));
 }
@@ -51,7 +51,7 @@ std::string type_name(const matvar_t& v) {
   return v.isLogical ? "logical" : names[v.class_type - MAT_C_DOUBLE];
 }
 
-/// The product of the extents; as many as fit where it overflows.
+/// The product of the extents; the largest number on overflow.
 std::uint64_t elements(const matvar_t& v) {
   std::uint64_t product = v.rank > 0 && v.dims ? 1 : 0;
   for (int i = 0; product > 0 && i < v.rank; ++i)
@@ -59,7 +59,7 @@ std::uint64_t elements(const matvar_t& v) {
   return product;
 }
 
-/// From a variable to one of its parts: fields of structs, each with the element of a struct array.
+/// Step from a variable to one of its parts: a field of a struct, with its element in a struct array.
 struct MatStep {
   std::string field;
   std::size_t element = 0;
@@ -68,7 +68,7 @@ struct MatStep {
 struct MatPlace {
   std::string variable;
   std::vector<MatStep> steps;
-  std::size_t first = 0;  ///< of the values, which follow one another down a column
+  std::size_t first = 0;  ///< index of the first value; the values follow one another down a column
 };
 
 matvar_t* follow(matvar_t* v, const std::vector<MatStep>& steps) {
@@ -79,7 +79,7 @@ matvar_t* follow(matvar_t* v, const std::vector<MatStep>& steps) {
   return v;
 }
 
-/// Walks through the variables' headers and lists their columns.
+/// Lists the columns from the variables' headers.
 class MatWalk {
  public:
   explicit MatWalk(const std::string& file) : file_(file) {}
@@ -150,7 +150,7 @@ class MatColumns : public ColumnStore {
     places_ = std::move(walk.places);
     left_out_ = std::move(walk.left_out);
     if (columns_.empty())
-      throw ConfigurationError(fmt::format("{}: no column of numbers of two rows or more{}{}", path_,
+      throw ConfigurationError(fmt::format("{}: no column has numbers in two rows or more{}{}", path_,
                                            left_out_.empty() ? "" : "; ", fmt::join(left_out_, "; ")));
     std::map<std::string, double> sample_time;
     for (const auto& [group, place] : walk.sample_time_places)
@@ -164,7 +164,7 @@ class MatColumns : public ColumnStore {
   std::vector<double> numbers(std::size_t column) const override { return read<double>(column); }
   std::vector<std::int64_t> whole_numbers(std::size_t column) const override { return read<std::int64_t>(column); }
   std::vector<std::string> texts(std::size_t column) const override {
-    throw DataError(fmt::format("{}: column {} is no text", path_, columns_.at(column).path()));
+    throw DataError(fmt::format("{}: column {} is not text", path_, columns_.at(column).path()));
   }
 
  private:
@@ -173,7 +173,7 @@ class MatColumns : public ColumnStore {
   std::vector<MatPlace> places_;
   std::vector<std::string> left_out_;
 
-  /// Whether so many elements were read: a damaged file may declare more.
+  /// Whether as many elements were read as declared; a damaged file may declare more.
   static bool holds(const matvar_t& part, std::uint64_t count) {
     return part.data && part.data_size > 0 && part.nbytes / static_cast<std::size_t>(part.data_size) >= count;
   }
@@ -203,7 +203,7 @@ class MatColumns : public ColumnStore {
     const Variable v(Mat_VarRead(file.get(), place.variable.c_str()));
     const matvar_t* part = v ? follow(v.get(), place.steps) : nullptr;
     if (!part || !is_number(*part) || elements(*part) < place.first + rows || !holds(*part, place.first + rows))
-      throw DataError(fmt::format("{}: column {}: matio gave fewer values than it declared{}{}", path_, name,
+      throw DataError(fmt::format("{}: column {}: matio returned fewer values than the file declares{}{}", path_, name,
                                   last_reason.empty() ? "" : ": ", last_reason));
     return converted<T>(*part, place.first, rows);
   }

@@ -11,13 +11,13 @@ namespace modebank {
 
 namespace {
 
-/// Position of the last part of a dotted path.
+/// Index of the last part of a dotted path.
 std::size_t last_part(const std::string& path) {
   const std::size_t dot = path.rfind('.');
   return dot == std::string::npos ? 0 : dot + 1;
 }
 
-/// "signals", or "[0]" of "signals[0]", of a group's last part; empty when it is another.
+/// "signals", or "[0]" of "signals[0]", from a group's last part; empty for any other part.
 std::string signal_of(const std::string& group) {
   const std::string part = group.substr(last_part(group));
   if (part == "signals") return part;
@@ -96,15 +96,16 @@ std::string read_iddata_line(const std::string& file) {
 std::string matlab_object(const std::string& class_name, const std::string& variable, const std::string& file) {
   const std::string what = fmt::format("{} is a MATLAB {}", variable, class_name.empty() ? "object" : class_name);
   const std::string line = matlab_conversion(class_name, variable);
-  if (class_name.empty())  // which matio does not give
+  if (class_name.empty())  // matio does not return the class
     return fmt::format(
         "{} (class({}) names its kind): convert an iddata in MATLAB with {}   or by python3 -c \"{}\"; a timeseries "
         "with {}",
         what, variable, matlab_conversion("iddata", variable), read_iddata_line(file),
         matlab_conversion("timeseries", variable));
   if (line.empty())
-    return fmt::format("{}, whose numbers these files do not give: take them out in MATLAB, as of a timeseries with {}",
-                       what, matlab_conversion("timeseries", variable));
+    return fmt::format(
+        "{}, whose numbers cannot be read from this file; extract them in MATLAB, for a timeseries with {}", what,
+        matlab_conversion("timeseries", variable));
   std::string python;
   if (class_name == "iddata" && !file.empty()) python = read_iddata_line(file);
   if (class_name == "table" || class_name == "timetable")
@@ -117,9 +118,8 @@ std::string matlab_object(const std::string& class_name, const std::string& vari
 
 std::string matlab_objects_without_name() {
   return fmt::format(
-      "the file holds MATLAB objects (table, timetable, timeseries, string, ...), of which matio gives no name: "
-      "convert "
-      "them in MATLAB, a table T with {}; a timeseries x with {}",
+      "the file contains MATLAB objects (table, timetable, timeseries, string, ...) without names; convert them in "
+      "MATLAB, a table T with {}; a timeseries x with {}",
       matlab_conversion("table", "T"), matlab_conversion("timeseries", "x"));
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 using Fields = std::vector<std::string>;
 
-constexpr std::size_t looked_at = 30;  // rows
+constexpr std::size_t looked_at = 30;  // number of rows to examine
 
 char delimiter_of(Separator separator) {
   switch (separator) {
@@ -57,7 +57,7 @@ std::size_t common_width(const std::vector<Fields>& rows) {
   return common == widths.end() ? 0 : common->first;
 }
 
-/// How well a separator explains the rows: the share that has the commonest width, and of values among their fields.
+/// Score of a separator: the share of rows with the most frequent width, and of values among their fields.
 double score(const std::vector<Fields>& rows) {
   const std::size_t width = common_width(rows);
   if (width < 2) return 0.0;
@@ -94,13 +94,13 @@ bool has_decimal_commas(const std::vector<Fields>& rows, Separator separator) {
       either_comma = either_comma || shown == MarkShown::either_comma;
       either_point = either_point || shown == MarkShown::either_point;
     }
-  // Between commas a field with one is quoted, and more often for its thousands than for its decimals.
+  // Between commas a field with a comma is quoted, and the comma more often separates thousands than decimals.
   return comma || (either_comma && !either_point && separator != Separator::comma);
 }
 
 bool any_value(const Fields& row) { return std::any_of(row.begin(), row.end(), is_value); }
 
-/// Whether the first row is one like the second: values where that has values, and at least one.
+/// Whether the first row has values in the same columns as the second, and at least one.
 bool is_headless(const std::vector<Fields>& rows, const std::vector<std::string>& na) {
   if (rows.empty() || !any_value(rows[0])) return false;
   if (rows.size() < 2) return true;
@@ -116,7 +116,8 @@ bool has_units_row(const std::vector<Fields>& rows) {
          any_value(rows[2]);
 }
 
-/// Names in the last comment before the rows, as numpy.savetxt writes them; none if it has another number of fields.
+/// Names in the last comment before the rows, as numpy.savetxt writes them; empty if their number is not that of the
+/// fields.
 Fields commented_names(const std::vector<TextRecord>& records, Separator separator, std::size_t width) {
   std::string_view last;
   for (const TextRecord& record : records) {
@@ -151,9 +152,9 @@ std::size_t lines_above_table(std::string_view text, bool complete, const Format
     for (std::size_t i = first; i < end; ++i)
       found = found && rows[i].size() == width && (i < first + names_and_units || any_value(rows[i]));
     if (!found) continue;
-    // R writes headers that lack the name of row numbers: they look like a title.
+    // R's headers lack the name of row numbers, which makes them look like a title.
     if (first == 1 && rows[0].size() > 1 && rows[0].size() + 1 == width && any_value(rows[1])) return 0;
-    // Comments behind the title stay: the last may name the columns.
+    // Comments after the title are kept, since the last may name the columns.
     const auto behind = std::find_if(all.begin(), all.end(),
                                      [&](const TextRecord& record) { return record.line > records[first - 1].line; });
     return static_cast<std::size_t>(behind->line) - 1;
@@ -183,16 +184,16 @@ CsvDialect find_dialect(std::string_view text, bool complete, const FormatOption
     dialect.header_rows = 0;
     const std::size_t width = rows.empty() ? 0 : rows[0].size();
     if (options.header == HeaderRow::automatic) dialect.names = commented_names(all, dialect.separator, width);
-    if (!dialect.names.empty()) said.emplace_back("with the columns' names in a comment");
+    if (!dialect.names.empty()) said.emplace_back("with column names in a comment");
     for (std::size_t i = dialect.names.size(); i < width; ++i) dialect.names.push_back(fmt::format("c{}", i + 1));
     if (said.empty() || said.back().find("names") == std::string::npos)
-      said.push_back(fmt::format("without a header: columns c1 to c{}", width));
+      said.push_back(fmt::format("without a header (columns c1 to c{})", width));
   } else if (has_units_row(rows)) {
     dialect.header_rows = 2;
     said.emplace_back("with units in the second row");
   }
   if (!said.empty())
-    dialect.note = fmt::format("text files are read as {} (data.separator, data.decimal and data.header say otherwise)",
+    dialect.note = fmt::format("text files are read as {} (change it with data.separator, data.decimal or data.header)",
                                fmt::join(said, ", "));
   return dialect;
 }

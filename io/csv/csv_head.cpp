@@ -15,7 +15,7 @@ namespace modebank {
 
 namespace {
 
-constexpr std::size_t probed_bytes = 1 << 16;  // of a file, at first, to find its dialect and header
+constexpr std::size_t probed_bytes = 1 << 16;  // bytes of a file that are read first, for its dialect and header
 constexpr std::size_t most_probed_bytes = 1 << 24;
 
 std::string too_many_columns() { return fmt::format("more than {} columns", most_csv_columns); }
@@ -40,8 +40,8 @@ struct HeaderSink {
 
 std::string no_header(std::string_view file, const CsvDialect& dialect) {
   return fmt::format(
-      "{} is empty{}: no header", file,
-      dialect.skipped > 0 ? fmt::format(" behind its first {} lines (data.skip_rows)", dialect.skipped) : "");
+      "{} is empty{}, so it has no header", file,
+      dialect.skipped > 0 ? fmt::format(" after its first {} lines (data.skip_rows)", dialect.skipped) : "");
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ CsvHead read_csv_head(const std::filesystem::path& path, const FormatOptions& op
     const bool complete = content.size() < wanted;
     std::string storage;
     const std::string_view text = as_utf8(content, storage);
-    // Rows, of which a file of long ones gives no more at first; behind a title that is to be skipped.
+    // Number of rows to read; more if a title must be skipped.
     const std::size_t enough = options.skip_automatic ? rows_looked_at_for_table : 4;
     const bool enough_bytes = options.skip_automatic && content.size() >= most_probed_bytes;
     if (complete || enough_bytes ||

@@ -9,17 +9,17 @@
 
 namespace modebank {
 
-/// The first rows of a text: how it is written, and its columns.
+/// The dialect of a text and its columns.
 struct CsvHead {
   CsvDialect dialect;
   std::vector<std::string> names, units;
 };
 
-/// The head of a text, or (unless `complete`) of one that begins so. `file` is named in messages. Throws
-/// ConfigurationError without a header, DataError where its quotes are malformed.
+/// The head of a text, or (unless `complete`) of its beginning. `file`: name for messages. Throws ConfigurationError
+/// without a header, DataError where its quotes are malformed.
 CsvHead read_csv_head(std::string_view file, std::string_view text, bool complete, const FormatOptions& options);
 
-/// The head of a file, which is read as far as that takes.
+/// The head of a file. Reads only as far as needed.
 CsvHead read_csv_head(const std::filesystem::path& path, const FormatOptions& options);
 
 }  // namespace modebank

@@ -10,10 +10,10 @@ namespace modebank {
 
 namespace {
 
-/// Blanks of spreadsheets between groups: no-break, narrow no-break and thin ones.
+/// Blanks that spreadsheets put between thousands: no-break, narrow no-break and thin ones.
 constexpr std::string_view wide_blanks[]{"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
 
-/// Bytes of a mark of thousands at the start of the text; 0: none is there.
+/// Length in bytes of a thousands separator at the start of the text; 0: none.
 std::size_t group_mark(std::string_view text, char mark) {
   if (text.empty()) return 0;
   if (text.front() == mark || text.front() == ' ' || text.front() == '\'') return 1;
@@ -23,12 +23,12 @@ std::size_t group_mark(std::string_view text, char mark) {
 }
 
 struct Grouped {
-  std::string digits;     ///< without the marks, with a decimal point
-  std::size_t marks = 0;  ///< of thousands
+  std::string digits;     ///< without separators, with a decimal point
+  std::size_t marks = 0;  ///< number of thousands separators
   bool has_decimals = false;
 };
 
-/// A number with one to three digits, groups of three behind marks of thousands, and decimals.
+/// Parses one to three digits, groups of three behind thousands separators, and decimals.
 std::optional<Grouped> grouped(std::string_view field, char decimal, char mark) {
   std::string_view rest = without_blanks(field);
   Grouped result;
@@ -59,8 +59,8 @@ std::optional<Grouped> grouped(std::string_view field, char decimal, char mark) 
   }
   const bool has_exponent = rest.find_first_of("eE") != std::string_view::npos;
   if (result.marks > 0 && !result.has_decimals && has_exponent)
-    return std::nullopt;  // the mark of 2.499e3 is one of decimals
-  result.digits += rest;  // decimals and an exponent, which are not checked here
+    return std::nullopt;  // the mark in 2.499e3 is a decimal one
+  result.digits += rest;  // decimals and an exponent; parse_number checks them
   return result;
 }
 

@@ -9,24 +9,24 @@
 
 namespace modebank {
 
-/// How a text file writes numbers: its decimal mark, with marks of thousands between groups of three digits, and the
-/// words that stand for a missing value (data.na).
+/// Numbers in a text file: their decimal mark, the thousands separators between groups of three digits, and words for
+/// missing values (data.na).
 ///
-/// With a decimal comma, points, blanks and apostrophes are marks of thousands: 2.499 is 2499, and 2.49 an error.
-/// With a decimal point, commas, blanks and apostrophes are, but a single comma is read so only beside a point: 2,499.5
-/// is 2499.5, and 2,499 an error, because others write 2.499 so.
+/// With a decimal comma, points, blanks and apostrophes separate thousands: 2.499 is 2499, and 2.49 is an error. With a
+/// decimal point, commas, blanks and apostrophes do. But a single comma needs a point beside it: 2,499.5 is 2499.5,
+/// while 2,499 is an error, because others write 2.499 in this way.
 class CsvNumbers {
  public:
-  /// `missing`: words, compared without regard to case; numbers among them (-999) are compared by value.
+  /// `missing`: words in any case; numbers among them (-999) are compared by value.
   CsvNumbers(bool decimal_comma, const std::vector<std::string>& missing);
 
   ParsedNumber parse(std::string_view field) const;
 
-  /// The field with a decimal point and without marks of thousands, as other readers of numbers and of times take it;
-  /// nothing where its marks are others.
+  /// The field with a decimal point and without thousands separators, for other readers of numbers and times; nullopt
+  /// if its marks are different.
   std::optional<std::string> with_point(std::string_view field) const;
 
-  /// The word of data.na that the field is; null: none.
+  /// The word of data.na that equals the field; null: none.
   const std::string* missing_word(std::string_view field) const;
 
   bool decimal_comma() const { return decimal_comma_; }
@@ -34,14 +34,13 @@ class CsvNumbers {
  private:
   bool decimal_comma_;
   std::vector<std::string> words_;
-  std::vector<double> values_;  // of the words that are numbers
+  std::vector<double> values_;  // the words that are numbers
 };
 
 /// The field with each comma replaced by a point.
 std::string commas_as_points(std::string_view field);
 
-/// The decimal mark that a field shows: a comma in 1,5 and 2.499,50, a point in 1.5 and 2,499.50; 2.499
-/// and 2,499 show neither.
+/// The decimal mark of a field: a comma in 1,5 and 2.499,50, a point in 1.5 and 2,499.50; ambiguous in 2.499 and 2,499.
 enum class MarkShown { none, point, comma, either_point, either_comma };
 MarkShown mark_shown(std::string_view field);
 

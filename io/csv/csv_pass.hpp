@@ -12,10 +12,10 @@
 
 namespace modebank {
 
-/// One pass of libcsv over a text: counts lines, tells fields and rows to `Sink`, stops at its first error. Exceptions
-/// must not cross libcsv's C frames, so errors are messages kept here until the pass is over.
-/// Sink: void field(std::string_view), void row() (also for empty lines), bool done(), and the members fields (in this
-/// row so far), line (on which the row starts) and error (empty: none).
+/// One pass of libcsv over a text. It counts lines, passes fields and rows to `Sink`, and stops at the sink's first
+/// error. Exceptions must not cross libcsv's C frames, so errors are stored until the pass ends. A Sink has void
+/// field(std::string_view), void row() (also for empty lines), bool done(), and the members fields (in this row so
+/// far), line (where the row starts) and error (empty: none).
 template <class Sink>
 class CsvPass {
  public:
@@ -54,7 +54,7 @@ class CsvPass {
   static void on_row(int terminator, void* pass) { self(pass).row(terminator); }
 
   void field(std::string_view text) {
-    if (sink_.done()) return;  // libcsv goes on to the end of its chunk
+    if (sink_.done()) return;  // libcsv continues to the end of its chunk
     if (sink_.fields == 0) sink_.line = line_;
     after_return_ = false;
     sink_.field(text);
@@ -62,7 +62,7 @@ class CsvPass {
       line_ += static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
   }
 
-  /// libcsv reports both bytes of CRLF: the second ends no line.
+  /// libcsv reports both bytes of CRLF; the second does not end another line.
   void row(int terminator) {
     if (sink_.done()) return;
     const bool second_byte = terminator == CSV_LF && after_return_ && sink_.fields == 0;
@@ -81,10 +81,10 @@ class CsvPass {
   [[noreturn]] void fail_parser() {
     if (csv_error(&parser_) == CSV_ENOMEM) throw std::bad_alloc();
     throw DataError(
-        fmt::format("{}:{}: malformed quotes (a quoted field must end before the next separator)", file_, line_));
+        fmt::format("{}:{}: malformed quotes: a quoted field must end before the next separator", file_, line_));
   }
 
-  static constexpr std::size_t chunk_bytes = 1 << 18;  // parsed between two looks at whether the sink is done
+  static constexpr std::size_t chunk_bytes = 1 << 18;  // parsed before the sink is asked again whether it is done
 
   std::string_view file_;
   Sink& sink_;

@@ -5,12 +5,11 @@
 
 namespace modebank {
 
-/// A field of CSV as RFC 4180 has it: in quotes where it holds a comma, a quote or a line break. For files that
-/// programs read back.
+/// A field of CSV by RFC 4180: in quotes if it contains a comma, a quote or a line break. For files that programs read.
 std::string quoted_field(std::string_view text);
 
-/// The same for tables that people open. An apostrophe goes in front of a text that a spreadsheet would take for a
-/// formula: it begins with = + - @, a tab or a carriage return, and does not read as a number.
+/// The same for tables that people open. A text that a spreadsheet would execute as a formula gets an apostrophe in
+/// front: if it begins with = + - @, a tab or a carriage return, and is not a number.
 std::string csv_field(std::string_view text);
 
 }  // namespace modebank

@@ -12,7 +12,7 @@
 namespace modebank {
 
 MemoryFile::MemoryFile() : descriptor_(memfd_create("modebank", MFD_CLOEXEC)) {
-  if (descriptor_ < 0) throw DataError("a file in memory cannot be made: " + std::generic_category().message(errno));
+  if (descriptor_ < 0) throw DataError("cannot make a file in memory: " + std::generic_category().message(errno));
 }
 
 MemoryFile::~MemoryFile() { ::close(descriptor_); }

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first bytes of a file, as many as there are.
+/// The first bytes of a file, at most `bytes`.
 std::string front_of(const fs::path& path, std::size_t bytes) {
   std::ifstream stream = open_file(path);
   std::string front(bytes, '\0');
@@ -21,7 +21,7 @@ std::string front_of(const fs::path& path, std::size_t bytes) {
   return front;
 }
 
-/// Where nothing can be written; links that lead back to themselves among it.
+/// Reason why the path cannot be written, including links that lead back to themselves; empty if there is none.
 std::string obstacle_at(const fs::path& path) {
   fs::path target;
   try {
@@ -50,8 +50,9 @@ void check_output(const OutputFile& output, const std::vector<fs::path>& sources
   std::error_code error;
   for (const fs::path& source : sources)
     if (fs::equivalent(source, output.path, error)) refuse(path + " is read by this command");
-  if (fs::file_size(output.path, error) == 0 || error) return;  // nothing is there that could be lost
-  if (!output.form.is_one(output.path)) refuse(path + " is there and not replaced, for it is not " + output.form.name);
+  if (fs::file_size(output.path, error) == 0 || error) return;  // an empty file may be replaced
+  if (!output.form.is_one(output.path))
+    refuse(path + " exists and is not replaced, because it is not " + output.form.name);
 }
 
 }  // namespace modebank

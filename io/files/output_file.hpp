@@ -8,25 +8,25 @@
 
 namespace modebank {
 
-/// A form of files that commands write, and how a file of that form is recognised.
+/// A type of file that commands write, and the test by which such a file is recognised.
 struct FileForm {
   std::string name;                                          ///< with its article: "a checkpoint of track"
   std::function<bool(const std::filesystem::path&)> is_one;  ///< called for regular files that are not empty
 };
 
-/// A form that is recognised by what stands near the front of the file: `sign` within the first `within` bytes.
+/// A form recognised by text near the start of the file: `sign` within the first `within` bytes.
 FileForm form_by_front(std::string name, std::string sign, std::size_t within);
 
-/// A file that a user names to be written.
+/// An output file that a user names.
 struct OutputFile {
-  std::string option;          ///< that names it: "-o", "track.checkpoint"
-  std::filesystem::path path;  ///< as it was typed
-  FileForm form;               ///< of what is written there
+  std::string option;          ///< the option that names it: "-o", "track.checkpoint"
+  std::filesystem::path path;  ///< path as typed
+  FileForm form;               ///< form of its content
 };
 
-/// Guards every output. Throws ConfigurationError, naming option and path, where the file cannot be written,
-/// where it is one of `sources` (files that the command reads) by whatever name or link, and where a file is there that
-/// is not of the form. A file without content may be replaced. Throws DataError when the disk fails.
+/// Protects every output. Throws ConfigurationError, with option and path, for a file that cannot be written, for one
+/// of `sources` (input files of the command) by any name or link, and for an existing file of another form. An empty
+/// file may be replaced. Throws DataError when the disk fails.
 void check_output(const OutputFile& output, const std::vector<std::filesystem::path>& sources);
 
 }  // namespace modebank

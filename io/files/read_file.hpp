@@ -15,11 +15,11 @@ std::ifstream open_file(const std::filesystem::path& path);
 /// All bytes of a file. Throws as open_file does.
 std::string read_file(const std::filesystem::path& path);
 
-/// How many of `count` bytes at the offset of an open file there are, up to its end or `error`.
+/// Reads up to `count` bytes at an offset of an open file; returns their number, smaller at the end or on `error`.
 std::size_t read_at(int descriptor, char* to, std::size_t count, std::uintmax_t offset, std::error_code& error);
 
-/// Throws DataError, naming it, where a device, a pipe or a folder (or a link to one) has the name of a file of ours:
-/// reading one need never end. A path that is not there is none.
+/// Throws DataError, with the path, if it is a device, a pipe or a folder (or a link to one), since reading these may
+/// never end. A missing path is fine.
 void refuse_special_file(const std::filesystem::path& path);
 
 }  // namespace modebank

@@ -21,14 +21,14 @@ namespace fs = std::filesystem;
 
 std::string system_reason() { return std::generic_category().message(errno); }
 
-/// A folder that would take a file if its disk did.
+/// Failure of a disk, in a folder that would otherwise take the file.
 struct DiskFailure : DataError {
   using DataError::DataError;
 };
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-/// An open descriptor; close() reports what the destructor cannot.
+/// An open descriptor; close() reports errors, which a destructor cannot.
 class Descriptor {
  public:
   Descriptor(const fs::path& path, int flags) : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
@@ -51,7 +51,7 @@ class Descriptor {
     }
   }
   void sync() const {
-    // Some file systems cannot sync a folder, and say EINVAL; there is nothing to wait for then.
+    // Some file systems cannot sync a folder and return EINVAL; that is ignored.
     if (::fsync(descriptor_) != 0 && errno != EINVAL) throw DataError(system_reason());
   }
   void close() {
@@ -62,7 +62,7 @@ class Descriptor {
   int descriptor_;
 };
 
-/// The file under its temporary name; removed unless it was moved to its final one.
+/// A file with a temporary name; removed unless it was renamed.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target)
@@ -91,7 +91,7 @@ class TemporaryFile {
 }  // namespace
 
 fs::path final_target(const fs::path& path) {
-  constexpr int most_links = 40;  // as many as Linux follows
+  constexpr int most_links = 40;  // the limit of Linux
   fs::path target = path;
   std::error_code error;
   for (int link = 0; link <= most_links; ++link) {
@@ -111,11 +111,11 @@ bool is_disk_failure(const std::error_code& error) {
 
 namespace {
 
-/// The obstacle that shows before anything is made; empty without one. A symbolic link is none: the file takes its
-/// place.
+/// Reason why a path cannot be written, as far as it shows beforehand; empty if none. A symbolic link is fine: the file
+/// replaces it.
 std::string seen_obstacle(const fs::path& path) {
   std::error_code error;
-  if (!path.has_filename()) return "'" + path.string() + "' names no file";
+  if (!path.has_filename()) return "'" + path.string() + "' is not the name of a file";
   const fs::path folder = folder_of(path);
   if (!fs::is_directory(folder, error)) return "the folder '" + folder.string() + "' does not exist";
   const fs::file_status status = fs::symlink_status(path, error);
@@ -125,7 +125,7 @@ std::string seen_obstacle(const fs::path& path) {
   return {};
 }
 
-/// Once in each folder while the process lives: a study writes thousands of files into one.
+/// Once per folder and process, since a study writes thousands of files into one folder.
 void tidy_once(const fs::path& folder) {
   static std::mutex guard;
   static std::set<fs::path> tidied;
@@ -139,8 +139,8 @@ void tidy_once(const fs::path& folder) {
   remove_leftovers(place);
 }
 
-/// The file under its temporary name, or why the folder does not take it: permissions do not tell (read-only mounts,
-/// /proc, root), only a file made there does.
+/// Creates the file with a temporary name, or throws the reason. Only this test is reliable: permissions do not show
+/// read-only mounts, /proc or root.
 TemporaryFile make_temporary(const fs::path& path) {
   tidy_once(folder_of(path));
   try {
@@ -157,7 +157,7 @@ TemporaryFile make_temporary(const fs::path& path) {
 std::string write_obstacle(const fs::path& path) {
   try {
     if (std::string obstacle = seen_obstacle(path); !obstacle.empty()) return obstacle;
-    make_temporary(path);  // and gone again
+    make_temporary(path);  // created as a test and removed at once
   } catch (const DiskFailure& failure) {
     throw DataError("cannot write " + path.string() + ": " + failure.what());
   } catch (const DataError& obstacle) {
@@ -168,7 +168,7 @@ std::string write_obstacle(const fs::path& path) {
 
 namespace {
 
-/// `named`: what messages call it.
+/// `named`: the path in messages.
 void replace(const fs::path& path, const fs::path& named, const std::function<void(const fs::path&)>& fill) {
   try {
     if (const std::string obstacle = seen_obstacle(path); !obstacle.empty()) throw DataError(obstacle);

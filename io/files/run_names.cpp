@@ -14,11 +14,12 @@ void check_run_names(const std::vector<std::string>& names) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
     if (std::any_of(name.begin(), name.end(), is_control))
-      throw DataError("\"" + printable(name) + "\" cannot name a run: it holds a control character");
+      throw DataError("\"" + printable(name) + "\" cannot name a run: it contains a control character");
     if (name.empty() || name == "." || name == ".." || name == "*" ||
         name.find_first_of(level_or_end) != std::string::npos)
-      throw DataError("\"" + name +
-                      "\" cannot name a run: a name must not be empty, '*', '.' or '..' nor hold '/' or a zero byte");
+      throw DataError(
+          "\"" + name +
+          "\" cannot name a run: a name must not be empty, '*', '.' or '..', nor contain '/' or a zero byte");
     if (!seen.insert(name).second) throw DataError("two runs are named \"" + name + "\"");
   }
 }

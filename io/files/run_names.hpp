@@ -5,7 +5,7 @@
 
 namespace modebank {
 
-/// Of runs in any form that has a `run`.
+/// Names of runs in any struct with a member `run`.
 template <class Run>
 std::vector<std::string> run_names(const std::vector<Run>& runs) {
   std::vector<std::string> names;
@@ -13,9 +13,9 @@ std::vector<std::string> run_names(const std::vector<Run>& runs) {
   return names;
 }
 
-/// Run names are texts of the archive and names of files. Throws DataError for a name that cannot be one ('/' separates
-/// folders, "." and ".." are folders already, texts end at a zero byte, "*" is all runs in the summary) or that two
-/// runs share.
+/// Run names are texts of the archive and parts of file names. Throws DataError for an impossible name and for one that
+/// two runs share. Impossible are the empty name, names with '/' or a zero byte, the folders "." and "..", and "*",
+/// which means all runs in the summary.
 void check_run_names(const std::vector<std::string>& names);
 
 }  // namespace modebank

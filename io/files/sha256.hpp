@@ -5,18 +5,18 @@
 #include <string>
 #include <string_view>
 
-struct evp_md_ctx_st;  // EVP_MD_CTX of libcrypto
+struct evp_md_ctx_st;  // type of libcrypto
 
 namespace modebank {
 
-/// Incremental SHA-256 (FIPS 180-4) by libcrypto. Throws std::runtime_error where libcrypto offers none.
+/// Incremental SHA-256 (FIPS 180-4) by libcrypto. Throws std::runtime_error if libcrypto lacks it.
 class Sha256 {
  public:
   Sha256();
 
   void update(const void* data, std::size_t bytes);
   void update(std::string_view bytes) { update(bytes.data(), bytes.size()); }
-  /// Lowercase hex (64 characters) of everything so far; more may follow.
+  /// The hash so far as 64 lowercase hex digits; more data may follow.
   std::string hex() const;
 
  private:
@@ -28,7 +28,7 @@ class Sha256 {
   Context context_;
 };
 
-/// Whether a text is one: 64 lowercase hexadecimal digits.
+/// Whether a text is a SHA-256: 64 lowercase hexadecimal digits.
 bool is_sha256(std::string_view text);
 
 std::string sha256_hex(std::string_view bytes);

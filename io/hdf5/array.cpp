@@ -50,7 +50,7 @@ std::size_t longest(const std::vector<std::string>& texts) {
 
 Handle array_text_type(const std::vector<std::string>& texts) {
   Handle type = string_type(longest(texts));
-  // UTF-8 holds ASCII, and Octave's load gives up a whole group at a dataset that says UTF-8, such as /windows/run.
+  // ASCII is valid UTF-8, but Octave's load drops a whole group at a UTF-8 dataset such as /windows/run.
   if (is_ascii(texts)) check(H5Tset_cset(type.id(), H5T_CSET_ASCII), "make an ASCII type");
   return type;
 }
@@ -118,7 +118,7 @@ Shape shape_of(const Handle& space) {
   return shape;
 }
 
-/// Selects rows in a dataset's space and returns the shape of what was selected.
+/// Selects rows in a dataset's space and returns the shape of the selection.
 Shape select_rows(const Handle& space, const std::vector<Rows>& rows) {
   Shape extent = shape_of(space), first(extent.size(), 0);
   hsize_t count = 0;
@@ -172,8 +172,8 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
   Handle space;
   if (place == Place::dataset) {
     object_ = Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
-    // Our own archives hold all their data; a layout that points elsewhere must not make us read other files.
-    if (lies_outside(object())) throw DataError(what + " keeps its content in another file");
+    // modebank's archives have all their data inside. A layout with outside data must not make us read other files.
+    if (lies_outside(object())) throw DataError(what + " has its content in another file");
     type_ = Handle(H5Dget_type(object()), H5Tclose, "read the type of " + what);
     space = Handle(H5Dget_space(object()), H5Sclose, "read the shape of " + what);
   } else {
@@ -187,14 +187,14 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
 }
 
 void StoredArray::check_plausible() const {
-  const auto refuse = [&] { throw DataError(quoted(place_, name_) + " declares more content than the file holds"); };
-  const std::size_t element_bytes = H5Tget_size(type());  // by which HDF5 divides
-  if (element_bytes == 0) throw DataError(quoted(place_, name_) + " has elements of no size");
+  const auto refuse = [&] { throw DataError(quoted(place_, name_) + " declares more content than the file has"); };
+  const std::size_t element_bytes = H5Tget_size(type());  // HDF5 divides by it
+  if (element_bytes == 0) throw DataError(quoted(place_, name_) + " has elements of size 0");
   const hsize_t bytes = saturating_product(elements_, element_bytes);
   hsize_t file_bytes = 0;
   const Handle file(H5Iget_file_id(object()), H5Fclose, "find the file");
   check(H5Fget_filesize(file.id(), &file_bytes), "read the size of the file");
-  // An array without elements may still declare extents, which the readers take for counts.
+  // An array without elements may still declare extents, which readers use as counts.
   const hsize_t longest_extent = shape_.empty() ? 0 : *std::max_element(shape_.begin(), shape_.end());
   if (bytes > file_bytes || longest_extent > file_bytes) refuse();
 }
@@ -216,7 +216,7 @@ void StoredArray::read_rows(const Rows& rows, hid_t memory_type, void* data) con
 
 namespace {
 
-/// Whether values of the type are bytes side by side, which point nowhere.
+/// Whether values of the type are contiguous bytes without references.
 bool is_plain(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);
   if (kind == H5T_ARRAY) return is_plain(Handle(H5Tget_super(type), H5Tclose, "read a type").id());
@@ -231,7 +231,7 @@ bool is_plain(hid_t type) {
 
 std::string StoredArray::row_bytes(const Rows& rows) const {
   if (!is_plain(type()))
-    throw DataError(quoted(place_, name_) + " holds values that are neither numbers nor texts of fixed length");
+    throw DataError(quoted(place_, name_) + " has values that are neither numbers nor texts of fixed length");
   std::string bytes(static_cast<std::size_t>(rows.count) * H5Tget_size(type()), '\0');
   read_rows(rows, type(), bytes.data());
   return bytes;
@@ -239,7 +239,7 @@ std::string StoredArray::row_bytes(const Rows& rows) const {
 
 std::vector<std::string> StoredArray::texts() const {
   if (type_class() != H5T_STRING || H5Tis_variable_str(type()) != 0)
-    throw DataError(quoted(place_, name_) + " does not hold fixed-length strings");
+    throw DataError(quoted(place_, name_) + " does not have fixed-length strings");
   const Handle type_in_memory(H5Tcopy(type()), H5Tclose, "copy a string type");
   check(H5Tset_strpad(type_in_memory.id(), H5T_STR_NULLPAD), "pad a string type");
   const std::size_t bytes = H5Tget_size(type());

@@ -11,10 +11,10 @@ namespace modebank::hdf5 {
 
 using Shape = std::vector<hsize_t>;
 
-/// Datasets and attributes hold arrays alike; only the calls that make and open them differ.
+/// Datasets and attributes have the same arrays; only the calls that create and open them differ.
 enum class Place { dataset, attribute };
 
-/// Memory and file type of a number; files are little-endian whatever the machine.
+/// Memory and file type of a number; files are little-endian on every machine.
 template <class T>
 hid_t memory_type() {
   if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
@@ -33,25 +33,25 @@ hid_t file_type() {
   if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_STD_U64LE;
 }
 
-/// Fixed-length, null-padded UTF-8; HDF5 knows no string type of length 0, so the least is 1.
+/// Fixed-length, null-padded UTF-8. HDF5 has no strings of length 0, so the smallest length is 1.
 Handle string_type(std::size_t bytes);
-/// That of a dataset whose texts are among these: ASCII where all are.
+/// Type of a dataset with these texts: ASCII if all are.
 Handle array_text_type(const std::vector<std::string>& texts);
 std::size_t longest(const std::vector<std::string>& texts);
-/// Texts laid side by side in cells of `bytes` each, and back.
+/// Packs texts into contiguous cells of `bytes` each, and back.
 std::string pack_texts(const std::vector<std::string>& texts, std::size_t bytes);
 std::vector<std::string> unpack_texts(const std::string& cells, std::size_t bytes);
 
-/// The largest number where the product is larger.
+/// a * b, or the largest number on overflow.
 hsize_t saturating_product(hsize_t a, hsize_t b);
-/// Number of elements; the largest hsize_t when the product does not fit.
+/// Number of elements; the largest hsize_t on overflow.
 hsize_t element_count(const Shape& shape);
 
 /// Whether a dataset's values are in another file or in other datasets.
 bool lies_outside(hid_t dataset);
 
-/// Creates a dataset (contiguous, without time stamps) or attribute, writes it and hands it over open. An empty shape
-/// is a scalar.
+/// Creates a dataset (contiguous, without time stamps) or attribute, writes it and returns it open. An empty shape is a
+/// scalar.
 Handle write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
                    const Shape& shape, const void* data);
 
@@ -60,20 +60,20 @@ struct Rows {
   hsize_t first = 0, count = 0;
   hsize_t end() const { return first + count; }
 };
-/// Creates a dataset that is written in rows. Rows that are never written hold what HDF5 leaves there.
+/// Creates a dataset that is written in rows. The content of rows that are never written is undefined.
 Handle create_rows(hid_t parent, const std::string& name, hid_t file_type, const Shape& shape);
-/// The same for rows of which some may be missing: they hold `missing`, a value of `memory_type`, in every entry.
-/// `prefill`: some rows will not be written.
+/// The same for rows that may stay unwritten: each entry then is `missing`, a value of `memory_type`. `prefill`: some
+/// rows will not be written.
 Handle create_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
                    const void* missing, bool prefill);
-/// Writes several stretches of rows by one call; `data` holds them one after the other.
+/// Writes several ranges of rows by one call; `data` has them one after the other.
 void write_rows(const Handle& dataset, hid_t memory_type, const std::vector<Rows>& rows, const void* data);
 
 Handle write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
                    const Shape& shape);
 
-/// An open dataset or attribute whose declared size has been checked against the file's, so that a corrupt shape cannot
-/// ask for memory that no content backs.
+/// An open dataset or attribute. Its declared size is checked against the file's size, so that a corrupt shape cannot
+/// cause a huge allocation.
 class StoredArray {
  public:
   StoredArray(hid_t parent, Place place, const std::string& name);
@@ -84,12 +84,12 @@ class StoredArray {
   const Shape& shape() const { return shape_; }
   hsize_t elements() const { return elements_; }
   void read(hid_t memory_type, void* data) const;
-  /// Some rows of a dataset, which lie within its first extent.
+  /// Some rows of a dataset, which must be within its first extent.
   void read_rows(const Rows& rows, hid_t memory_type, void* data) const;
-  /// Rows of a table as the file has them, of `type()`. DataError where any of it is neither a number nor a text of
-  /// fixed length.
+  /// Rows of a table as in the file, of type `type()`. Throws DataError for members that are neither numbers nor texts
+  /// of fixed length.
   std::string row_bytes(const Rows& rows) const;
-  /// All texts in order; DataError unless the type is a fixed-length string.
+  /// All texts in order. Throws DataError unless the type is a fixed-length string.
   std::vector<std::string> texts() const;
 
  private:

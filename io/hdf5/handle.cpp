@@ -8,7 +8,7 @@ namespace modebank::hdf5 {
 
 namespace {
 
-/// HDF5 walks the stack from the innermost record (n = 0) outwards: the first one is the reason.
+/// HDF5 walks its error stack from the innermost record (n = 0) outwards; the first record is the reason.
 herr_t keep_innermost(unsigned n, const H5E_error2_t* record, void* text) {
   if (n == 0 && record->desc) *static_cast<std::string*>(text) = record->desc;
   return 0;
@@ -17,7 +17,7 @@ herr_t keep_innermost(unsigned n, const H5E_error2_t* record, void* text) {
 std::string innermost_reason() {
   std::string text = "unknown reason";
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &text);
-  // The file drivers wrap the system's words in times and addresses, which say nothing to a user.
+  // HDF5's file drivers add times and addresses around the system's message; users do not need them.
   const std::string mark = "error message = '";
   const auto begin = text.find(mark);
   if (begin == std::string::npos) return text;
@@ -25,7 +25,7 @@ std::string innermost_reason() {
   return text.substr(begin + mark.size(), end == std::string::npos ? end : end - begin - mark.size());
 }
 
-thread_local bool failed = false;  ///< whether HDF5 has failed us in this thread
+thread_local bool failed = false;  ///< whether HDF5 has failed in this thread
 
 [[noreturn]] void fail(const std::string& what) {
   failed = true;
@@ -57,7 +57,7 @@ void check(herr_t status, const std::string& what) {
 
 namespace {
 
-/// Held by one thread at a time where HDF5 was built without thread safety; held by nobody where it has its own.
+/// Locked by one thread at a time if HDF5 was built without thread safety; unlocked if it is thread-safe.
 std::unique_lock<std::recursive_mutex> one_thread() {
   static std::recursive_mutex mutex;
   static const bool has_its_own = [] {
@@ -82,7 +82,7 @@ Handle open_file(const std::string& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the file access");
   check(H5Pset_file_locking(access.id(), false, true), "switch file locking off");
   hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id());
-  // Where h5py in the same process has the file open, HDF5 requires the same setting of locks, its default.
+  // If h5py in the same process has the file open, HDF5 requires its lock setting, the default.
   if (file < 0) file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   return {file, H5Fclose, "open the file"};
 }
@@ -93,7 +93,7 @@ Handle open_group(hid_t parent, const std::string& name) {
 
 namespace {
 
-/// For H5Literate and H5Aiterate2 alike.
+/// Callback for H5Literate and H5Aiterate2.
 template <class Info>
 herr_t append_name(hid_t, const char* name, const Info*, void* list) {
   static_cast<std::vector<std::string>*>(list)->emplace_back(name);
@@ -102,8 +102,8 @@ herr_t append_name(hid_t, const char* name, const Info*, void* list) {
 
 }  // namespace
 
-// Both lists are sorted here: asked for an order of its own, HDF5 1.10 builds a table, and crashes on freeing it half
-// filled when the file is damaged.
+// Both lists are sorted here. For a given order HDF5 1.10 builds a table, and crashes when it frees a half-filled one
+// of a damaged file.
 std::vector<std::string> member_names(hid_t group) {
   std::vector<std::string> names;
   check(H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, append_name<H5L_info_t>, &names), "list the members");

@@ -9,8 +9,8 @@
 
 namespace modebank::hdf5 {
 
-/// Owns one HDF5 identifier. A failed open arrives here as a negative identifier and becomes a DataError that says
-/// what was tried and why HDF5 refused.
+/// Owns an HDF5 identifier. A negative identifier of a failed call becomes a DataError with the action and HDF5's
+/// reason.
 class Handle {
  public:
   using Closer = herr_t (*)(hid_t);
@@ -34,10 +34,9 @@ class Handle {
 /// Throws DataError "cannot <what>: <HDF5's innermost reason>" when the status is negative.
 void check(herr_t status, const std::string& what);
 
-/// Lives as long as a function of ours works with HDF5, whatever the library was built with: other threads wait unless
-/// it is thread-safe. While one lives, this thread's HDF5 prints no error stack; the application's own setting comes
-/// back afterwards. After an HDF5 failure it does not: HDF5 1.10 leaks inside when a metadata checksum is wrong, and
-/// would complain about itself on stderr when the process ends.
+/// Lives while a function works with HDF5. Unless HDF5 is thread-safe, other threads wait. Meanwhile this thread's HDF5
+/// prints no error stack; afterwards the application's own setting returns. After a failure the setting does not
+/// return, because HDF5 1.10 leaks memory at a wrong metadata checksum and would print messages when the process ends.
 class Quiet {
  public:
   Quiet();
@@ -51,8 +50,8 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-/// Opens an existing file for reading. No lock is taken (archives never change under their final name, and many file
-/// systems refuse locks).
+/// Opens an existing file for reading. Takes no lock, since archives never change under their final name and many file
+/// systems have no locks.
 Handle open_file(const std::string& path);
 /// A member group; "/": the root.
 Handle open_group(hid_t parent, const std::string& name);

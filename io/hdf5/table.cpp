@@ -23,12 +23,12 @@ Handle array_type(hid_t element, hsize_t length) {
   return {H5Tarray_create2(element, 1, &length), H5Tclose, "make an array type"};
 }
 
-/// HDF5 knows no array type of length 0; an empty table's array column gets the least length.
+/// HDF5 has no array type of length 0, so an empty table's array column has length 1.
 hsize_t array_length(const Eigen::MatrixXd& values) {
   return static_cast<hsize_t>(std::max<Eigen::Index>(values.rows(), 1));
 }
 
-/// What one cell of a column is in the file, and in memory when its values lie side by side.
+/// Types of a column's cell in the file, and in memory when values are contiguous.
 struct CellTypes {
   Handle file;
   Handle memory;
@@ -45,7 +45,7 @@ CellTypes cell_types(const Eigen::MatrixXd& values) {
   return {array_type(H5T_IEEE_F64LE, array_length(values)), array_type(H5T_NATIVE_DOUBLE, array_length(values))};
 }
 
-/// Members side by side; a number takes as many bytes in memory as in the file.
+/// Type of a row with contiguous members; a number has as many bytes in memory as in the file.
 Handle row_type(const std::vector<TableColumn>& columns, const std::vector<CellTypes>& cells,
                 Handle CellTypes::*where) {
   std::size_t bytes = 0;
@@ -69,22 +69,22 @@ std::string raw_bytes(const Eigen::MatrixXd& values) {
   return {reinterpret_cast<const char*>(values.data()), static_cast<std::size_t>(values.size()) * sizeof(double)};
 }
 
-/// A column's cells side by side, as they are in the file.
+/// A column's contiguous cells, as in the file.
 struct StoredColumn {
   Handle type;
   std::size_t cell_bytes = 0;
   std::string cells;
 };
 
-/// The cells of a member, after its kind has been checked. Rows are read once for all columns: member by member HDF5
-/// would take and clear a megabyte for each.
+/// The cells of a member, after a check of its type. Rows are read once for all columns, because HDF5 would allocate
+/// and clear a megabyte for each member.
 StoredColumn stored_column(const TableRows& all, const std::string& name, H5T_class_t expected) {
   const StoredArray& table = all.table;
   const int index = H5Tget_member_index(table.type(), name.c_str());
   if (index < 0) throw DataError("column '" + name + "' is missing");
   const auto member = static_cast<unsigned>(index);
   if (H5Tget_member_class(table.type(), member) != expected)
-    throw DataError("column '" + name + "' holds another kind of value");
+    throw DataError("column '" + name + "' has values of another type");
   StoredColumn column{
       {H5Tget_member_type(table.type(), member), H5Tclose, "read the type of column '" + name + "'"}, 0, {}};
   column.cell_bytes = H5Tget_size(column.type.id());
@@ -96,7 +96,7 @@ StoredColumn stored_column(const TableRows& all, const std::string& name, H5T_cl
   return column;
 }
 
-/// The cells, which are `count` of the stored type, turned into ones of another type of the same size.
+/// Converts the `count` cells of the stored type to another type of the same size.
 const std::string& converted(StoredColumn& column, hid_t stored, hid_t wanted, std::size_t count) {
   if (H5Tequal(stored, wanted) <= 0)
     check(H5Tconvert(stored, wanted, count, column.cells.data(), nullptr, H5P_DEFAULT), "convert a column");
@@ -106,7 +106,7 @@ const std::string& converted(StoredColumn& column, hid_t stored, hid_t wanted, s
 template <class T>
 void read_values(const TableRows& rows, const std::string& name, Vector<T>& values) {
   StoredColumn stored = stored_column(rows, name, std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER);
-  // A narrower number would let a small file ask for much memory.
+  // For a narrower number a small file could require much memory.
   if (stored.cell_bytes != sizeof(T)) throw DataError("column '" + name + "' holds numbers of another width");
   values.resize(static_cast<std::size_t>(rows.rows.count));
   const std::string& cells = converted(stored, stored.type.id(), memory_type<T>(), values.size());
@@ -126,7 +126,7 @@ void read_values(const TableRows& rows, const std::string& name, Eigen::MatrixXd
   const Handle element(H5Tget_super(stored.type.id()), H5Tclose, "read an array type");
   hsize_t length = 0;
   if (H5Tget_array_ndims(stored.type.id()) != 1 || H5Tget_class(element.id()) != H5T_FLOAT)
-    throw DataError("column '" + name + "' does not hold arrays of numbers");
+    throw DataError("column '" + name + "' does not have arrays of numbers");
   check(H5Tget_array_dims2(stored.type.id(), &length), "read an array type");
   if (H5Tget_size(element.id()) != sizeof(double) || length != stored.cell_bytes / sizeof(double))
     throw DataError("column '" + name + "' holds numbers of another width");
@@ -164,7 +164,7 @@ Handle write_table(hid_t group, const std::string& name, std::vector<TableColumn
   const Handle type = row_type(columns, cells, &CellTypes::file),
                in_memory = row_type(columns, cells, &CellTypes::memory);
   const std::size_t row_bytes = H5Tget_size(in_memory.id());
-  // Whole rows at once: member by member HDF5 would take and clear a megabyte for each.
+  // Writes whole rows, because HDF5 would allocate and clear a megabyte for each member.
   std::string packed(static_cast<std::size_t>(rows) * row_bytes, '\0');
   std::size_t offset = 0;
   for (std::size_t i = 0; i < columns.size(); ++i) {

@@ -10,7 +10,7 @@
 
 namespace modebank::hdf5 {
 
-/// One column of a compound table. The matrix is an array column: one row of the table per matrix column.
+/// One column of a compound table. A matrix is an array column: one row of the table per matrix column.
 struct TableColumn {
   using Values =
       std::variant<std::vector<std::int8_t>, std::vector<std::int32_t>, std::vector<std::int64_t>,
@@ -19,17 +19,17 @@ struct TableColumn {
   Values values;
 };
 
-/// Appends the values of columns of the same names and kinds.
+/// Appends the values of columns with the same names and types.
 void append(std::vector<TableColumn> more, std::vector<TableColumn>& columns);
 
-/// Writes a 1-D compound dataset of `rows` packed rows and hands it over open. Columns go as they are packed, so that a
-/// long table does not lie in memory twice.
+/// Writes a 1-D compound dataset of `rows` packed rows and returns it open. Columns are freed as they are packed, so
+/// that memory never has a long table twice.
 Handle write_table(hid_t group, const std::string& name, std::vector<TableColumn> columns, hsize_t rows);
 
 /// Whether a compound dataset has a member of that name.
 bool has_column(const StoredArray& table, const std::string& name);
 
-/// Rows of a table as they are in the file, read once for all columns.
+/// Rows of a table as in the file, read once for all columns.
 struct TableRows {
   const StoredArray& table;
   Rows rows;
@@ -39,8 +39,8 @@ struct TableRows {
 TableRows read_rows(const StoredArray& table, const Rows& rows);
 TableRows read_all_rows(const StoredArray& table);
 
-/// Fills `column.values`, whose alternative states the expected kind, from the member of that name. Throws DataError
-/// when the member is missing or of another kind. Other members are ignored.
+/// Fills `column.values` from the member of that name; the variant's alternative states the expected type. Throws
+/// DataError when the member is missing or has another type. Other members are ignored.
 void read_column(const TableRows& rows, TableColumn& column);
 
 }  // namespace modebank::hdf5

@@ -6,12 +6,12 @@
 
 namespace modebank {
 
-/// How samples of one table become samples at the times of another: as states and inputs do when they are joined.
+/// How a channel is brought to the times of another table: states are interpolated, inputs held.
 enum class Bring { interpolated, held };
 
 /// Sets `channels` (rows) of `target` from the same rows of `source`, at the target's times; both are in order of time.
-/// Samples of the target outside the source's span are dropped, and interpolated values across a gap become NaN. Throws
-/// DataError when none is left.
+/// Drops samples of the target outside the source's span. Interpolated values across a gap become NaN. Throws DataError
+/// when no sample is left.
 void bring_to(FileStream& target, const FileStream& source, const std::vector<Index>& channels, Bring how);
 
 }  // namespace modebank

@@ -22,7 +22,7 @@ const ColumnInfo* find_column(const TableInfo& table, const std::string& name) {
   return found == table.columns.end() ? nullptr : &*found;
 }
 
-/// A column of the table by its full name, or by what follows the table's name in it.
+/// A column by its full name, or by the part of its name after the table's name.
 const ColumnInfo* find_within(const TableInfo& table, const std::string& name) {
   if (const ColumnInfo* column = find_column(table, name)) return column;
   if (table.name.empty()) return nullptr;
@@ -31,7 +31,7 @@ const ColumnInfo* find_within(const TableInfo& table, const std::string& name) {
   return nullptr;
 }
 
-/// The stamps that a table of a recording has: its messages' header's, else when they were received, else its first.
+/// The stamps of a recording's table: the header's stamps, else the receive times, else its first stamps.
 const ColumnInfo* own_stamps(const TableInfo& table) {
   for (const char* name : {"header.stamp", "receive_time"})
     if (const ColumnInfo* column = find_within(table, name)) return column;
@@ -45,7 +45,8 @@ const ColumnInfo* find_time(const TableInfo& table, const DataOptions& options) 
   return options.time == DataOptions().time ? own_stamps(table) : nullptr;
 }
 
-/// Where the full name of another table's times is given ("log.imu.t"): the table's own of that name ("log.cmd.t").
+/// The time column of this table ("log.cmd.t"), where the configuration has the full name of another table's
+/// ("log.imu.t").
 const ColumnInfo* find_time_of_another(const TableInfo& table, const std::vector<TableInfo>& tables,
                                        const std::string& name) {
   for (const TableInfo& other : tables)
@@ -55,7 +56,7 @@ const ColumnInfo* find_time_of_another(const TableInfo& table, const std::vector
   return nullptr;
 }
 
-/// What a file has: its columns, or where they are too many to read through its tables.
+/// Columns of a file for messages, or its tables where the columns are too many.
 std::string listing(const std::vector<TableInfo>& tables) {
   constexpr std::size_t most_columns = 100;
   Texts columns, names;
@@ -64,7 +65,7 @@ std::string listing(const std::vector<TableInfo>& tables) {
     for (const ColumnInfo& column : table.columns) columns.push_back(column.name);
   }
   if (columns.size() == 1 && columns.front().find_first_of(",;|\t ") != std::string::npos)
-    return columns.front() + " (a single one: data.separator says what separates)";
+    return columns.front() + " (a single one; set data.separator if its fields are separated by another character)";
   if (columns.size() <= most_columns || tables.size() == 1) return fmt::format("{}", fmt::join(columns, ", "));
   return fmt::format("{} in the tables {}", columns.size(), fmt::join(names, ", "));
 }
@@ -115,7 +116,7 @@ std::size_t ColumnFinder::source_with(const std::string& column, const std::vect
   for (const std::size_t file : files)
     for (std::size_t table = 0; table < tables_[file].size(); ++table)
       if (find_column(tables_[file][table], column) != nullptr) {
-        column_position(names_[file], column_names(tables_[file][table]), column);  // throws where it is there twice
+        column_position(names_[file], column_names(tables_[file][table]), column);  // throws if the name occurs twice
         return source_of(file, table);
       }
   fail(column, files);
@@ -150,9 +151,10 @@ ColumnRef ColumnFinder::derive(const DerivedChannel& channel, const std::vector<
     if (std::find(all.begin(), all.end(), file) == all.end()) all.push_back(file);
     for (const TableInfo& table : tables_[file])
       if (!channel.name.empty() && find_column(table, channel.name) != nullptr)
-        throw ConfigurationError(fmt::format("{}: {} has a column of that name: take another", key, names_[file]));
+        throw ConfigurationError(
+            fmt::format("{}: {} already has a column of that name; choose another name", key, names_[file]));
   }
-  if (channel.expression.channels().empty()) throw ConfigurationError(fmt::format("{}: names no channel", key));
+  if (channel.expression.channels().empty()) throw ConfigurationError(fmt::format("{}: no channel is named", key));
   std::vector<ColumnRef> operands;
   try {
     operands = numbers(channel.expression.channels(), all);
@@ -185,7 +187,7 @@ ColumnRef ColumnFinder::derived_of_table(std::shared_ptr<const DerivedChannel> c
 std::size_t ColumnFinder::source_without_column(std::size_t file, std::size_t states) {
   if (plan_.sources[states].path == file) return states;
   if (tables_[file].size() > 1)
-    throw ConfigurationError(fmt::format("{} has several tables: data.input says which is meant", names_[file]));
+    throw ConfigurationError(fmt::format("{} has several tables; name one of its columns in data.input", names_[file]));
   return source_of(file, 0);
 }
 
@@ -216,7 +218,7 @@ void ColumnFinder::time(std::size_t source, const DataOptions& options) {
   if (column == nullptr)
     column = find_time_of_another(table, tables_[plan_.sources[source].path], options.time.front());
   if (column == nullptr) fail(options.time.front(), {plan_.sources[source].path});
-  column_position(path_of(source), column_names(table), column->name);  // throws where it is there twice
+  column_position(path_of(source), column_names(table), column->name);  // throws if the name occurs twice
   request.column = column->name;
   request.unit = options.time_unit;
   request.format = options.time_format;

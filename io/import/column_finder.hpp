@@ -7,25 +7,24 @@
 
 namespace modebank {
 
-/// Looks columns up in the tables of one plan's files and notes them in its sources' requests. Throws
-/// ConfigurationError for what is not there, naming what is.
+/// Finds columns in the tables of a plan's files and adds them to the requests of its sources. Throws
+/// ConfigurationError, with the existing names, for a column that does not exist.
 class ColumnFinder {
  public:
-  /// The plan has its readers.
+  /// `plan` must have its readers.
   ColumnFinder(FilePlan& plan, std::shared_ptr<const DerivedChannels> derived);
 
-  /// A column of numbers, derived or of the first of `files` (positions in FilePlan::paths) that has it; what is
-  /// derived may use other files, too.
+  /// A column of numbers: a derived channel, or a column of the first of `files` (indices in FilePlan::paths) that has
+  /// it. A derived channel may use other files, too.
   ColumnRef number(const std::string& column, const std::vector<std::size_t>& files);
   std::vector<ColumnRef> numbers(const std::vector<std::string>& columns, const std::vector<std::size_t>& files);
 
-  /// data.where.
+  /// The column of data.where.
   ColumnRef where(const std::vector<std::size_t>& files);
-  /// A source that it comes from.
+  /// A source of the column.
   std::size_t clock_of(ColumnRef ref) const;
 
-  /// The source that stands for a file nothing but times is wanted of: its one table, or `states` where that is of the
-  /// same file.
+  /// The source for a file from which only times are needed: its one table, or `states` if that is in the same file.
   std::size_t source_without_column(std::size_t file, std::size_t states);
 
   /// The first of `sources` whose table has the times, or the column.
@@ -34,10 +33,10 @@ class ColumnFinder {
 
   /// Requests times of a source.
   void time(std::size_t source, const DataOptions& options);
-  /// Requests a column of text; its position in the request.
+  /// Requests a column of text; returns its index in the request.
   std::size_t text(std::size_t source, const std::string& column);
 
-  /// The source whose table has the column; the first of `files` that has it.
+  /// The source with the column, from the first of `files` that has it.
   std::size_t source_with(const std::string& column, const std::vector<std::size_t>& files);
 
   /// Names and units of the columns.
@@ -54,8 +53,8 @@ class ColumnFinder {
 
   FilePlan& plan_;
   std::shared_ptr<const DerivedChannels> derived_;
-  std::vector<std::string> names_;              // of the files
-  std::vector<std::vector<TableInfo>> tables_;  // of each file
+  std::vector<std::string> names_;              // names of the files
+  std::vector<std::vector<TableInfo>> tables_;  // tables of each file
 };
 
 }  // namespace modebank

@@ -18,7 +18,7 @@ namespace {
 
 [[noreturn]] void fail_form(const std::string& line, const char* what) {
   throw ConfigurationError(
-      fmt::format("data.derive = {}: {}; a derived channel is NAME [unit] = EXPRESSION", line.substr(0, 100), what));
+      fmt::format("data.derive = {}: {}; expected NAME [unit] = EXPRESSION", line.substr(0, 100), what));
 }
 
 }  // namespace
@@ -26,16 +26,16 @@ namespace {
 DerivedChannel parse_derived(const std::string& line) {
   std::string_view rest = without_blanks(line);
   const std::string name = take_channel_name(rest);
-  if (name.empty()) fail_form(line, "no name (of letters, digits, _ and ., or in single quotes)");
+  if (name.empty()) fail_form(line, "the name is missing (letters, digits, _ and ., or any text in single quotes)");
   rest = without_blanks(rest);
   std::string unit;
   if (rest.starts_with("[")) {
     const std::size_t end = rest.find(']');
-    if (end == std::string_view::npos) fail_form(line, "the unit's bracket does not close");
+    if (end == std::string_view::npos) fail_form(line, "the bracket of the unit is not closed");
     unit = without_blanks(rest.substr(1, end - 1));
     rest = without_blanks(rest.substr(end + 1));
   }
-  if (!rest.starts_with("=") || rest.starts_with("==")) fail_form(line, "no = after the name");
+  if (!rest.starts_with("=") || rest.starts_with("==")) fail_form(line, "there is no = after the name");
   return {name, unit, Expression("data.derive, " + name, without_blanks(rest.substr(1)))};
 }
 
@@ -43,7 +43,7 @@ DerivedChannels::DerivedChannels(const DataOptions& options) {
   for (const std::string& line : options.derive) {
     DerivedChannel channel = parse_derived(line);
     if (find(channel.name) != nullptr)
-      throw ConfigurationError(fmt::format("data.derive: {} is derived twice", channel.name));
+      throw ConfigurationError(fmt::format("data.derive: {} is defined twice", channel.name));
     channels_.push_back(std::move(channel));
   }
   for (std::size_t i = 0; i < channels_.size(); ++i)
@@ -51,8 +51,8 @@ DerivedChannels::DerivedChannels(const DataOptions& options) {
       for (std::size_t later = i; later < channels_.size(); ++later)
         if (channels_[later].name == used)
           throw ConfigurationError(fmt::format(
-              "data.derive: {} uses {}: a derived channel may use earlier ones alone{}", channels_[i].name,
-              later == i ? "itself" : used, later == i ? "" : fmt::format(", so derive {} before it", used)));
+              "data.derive: {} uses {}, but a derived channel may only use earlier ones{}", channels_[i].name,
+              later == i ? "itself" : used, later == i ? "" : fmt::format("; put the line of {} before it", used)));
   if (!options.where.empty()) where_.emplace(DerivedChannel{"", "", Expression("data.where", options.where)});
 }
 
@@ -72,7 +72,7 @@ namespace {
 
 using Rows = std::vector<std::size_t>;
 
-/// Of one run each, in order of time.
+/// Rows of each run, in order of time.
 std::vector<Rows> ordered_runs(const Table& table, std::optional<std::size_t> run, const std::vector<double>& time_s) {
   std::vector<Rows> runs;
   if (!run) {
@@ -88,7 +88,7 @@ std::vector<Rows> ordered_runs(const Table& table, std::optional<std::size_t> ru
   return runs;
 }
 
-/// Seconds from the first stamp, so that nanoseconds since 1970 cost no precision.
+/// Seconds from the first stamp, since nanoseconds since 1970 would cost precision.
 std::vector<double> seconds_of(const Table& table, double rate_hz) {
   std::vector<double> time_s(table.rows());
   std::int64_t first = missing_stamp;
@@ -98,7 +98,7 @@ std::vector<double> seconds_of(const Table& table, double rate_hz) {
     if (table.time_ns.empty())
       time_s[k] = static_cast<double>(k) / (rate_hz > 0.0 ? rate_hz : 1.0);
     else
-      // A row without time sorts behind the others and has no neighbours.
+      // A row without time is sorted to the end and has no neighbours.
       time_s[k] = table.time_ns[k] == missing_stamp ? HUGE_VAL : static_cast<double>(table.time_ns[k] - first) / 1e9;
   }
   return time_s;

@@ -11,25 +11,24 @@
 
 namespace modebank {
 
-/// A channel that is computed: "NAME [unit] = EXPRESSION".
+/// A computed channel: "NAME [unit] = EXPRESSION".
 struct DerivedChannel {
   std::string name, unit;
   Expression expression;
 };
 
-/// Throws ConfigurationError, naming the key and the character, for a line that is no derived channel.
+/// Throws ConfigurationError, with key and character, for a line that is not a derived channel.
 DerivedChannel parse_derived(const std::string& line);
 
-/// data.derive and data.where, parsed: a channel may use those before it.
+/// Parsed data.derive and data.where. A channel may use those before it.
 class DerivedChannels {
  public:
-  /// Throws ConfigurationError for a line that is none, a name given twice and a channel that uses itself or a later
-  /// one.
+  /// Throws ConfigurationError for an invalid line, a name given twice, and a channel that uses itself or a later one.
   explicit DerivedChannels(const DataOptions& options);
 
-  /// Of that name; null when there is none.
+  /// The channel of that name; null when there is none.
   const DerivedChannel* find(const std::string& name) const;
-  /// data.where, as a channel of no name; null when it is not set.
+  /// data.where as a channel without a name; null when it is not set.
   const DerivedChannel* where() const { return where_ ? &*where_ : nullptr; }
   std::vector<std::string> names() const;
 
@@ -38,26 +37,26 @@ class DerivedChannels {
   std::optional<DerivedChannel> where_;
 };
 
-/// A derived channel of one table: computed where its name stands among the request's numbers.
+/// A derived channel of one table, to be computed at its position among the request's numbers.
 struct DerivedColumn {
-  std::size_t position = 0;  ///< in TableRequest::numbers
+  std::size_t position = 0;  ///< index in TableRequest::numbers
   std::shared_ptr<const DerivedChannel> channel;
-  std::vector<std::size_t> operands;  ///< positions there, all before it
+  std::vector<std::size_t> operands;  ///< indices there, all smaller
 };
 
-/// The request without the columns that are computed.
+/// The request without the computed columns.
 TableRequest columns_to_read(const TableRequest& request, const std::vector<DerivedColumn>& derived);
 
-/// In which order a table's rows follow each other: run by run (of equal text in column `run` of its texts) and in
-/// order of time: the table's own, else of `clock` where that has as many rows, else k / rate_hz.
+/// Order of a table's rows: by run (the text in column `run`), then by time. Times are the table's own, else those of
+/// `clock` if it has as many rows, else k / rate_hz.
 struct RowOrder {
   const Table& clock;
   std::optional<std::size_t> run;
   double rate_hz = 0.0;
 };
 
-/// Puts the derived columns into a table that columns_to_read gave. Throws DataError, naming file and line, where one
-/// is missing and may not miss.
+/// Inserts the derived columns into a table that was read by columns_to_read. Throws DataError, with file and line, for
+/// a missing value that is not allowed.
 void derive_columns(const std::string& file, const TableRequest& request, const std::vector<DerivedColumn>& derived,
                     const RowOrder& order, Table& table);
 

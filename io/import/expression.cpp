@@ -18,8 +18,8 @@ namespace modebank {
 struct ExpressionToken {
   enum class Kind { number, channel, function, constant, symbol };
   Kind kind = Kind::symbol;
-  std::string text;    ///< of a number its value as muParser reads it, of a channel its name
-  std::size_t at = 0;  ///< in the user's text, from 0
+  std::string text;    ///< for a number its value in muParser's syntax, for a channel its name
+  std::size_t at = 0;  ///< position in the user's text, from 0
 };
 
 namespace {
@@ -28,7 +28,7 @@ constexpr std::size_t longest_text = 2000, deepest = 50;
 
 bool begins_name(char c) { return is_letter(c) || c == '_'; }
 
-/// The operator at the start of a text, or nothing.
+/// The operator at the start of a text; empty if there is none.
 std::string_view symbol_at(std::string_view text) {
   for (const std::string_view two : {"==", "!=", "<=", ">=", "&&", "||"})
     if (text.starts_with(two)) return text.substr(0, 2);
@@ -78,7 +78,7 @@ std::string listed_channel_names(const std::vector<std::string>& names) {
   return result;
 }
 
-/// Turns text into tokens and tokens into steps: an argument of diff or unwrap is a column of its own.
+/// Turns text into tokens and tokens into steps. The argument of diff or unwrap becomes a step of its own.
 class ExpressionParser {
  public:
   ExpressionParser(Expression& result, std::string_view text) : result_(result), text_(text) {}
@@ -96,7 +96,7 @@ class ExpressionParser {
  private:
   using Token = ExpressionToken;
   using Kind = Token::Kind;
-  static constexpr const char* only_in_functions = "a comma separates arguments of functions alone";
+  static constexpr const char* only_in_functions = "a comma is allowed only between arguments of a function";
 
   [[noreturn]] void fail(std::size_t at, const std::string& what) const {
     throw ConfigurationError(fmt::format("{}: at character {} (\"{}\"): {}", result_.key_, at + 1,
@@ -115,14 +115,14 @@ class ExpressionParser {
     }
   }
 
-  /// Takes one token off `rest`.
+  /// Removes one token from `rest`.
   Token token_at(std::size_t at, std::string_view& rest) {
     if (rest.front() == '\'' || is_letter(rest.front())) return name_at(at, rest);
     if (is_digit(rest.front()) || (rest.front() == '.' && rest.size() > 1 && is_digit(rest[1])))
       return number_at(at, rest);
     const std::string_view symbol = symbol_at(rest);
     if (symbol.empty())
-      fail(at, rest.front() == '=' ? "a comparison is ==" : "neither number, channel, function nor operator");
+      fail(at, rest.front() == '=' ? "a comparison is ==" : "this is neither a number, channel, function nor operator");
     rest.remove_prefix(symbol.size());
     return {Kind::symbol, std::string(symbol), at};
   }
@@ -130,7 +130,7 @@ class ExpressionParser {
   Token name_at(std::size_t at, std::string_view& rest) {
     const bool quoted = rest.front() == '\'';
     std::string name = take_channel_name(rest);
-    if (name.empty()) fail(at, "a quoted name that is empty or does not end");
+    if (name.empty()) fail(at, "a quoted name is empty or has no closing quote");
     const bool called = !quoted && rest.find_first_not_of(" \t") != std::string_view::npos &&
                         rest[rest.find_first_not_of(" \t")] == '(';
     const auto& functions = function_names();
@@ -146,10 +146,10 @@ class ExpressionParser {
   Token number_at(std::size_t at, std::string_view& rest) {
     double value = 0.0;
     const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-    if (error != std::errc()) fail(at, "no number that fits a double");
+    if (error != std::errc()) fail(at, "the number does not fit a double");
     rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
     if (!rest.empty() && (is_letter(rest.front()) || rest.front() == '.'))
-      fail(at, "a number must end before this name");
+      fail(at, "a number and a name need an operator between them");
     return {Kind::number, fmt::format("{:.17g}", value), at};
   }
 
@@ -158,8 +158,8 @@ class ExpressionParser {
     for (const Token& token : tokens_) {
       if (token.kind != Kind::symbol) continue;
       if (token.text == "(" && ++depth > deepest)
-        fail(token.at, fmt::format("more than {} parentheses in each other", deepest));
-      if (token.text == ")" && depth-- == 0) fail(token.at, "closes a parenthesis that is not open");
+        fail(token.at, fmt::format("parentheses are nested more than {} deep", deepest));
+      if (token.text == ")" && depth-- == 0) fail(token.at, "this closes a parenthesis that was never opened");
     }
     if (depth > 0) fail(text_.size(), "a parenthesis is not closed");
   }
@@ -180,11 +180,11 @@ class ExpressionParser {
     return static_cast<std::size_t>(std::find(channels.begin(), channels.end(), name) - channels.begin());
   }
 
-  /// The column of a step that computes tokens `first` to `end`.
+  /// Adds a step that computes tokens `first` to `end`; returns its column.
   std::size_t compile(std::size_t first, std::size_t end, Expression::Step::Then then) {
     Expression::Step step;
     step.then = then;
-    std::vector<std::pair<std::size_t, std::size_t>> places;  // in the program, in the user's text
+    std::vector<std::pair<std::size_t, std::size_t>> places;  // positions in the program and in the user's text
     const auto name_of = [&step](std::size_t column) {
       const auto known = std::find(step.columns.begin(), step.columns.end(), column);
       const auto position = static_cast<std::size_t>(known - step.columns.begin());
@@ -208,14 +208,14 @@ class ExpressionParser {
       } else {
         step.program += token.kind == Kind::channel ? name_of(channel_position(token.text)) : token.text;
       }
-      if (token.kind != Kind::function || of_column) step.program += ' ';  // muParser wants none before (
+      if (token.kind != Kind::function || of_column) step.program += ' ';  // muParser allows no blank before (
     }
     try_out(step, places, end < tokens_.size() ? tokens_[end].at : text_.size());
     result_.steps_.push_back(std::move(step));
     return result_.channels_.size() + result_.steps_.size() - 1;
   }
 
-  /// muParser finds errors when it evaluates first.
+  /// muParser reports errors only at the first evaluation.
   void try_out(const Expression::Step& step, const std::vector<std::pair<std::size_t, std::size_t>>& places,
                std::size_t end) const {
     try {
@@ -236,7 +236,7 @@ class ExpressionParser {
       case mu::ecTOO_FEW_PARAMS:
         return "too few arguments";
       case mu::ecMISSING_ELSE_CLAUSE:
-        return "CONDITION ? A : B lacks its : B";
+        return "CONDITION ? A : B needs its : B";
       case mu::ecUNEXPECTED_EOF:
         return "the expression ends too early";
       case mu::ecUNEXPECTED_VAL:
@@ -245,7 +245,7 @@ class ExpressionParser {
       case mu::ecUNEXPECTED_ARG_SEP:
         return only_in_functions;
       default:
-        return "not expected here";
+        return "this is not expected here";
     }
   }
 

@@ -18,7 +18,8 @@ void differentiate(std::vector<double>& column, std::span<const double> time_s) 
   if (!column.empty()) column[0] = column.size() > 1 ? column[1] : not_a_number;
 }
 
-/// The same after the row `before`. Rows that share a time have no slope; the first of them counts for the next.
+/// The same after the row `before`. Among rows with equal times only the first has a slope, and the next row's slope
+/// starts from it.
 void differentiate(std::vector<double>& column, std::span<const double> time_s, Expression::RowBefore& before) {
   for (std::size_t k = 0; k < column.size(); ++k) {
     const double seconds = time_s[k] - before.time_s;
@@ -28,7 +29,7 @@ void differentiate(std::vector<double>& column, std::span<const double> time_s, 
   }
 }
 
-/// Turns are counted from the last row that is known.
+/// Turns are counted from the last row that is not missing.
 void unwrap(std::vector<double>& column, double& before) {
   constexpr double turn = 2.0 * std::numbers::pi;
   for (double& angle : column) {

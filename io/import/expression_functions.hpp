@@ -7,10 +7,10 @@
 
 namespace modebank {
 
-/// Takes muParser's own functions and constants away and defines ours (io/import/expression.hpp).
+/// Removes muParser's own functions and constants, and defines those of io/import/expression.hpp.
 void define_functions(mu::Parser& parser);
 
-/// Names of what define_functions defines, and of the functions of columns.
+/// Names from define_functions, and of the functions of whole columns.
 const std::vector<std::string>& function_names();
 
 }  // namespace modebank

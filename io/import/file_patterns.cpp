@@ -19,7 +19,7 @@ bool is_there(const Path& path) {
   return std::filesystem::exists(path, ignored);
 }
 
-/// The part of `path` that is missing first, seen from the root.
+/// The first part of `path`, from the root, that does not exist.
 Path first_missing(const Path& path) {
   Path reached;
   for (const Path& part : path) {
@@ -35,12 +35,13 @@ FilePattern::FilePattern(std::string key, const std::string& root, const std::st
   if (pattern.empty()) throw ConfigurationError(fmt::format("{} is not set", key_));
   const auto stars = std::count(pattern.begin(), pattern.end(), '*');
   if (stars > 1)
-    throw ConfigurationError(fmt::format("{} = {}: {} stars, but at most one * is allowed", key_, pattern, stars));
+    throw ConfigurationError(
+        fmt::format("{} = {}: there are {} stars, but at most one * is allowed", key_, pattern, stars));
   has_star_ = stars == 1;
   const Path start = root.empty() ? std::filesystem::current_path() : std::filesystem::absolute(root);
   if (!has_star_) {
     folder_ = (start / pattern).lexically_normal();
-    if (!folder_.has_filename()) folder_ = folder_.parent_path();  // "drive/" is the recording "drive"
+    if (!folder_.has_filename()) folder_ = folder_.parent_path();  // "drive/" means the recording "drive"
     return;
   }
   bool after_star = false;
@@ -101,7 +102,7 @@ void FilePattern::fail_unmatched() const {
 std::vector<Path> find_partners(const FilePattern& inputs, const FilePattern& states,
                                 const std::vector<std::string>& runs) {
   if (inputs.has_star() != states.has_star())
-    throw ConfigurationError(fmt::format("{} = {} and {} = {}: both or neither must have a *", inputs.key(),
+    throw ConfigurationError(fmt::format("{} = {} and {} = {}: put a * into both or neither", inputs.key(),
                                          inputs.text(), states.key(), states.text()));
   std::vector<Path> partners;
   for (const std::string& run : runs) {
@@ -128,7 +129,8 @@ RunFiles::RunFiles(const std::string& key, const std::string& root, const std::s
       if (name.empty() && !text.empty()) throw ConfigurationError(fmt::format("{} = {}: an entry is empty", key, text));
       parts.emplace_back(key, root, name);
       if (parts.back().has_star() && text != part)
-        throw ConfigurationError(fmt::format("{} = {}: a * stands alone: a list names files", key, text));
+        throw ConfigurationError(
+            fmt::format("{} = {}: a list cannot contain a *; give one path with a *, or a list of files", key, text));
     }
   }
 }
@@ -141,7 +143,7 @@ std::vector<RunFiles::File> RunFiles::listed() const {
     file.run = parts.front().runs().front();
     for (std::size_t i = 0; i + 1 < files.size(); ++i)
       if (files[i].run == file.run)
-        throw ConfigurationError(fmt::format("{}: {} and {} would both be run {}", key_,
+        throw ConfigurationError(fmt::format("{}: {} and {} would both have the run name {}", key_,
                                              files[i].parts.front().string(), file.parts.front().string(), file.run));
   }
   return files;
@@ -167,8 +169,9 @@ std::vector<RunFiles::File> RunFiles::partners(const RunFiles& theirs, const std
     return partners;
   }
   if (entries_.size() != theirs.entries_.size() || own.has_star() || other.has_star())
-    throw ConfigurationError(fmt::format("{} names {} files and {} {}: as many, in the same order, or a * in both",
-                                         theirs.key_, theirs.entries_.size(), key_, entries_.size()));
+    throw ConfigurationError(
+        fmt::format("{} names {} files and {} {}; name as many in the same order, or use a * in both", theirs.key_,
+                    theirs.entries_.size(), key_, entries_.size()));
   const std::vector<File> all = theirs.listed(), here = listed();
   for (const std::string& run : runs)
     for (std::size_t i = 0; i < all.size(); ++i)

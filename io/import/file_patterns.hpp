@@ -7,12 +7,12 @@
 
 namespace modebank {
 
-/// A path with at most one `*`, in the file's or in one folder's name. `*` stands for one or more characters of that
-/// name (none of them '/'; no leading '.' where the name begins with `*`, as in a shell); every other character is
-/// meant literally. The text it matched names the run; without `*` the file's stem does.
+/// A path with at most one `*`, in the name of the file or of one folder. `*` matches one or more characters of that
+/// name, except '/', and except a leading '.' where the name begins with `*`, as in a shell. Every other character is
+/// literal. The matched text names the run; without `*` the file's stem does.
 class FilePattern {
  public:
-  /// `key` names the pattern in messages. A relative pattern is prefixed by `root`. Throws ConfigurationError for an
+  /// `key` names the pattern in messages. `root` is put before a relative pattern. Throws ConfigurationError for an
   /// empty pattern and for more than one `*`.
   FilePattern(std::string key, const std::string& root, const std::string& pattern);
 
@@ -22,8 +22,8 @@ class FilePattern {
   std::string text() const { return path_of("*").string(); }
   /// The file of one run.
   std::filesystem::path path_of(std::string_view run) const;
-  /// Names of all runs whose file exists, in byte order. Throws ConfigurationError, naming the absolute pattern (and
-  /// the folder that is missing), when there is none.
+  /// Names of all runs whose file exists, in byte order. If there is none, throws ConfigurationError with the absolute
+  /// pattern and the folder that is missing.
   std::vector<std::string> runs() const;
 
  private:
@@ -32,40 +32,40 @@ class FilePattern {
 
   std::string key_;
   bool has_star_ = false;
-  std::filesystem::path folder_;  // before the name with the star; the whole path without one
-  std::string before_, after_;    // the star, in that name
-  std::filesystem::path rest_;    // after that name
+  std::filesystem::path folder_;  // part of the path before the name with `*`; the whole path without one
+  std::string before_, after_;    // parts of this name around `*`
+  std::filesystem::path rest_;    // part of the path after this name
 };
 
-/// What a key says of files: one path with at most one *, or several without, of one run each ("a.csv, b.csv"); in
-/// either case a run's recording may be given in parts that were written one after the other ("a_0.bag + a_1.bag").
+/// Files that a key names: one path with at most one *, or several without, one per run ("a.csv, b.csv"). A run's
+/// recording may be given in parts, in the order in which they were written ("a_0.bag + a_1.bag").
 class RunFiles {
  public:
   struct File {
     std::string run;
-    std::vector<std::filesystem::path> parts;  ///< one, or those of a recording
+    std::vector<std::filesystem::path> parts;  ///< one file, or the parts of a recording
   };
 
-  /// A file whose name holds a comma is one where it exists. Throws ConfigurationError as FilePattern does, and for a
-  /// list with a *, with an empty entry or with two files of the same stem.
+  /// If the text with its commas is an existing file, it is that file. Throws ConfigurationError as FilePattern does,
+  /// and for a list with a *, with an empty entry or with two files of the same stem.
   RunFiles(const std::string& key, const std::string& root, const std::string& text);
 
   bool one() const { return entries_.size() == 1 && !entries_.front().front().has_star(); }
-  /// In byte order of their runs. Throws ConfigurationError for what is not there.
+  /// Files in byte order of their runs. Throws ConfigurationError for a missing file.
   std::vector<File> files() const;
-  /// The file of each of these runs; of a list the one that stands where `theirs` names the run. Throws
-  /// ConfigurationError, naming both, when one is missing and when a * or a list stands against something else.
+  /// The file of each of these runs; in a list, the one at the run's position in `theirs`. Throws ConfigurationError,
+  /// with both names, when a file is missing, and when only one of the two is a list or has a *.
   std::vector<File> partners(const RunFiles& theirs, const std::vector<std::string>& runs) const;
 
  private:
   std::vector<File> listed() const;
 
   std::string key_;
-  std::vector<std::vector<FilePattern>> entries_;  // of each file its parts
+  std::vector<std::vector<FilePattern>> entries_;  // parts of each file
 };
 
-/// The states file of each run. Throws ConfigurationError, naming both files, when one is missing, and when only one
-/// of the two patterns has a `*`.
+/// The states file of each run. Throws ConfigurationError, with both files, when one is missing and when only one of
+/// the two patterns has a `*`.
 std::vector<std::filesystem::path> find_partners(const FilePattern& inputs, const FilePattern& states,
                                                  const std::vector<std::string>& runs);
 

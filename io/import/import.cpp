@@ -32,13 +32,12 @@ namespace modebank {
 
 namespace {
 
-/// Units as the options say them, else as the files do.
+/// Sets units from the options, else from the files.
 void check_units(const char* key, const std::vector<std::string>& names, const std::vector<std::string>& units) {
   if (units.size() > 1 && units.size() != names.size())
-    throw ConfigurationError(
-        fmt::format("data.{0}_unit has {1} units, but data.{0} {2} columns: one each, one for all, "
-                    "or none",
-                    key, units.size(), names.size()));
+    throw ConfigurationError(fmt::format(
+        "data.{0}_unit has {1} units, but data.{0} has {2} columns; give one unit each, one for all, or none", key,
+        units.size(), names.size()));
 }
 
 std::vector<Channel> with_units(std::vector<Channel> channels, const std::vector<std::string>& units) {
@@ -47,17 +46,16 @@ std::vector<Channel> with_units(std::vector<Channel> channels, const std::vector
   return channels;
 }
 
-/// A terminal would obey them.
+/// A terminal would execute control characters.
 void refuse_control_characters(const std::vector<Channel>& channels) {
   for (const Channel& channel : channels)
     if (const std::string text = channel.name + channel.unit; std::any_of(text.begin(), text.end(), is_control))
-      throw DataError(
-          fmt::format("the column \"{}\" (unit \"{}\") has a control character in its name or unit: rename "
-                      "it in the file",
-                      printable(channel.name), printable(channel.unit)));
+      throw DataError(fmt::format(
+          "the column \"{}\" (unit \"{}\") has a control character in its name or unit; rename it in the file",
+          printable(channel.name), printable(channel.unit)));
 }
 
-/// What reading one plan gave, or how it failed: the failure of the first plan in order is the one reported.
+/// Result of reading one plan, or its failure; the failure of the first plan in order is reported.
 struct Outcome {
   FileContent content;
   std::exception_ptr error;
@@ -78,15 +76,15 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_
   return outcome;
 }
 
-/// Reads plans in parallel; results arrive in order, which the hash over all of them needs. After a failure no further
-/// plan is begun, but those under way end: an exception within the pipeline would cancel what readers do in parallel
-/// and hand on half of it.
+/// Reads plans in parallel. Results arrive in order, as the hash over all of them requires. After a failure no further
+/// plan starts, but running ones end. An exception within the pipeline would cancel the readers' own parallel work and
+/// pass on half of it.
 std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
                                  bool as_they_stand) {
   std::vector<RunStreams> runs;
   std::vector<FileStamps> forms;
   UnsetRows unset;
-  std::vector<Outcome> outcomes(plans.size());  // the pipeline passes positions on
+  std::vector<Outcome> outcomes(plans.size());  // the pipeline passes indices
   std::size_t next = 0;
   std::exception_ptr error;
   std::map<std::string, std::size_t> missing_words;
@@ -99,7 +97,7 @@ std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions
     outcomes[plan] = try_read(plans[plan], options, as_they_stand);
     return plan;
   };
-  std::optional<WorkCounter> counter;  // of one file its own reading is counted
+  std::optional<WorkCounter> counter;  // for a single file, its reader counts rows
   if (plans.size() > 1) counter.emplace("files", plans.size());
   const auto collect = [&](std::size_t plan) {
     if (counter) counter->add();
@@ -121,7 +119,7 @@ std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions
   tbb::parallel_pipeline(in_flight, tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, take) &
                                         tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, read) &
                                         tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, collect));
-  if (agree_on_stamps(forms, plans)) {  // also where a wrong reading of stamps was what failed
+  if (agree_on_stamps(forms, plans)) {  // even after a failure, which may come from wrongly read stamps
     data.files.clear();
     data.notes.clear();
     return read_all(plans, options, data, as_they_stand);
@@ -129,7 +127,7 @@ std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions
   if (error) std::rethrow_exception(error);
   for (const auto& [word, count] : missing_words)
     data.notes.push_back(
-        fmt::format("\"{}\" stands for a missing value {} time{} (data.na)", word, count, count == 1 ? "" : "s"));
+        fmt::format("\"{}\" is read as a missing value {} time{} (data.na)", word, count, count == 1 ? "" : "s"));
   if (unset.count > 0) data.notes.push_back(unset.note());
   data.data_hash = data_hash(data.files);
   return runs;
@@ -151,7 +149,7 @@ void set_roles(std::vector<RunStreams>& runs, const DataOptions& options) {
   runs = std::move(kept);
 }
 
-/// Every run as its blocks, which have roles of their own unless data.train or data.test names some.
+/// Splits every run into blocks. These have their own roles unless data.train or data.test names runs.
 void split_runs(std::vector<RunStreams>& runs, const DataOptions& options, std::vector<std::string>& notes) {
   std::vector<RunStreams> blocks;
   for (const RunStreams& run : runs) {
@@ -164,21 +162,21 @@ void split_runs(std::vector<RunStreams>& runs, const DataOptions& options, std::
   check_run_names(run_names(runs));
 }
 
-/// What was measured of the joined runs, and how much of it is in none of their parts.
+/// Counts measured samples of the joined runs, and those that no part contains.
 class LeftOut {
  public:
   void count(const Trajectory& run, const std::vector<Trajectory>& parts) {
     measured_ += measured(run);
     for (const Trajectory& part : parts) kept_ += measured(part);
   }
-  /// Empty where nothing is left out.
+  /// Empty if no sample is left out.
   std::string note(const DataOptions& options) const {
     if (kept_ == measured_) return "";
     std::vector<std::string> reasons;
-    if (!options.where.empty()) reasons.emplace_back("data.where is not so");
+    if (!options.where.empty()) reasons.emplace_back("data.where is false or missing there");
     if (options.missing == Missing::gap) reasons.emplace_back("values are missing beside them (data.missing = gap)");
-    if (options.missing == Missing::predict) reasons.emplace_back("no input is known before them");
-    reasons.emplace_back("they stand alone between gaps");
+    if (options.missing == Missing::predict) reasons.emplace_back("no input value comes before them");
+    reasons.emplace_back("they are single samples between gaps");
     return fmt::format("{} of {} measured samples are left out: {}", measured_ - kept_, measured_,
                        fmt::join(reasons, ", or "));
   }
@@ -189,18 +187,18 @@ class LeftOut {
   static Index measured(const Trajectory& run) { return run.state.array().isFinite().colwise().any().count(); }
 };
 
-/// After the roles are set: data.train and data.test name whole runs, or blocks of them.
+/// Called after roles are set: data.train and data.test name whole runs, or blocks of runs.
 std::vector<Trajectory> without_missing_values(const Trajectory& run, const std::vector<bool>& kept, Missing missing,
                                                std::vector<std::string>& notes) {
   const bool predict = missing == Missing::predict;
   std::vector<Trajectory> parts = split_at_gaps(predict ? hold_missing_inputs(run) : run, predict, kept);
   if (parts.size() > 1)
-    notes.push_back(fmt::format("run {} has gaps: it is taken as {} runs, {} to {}", run.run, parts.size(),
+    notes.push_back(fmt::format("run {} has gaps, so it is split into {} runs, {} to {}", run.run, parts.size(),
                                 parts.front().run, parts.back().run));
   return parts;
 }
 
-/// All runs that have a role, in name order.
+/// All runs with a role, in name order.
 std::vector<RunStreams> named_streams(std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
                                       bool as_they_stand) {
   std::vector<RunStreams> runs = read_all(plans, options, data, as_they_stand);
@@ -270,7 +268,7 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory,
 std::vector<RunStreams> read_streams(const DataOptions& options) {
   ImportedData unused;
   DataOptions lenient = options;
-  lenient.disorder = Disorder::sort;  // of streams that several tables make up; one table's stays as it is
+  lenient.disorder = Disorder::sort;  // for streams from several tables; a single table is checked later
   std::vector<FilePlan> plans = plan_import(lenient);
   refuse_control_characters(plans.front().states);
   refuse_control_characters(plans.front().inputs);

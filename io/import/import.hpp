@@ -20,35 +20,35 @@ namespace modebank {
 struct ImportedData {
   Recording recording;              ///< runs sorted by name (byte order), roles set
   std::vector<InputFile> files;     ///< in run order, inputs before states
-  std::vector<std::string> notes;   ///< what the user should know of the data
+  std::vector<std::string> notes;   ///< remarks on the data for the user
   std::optional<RunLabels> labels;  ///< with DataOptions::label
-  std::optional<LagReport> lag;     ///< with DataOptions::lag_auto: what was found and applied
+  std::optional<LagReport> lag;     ///< with DataOptions::lag_auto: the lag that was found and applied
   double step_scatter = 0.0;        ///< LogSampling::step_scatter
-  std::string data_hash;            ///< of files, see io/files/input_file.hpp
+  std::string data_hash;            ///< hash of the files, see io/files/input_file.hpp
 };
 
-/// Finds, checks and reads all runs. Throws ConfigurationError for what can be seen before any sample is read (pattern
-/// without a match, a run without its states file, empty file, missing column: lists those that exist, unknown run
-/// name) and DataError, naming file and line, for content (text in a number, NaN, time not increasing, too few samples,
-/// streams that do not overlap, row counts that differ under Join::row).
-/// With `memory` the runs are those tables: data.root, data.inputs and data.states do not count. `learned`: as in
-/// choose_sampling (io/import/sampling.hpp), for data that a bank of other data is to read.
+/// Finds, checks and reads all runs. Throws ConfigurationError for errors that show before samples are read: a pattern
+/// without a match, a run without its states file, an empty file, a missing column (with the existing ones), an unknown
+/// run. Throws DataError, with file and line, for bad content: text in a number, NaN, time not increasing, too few
+/// samples, streams that do not overlap, unequal numbers of rows under Join::row. With `memory` these tables are the
+/// runs, and data.root, data.inputs and data.states are ignored. `learned`: as in choose_sampling
+/// (io/import/sampling.hpp), for data on which an existing bank is judged.
 ImportedData import_data(const DataOptions& options, const MemoryTables* memory = nullptr,
                          const AveragedColumns* learned = nullptr);
 
-/// All runs' streams as they stand in the files, for advice on them: nothing is sorted, missing values are NaN (missing
-/// times too), roles are set, runs are sorted by name. Throws as import_data does, but for what data.missing and
-/// data.disorder treat.
+/// All runs' streams as in the files, to be checked: nothing is sorted, missing values and times are NaN, roles are
+/// set, runs are sorted by name. Throws as import_data does, except for errors that data.missing and data.disorder
+/// treat.
 std::vector<RunStreams> read_streams(const DataOptions& options);
 
 /// A file that import_data would read.
 struct DataFile {
   std::filesystem::path path;
-  std::vector<std::string> tables = {};      ///< those that are read, sorted: what identifies it depends on them
-  std::function<InputFile()> describe = {};  ///< as ImportedData::files has it; throws when it cannot be read
+  std::vector<std::string> tables = {};      ///< the tables to read, sorted; the file's hash depends on them
+  std::function<InputFile()> describe = {};  ///< the entry of ImportedData::files; throws when the file cannot be read
 };
 
-/// All of them, in the order of ImportedData::files. Throws ConfigurationError as import_data does.
+/// All files, in the order of ImportedData::files. Throws ConfigurationError as import_data does.
 std::vector<DataFile> data_files(const DataOptions& options);
 
 }  // namespace modebank

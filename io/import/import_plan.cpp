@@ -28,17 +28,17 @@ void check_names(const char* key, const ColumnNames& names) {
 }
 
 void check_options(const DataOptions& options) {
-  if (options.state.empty()) throw ConfigurationError("data.state is not set: name the state columns");
+  if (options.state.empty()) throw ConfigurationError("data.state is not set; name the state columns, for example wz");
   if (options.time.empty() && options.rate_hz == 0.0)
     throw ConfigurationError(
-        "data.time is not set: name the column of times, or, for rows without any, say data.rate_hz");
+        "data.time is not set; name the column of times, or set data.rate_hz for rows without times");
   if (options.time.size() > 2)
-    throw ConfigurationError("data.time names more than two columns: one, or seconds and nanoseconds");
+    throw ConfigurationError("data.time names more than two columns; name one, or seconds and nanoseconds");
   check_names("state", options.state);
   check_names("input", options.input);
   check_names("truth", options.truth);
   if (!options.truth.empty() && options.truth.size() != options.state.size())
-    throw ConfigurationError(fmt::format("data.truth names {} columns, but data.state {}: one each, or none",
+    throw ConfigurationError(fmt::format("data.truth names {} columns, but data.state {}; name one per state, or none",
                                          options.truth.size(), options.state.size()));
   if (!(options.rate_hz >= 0.0 && options.rate_hz <= highest_rate_hz))
     throw ConfigurationError(fmt::format("data.rate_hz = {}: must be 0 to {}", options.rate_hz, highest_rate_hz));
@@ -47,10 +47,10 @@ void check_options(const DataOptions& options) {
   if (!(options.lag_range_s > 0.0) || !std::isfinite(options.lag_range_s))
     throw ConfigurationError(fmt::format("data.lag_range_s = {}: must be above 0", options.lag_range_s));
   if (options.lag_auto && options.input.empty())
-    throw ConfigurationError("data.lag_s = auto needs inputs (data.input): without one there is no lag");
+    throw ConfigurationError("data.lag_s = auto needs inputs; name them in data.input");
 }
 
-/// The times of all sources, or where rows correspond of the one that is looked up first.
+/// Requests the times of all sources. Where rows correspond, one source is enough: the first with a time column.
 void plan_times(FilePlan& plan, ColumnFinder& find, const DataOptions& options) {
   if (options.join == Join::time) {
     for (std::size_t source = 0; source < plan.sources.size(); ++source) {
@@ -85,7 +85,7 @@ void plan_columns(FilePlan& plan, const DataOptions& options, const std::shared_
       options.label.empty() ? std::nullopt : std::optional(find.source_with(options.label, states_first));
   plan_times(plan, find, options);
   if (labels) plan.label = {*labels, find.text(*labels, options.label)};
-  // A sample without time has no place, and one without weight should not be guessed at.
+  // A sample without time has no position, and a missing weight should not be guessed.
   for (SourcePlan& source : plan.sources)
     source.request.may_miss.assign(source.request.numbers.size(), options.missing != Missing::error);
   for (const ColumnRef where : plan.where)
@@ -118,10 +118,10 @@ FormatOptions format_of(const DataOptions& options) {
 
 std::vector<FilePlan> plan_files(const DataOptions& options) {
   if (options.inputs == frames_in_memory)
-    throw ConfigurationError(fmt::format(
-        "data.inputs = {}: these runs were handed over by a program and are in no file: hand them over again "
-        "(modebank.run of the same frames), or name files",
-        frames_in_memory));
+    throw ConfigurationError(
+        fmt::format("data.inputs = {}: these runs came from a program and are in no file; call modebank.run with the "
+                    "same frames again, or name files",
+                    frames_in_memory));
   const RunFiles inputs("data.inputs", options.root, options.inputs);
   const std::vector<RunFiles::File> files = inputs.files();
   ColumnNames names;

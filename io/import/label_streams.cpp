@@ -12,7 +12,7 @@
 namespace modebank {
 
 void LabelHolder::hold(const LabelStream& source, const std::vector<Trajectory>& parts) {
-  std::vector<std::size_t> order;  // of labels that have a time, by time
+  std::vector<std::size_t> order;  // indices of the labels with a time, in order of time
   for (std::size_t k = 0; k < source.text.size(); ++k)
     if (!std::isnan(source.time_s(static_cast<Index>(k))) && !source.text[k].empty()) order.push_back(k);
   const auto time = [&](std::size_t k) { return source.time_s(static_cast<Index>(k)); };
@@ -49,15 +49,13 @@ void check_labels(const std::string& column, const RunLabels& labels, std::vecto
   Index samples = 0;
   for (const Eigen::VectorXi& run : labels.of_runs) samples += (run.array() >= 0).count();
   const std::size_t kinds = labels.names.size();
-  const std::string found =
-      fmt::format("data.label = {} holds {} distinct values in {} samples", column, kinds, samples);
-  if (samples == 0) notes.push_back(fmt::format("data.label = {} holds no value at any sample", column));
+  const std::string found = fmt::format("data.label = {} has {} distinct values in {} samples", column, kinds, samples);
+  if (samples == 0) notes.push_back(fmt::format("data.label = {} has no value at any sample", column));
   if (kinds > most_kinds || (kinds > usual_kinds && 4 * kinds > static_cast<std::size_t>(samples)))
     throw ConfigurationError(fmt::format(
-        "{} ({}, {}, ...): a measurement, or a name of each row, but no label: a label names a few kinds, as "
-        "of ground",
+        "{} ({}, {}, ...), like a measurement or a name of each row; a label has few values, such as kinds of ground",
         found, labels.names[0], labels.names[1]));
-  if (kinds > usual_kinds) notes.push_back(found + ": is it a label of a few kinds?");
+  if (kinds > usual_kinds) notes.push_back(found + "; check that it is a label with few kinds");
 }
 
 }  // namespace modebank

@@ -10,22 +10,22 @@
 
 namespace modebank {
 
-/// The labels of runs as they were recorded become those of the runs' samples: the last one at or before each, none
-/// before the first.
+/// Turns recorded labels into labels of the runs' samples: each sample has the last label at or before it; samples
+/// before the first label have none.
 class LabelHolder {
  public:
-  /// What `source` was made into: `parts` of it.
+  /// `parts`: the runs that were made of `source`.
   void hold(const LabelStream& source, const std::vector<Trajectory>& parts);
 
-  /// In the order of `runs`; names in byte order.
+  /// Labels in the order of `runs`; names in byte order.
   RunLabels of(const std::vector<Trajectory>& runs) const;
 
  private:
-  std::map<std::string, std::vector<std::string>> of_run_;  // by run, per sample; empty: unknown
+  std::map<std::string, std::vector<std::string>> of_run_;  // labels per sample, by run; empty: unknown
 };
 
-/// Whether they can be names of a few kinds. Throws ConfigurationError for what is another in nearly every row, as a
-/// measurement or a row's own name; what `notes` gets is a doubt.
+/// Checks that labels name a few kinds. Throws ConfigurationError for a label that differs in nearly every row, as
+/// measurements and names of rows do. Adds a doubt to `notes` where this is uncertain.
 void check_labels(const std::string& column, const RunLabels& labels, std::vector<std::string>& notes);
 
 }  // namespace modebank

@@ -9,11 +9,11 @@
 
 namespace modebank {
 
-/// Runs that are in memory, by name: of each the table of its inputs and, where states have times of their own, that of
-/// its states. What import_data takes in place of files.
+/// Runs in memory, by name, which import_data reads in place of files. Each has a table of inputs and, where states
+/// have their own times, one of states.
 using MemoryTables = std::map<std::string, std::vector<std::shared_ptr<const TableReader>>>;
 
-/// What data.inputs and data.states say of them: a recording of such runs cannot be read again.
+/// Value of data.inputs and data.states for such runs, which cannot be read a second time.
 inline constexpr const char* frames_in_memory = "<frames>";
 
 }  // namespace modebank

@@ -7,13 +7,13 @@
 
 namespace modebank {
 
-/// The stretches of a run without a gap in time, whose samples are all kept (`kept`: per sample, or empty for all) and,
-/// unless `predict`, in which every state and input is known; named RUN.1, RUN.2, ... (RUN itself when it is whole). A
-/// stretch of one sample holds no transition and is left out. Throws DataError when none is left.
+/// The parts of a run without a gap in time and without dropped samples (`kept`: per sample, or empty for all). Unless
+/// `predict`, every state and input in them is known. Names: RUN.1, RUN.2, ..., or RUN for a whole run. A part of one
+/// sample has no transition and is left out. Throws DataError when no part remains.
 std::vector<Trajectory> split_at_gaps(const Trajectory& run, bool predict, const std::vector<bool>& kept = {});
 
-/// Inputs that miss keep their last known value, as a command does; the run starts where every input is known. States
-/// stay NaN: the filter only predicts there. Throws DataError when fewer than two samples are left.
+/// A missing input takes its last known value, as a held command does; the run starts where every input is known.
+/// Missing states stay NaN, and the filter only predicts there. Throws DataError when fewer than two samples remain.
 Trajectory hold_missing_inputs(const Trajectory& run);
 
 }  // namespace modebank

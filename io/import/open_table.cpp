@@ -25,13 +25,13 @@ using namespace std::string_view_literals;
 
 constexpr std::size_t magic_bytes = 4096;
 
-/// A format that is read: whether a file (its first bytes; none of a folder) is of it, and its reader.
+/// A readable format: the test of a file by its first bytes (none for a folder), and its reader.
 struct Format {
   bool (*probe)(const Path& path, std::string_view first);
   std::shared_ptr<const TableReader> (*open)(const Path& path, const FormatOptions& options);
 };
 
-/// In the order in which they are tried; what none takes is text.
+/// In the order of the tests; any other file is read as text.
 constexpr std::array formats{
     Format{is_ros_log,
            [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
@@ -49,7 +49,7 @@ constexpr std::array formats{
            }},
 };
 
-/// Lines of Python that read a file into frames and run the chain; docs/howto/any_reader.md has them, too.
+/// Lines of Python that read a file into frames and run the chain. docs/howto/any_reader.md contains the same lines.
 constexpr std::string_view px4_lines = R"(
 from pyulog import ULog
 import pandas, modebank
@@ -115,7 +115,7 @@ constexpr std::array foreign{
             "a program", "name the data"},
 };
 
-/// Octave's own default of `save FILE`, unless it is one matrix, which reads as a text of numbers.
+/// Octave's default format of `save FILE`. A file with a single matrix is readable as text.
 void refuse_octave_text(const Path& path, std::string_view first) {
   if (!first.starts_with("# Created by Octave")) return;
   const std::string content = read_file(path);
@@ -139,13 +139,13 @@ std::string first_bytes(const Path& path) {
   return first;
 }
 
-/// A command that converts the file, and lines of Python that read it, whose columns are examples.
+/// A command that converts the file, and lines of Python, with example columns, that read it.
 std::string advice_of(const Foreign& other, const std::string& path) {
   std::string advice = fmt::format(fmt::runtime(other.advice), path);
   if (other.python.empty()) return advice;
   const std::size_t at = other.python.find("FILE");
-  return fmt::format("{}\nor, in Python with your topics and columns:{}{}{}", advice, other.python.substr(0, at), path,
-                     other.python.substr(at + std::string_view("FILE").size()));
+  return fmt::format("{}\nor use it in Python, with your topics and columns:{}{}{}", advice, other.python.substr(0, at),
+                     path, other.python.substr(at + std::string_view("FILE").size()));
 }
 
 std::vector<unsigned> bytes_of(std::string_view first) {
@@ -166,7 +166,7 @@ std::shared_ptr<const TableReader> open_table(const Path& path, const FormatOpti
   refuse_octave_text(path, first);
   for (const Format& format : formats)
     if (format.probe(path, first)) return format.open(path, options);
-  throw ConfigurationError(fmt::format("{} is no text and of no known format: it begins with the bytes {:02X}",
+  throw ConfigurationError(fmt::format("{} is neither text nor a known format; it begins with the bytes {:02X}",
                                        path.string(), fmt::join(bytes_of(first), " ")));
 }
 
@@ -174,8 +174,9 @@ std::shared_ptr<const TableReader> open_table(const std::vector<Path>& parts, co
   if (parts.size() == 1) return open_table(parts.front(), options);
   for (const Path& part : parts)
     if (!is_ros_log(part, first_bytes(part)))
-      throw ConfigurationError(fmt::format(
-          "{} is no recording: only recordings are read in parts (a + b); a comma separates runs", part.string()));
+      throw ConfigurationError(
+          fmt::format("{} is not a recording, and only recordings may have parts (a + b); separate runs by a comma",
+                      part.string()));
   return std::make_shared<RecordingReader>(parts, options.definitions);
 }
 

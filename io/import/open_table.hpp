@@ -8,11 +8,11 @@
 
 namespace modebank {
 
-/// The reader of a file's format, which its first bytes tell. Throws ConfigurationError when the file cannot be read
-/// and for formats that are known but not read here, saying what to do instead.
+/// The reader for a file, chosen by its first bytes. Throws ConfigurationError when the file cannot be read and for
+/// known formats without a reader, with advice.
 std::shared_ptr<const TableReader> open_table(const std::filesystem::path& path, const FormatOptions& options);
-/// The same for one file, or for a recording's parts, in the order in which they were written. Throws
-/// ConfigurationError also for several files that are no recordings.
+/// The same for one file, or for a recording's parts in the order in which they were written. Throws ConfigurationError
+/// also for several files that are not recordings.
 std::shared_ptr<const TableReader> open_table(const std::vector<std::filesystem::path>& parts,
                                               const FormatOptions& options);
 

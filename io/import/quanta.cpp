@@ -15,10 +15,10 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Below this share of the residuals' standard deviation rounding adds less than a hundredth to their variance.
+/// Below this share of the residuals' standard deviation, rounding adds less than a hundredth to their variance.
 constexpr double least_share = 1.0 / 3.0;
 
-/// All training values of a state, whatever is missing.
+/// All training values of a state, missing ones left out.
 VectorXd training_values(const Recording& recording, Index state) {
   std::vector<double> values;
   for (const Trajectory& run : recording.runs)
@@ -27,7 +27,7 @@ VectorXd training_values(const Recording& recording, Index state) {
   return VectorXd::Map(values.data(), std::ssize(values));
 }
 
-/// Standard deviation of a state's increments about their regression on states, inputs and one, over the training runs.
+/// Standard deviation of a state's increments about their regression on states, inputs and 1, over the training runs.
 double residual_deviation(const Recording& recording, Index state) {
   const Index n = recording.state_count(), m = recording.input_count(), p = n + m + 1;
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p + 1, p + 1);
@@ -88,13 +88,13 @@ VectorXd Quanta::decide(const Recording& recording, std::vector<std::string>& no
   const Index n = recording.state_count(), given = std::ssize(options_.quantum);
   if (!options_.quantum_auto && given == 0) return {};
   if (!options_.quantum_auto && given != 1 && given != n)
-    throw ConfigurationError(
-        fmt::format("data.quantum has {} values, data.state {} columns: one each, or one for all", given, n));
+    throw ConfigurationError(fmt::format(
+        "data.quantum has {} values, but data.state {} columns; give one per state, or one for all", given, n));
   if (interpolated_) {
     if (rounded_ || given > 0)
       notes.push_back(
-          "states are interpolated between samples that are rounded: what lies between is of no quantum, so these "
-          "states are taken as they stand (data.quantum)");
+          "states are interpolated between rounded samples, so they are not multiples of a step and count as exact "
+          "(data.quantum)");
     return {};
   }
   VectorXd quanta;
@@ -106,7 +106,7 @@ VectorXd Quanta::decide(const Recording& recording, std::vector<std::string>& no
     quanta = VectorXd::Map(options_.quantum.data(), n);
   if (!(quanta.array() > 0.0).any()) return {};
   if (options_.quantum_auto)
-    notes.push_back(fmt::format("states are rounded ({}): values count as intervals (data.quantum = auto)",
+    notes.push_back(fmt::format("states are rounded ({}), so values count as intervals (data.quantum = auto)",
                                 told(recording, quanta)));
   return quanta;
 }

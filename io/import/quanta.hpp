@@ -10,27 +10,27 @@
 
 namespace modebank {
 
-/// Whether a run's states are values between its samples (join_run interpolates), not samples themselves.
+/// Whether a run's states were interpolated between samples (join_run does so) rather than taken from them.
 bool is_interpolated(const Stream& states, const Trajectory& joined);
 
-/// What states are multiples of.
+/// Finds the rounding steps of states.
 class Quanta {
  public:
   explicit Quanta(const DataOptions& options) : options_(options) {}
 
-  /// Before its streams are let go. `joined`: what they became.
+  /// Call it while the streams exist. `joined`: the run made of them.
   void look_at(const RunStreams& run, const Trajectory& joined);
 
-  /// data.quantum by state, as Recording::quantum. With auto what check_channel finds in the training runs, where that
-  /// is at least a third of the standard deviation of their residuals about one linear model: a finer one changes
-  /// nothing that a filter could tell. States that were interpolated in any run are of no quantum. What was decided is
-  /// told in `notes`. Throws ConfigurationError for a number of quanta that fits no states.
+  /// data.quantum by state, as in Recording::quantum. With auto it is the step that check_channel finds in the training
+  /// runs, if this is at least a third of the standard deviation of their residuals about one linear model; finer steps
+  /// do not affect a filter. States that were interpolated in any run get none. Adds the decision to `notes`. Throws
+  /// ConfigurationError for a number of values that fits no states.
   Eigen::VectorXd decide(const Recording& recording, std::vector<std::string>& notes) const;
 
  private:
   const DataOptions& options_;
-  bool interpolated_ = false;  ///< any run
-  bool rounded_ = false;       ///< any interpolated run's samples
+  bool interpolated_ = false;  ///< for any run
+  bool rounded_ = false;       ///< for samples of any interpolated run
 };
 
 }  // namespace modebank

@@ -11,7 +11,7 @@ namespace modebank {
 
 namespace {
 
-/// What is asked of a table at once, and the columns that it gives: numbers, or one of the other kinds.
+/// Columns requested from a table at once, and their destination: numbers, or one of the other types.
 struct AskedColumns {
   TableRequest request;
   std::vector<std::size_t> columns;
@@ -21,8 +21,8 @@ struct AskedColumns {
     for (std::size_t i = 0; i < request.numbers.size(); ++i) of_table[columns[i]] = std::move(table.numbers[i]);
     if (!request.texts.empty()) of_table[columns.front()] = std::move(table.texts.front());
     if (!request.time.column.empty()) of_table[columns.front()] = std::move(table.time_ns);
-    for (const auto& [word, count] : table.missing_words)  // by column its missing values are counted
-      table.notes.push_back(fmt::format("\"{}\" stands for a missing value (data.na)", word));
+    for (const auto& [word, count] : table.missing_words)  // counted per column
+      table.notes.push_back(fmt::format("\"{}\" is read as a missing value (data.na)", word));
     if (!table.alternation.empty()) result.alternation[request.table] = std::move(table.alternation);
     for (std::string& note : table.notes)
       if (std::find(result.notes.begin(), result.notes.end(), note) == result.notes.end())
@@ -51,14 +51,14 @@ AskedColumns stamp_piece(std::size_t table, std::size_t column, const std::strin
   return piece;
 }
 
-/// How often each name of a table stands there. Nobody can ask for a column whose name comes twice.
+/// Number of columns by name. A name that occurs twice cannot be requested.
 std::map<std::string, int> name_counts(const TableInfo& table) {
   std::map<std::string, int> counts;
   for (const ColumnInfo& column : table.columns) ++counts[column.name];
   return counts;
 }
 
-/// Stamps and what the format calls text one by one, all others as numbers together.
+/// Pieces to read: stamps and texts one by one, all other columns together as numbers.
 std::vector<AskedColumns> pieces_of(const std::vector<TableInfo>& tables, const ColumnChoice& wanted) {
   std::vector<AskedColumns> pieces;
   for (std::size_t t = 0; t < tables.size(); ++t) {
@@ -80,7 +80,7 @@ std::vector<AskedColumns> pieces_of(const std::vector<TableInfo>& tables, const 
   return pieces;
 }
 
-/// Whether the file has what the pieces ask for; `result` has it then.
+/// Whether the columns could be read with these types; then `result` has them.
 bool try_read(const TableReader& reader, const std::vector<AskedColumns>& pieces, FileColumns& result) {
   std::vector<TableRequest> requests;
   for (const AskedColumns& piece : pieces) requests.push_back(piece.request);
@@ -93,7 +93,8 @@ bool try_read(const TableReader& reader, const std::vector<AskedColumns>& pieces
   }
 }
 
-/// Columns [first, end) of a piece of numbers: halved until those that are none are alone, which are texts then.
+/// Columns [first, end) of a piece of numbers. On failure they are halved until columns that are not numbers are alone;
+/// those become texts.
 void read_numbers(const TableReader& reader, const AskedColumns& piece, std::size_t first, std::size_t end,
                   FileColumns& result) {
   AskedColumns part;
@@ -112,7 +113,7 @@ void read_numbers(const TableReader& reader, const AskedColumns& piece, std::siz
 void read_apart(const TableReader& reader, const AskedColumns& piece, FileColumns& result) {
   if (!piece.request.numbers.empty()) {
     read_numbers(reader, piece, 0, piece.columns.size(), result);
-  } else if (!piece.request.time.column.empty()) {  // what is called a time, but is none
+  } else if (!piece.request.time.column.empty()) {  // a column with a name of times that has none
     AskedColumns number;
     number.request.table = piece.request.table;
     number.add_number(piece.columns.front(), piece.request.time.column);
@@ -121,7 +122,7 @@ void read_apart(const TableReader& reader, const AskedColumns& piece, FileColumn
   const std::vector<FileColumn>& found = result.tables[piece.request.table];
   const auto unread = [&](std::size_t column) { return std::holds_alternative<std::monostate>(found[column]); };
   if (std::all_of(piece.columns.begin(), piece.columns.end(), unread))
-    reader.read({piece.request}, nullptr);  // throws what is wrong with all of them
+    reader.read({piece.request}, nullptr);  // throws if all columns are unreadable
 }
 
 }  // namespace
@@ -135,11 +136,12 @@ ColumnChoice choice_of(const std::string& file, const std::vector<TableInfo>& ta
     for (const ColumnInfo& column : table.columns) all.push_back(column.name);
   }
   for (const std::string& name : chosen)
-    if (std::find(all.begin(), all.end(), name) == all.end()) column_position(file, all, name);  // throws
+    if (std::find(all.begin(), all.end(), name) == all.end())
+      column_position(file, all, name);  // throws for an unknown name
   for (const TableInfo& table : tables)
     for (const auto& [name, count] : name_counts(table))
       if (count > 1 && std::find(chosen.begin(), chosen.end(), name) != chosen.end())
-        column_position(file, column_names(table), name);  // throws
+        column_position(file, column_names(table), name);  // throws for an unknown name
   return [chosen](const TableInfo& table, const ColumnInfo& column) {
     const auto has = [&](const std::string& name) {
       return !name.empty() && std::find(chosen.begin(), chosen.end(), name) != chosen.end();
@@ -153,7 +155,8 @@ FileColumns read_columns(const TableReader& reader, const std::vector<TableInfo>
   for (const TableInfo& table : tables) {
     result.tables.emplace_back(table.columns.size());
     for (const auto& [name, count] : name_counts(table))
-      if (count > 1) result.notes.push_back(fmt::format("left out: column \"{}\", which comes {} times", name, count));
+      if (count > 1)
+        result.notes.push_back(fmt::format("column \"{}\" is left out, because it occurs {} times", name, count));
   }
   result.alternation.resize(tables.size());
   const std::vector<AskedColumns> pieces = pieces_of(tables, wanted);

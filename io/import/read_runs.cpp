@@ -13,7 +13,7 @@ namespace modebank {
 
 namespace {
 
-/// Times of day of several tables count from the same midnight, though midnight may lie between their first rows.
+/// Times of day of several tables count from one midnight, even if midnight lies between their first rows.
 void align_clocks(std::vector<Table>& tables) {
   constexpr std::int64_t day_ns = 86'400'000'000'000;
   std::optional<std::int64_t> reference;
@@ -28,14 +28,15 @@ void align_clocks(std::vector<Table>& tables) {
   }
 }
 
-/// One table per source of the plan.
+/// The tables of the plan's sources, in order.
 std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent& result) {
   std::vector<Table> tables(plan.sources.size());
   for (std::size_t path = 0; path < plan.paths.size(); ++path) {
     const auto [here, requests] = plan.requests_of(path);
     std::vector<Table> read = plan.readers[path]->read(requests, &result.files.emplace_back());
     for (std::size_t i = 0; i < here.size(); ++i) {
-      if (read[i].rows() == 0) throw DataError(fmt::format("{}: a header, but no rows", plan.paths[path].string()));
+      if (read[i].rows() == 0)
+        throw DataError(fmt::format("{}: there is a header, but no rows", plan.paths[path].string()));
       result.notes.insert(result.notes.end(), read[i].notes.begin(), read[i].notes.end());
       for (const auto& [word, count] : read[i].missing_words) result.missing_words[word] += count;
       if (!read[i].alternation.empty()) result.notes.push_back(read[i].alternation);
@@ -56,7 +57,7 @@ std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent
 void check_row_counts(const FilePlan& plan, const std::vector<Table>& tables) {
   if (!plan.rows_correspond()) return;
   const auto name = [&](std::size_t source) { return plan.paths[plan.sources[source].path].string(); };
-  std::size_t first = 0;  // the inputs' file comes first
+  std::size_t first = 0;  // the inputs' file is the first
   for (std::size_t source = 0; source < plan.sources.size(); ++source)
     if (plan.sources[source].path < plan.sources[first].path) first = source;
   for (std::size_t source = 0; source < plan.sources.size(); ++source)
@@ -65,7 +66,7 @@ void check_row_counts(const FilePlan& plan, const std::vector<Table>& tables) {
                                   name(source), tables[source].rows()));
 }
 
-/// The rows of every run in every source, without those that were stamped before the clock was set.
+/// The rows of every run in every source, without rows stamped before the clock was set.
 std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader& reader, UnsetRows& unset) {
   std::vector<RunRows> by_source;
   for (std::size_t source = 0; source < plan.sources.size(); ++source)
@@ -92,14 +93,14 @@ std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader&
   return slices;
 }
 
-/// A run is called by the value of its column; of a frame's name in the form of ROS 1, "/base", the slash is left out.
+/// Name of a run by its column's value. The frame names of ROS 1, such as "/base", lose their slash.
 std::string run_name(const FilePlan& plan, std::string value, const DataOptions& options) {
   if (options.run.empty()) return plan.name;
   if (value.starts_with('/')) value.erase(0, 1);
   return plan.starred ? plan.name + "_" + value : value;
 }
 
-/// States, or inputs, with the companions that are sampled with them as further rows.
+/// States or inputs, with their companions as further rows.
 struct Gathered {
   std::vector<ColumnRef> refs;
   std::vector<RunStreams::Companion*> companions;

@@ -15,18 +15,17 @@ namespace modebank {
 
 /// The content of one plan's files.
 struct FileContent {
-  std::vector<RunStreams> runs;   ///< sorted by name; roles not yet set, samples not yet in order
+  std::vector<RunStreams> runs;   ///< sorted by name; without roles, samples unsorted
   std::vector<InputFile> files;   ///< inputs before states
-  std::vector<FileStamps> forms;  ///< of the stamps that were read
+  std::vector<FileStamps> forms;  ///< formats of the stamps
   UnsetRows unset;
   std::vector<std::string> notes;
-  std::map<std::string, std::size_t> missing_words;  ///< Table::missing_words of all tables
+  std::map<std::string, std::size_t> missing_words;  ///< sum of Table::missing_words
 };
 
-/// Reads one plan's files into streams, run by run; `result` keeps the stamps' forms where it throws. Where a run's
-/// states (or inputs) come from several tables, the first one's table gives the times: other states are interpolated
-/// onto them, other inputs held; these streams are put in order as options.disorder says. Throws DataError
-/// (io/import/import.hpp).
+/// Reads one plan's files into streams, run by run. If it throws, `result` still has the stamps' formats. Where a run's
+/// states (or inputs) come from several tables, the first table gives the times: other states are interpolated to them,
+/// other inputs held. These streams are put in order by options.disorder. Throws DataError (io/import/import.hpp).
 void read_runs(const FilePlan& plan, const DataOptions& options, FileContent& result);
 
 }  // namespace modebank

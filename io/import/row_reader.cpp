@@ -18,7 +18,7 @@ namespace modebank {
 
 namespace {
 
-constexpr std::int64_t large_origin_ns = 100'000'000'000'000'000;  // three years: smaller ones cost no precision
+constexpr std::int64_t large_origin_ns = 100'000'000'000'000'000;  // three years; smaller origins cost no precision
 
 bool is_same(ColumnRef a, ColumnRef b) { return a.source == b.source && a.column == b.column; }
 
@@ -70,7 +70,7 @@ FileStream RowReader::stream(std::size_t clock, const std::vector<ColumnRef>& re
 
 std::string UnsetRows::note() const {
   if (count == 0) return {};
-  return fmt::format("{} row{} stamped before the clock was set ({}): left out", count, count == 1 ? " is" : "s are",
+  return fmt::format("{} row{} left out, stamped before the clock was set ({})", count, count == 1 ? " is" : "s are",
                      example);
 }
 
@@ -106,7 +106,7 @@ void RowReader::check_stamps(const RunSlice& run) const {
     const std::optional<std::size_t> out = stamp_far_out(stamps);
     if (!out) continue;
     const std::size_t other = *out == 0 ? 1 : *out - 1;
-    throw DataError(fmt::format("{}: column {}: {} s {} {} s: a stamp out by orders of magnitude",
+    throw DataError(fmt::format("{}: column {}: {} s {} {} s; this stamp differs by orders of magnitude",
                                 place(source, rows[*out]), plan_.sources[source].request.time.column,
                                 seconds_text(stamps[*out]), *out == 0 ? "before" : "after",
                                 seconds_text(stamps[other])));
@@ -125,10 +125,9 @@ LabelStream RowReader::labels(const RunSlice& run) const {
 void RowReader::check_weights(ColumnRef ref, const Rows& rows) const {
   for (const std::size_t row : rows)
     if (const double value = tables_[ref.source].numbers[ref.column][row]; value < 0.0)
-      throw DataError(
-          fmt::format("{}: column {}: {} is negative: a weight is at least 0, and 0 leaves the sample's "
-                      "transition out",
-                      place(ref.source, row), plan_.sources[ref.source].request.numbers[ref.column], value));
+      throw DataError(fmt::format(
+          "{}: column {}: the weight {} is negative; a weight is at least 0, and 0 leaves the sample's transition out",
+          place(ref.source, row), plan_.sources[ref.source].request.numbers[ref.column], value));
 }
 
 void RowReader::gather_columns(ColumnRef ref, std::vector<ColumnRef>& read) const {
@@ -180,7 +179,7 @@ std::string RowReader::place(std::size_t source, std::size_t row) const {
 
 namespace {
 
-/// Also of stamps that are farther apart than their numbers reach: import names these later.
+/// Works even for stamps whose difference overflows; import reports these later.
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   constexpr double ns_per_s = 1e9;
   std::int64_t difference_ns = 0;

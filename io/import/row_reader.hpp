@@ -15,25 +15,25 @@ namespace modebank {
 using Rows = std::vector<std::size_t>;
 using RunRows = std::map<std::string, Rows>;  // sorted by run name, byte order
 
-/// The rows of one run, per source, and what its times count from.
+/// The rows of one run, per source, and the origin of its times.
 struct RunSlice {
   std::vector<Rows> rows;
   std::int64_t origin_ns = 0;
 };
 
-/// Rows that were stamped before the clock was set, which are left out.
+/// Rows that were left out, stamped before the clock was set.
 struct UnsetRows {
   std::size_t count = 0;
-  std::string example = {};  ///< the place and the stamps around of the first ones
+  std::string example = {};  ///< text on the first of them, with its neighbours' stamps
 
   void add(const UnsetRows& other) {
     if (count == 0) example = other.example;
     count += other.count;
   }
-  std::string note() const;  ///< empty without any
+  std::string note() const;  ///< empty if there are none
 };
 
-/// Tables' view of the runs: which rows belong to which, and their values. Keeps references.
+/// Rows of tables by run, with access to their values. Keeps references.
 class RowReader {
  public:
   RowReader(const FilePlan& plan, const std::vector<Table>& tables, const DataOptions& options)
@@ -41,27 +41,27 @@ class RowReader {
 
   RunRows rows_by_run(std::size_t source) const;
 
-  /// What the run's times count from: nothing, or its first sample where that is long after.
+  /// Origin of the run's times: 0, or its first sample if that is long after 0.
   std::int64_t origin_ns(const std::vector<Rows>& rows) const;
 
-  /// The samples of `clock`, with the columns `refs` of whatever source; those of others are brought to its times, and
-  /// what is derived from several sources is computed there.
+  /// The samples of `clock` with the columns `refs`. Columns of other sources are brought to its times; channels
+  /// derived from several sources are computed there.
   FileStream stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run, Bring bring) const;
 
-  /// Takes the rows out of the run that were stamped before the clock was set.
+  /// Removes rows from the run that were stamped before the clock was set.
   UnsetRows leave_out_unset(RunSlice& run) const;
 
-  /// Throws DataError for stamps of the run that are out by orders of magnitude.
+  /// Throws DataError for stamps that differ from their neighbours by orders of magnitude.
   void check_stamps(const RunSlice& run) const;
 
-  /// What is known of the run, at the times of the table that says it.
+  /// Labels of the run, at the times of their own table.
   LabelStream labels(const RunSlice& run) const;
 
-  /// Weights, none negative.
+  /// Throws unless all weights are at least 0.
   void check_weights(ColumnRef ref, const Rows& rows) const;
 
  private:
-  /// Adds the columns of tables that `ref` is made from.
+  /// Adds the columns of tables from which `ref` is made.
   void gather_columns(ColumnRef ref, std::vector<ColumnRef>& read) const;
 
   Eigen::VectorXd derived(ColumnRef ref, const std::vector<ColumnRef>& read, const Stream& from) const;
@@ -72,8 +72,8 @@ class RowReader {
 
   Eigen::VectorXd times(std::size_t source, const RunSlice& run) const;
 
-  /// Times of a source and those of the columns that are its own; the others stay empty rows. Where rows correspond all
-  /// are its own.
+  /// Times of a source with its own columns; rows of other sources' columns stay empty. Where rows correspond, all
+  /// columns are its own.
   FileStream own_stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run) const;
 
   Eigen::VectorXd column(ColumnRef ref, const Rows& rows) const;

@@ -25,12 +25,12 @@ void check_order(const FileStream& source) {
   const VectorXd& time_s = source.stream.time_s;
   for (Index k = 1; k < time_s.size(); ++k)
     if (!(time_s(k) > time_s(k - 1)))
-      throw DataError(fmt::format("{}:{}: column {}: {} after {}: time going backwards or repeated{}", source.file,
+      throw DataError(fmt::format("{}:{}: column {}: time goes backwards or repeats: {} after {}{}", source.file,
                                   source.line[static_cast<std::size_t>(k)], source.time_column, source.time_text(k),
                                   source.time_text(k - 1), disorder_hint(source, k)));
 }
 
-/// Positions of the samples in order of time; of those that share a time the first in the file.
+/// Indices of the samples in order of time. Samples with equal times keep the order of the file.
 std::vector<Index> order_of(const VectorXd& time_s) {
   std::vector<Index> order(static_cast<std::size_t>(time_s.size()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -44,7 +44,7 @@ void check_samples(const RunStreams& run, Index samples, const DataOptions& opti
   if (samples >= 2) return;
   const double lag_s = options.lag_auto ? clock.lag_s : options.lag_s;
   const std::string lag = lag_s == 0.0 ? "" : fmt::format(", lag {} s", lag_s);
-  throw DataError(fmt::format("run \"{}\" has {} sample{}, but needs at least two: states {} ({}), inputs {} ({}){}{}",
+  throw DataError(fmt::format("run \"{}\" has {} sample{}, but needs at least two; states {} ({}), inputs {} ({}){}{}",
                               run.run, samples, samples == 1 ? "" : "s", span(run.states), run.states.file,
                               span(run.inputs), run.inputs.file, lag,
                               samples == 0 ? ": the streams do not overlap" : ""));

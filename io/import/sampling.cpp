@@ -12,9 +12,8 @@ namespace {
 
 using Times = std::vector<const Eigen::VectorXd*>;
 
-/// Whether a column changes with every sample while it changes at all: one that is held for several samples, as a
-/// slower sensor's value or a test signal's level, rarely changes twice in a row. Nor does one whose values are missing
-/// in between.
+/// Whether a column, while it changes, changes at every sample. A value that is held for several samples, as from a
+/// slower sensor or a test signal, rarely changes twice in a row. Missing values count as held.
 bool moves_at_each_sample(const std::vector<const Stream*>& streams, Index row) {
   Index changes = 0, again = 0;
   for (const Stream* stream : streams) {
@@ -29,7 +28,7 @@ bool moves_at_each_sample(const std::vector<const Stream*>& streams, Index row) 
   return 2 * again > changes;
 }
 
-/// Positions of the columns that are averaged.
+/// Indices of the columns to average.
 std::vector<Index> averaged_rows(const std::vector<const Stream*>& streams, double rate_hz, std::size_t rows,
                                  const std::vector<Index>* learned) {
   Times times;
@@ -67,7 +66,7 @@ LogSampling sampling_of(const std::vector<RunStreams>& runs, const DataOptions& 
     inputs.push_back(&run.inputs.stream);
     times.push_back(&run.inputs.stream.time_s);
   }
-  constexpr double many_steps = 20.0;  // of the log in one: whose scatter is then small beside it
+  constexpr double many_steps = 20.0;  // from so many of the log's steps in one, their scatter is small
   LogSampling sampling{options.rate_hz, step_scatter(times)};
   const double period_s = median_period_s(times);
   if (!(sampling.rate_hz > 0.0)) return sampling;
@@ -89,7 +88,7 @@ LogSampling choose_sampling(const std::vector<RunStreams>& runs, const DataOptio
     sampling.step_scatter = 0.0;
   else
     notes.push_back(
-        fmt::format("steps scatter by {:.0f} % of their median: a model holds for one step length, so modes are not "
+        fmt::format("steps scatter by {:.0f} % of their median, but a model has one step length, so modes are not "
                     "judged; log at even steps",
                     100.0 * sampling.step_scatter));
   return sampling;

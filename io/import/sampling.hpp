@@ -9,19 +9,19 @@
 
 namespace modebank {
 
-/// How the streams of a data set become samples.
+/// How the streams of a data set are sampled.
 struct LogSampling {
   double rate_hz = 0.0;  ///< 0: the inputs' own times
-  /// How the log's steps scatter (step_scatter in ident/data/streams.hpp), unless many of them make one new step. 0: no
-  /// more than a model of one step length bears.
+  /// Scatter of the log's steps (step_scatter in ident/data/streams.hpp). 0: small enough for a model of one step
+  /// length, or many steps of the log make one new step.
   double step_scatter = 0.0;
-  AveragedColumns averaged = {};  ///< none at a rate near the log's or above
+  AveragedColumns averaged = {};  ///< empty at a rate near the log's or above
 };
 
-/// As data.rate_hz states; without it the inputs' own times are taken, however they scatter. One linear motion showed
-/// modes at an even rate, too: interpolated or averaged over two steps where steps scatter by 15 %, averaged over four
-/// where they scatter by 43 %. `runs`: in order of time. `learned`: which columns were averaged in the data that a bank
-/// was learned from; null: these data decide. What the user should know is added to `notes`.
+/// By data.rate_hz; without it the inputs' own times, even if they scatter. Experiments on one linear motion show why
+/// an even rate does not help: it looked like several modes, too. That happened when interpolated or averaged over two
+/// steps with a scatter of 15 %, and averaged over four with 43 %. `runs`: in order of time. `learned`: the averaged
+/// columns of an existing bank's data; null: found in these data. Adds remarks for the user to `notes`.
 LogSampling choose_sampling(const std::vector<RunStreams>& runs, const DataOptions& options,
                             const AveragedColumns* learned, std::vector<std::string>& notes);
 

@@ -21,7 +21,7 @@ struct Interval {
 double least(const VectorXd& time_s) { return time_s.array().isFinite().select(time_s, HUGE_VAL).minCoeff(); }
 double largest(const VectorXd& time_s) { return time_s.array().isFinite().select(time_s, -HUGE_VAL).maxCoeff(); }
 
-/// Median of the intervals that go forward.
+/// Median of the steps that go forward.
 double period_s(const VectorXd& time_s) {
   std::vector<double> steps;
   for (Index k = 1; k < time_s.size(); ++k)
@@ -32,7 +32,7 @@ double period_s(const VectorXd& time_s) {
   return *middle;
 }
 
-/// Where the blocks lie, without the gaps between them; the last one's end is open.
+/// Intervals of the blocks, without the gaps between them. The last one has no end.
 std::vector<Interval> intervals(const RunStreams& run, const SplitOptions& options, double rate_hz) {
   const VectorXd &states = run.states.stream.time_s, &inputs = run.inputs.stream.time_s;
   const double first = std::max(least(states), least(inputs)), last = std::min(largest(states), largest(inputs));
@@ -47,8 +47,8 @@ std::vector<Interval> intervals(const RunStreams& run, const SplitOptions& optio
     result.push_back({borders[i], borders[i + 1] - gap_s});
     if (!(result.back().end_s > result.back().first_s))
       throw DataError(
-          fmt::format("run \"{}\": a block of data.split is {:.4g} s long, and {:.4g} s (a window and its "
-                      "lags) are dropped at its end: fewer blocks, or a shorter window.length",
+          fmt::format("run \"{}\": a block of data.split is {:.4g} s long, but {:.4g} s (a window and its lags) are "
+                      "dropped at its end; use fewer blocks, or a shorter window.length",
                       run.run, borders[i + 1] - borders[i], gap_s));
   }
   return result;

@@ -27,45 +27,44 @@ std::string read_by(const std::string& pattern, const std::string& value) {
   return fmt::format("{} by {}", by.has_date() ? text : text.substr(text.find('T') + 1), pattern);
 }
 
-/// The finest unit that spacings show serves all files of a logger: none is further apart than a robot samples.
+/// The finest unit that any file's spacing indicates, for all files of a logger; with it, no file is sampled too slowly
+/// for a robot.
 TimeUnit agreed_unit(const Pool& pool) {
   TimeUnit finest = pool.front()->form.unit;
   for (const FileStamps* of : pool) {
     const bool same = of->form.unit == pool.front()->form.unit;
     const auto weak = [](const FileStamps* f) { return f->form.ground != Ground::spacing; };
     if (!same && (weak(of) || weak(pool.front())))
-      throw DataError(
-          fmt::format("{} counts {} and {} counts {}, as their size and spacing show: data.time_unit = UNIT "
-                      "states what the stamps of all files count",
-                      shown(*pool.front()), in_words(pool.front()->form.unit), shown(*of), in_words(of->form.unit)));
+      throw DataError(fmt::format(
+          "the times in {} look like {} and those in {} like {}; state the unit of all files as data.time_unit = UNIT",
+          shown(*pool.front()), in_words(pool.front()->form.unit), shown(*of), in_words(of->form.unit)));
     if (ns_per(of->form.unit) < ns_per(finest)) finest = of->form.unit;
   }
   return finest;
 }
 
-/// The patterns that fit all files, one of those that read all alike.
+/// The patterns that fit all files; of patterns that read all files alike only one.
 std::vector<std::string> common_patterns(const Pool& pool) {
   StampForm common = pool.front()->form;
   for (const FileStamps* of : pool)
     if (of != pool.front() && !join_patterns(common, of->form))
       throw DataError(
-          fmt::format("{} is a time by {}, but {} by {}: data.time_format = PATTERN states one form for all "
-                      "files",
+          fmt::format("{} is a time by {}, but {} by {}; state one format for all files as data.time_format = PATTERN",
                       shown(*pool.front()), common.patterns.front(), shown(*of), of->form.patterns.front()));
   return common.patterns;
 }
 
-/// Names the first file in which the readings differ.
+/// Throws, with the first file in which the readings differ.
 [[noreturn]] void refuse_ambiguous(const Pool& pool, const std::vector<std::string>& patterns) {
   const auto differing =
       std::find_if(pool.begin(), pool.end(), [](const FileStamps* f) { return f->form.patterns.size() > 1; });
   const FileStamps& of = differing == pool.end() ? *pool.front() : **differing;
-  throw DataError(fmt::format("{} is {}, or {}: data.time_format = {} or {} states which", shown(of),
+  throw DataError(fmt::format("{} is {}, or {}; state which by data.time_format = {} or {}", shown(of),
                               read_by(patterns[0], of.form.value), read_by(patterns[1], of.form.value), patterns[0],
                               patterns[1]));
 }
 
-/// The files of each pattern whose form was found, numbers and texts apart.
+/// Files whose format was found, grouped by pattern, with numbers and texts apart.
 std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools_of(const std::vector<FileStamps>& forms) {
   std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools;
   for (const FileStamps& of : forms)
@@ -78,7 +77,7 @@ std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools_of(const std::v
 
 bool agree_on_stamps(const std::vector<FileStamps>& forms, std::vector<FilePlan>& plans) {
   bool changed = false;
-  std::vector<std::string> decided;  // patterns that values decided on
+  std::vector<std::string> decided;  // patterns that the values determine
   const auto pools = pools_of(forms);
   std::map<const Pool*, std::vector<std::string>> common;
   for (const auto& [key, pool] : pools)

@@ -8,16 +8,16 @@
 
 namespace modebank {
 
-/// The form of one file's stamps.
+/// The stamp format of one file.
 struct FileStamps {
   std::string file, column;
-  std::size_t path = 0;  ///< position in FilePlan::paths: inputs, states
+  std::size_t path = 0;  ///< index in FilePlan::paths: inputs, states
   StampForm form;
 };
 
-/// One form for all files that one pattern matches. Where some were read otherwise, sets it in the requests of `plans`
-/// and returns true: they are to be read again. Throws DataError, showing both readings and the key that decides, where
-/// the files' stamps contradict each other or allow several readings.
+/// Finds one stamp format for all files of one pattern. If some files were read in another format, sets it in the
+/// requests of `plans` and returns true: read them again. Throws DataError, with both readings and the key that
+/// decides, where files contradict each other or several readings remain.
 bool agree_on_stamps(const std::vector<FileStamps>& forms, std::vector<FilePlan>& plans);
 
 }  // namespace modebank

@@ -11,7 +11,7 @@ namespace modebank {
 
 namespace {
 
-/// Smallest to largest of stamps, from either end up to a position.
+/// Difference of the largest and the smallest stamp, from either end up to each index.
 std::vector<double> spans(const std::vector<double>& times, bool from_the_end) {
   std::vector<double> result(times.size());
   double least = 0.0, largest = 0.0;
@@ -34,7 +34,7 @@ double median_step(const std::vector<double>& times) {
   return *middle;
 }
 
-/// header.stamp.secs -> header.stamp.nsecs, stamp.sec -> stamp.nanosec (ROS 2).
+/// Name of the nanoseconds: header.stamp.nsecs for header.stamp.secs, stamp.nanosec for stamp.sec (ROS 2).
 std::string nanoseconds_beside(const std::string& seconds) {
   const auto ends = [&](std::string_view word) { return seconds.ends_with(word); };
   if (ends("secs")) return seconds.substr(0, seconds.size() - 4) + "nsecs";
@@ -49,7 +49,8 @@ std::optional<std::size_t> stamp_far_out(const std::vector<std::int64_t>& stamps
   constexpr std::size_t fewest = 4;
   const std::size_t N = stamps_ns.size();
   if (N < fewest) return std::nullopt;
-  const std::vector<double> times(stamps_ns.begin(), stamps_ns.end());  // to 256 ns, which is no matter here
+  const std::vector<double> times(stamps_ns.begin(),
+                                  stamps_ns.end());  // rounded to 256 ns, which is precise enough here
   const std::vector<double> before = spans(times, false), after = spans(times, true);
   const double period = median_step(times);
   const auto apart = [&](std::size_t a, std::size_t b) { return std::abs(times[a] - times[b]); };
@@ -90,23 +91,24 @@ std::string disorder_hint(const FileStream& source, Index k) {
   constexpr Index fewest = 4;
   if (N < fewest) return {};
   if (source.time_column.ends_with(".header.stamp") && time_s(k) == time_s(k - 1))
-    return " (data.time = receive_time takes the recorder's times)";
+    return " (for the recorder's times set data.time = receive_time)";
   Index repeats = 0;
   for (Index i = 1; i < N; ++i) repeats += time_s(i) == time_s(i - 1) ? 1 : 0;
   const bool whole = (time_s.array() == time_s.array().round()).all();
   if (whole && 2 * repeats > N)
-    return fmt::format(" (seconds without their nanoseconds? data.time = {}, {})", source.time_column,
+    return fmt::format(" (if the nanoseconds are in another column, set data.time = {}, {})", source.time_column,
                        nanoseconds_beside(source.time_column));
   constexpr double hour_s = 3600.0;
   const double step_s = k > 1 ? std::abs(time_s(k - 1) - time_s(k - 2)) : 0.0;
   const bool an_hour = std::abs(time_s(k - 1) + step_s - time_s(k) - hour_s) <= std::min(step_s, 0.1 * hour_s);
   if (an_hour && source.origin_ns != 0)
-    return " (an hour back, as local time goes at the end of summer time: log UTC, or with the zone, as +02:00)";
+    return " (this is an hour, as at the end of summer time; log UTC, or times with a zone such as +02:00)";
   const double span = time_s(k - 1) - time_s(0);
   constexpr double near_start = 0.02;
   if (k + 1 >= fewest && span > 0.0 && std::abs(time_s(k) - time_s(0)) <= near_start * span)
-    return fmt::format(" ({} s back, to where it started: several runs in one file? data.run = COLUMN names them)",
-                       time_s(k - 1) - time_s(k));
+    return fmt::format(
+        " (time returns by {} s to its start; if the file has several runs, name their column in data.run)",
+        time_s(k - 1) - time_s(k));
   return {};
 }
 

@@ -21,17 +21,17 @@ std::string place(const FileStream& source, Index k) {
 
 void check_row(const RunStreams& run, const FileStream& source, const Eigen::Ref<const Eigen::RowVectorXd>& values,
                const std::string& name) {
-  // Of all rows at one pass in vectors; false for NaN.
+  // Checks all rows in one vectorised pass; the comparison is false for NaN.
   if (!(values.array().abs() >= largest_value).any()) return;
   for (Index k = 0; k < values.size(); ++k)
     if (std::abs(values(k)) >= largest_value)
       throw DataError(
-          fmt::format("{}: column {}: {:g} is no number to reckon with: {:g} is the limit (run \"{}\"); leave the "
-                      "field empty where nothing was measured, and see data.missing",
+          fmt::format("{}: column {}: {:g} cannot be used as a number, because its magnitude reaches {:g} (run "
+                      "\"{}\"); leave the field empty where nothing was measured, and see data.missing",
                       place(source, k), name, values(k), largest_value, run.run));
 }
 
-/// A column of the runs of a role.
+/// A column, in the runs of one role.
 struct Column {
   Role role;
   bool of_states;
@@ -39,7 +39,7 @@ struct Column {
   std::string name;
 };
 
-/// Calls visit(run, source, k, value) for every value of a column that data.where leaves.
+/// Calls visit(run, source, k, value) for every value of a column that data.where keeps.
 template <class Visit>
 void for_each_value(const std::vector<RunStreams>& runs, const Column& column, Visit visit) {
   for (const RunStreams& run : runs) {
@@ -54,13 +54,14 @@ void for_each_value(const std::vector<RunStreams>& runs, const Column& column, V
   }
 }
 
-/// The values furthest from a column's median.
+/// The values with the largest distance from a column's median.
 struct Furthest {
-  double median = 0.0, largest = 0.0, held = 0.0;  ///< held: by them, of the sum of squared distances
+  double median = 0.0, largest = 0.0, held = 0.0;  ///< held: their share of the sum of squared distances
   std::ptrdiff_t count = 0;
 };
 
-/// The fewest that hold more than half of the spread, and stand far off all others; count 0: there are none so few.
+/// The smallest set of values with more than half of the sum of squares, far from all others; count 0 if it is not
+/// small.
 Furthest furthest_of(const VectorXd& values) {
   constexpr Index fewest = 50, one_in = 1000, few = 5, one_in_short = 25;
   constexpr double half = 0.5, beyond = 10.0;
@@ -83,7 +84,7 @@ Furthest furthest_of(const VectorXd& values) {
   return found;
 }
 
-/// The line about one column; empty where no few values own it.
+/// The remark on one column; empty if no few values dominate it.
 std::string dominating_in(const std::vector<RunStreams>& runs, const Column& column) {
   std::vector<double> all;
   for_each_value(runs, column,
@@ -95,12 +96,12 @@ std::string dominating_in(const std::vector<RunStreams>& runs, const Column& col
   for_each_value(runs, column, [&](const RunStreams& run, const FileStream& source, Index k, double value) {
     if (!line.empty() || std::abs(value - found.median) != found.largest) return;
     line = fmt::format(
-        "{}: run \"{}\": {} = {:g}{} {:.4g} % of the spread of {} in the {} runs: {}; if it is wrong, leave the field "
-        "empty (data.missing) or leave the sample out (data.where)",
+        "{}: run \"{}\": {} = {:g}{} {:.4g} % of the variance of {} in the {} runs, so {}; if it is wrong, leave the "
+        "field empty (data.missing) or the sample out (data.where)",
         place(source, k), run.run, column.name, value,
         found.count > 1 ? fmt::format(" and {} more hold", found.count - 1) : " holds", 100.0 * found.held, column.name,
         trains ? "training" : "held-out",
-        trains ? "a least-squares model follows it alone" : "scores and errors are about it");
+        trains ? "a least-squares model follows it alone" : "scores and errors are mostly of it");
   });
   return line;
 }
@@ -120,7 +121,7 @@ void check_values(const RunStreams& run, const DataOptions& options) {
 std::vector<std::string> columns_without_value(const RunStreams& run, const DataOptions& options) {
   std::vector<std::string> lines;
   const auto look = [&](const std::vector<std::string>& names, const FileStream& source, bool needed) {
-    if (source.stream.values.cols() == 0) return;  // said by who needs two samples
+    if (source.stream.values.cols() == 0) return;  // too few samples are reported elsewhere
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (source.stream.values.row(static_cast<Index>(i)).array().isFinite().any()) continue;
       lines.push_back(fmt::format("{}: run \"{}\": column {} has no value in any of its {} samples", source.file,

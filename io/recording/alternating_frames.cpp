@@ -34,8 +34,9 @@ std::string alternation_text(const LogTopic& topic, const std::string& column, c
     if (!fresh && frames[k] != frames[k - 1]) ++returns;
   }
   if (returns <= frames.size() / one_in) return {};
-  return fmt::format("topic {}: its messages alternate between {} frames ({}{}); data.run = {} makes a run of each",
-                     topic.name, seen.size(), fmt::join(names, ", "), seen.size() > shown ? ", ..." : "", column);
+  return fmt::format(
+      "topic {}: its messages alternate between {} frames ({}{}); set data.run = {} for one run per frame", topic.name,
+      seen.size(), fmt::join(names, ", "), seen.size() > shown ? ", ..." : "", column);
 }
 
 }  // namespace modebank

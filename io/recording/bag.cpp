@@ -23,7 +23,7 @@ class Bag : public PieceFile {
     return read_head(bytes, at, end);
   }
 
-  /// The publisher's description of the connection: fields, as a record's header has them.
+  /// The publisher's description of the connection: fields in the form of a record's header.
   static std::string publisher_fields(const RecordHead& head, ByteSource& bytes) {
     if (head.payload_bytes > most_definition_bytes)
       throw Damage(head.payload_at, fmt::format("a definition of {} bytes is larger than {}", head.payload_bytes,
@@ -35,8 +35,8 @@ class Bag : public PieceFile {
     return std::string(find_field(fields, name, head.payload_at).value_or(""));
   }
 
-  /// The topic that was recorded stands in the record's header. Publishers need not repeat it (those in C++ do not),
-  /// and one whose topic was remapped repeats another.
+  /// The recorded topic is in the record's header. Publishers need not repeat it (those in C++ do not), and one whose
+  /// topic was remapped repeats another.
   ConnectionName name_of(const RecordHead& head, ByteSource& bytes) const override {
     const std::string header = read_record(bytes, head.at, head.end).header, fields = publisher_fields(head, bytes);
     const auto topic = find_field(header, "topic", head.at);
@@ -59,17 +59,17 @@ class Bag : public PieceFile {
     if (file_.size() < magic.size() || file_.view(0, magic.size()) != magic) {
       constexpr std::string_view family = "#ROSBAG V";
       if (file_.size() > family.size() && file_.view(0, family.size()) == family)
-        throw DataError(
-            fmt::format("{}: a bag of format {}, of which only 2.0 is read: `rosbag fix` converts it", path_.string(),
-                        file_.view(family.size(), std::min<std::uint64_t>(3, file_.size() - family.size()))));
-      throw DataError(fmt::format("{}: no ROS 1 bag (it does not begin with \"#ROSBAG V2.0\")", path_.string()));
+        throw DataError(fmt::format(
+            "{}: this bag has format {}, but only 2.0 is supported; convert it with `rosbag fix`", path_.string(),
+            file_.view(family.size(), std::min<std::uint64_t>(3, file_.size() - family.size()))));
+      throw DataError(fmt::format("{}: not a ROS 1 bag (it does not begin with \"#ROSBAG V2.0\")", path_.string()));
     }
     const Record header = read_record(file_, magic.size(), file_.size());
     if (header.op != Op::header) throw Damage(header.at, "its first record is not the bag's header");
     const auto encryptor = find_field(header.header, "encryptor", header.at);
     if (encryptor && !encryptor->empty())
-      throw DataError(
-          fmt::format("{}: the bag is encrypted ({}): write it anew without encryption", path_.string(), *encryptor));
+      throw DataError(fmt::format("{}: the bag is encrypted ({}); record or copy it without encryption", path_.string(),
+                                  *encryptor));
     return header;
   }
 
@@ -85,14 +85,14 @@ class Bag : public PieceFile {
       piece.compression = Compression::lz4;
     else if (compression != "none")
       throw Damage(record.at,
-                   fmt::format("chunks compressed by \"{}\" are not read (only none, bz2 and lz4)", compression));
+                   fmt::format("the compression \"{}\" is not supported (only none, bz2 and lz4)", compression));
     if (piece.compression != Compression::none && std::max(piece.unpacked_bytes, record.data_bytes) > most_chunk_bytes)
       throw Damage(record.at, fmt::format("a chunk of {} bytes is larger than {}",
                                           std::max(piece.unpacked_bytes, record.data_bytes), most_chunk_bytes));
     return piece;
   }
 
-  /// The index at the end, where everything in it fits the chunks it speaks of.
+  /// Reads the index at the end. False unless all of it agrees with its chunks.
   bool try_index(const Record& header) {
     try {
       const auto index_at = header.number<std::uint64_t>("index_pos");
@@ -123,7 +123,7 @@ class Bag : public PieceFile {
     return chunks;
   }
 
-  /// Adds a chunk that the index speaks of: its own index, which follows it, must tell the same numbers of messages.
+  /// Adds a chunk of the index. Its own index, which follows it, must have the same numbers of messages.
   std::uint64_t check_chunk(const Record& info, std::uint64_t least_at) {
     const auto at = info.number<std::uint64_t>("chunk_pos");
     if (at < least_at || at >= info.at) throw Damage(info.at, "chunks are not in order");
@@ -154,12 +154,12 @@ class Bag : public PieceFile {
     return next;
   }
 
-  /// Without a sound index every record is looked at.
+  /// Reads every record, if the index is unusable.
   void scan() {
-    note(fmt::format(
-        "{}: it has no sound index (the recording was cut off, or `rosbag reindex` was not run): every record is "
-        "looked at",
-        path_.string()));
+    note(
+        fmt::format("{}: its index is missing or damaged (the recording was cut off, or `rosbag reindex` was not run), "
+                    "so every record is read",
+                    path_.string()));
     std::uint64_t at = magic.size();
     try {
       Piece loose;
@@ -183,7 +183,7 @@ class Bag : public PieceFile {
     }
   }
 
-  /// The chunk that the end of the file cuts off still holds whole messages.
+  /// A chunk that the end of the file cuts off still has complete messages.
   void scan_cut_chunk(std::uint64_t at) try {
     const auto rest = file_.size() - std::min(at, file_.size());
     if (rest < 8) return;

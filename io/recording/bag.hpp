@@ -7,7 +7,8 @@
 
 namespace modebank {
 
-/// Opens a ROS 1 bag (format 2.0). Throws DataError for what is no such bag, is encrypted or holds nothing whole.
+/// Opens a ROS 1 bag (format 2.0). Throws DataError for another format, an encrypted bag, and one without a complete
+/// record.
 std::unique_ptr<Container> open_bag(const std::filesystem::path& path);
 
 }  // namespace modebank

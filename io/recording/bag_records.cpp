@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint32_t most_header_bytes = 1 << 20;
 
-/// Where the parts of a record are.
+/// Positions of a record's parts.
 struct Extent {
   std::uint64_t header_at = 0, header_bytes = 0, data_at = 0, data_bytes = 0;
 };
@@ -33,7 +33,7 @@ Extent extent_at(ByteSource& bytes, std::uint64_t at, std::uint64_t end) {
 
 std::uint8_t op_of(std::string_view fields, std::uint64_t at) {
   const auto op = find_field(fields, "op", at);
-  if (!op || op->size() != 1) throw Damage(at, "a record does not say what it is");
+  if (!op || op->size() != 1) throw Damage(at, "a record has no type");
   return static_cast<std::uint8_t>(op->front());
 }
 
@@ -50,7 +50,7 @@ std::optional<std::string_view> find_field(std::string_view fields, std::string_
   while (!reader.done()) {
     const std::string_view field = reader.text();
     const std::size_t sign = field.find('=');
-    if (sign == std::string_view::npos) throw Damage(at, "a record's header is no list of fields");
+    if (sign == std::string_view::npos) throw Damage(at, "a record's header is not a list of fields");
     if (field.substr(0, sign) == name) return field.substr(sign + 1);
   }
   return {};

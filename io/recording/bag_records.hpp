@@ -9,7 +9,7 @@ namespace modebank::bag {
 
 inline constexpr std::string_view magic = "#ROSBAG V2.0\n";
 
-/// What a record is, by its field `op`.
+/// Type of a record, in its field `op`.
 enum class Op : std::uint8_t {
   message = 0x02,
   header = 0x03,
@@ -22,11 +22,11 @@ enum class Op : std::uint8_t {
 /// A record: a header of named fields, then data.
 struct Record {
   Op op{};
-  std::string header;  ///< the fields, each after its length in four bytes: name=value
+  std::string header;  ///< fields name=value, each after its length in four bytes
   std::uint64_t at = 0, data_at = 0, data_bytes = 0;
 
   std::uint64_t end() const { return data_at + data_bytes; }
-  /// A field's value. Throws Damage when it is missing.
+  /// Value of a field. Throws Damage when it is missing.
   std::string_view field(std::string_view name) const;
   template <class T>
   T number(std::string_view name) const {
@@ -35,17 +35,17 @@ struct Record {
       throw Damage(at, "a record's field \"" + std::string(name) + "\" has the wrong size");
     return little_endian<T>(value);
   }
-  /// Seconds and nanoseconds.
+  /// A time field: seconds and nanoseconds.
   std::int64_t time_ns(std::string_view name) const;
 };
 
-/// The record at `at`. Throws Damage when it does not end by `end`.
+/// The record at `at`. Throws Damage unless it ends by `end`.
 Record read_record(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
 
-/// The same in short, for those that are passed by the million.
+/// The same in a short form, for records that are skipped by the million.
 RecordHead read_head(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
 
-/// A field of named fields, or nothing.
+/// One of several named fields; nullopt if it is missing.
 std::optional<std::string_view> find_field(std::string_view fields, std::string_view name, std::uint64_t at);
 
 }  // namespace modebank::bag

@@ -10,13 +10,13 @@
 
 namespace modebank {
 
-/// Where a recording stops making sense: what is before `at` can be used.
+/// A recording is damaged from byte `at`; bytes before are usable.
 struct Damage : std::runtime_error {
   Damage(std::uint64_t at_byte, const std::string& what) : std::runtime_error(what), at(at_byte) {}
   std::uint64_t at = 0;
 };
 
-/// The little-endian number at the front of `bytes`, which has at least sizeof(T) of them.
+/// The little-endian number at the start of `bytes`, which has at least sizeof(T) bytes.
 template <class T>
 T little_endian(std::string_view bytes) {
   static_assert(std::is_unsigned_v<T>);
@@ -26,12 +26,12 @@ T little_endian(std::string_view bytes) {
   return value;
 }
 
-/// Bytes that are looked at piece by piece: a file, or a chunk in memory.
+/// Bytes that are read part by part: a file, or a chunk in memory.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
   virtual std::uint64_t size() const = 0;
-  /// The bytes from `at`, valid until the next call. Throws Damage when they end before.
+  /// The bytes from `at`, valid until the next call. Throws Damage when there are fewer.
   std::string_view view(std::uint64_t at, std::uint64_t bytes) {
     if (at > size() || bytes > size() - at) throw Damage(at, "it ends within a record");
     return viewed(at, static_cast<std::size_t>(bytes));
@@ -51,7 +51,7 @@ class MemoryBytes : public ByteSource {
   std::string_view bytes_;
 };
 
-/// A file behind a window: what is skipped is not read.
+/// A file, read through a window: skipped parts are not read.
 class FileBytes : public ByteSource {
  public:
   /// Opens it. Throws ConfigurationError, naming path and reason, when the file cannot be read.
@@ -61,10 +61,10 @@ class FileBytes : public ByteSource {
   FileBytes& operator=(const FileBytes&) = delete;
 
   std::uint64_t size() const override { return size_; }
-  /// Closes the file until `open`: a pattern may name thousands.
+  /// Closes the file until `open`, since a pattern may match thousands of files.
   void close();
   void open();
-  /// Copies bytes without touching the window (threads may do so at once); those that are there.
+  /// Copies up to `bytes` bytes without the window and returns their number. Threads may call it at the same time.
   std::size_t read(std::uint64_t at, std::size_t bytes, char* to) const;
 
  private:
@@ -78,10 +78,10 @@ class FileBytes : public ByteSource {
   std::vector<char> window_;
 };
 
-/// Reads a record's content field by field.
+/// Reads a record's fields one by one.
 class FieldReader {
  public:
-  /// `at`: where the bytes are, for messages.
+  /// `at`: position of the bytes, for messages.
   explicit FieldReader(std::string_view bytes, std::uint64_t at = 0) : bytes_(bytes), at_(at) {}
 
   bool done() const { return bytes_.empty(); }
@@ -96,7 +96,7 @@ class FieldReader {
   T number() {
     return little_endian<T>(take(sizeof(T)));
   }
-  /// Text after its length in four bytes.
+  /// A text after its length in four bytes.
   std::string_view text() { return take(number<std::uint32_t>()); }
 
  private:

@@ -8,15 +8,15 @@
 
 namespace modebank {
 
-/// One stream of messages in a recording; several may have one topic.
+/// One stream of messages in a recording. A topic may have several.
 struct Connection {
   std::string topic;
   std::string type;
   enum class Encoding { ros1, cdr, unknown };
   Encoding encoding = Encoding::unknown;
-  std::string encoding_name;    ///< as the recording calls it
-  std::string definition;       ///< text, or empty
-  std::string definition_form;  ///< "ros1msg", "ros2msg", or what else the recording says of it
+  std::string encoding_name;    ///< name by the recording
+  std::string definition;       ///< text; may be empty
+  std::string definition_form;  ///< "ros1msg", "ros2msg", or another word of the recording
   std::uint64_t messages = 0;
 };
 
@@ -28,20 +28,21 @@ struct RecordedMessage {
 
 using MessageSink = std::function<void(const RecordedMessage&)>;
 
-/// A file of messages, whatever its form. What is damaged is given up to the damage.
+/// A file of messages in any format. A damaged file is read up to the damage.
 class Container {
  public:
   virtual ~Container() = default;
 
   const std::vector<Connection>& connections() const { return connections_; }
-  /// What was found on opening that a user should know: damage, a missing index.
+  /// Findings at opening that a user should know: damage, a missing index.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// All messages of the wanted connections, in the file's order. Returns what stopped it early, or nothing.
+  /// Visits all messages of the wanted connections, in the file's order. Returns the reason of an early end; empty
+  /// without one.
   virtual std::string visit(const std::vector<bool>& wanted, const MessageSink& sink) = 0;
-  /// At least the first and the last message of every connection, in the file's order.
+  /// Visits at least the first and the last message of every connection, in the file's order.
   virtual std::string sample(const MessageSink& sink) = 0;
-  /// Lets go of the file until the next visit.
+  /// Closes the file until the next visit.
   virtual void close() = 0;
 
  protected:
@@ -49,10 +50,10 @@ class Container {
   std::vector<std::string> notes_;
 };
 
-/// No message and no definition is larger: what says so is damaged.
+/// A larger message or definition is damaged.
 inline constexpr std::uint64_t most_message_bytes = std::uint64_t{256} << 20;
 inline constexpr std::uint64_t most_definition_bytes = std::uint64_t{1} << 20;
-/// No chunk holds more, packed or not.
+/// A larger chunk, packed or not, is damaged.
 inline constexpr std::uint64_t most_chunk_bytes = std::uint64_t{256} << 20;
 inline constexpr std::size_t most_connections = 65536;
 

@@ -19,7 +19,7 @@ struct SqlError : std::runtime_error {
 
 class Database {
  public:
-  /// `immutable`: no locks, no journal, and nothing is ever written beside the file.
+  /// `immutable`: no locks and no journal, and nothing is written beside the file.
   Database(const std::filesystem::path& path, bool immutable) {
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE;
     const int status = sqlite3_open_v2(uri(path, immutable).c_str(), &handle_, flags, nullptr);
@@ -86,13 +86,13 @@ class Query {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-/// Whether messages lie in the journal beside the file, as a recorder leaves them that is killed.
+/// Whether a journal with messages is beside the file, as a killed recorder leaves it.
 bool has_journal(const std::filesystem::path& path) {
   std::error_code error;
   return std::filesystem::file_size(path.string() + "-wal", error) > 0 && !error;
 }
 
-/// With its journal where there is one that can be read: SQLite needs a third file beside both, FILE-shm.
+/// Opens the database with its journal, if there is a readable one. SQLite then needs a third file, FILE-shm.
 std::unique_ptr<Database> open_database(const std::filesystem::path& path, std::vector<std::string>& notes) {
   if (!has_journal(path)) return std::make_unique<Database>(path, true);
   try {
@@ -100,7 +100,7 @@ std::unique_ptr<Database> open_database(const std::filesystem::path& path, std::
     Query(*database, "SELECT count(*) FROM sqlite_master").next();
     return database;
   } catch (const SqlError& error) {
-    notes.push_back(fmt::format("{0}-wal holds messages that were never moved into {0}; they are not read ({1})",
+    notes.push_back(fmt::format("{0}-wal has messages that were never moved into {0}; they are not read ({1})",
                                 path.string(), error.what()));
     return std::make_unique<Database>(path, true);
   }
@@ -139,14 +139,14 @@ class Db3 : public Container {
     return fmt::format("{}: SQLite: {}", path_.string(), error.what());
   }
 
-  /// Tables alone: a view, or a virtual table of whatever module, is not what rosbag2 writes.
+  /// Accepts tables only: rosbag2 writes neither views nor virtual tables, whose modules could run code.
   void check_tables() {
     for (const char* name : {"topics", "messages"}) {
       Query query(
           *database_,
           fmt::format("SELECT 1 FROM sqlite_schema WHERE name = '{}' AND type = 'table' AND rootpage > 0", name));
       if (!query.next())
-        throw DataError(fmt::format("{}: an SQLite database, but no recording of rosbag2 (it has no table {})",
+        throw DataError(fmt::format("{}: this SQLite database is not a recording of rosbag2 (it has no table {})",
                                     path_.string(), name));
     }
   }
@@ -163,7 +163,7 @@ class Db3 : public Container {
     }
   }
 
-  /// Newer recordings hold the definitions, if the recorder found them.
+  /// Newer recordings have the definitions that the recorder found.
   void read_definitions() {
     Query table(*database_,
                 "SELECT 1 FROM sqlite_schema WHERE name = 'message_definitions' AND type = 'table' AND rootpage > 0");
@@ -184,7 +184,7 @@ class Db3 : public Container {
     std::unordered_map<std::size_t, std::pair<std::int64_t, std::int64_t>> ends;
     std::size_t of_no_topic = 0;
     try {
-      // Row by row: what is before damage counts. The payload lies behind what is asked for and is not read.
+      // Row by row, so that rows before damage count. The payload, behind these columns, is not read.
       Query query(*database_, "SELECT rowid, topic_id FROM messages ORDER BY rowid");
       while (query.next()) {
         const auto found = by_id_.find(query.integer(1));
@@ -196,11 +196,11 @@ class Db3 : public Container {
         ends.try_emplace(found->second, query.integer(0), 0).first->second.second = query.integer(0);
       }
     } catch (const SqlError& error) {
-      notes_.push_back(damage(error) + "; what is before that is read");
+      notes_.push_back(damage(error) + "; data before that are read");
       damage_noted_ = true;
     }
     if (of_no_topic > 0)
-      notes_.push_back(fmt::format("{}: {} messages are left out: the table topics has none of their numbers",
+      notes_.push_back(fmt::format("{}: {} messages are left out, because the table topics lacks their numbers",
                                    path_.string(), of_no_topic));
     for (const auto& [connection, first_last] : ends)
       sample_ids_.insert(sample_ids_.end(), {first_last.first, first_last.second});
@@ -222,13 +222,12 @@ class Db3 : public Container {
     return {};
   }
 
-  /// rosbag2 may compress each message by zstd. No encapsulation of CDR begins as its frames do.
+  /// rosbag2 may compress each message with zstd. No CDR encapsulation begins as a zstd frame does.
   std::string_view plain(std::string_view payload) {
     constexpr std::string_view zstd_magic = "\x28\xb5\x2f\xfd";
     if (payload.substr(0, zstd_magic.size()) != zstd_magic) return payload;
     const std::uint64_t declared = zstd_content_bytes(payload);
-    if (declared > most_message_bytes)
-      throw SqlError("a compressed message does not say its size, or one that is too large");
+    if (declared > most_message_bytes) throw SqlError("the size of a compressed message is missing or too large");
     const Unpacked unpacked = unpack(Compression::zstd, payload, declared, buffer_);
     if (!unpacked.failure.empty()) throw SqlError("a compressed message: " + unpacked.failure);
     return unpacked.bytes;

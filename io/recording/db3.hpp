@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// Opens a recording of rosbag2 in SQLite: read only, as it lies (a journal beside it is not applied), its schema not
-/// trusted. Throws DataError for a database of other tables.
+/// Opens a rosbag2 recording in SQLite for reading only, without trust in its schema. A journal beside it is not
+/// applied. Throws DataError for a database with other tables.
 std::unique_ptr<Container> open_db3(const std::filesystem::path& path);
 
 }  // namespace modebank

@@ -14,7 +14,7 @@ namespace modebank {
 
 namespace {
 
-/// One call's part in a stream: how far it got, and whether that was the end.
+/// One step in decompressing a stream: the bytes done, and whether the stream has ended.
 struct Step {
   std::size_t taken = 0, made = 0;
   bool ended = false;
@@ -91,7 +91,7 @@ class ZstdStream {
 
 template <class Stream>
 Unpacked unpack_stream(std::string_view packed, std::size_t declared, Buffer& buffer) {
-  // Images shrink by less than this; more comes out in further rounds.
+  // Images are compressed by a smaller ratio; for a higher one more rounds follow.
   constexpr std::size_t usual_ratio = 8, least = 1 << 16;
   Stream stream;
   std::size_t made = 0;
@@ -102,13 +102,14 @@ Unpacked unpack_stream(std::string_view packed, std::size_t declared, Buffer& bu
     packed.remove_prefix(step.taken);
     made += step.made;
     const std::string_view bytes{buffer.data(), std::min(made, declared)};
-    if (made > declared) return {bytes, fmt::format("more comes out of it than the {} bytes it declares", declared)};
+    if (made > declared)
+      return {bytes, fmt::format("it decompresses to more than the {} bytes that it declares", declared)};
     if (!step.failure.empty()) return {bytes, step.failure};
     if (step.ended && packed.empty())
       return {bytes,
-              made == declared ? "" : fmt::format("{} bytes come out of it, but it declares {}", made, declared)};
-    if (step.ended) return {bytes, "bytes follow what is compressed"};
-    if (made < room && step.taken == 0 && step.made == 0) return {bytes, "what is compressed is cut off"};
+              made == declared ? "" : fmt::format("it decompresses to {} bytes, but declares {}", made, declared)};
+    if (step.ended) return {bytes, "there are bytes after the compressed data"};
+    if (made < room && step.taken == 0 && step.made == 0) return {bytes, "the compressed data are cut off"};
     if (made == room) {
       room = std::min(declared + 1, 2 * room);
       buffer.reserve(room, made);
@@ -139,11 +140,11 @@ Unpacked unpack(Compression compression, std::string_view packed, std::uint64_t 
     case Compression::none:
       break;
   }
-  return {packed, packed.size() == size ? "" : "its size is not the one it declares"};
+  return {packed, packed.size() == size ? "" : "its size is not the declared one"};
 }
 
 std::uint64_t zstd_content_bytes(std::string_view packed) {
-  return ZSTD_getFrameContentSize(packed.data(), packed.size());  // its two errors are the largest numbers there are
+  return ZSTD_getFrameContentSize(packed.data(), packed.size());  // zstd's two error codes are the largest numbers
 }
 
 }  // namespace modebank

@@ -9,10 +9,10 @@ namespace modebank {
 
 enum class Compression { none, bz2, lz4, zstd };
 
-/// Memory that is used again from chunk to chunk.
+/// Memory that is reused from chunk to chunk.
 class Buffer {
  public:
-  /// Room for `bytes`, of which the first `kept` stay as they are.
+  /// Makes room for `bytes`; the first `kept` bytes keep their content.
   char* reserve(std::size_t bytes, std::size_t kept);
   char* data() { return bytes_.get(); }
   std::size_t capacity() const { return capacity_; }
@@ -23,15 +23,15 @@ class Buffer {
 };
 
 struct Unpacked {
-  std::string_view bytes;  ///< in the buffer: all, or what came before the failure
-  std::string failure;     ///< why it is not all, or empty
+  std::string_view bytes;  ///< in the buffer: all, or those before the failure
+  std::string failure;     ///< reason of a failure, or empty
 };
 
-/// Takes a chunk apart that says it holds `declared` bytes. Memory grows with what really comes out, so that a false
-/// size costs none; more than declared is a failure.
+/// Decompresses a chunk that declares `declared` bytes. Memory grows with the actual output, so a false size costs
+/// none. More bytes than declared are a failure.
 Unpacked unpack(Compression compression, std::string_view packed, std::uint64_t declared, Buffer& buffer);
 
-/// What a frame of zstd says it holds; more than any message when it does not say.
+/// Size that a zstd frame declares; if it declares none, more than any message has.
 std::uint64_t zstd_content_bytes(std::string_view packed);
 
 }  // namespace modebank

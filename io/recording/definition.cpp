@@ -17,9 +17,9 @@ namespace modebank {
 namespace {
 
 constexpr int deepest_nesting = 32;
-constexpr std::size_t most_fields = 4096;  // of one type
+constexpr std::size_t most_fields = 4096;  // limit for one type
 
-/// Takes the first line off, without its end.
+/// Removes the first line and returns it without its line end.
 std::string_view next_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string_view line = text.substr(0, end);
@@ -77,12 +77,12 @@ std::uint64_t least_bytes(const Field& field) {
   return saturated_product(one, field.count);
 }
 
-/// "T[3]", "T[]", "T[<=3]": cuts the brackets off.
+/// Removes the brackets of "T[3]", "T[]" or "T[<=3]" from a type.
 void parse_array(std::string_view& type, Field& field) {
   const std::size_t open = type.find('[');
   if (open == std::string_view::npos) return;
   std::string_view count = type.substr(open + 1);
-  if (count.empty() || count.back() != ']') throw DefinitionError(fmt::format("\"{}\" is no type", type));
+  if (count.empty() || count.back() != ']') throw DefinitionError(fmt::format("\"{}\" is not a type", type));
   count.remove_suffix(1);
   type = type.substr(0, open);
   field.many = Many::sequence;
@@ -90,10 +90,10 @@ void parse_array(std::string_view& type, Field& field) {
   field.many = Many::fixed;
   const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), field.count);
   if (error != std::errc() || end != count.data() + count.size() || field.count > std::uint64_t{1} << 32)
-    throw DefinitionError(fmt::format("[{}] is no array's size", count));
+    throw DefinitionError(fmt::format("[{}] is not the size of an array", count));
 }
 
-/// What the type is called where definitions are looked up.
+/// The type's name for looking up definitions.
 std::string full_name(std::string_view type, const std::string& package, Dialect dialect) {
   if (type.find('/') != std::string_view::npos) return short_type(type);
   if (type == "Header" && dialect == Dialect::ros1) return "std_msgs/Header";
@@ -155,13 +155,13 @@ Field Schema::parse_field(std::string_view type, std::string_view name, const st
   Field field;
   field.name = name;
   parse_array(type, field);
-  const std::size_t bound = type.find("<=");  // of a string's length
+  const std::size_t bound = type.find("<=");  // bound of a string's length
   if (bound != std::string_view::npos) type = type.substr(0, bound);
   if (const auto kind = primitive(type, dialect_)) {
     field.kind = *kind;
   } else {
     const std::string full = full_name(type, package, dialect_);
-    // A message of ROS 2 that MCAP describes may name its own package's Time alone.
+    // A ROS 2 message in MCAP may use the name Time for its own package's type.
     if (const auto known = primitive(full, dialect_))
       field.kind = *known;
     else
@@ -191,15 +191,15 @@ const MessageType* Schema::resolve(const std::string& type, const Lookup& lookup
     if (line.empty()) continue;
     const std::string_view written = line, word = next_word(line);
     const std::string_view name = line.substr(0, std::min(line.find_first_of(" \t="), line.size()));
-    if (!is_identifier(name)) throw DefinitionError(fmt::format("{}: \"{}\" is no field", type, written));
+    if (!is_identifier(name)) throw DefinitionError(fmt::format("{}: \"{}\" is not a field", type, written));
     const std::string_view rest = without_blanks(line.substr(name.size()));
-    if (!rest.empty() && rest.front() == '=') continue;  // a constant; what else follows a name is its default
+    if (!rest.empty() && rest.front() == '=') continue;  // skips a constant; other text after a name is its default
     if (message->fields.size() == most_fields)
       throw DefinitionError(fmt::format("{} has more than {} fields", type, most_fields));
     if (!names.insert(name).second) throw DefinitionError(fmt::format("{} has two fields \"{}\"", type, name));
     Field field = parse_field(word, name, package, lookup, depth);
     const std::uint64_t bytes = least_bytes(field);
-    if (bytes == 0) continue;  // nothing of it is in a message: whoever walks through one need not stop here
+    if (bytes == 0) continue;  // the field takes no bytes in a message, so readers need not visit it
     message->fields.push_back(std::move(field));
     message->least_bytes = std::min(message->least_bytes + bytes, std::numeric_limits<std::uint64_t>::max() / 2);
   }

@@ -12,7 +12,7 @@
 
 namespace modebank {
 
-/// A definition of a message type that cannot be used.
+/// An unusable definition of a message type.
 struct DefinitionError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -43,33 +43,33 @@ struct MessageType;
 struct Field {
   std::string name;
   Kind kind = Kind::message;
-  const MessageType* type = nullptr;  ///< of Kind::message
+  const MessageType* type = nullptr;  ///< with Kind::message
   Many many = Many::one;
-  std::uint64_t count = 1;  ///< of Many::fixed
+  std::uint64_t count = 1;  ///< with Many::fixed
 };
 
 struct MessageType {
   std::string name;  ///< package/Type
   std::vector<Field> fields;
-  std::uint64_t least_bytes = 0;  ///< that any message of it takes (without alignment)
+  std::uint64_t least_bytes = 0;  ///< smallest size of such a message (without alignment)
 };
 
-/// ROS 1 and ROS 2 write definitions alike, but mean other things by `byte`, `time` and an empty type.
+/// ROS 1 and ROS 2 have the same syntax, but differ in the meaning of `byte`, `time` and an empty type.
 enum class Dialect { ros1, ros2 };
 
-/// A message type with all that it is made of.
+/// A message type with all types that it uses.
 class Schema {
  public:
-  /// The text of the definition of package/Type, or nothing.
+  /// The text of the definition of package/Type; nullopt if unknown.
   using Lookup = std::function<std::optional<std::string_view>(const std::string& type)>;
 
-  /// Throws DefinitionError for text that is no definition, a type that is not found, and types nested too deeply.
+  /// Throws DefinitionError for invalid text, a type without definition, and types nested too deeply.
   Schema(const std::string& root, Dialect dialect, const Lookup& lookup);
 
   const MessageType& root() const { return *root_; }
   Dialect dialect() const { return dialect_; }
   bool has_wide_strings() const { return has_wide_strings_; }
-  /// All that decides how a payload is read and what its fields are called: equal texts read alike.
+  /// A text that determines how payloads are read and fields are named. Schemas with equal texts are equivalent.
   std::string text() const;
 
  private:
@@ -83,14 +83,14 @@ class Schema {
   bool has_wide_strings_ = false;
 };
 
-/// The parts of a text that holds several definitions, by package/Type: the first, of `root`, then those after lines
-/// "MSG: package/Type" (and rows of '=', which may be left out).
+/// The definitions in one text, by package/Type: first that of `root`, then one after each line "MSG: package/Type"
+/// (rows of '=' are optional).
 std::map<std::string, std::string_view> split_definitions(const std::string& root, std::string_view text);
 
-/// package/Type of package/msg/Type.
+/// Converts package/msg/Type to package/Type.
 std::string short_type(std::string_view type);
 
-/// Bytes of one value; 0 for strings and messages.
+/// Size of one value; 0 for strings and messages.
 std::uint64_t bytes_of(Kind kind);
 
 }  // namespace modebank

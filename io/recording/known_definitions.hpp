@@ -10,24 +10,24 @@
 
 namespace modebank {
 
-/// definitions.txt.
+/// Content of definitions.txt.
 extern const char* const known_definitions_text;
 
-/// What a message of a type may be written as when the recording does not say.
+/// Possible definitions of message types whose recording has none.
 class KnownDefinitions {
  public:
-  /// `folder`: of .msg files, as FOLDER/package/msg/Type.msg, FOLDER/package/Type.msg or FOLDER/Type.msg; empty: none.
+  /// `folder`: has .msg files as FOLDER/package/msg/Type.msg, FOLDER/package/Type.msg or FOLDER/Type.msg; empty: none.
   explicit KnownDefinitions(std::filesystem::path folder = {}) : folder_(std::move(folder)) {}
 
-  /// The library's own first (the newest before older ones), then the folder's. Those that cannot be used are left out;
-  /// why is in `problem`.
+  /// The library's definitions (newer ones first), then the folder's. Unusable ones are left out; `problem` gets the
+  /// reason.
   std::vector<std::shared_ptr<const Schema>> candidates(const std::string& type, std::string& problem) const;
 
  private:
   std::optional<std::string_view> from_folder(const std::string& type) const;
 
   std::filesystem::path folder_;
-  mutable std::map<std::string, std::string> files_;  ///< of the folder, as far as they were read
+  mutable std::map<std::string, std::string> files_;  ///< texts of the folder's files that were read
 };
 
 }  // namespace modebank

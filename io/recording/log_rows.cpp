@@ -15,7 +15,7 @@ namespace {
 
 using Form = LogWant::Form;
 
-constexpr std::size_t receive_time = ~std::size_t{0};  // a slot of its own: it is no part of the message
+constexpr std::size_t receive_time = ~std::size_t{0};  // a slot of its own, because it is not part of the message
 
 std::string written_out(const Value& value) {
   switch (value.form) {
@@ -44,7 +44,7 @@ Value time_value(std::int64_t nanoseconds) {
 }
 
 bool is_rounded(const Value& value) {
-  constexpr double exact_to = 9007199254740992.0;  // 2^53
+  constexpr double exact_to = 9007199254740992.0;  // 2^53, the limit of exact integers
   return (value.form == Value::Form::integer || value.form == Value::Form::natural) &&
          std::abs(value.number) > exact_to;
 }
@@ -130,7 +130,7 @@ void RowCollector::append(LogColumn& column, const LogWant& want, const Value& v
 LogRows RowCollector::finish(std::vector<std::string>& notes) {
   for (std::size_t i = 0; i < rounded_.size(); ++i)
     if (rounded_[i] > 0)
-      notes.push_back(fmt::format("column {}: {} values are beyond 2^53 and rounded to the nearest double",
+      notes.push_back(fmt::format("column {}: {} values above 2^53 are rounded to the nearest double",
                                   request_.columns[i].column, rounded_[i]));
   if (!std::is_sorted(receive_ns_.begin(), receive_ns_.end())) {
     std::vector<std::size_t> order(receive_ns_.size());

@@ -9,16 +9,16 @@
 
 namespace modebank {
 
-/// Collects the rows of one requested topic, from all of its connections.
+/// Collects the rows of one requested topic over all its connections.
 class RowCollector {
  public:
   RowCollector(const LogTopic& topic, const LogRequest& request);
 
-  /// A way to read messages of a connection with this decoder; `take` names it by the number returned. Throws
-  /// DataError when there is no definition and ConfigurationError when it lacks a requested column.
+  /// Adds a reader for messages of a connection with this decoder; returns its number for `take`. Throws DataError
+  /// without a definition and ConfigurationError when the definition lacks a requested column.
   std::size_t add_reader(const TopicDecoder& decoder);
 
-  /// Throws DataError for a message that its definition does not fit.
+  /// Adds a message. Throws DataError when it does not fit its definition.
   void take(std::size_t reader, const RecordedMessage& message, const std::string& file);
 
   /// The rows in order of receive time.
@@ -37,7 +37,7 @@ class RowCollector {
   std::vector<Reader> readers_;
   std::vector<Value> row_;
   std::vector<std::int64_t> receive_ns_;
-  std::vector<std::size_t> rounded_;  ///< per requested column, values that a double does not hold
+  std::vector<std::size_t> rounded_;  ///< per requested column: number of values that a double rounds
   LogRows rows_;
 };
 

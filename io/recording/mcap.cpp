@@ -15,7 +15,7 @@ class Mcap : public PieceFile {
   explicit Mcap(const std::filesystem::path& path) : PieceFile(path) {
     begin([this] {
       if (file_.size() < magic.size() || file_.view(0, magic.size()) != magic)
-        throw DataError(fmt::format("{}: no MCAP file (it does not begin with \"\\x89MCAP0\")", path_.string()));
+        throw DataError(fmt::format("{}: not an MCAP file (it does not begin with \"\\x89MCAP0\")", path_.string()));
       if (!try_summary()) scan();
     });
   }
@@ -25,7 +25,7 @@ class Mcap : public PieceFile {
     return read_head(bytes, at, end);
   }
 
-  /// Schemas and channels stand before their first message and again in the summary.
+  /// Schemas and channels are defined before their first message and repeated in the summary.
   void define(const RecordHead& head, ByteSource& bytes) override {
     auto [number, schema] = read_schema(bytes, read_record(bytes, head.at, head.end));
     schemas_.insert_or_assign(number, std::move(schema));
@@ -57,7 +57,7 @@ class Mcap : public PieceFile {
     std::uint32_t crc = 0;
   };
 
-  /// Where the summary is, by the footer at the end. Throws Damage when there is none.
+  /// Reads the position of the summary from the footer at the end. Throws Damage without a footer.
   Footer read_footer() {
     constexpr std::uint64_t footer_bytes = 9 + 20;
     if (file_.size() < footer_bytes + 2 * magic.size()) throw Damage(file_.size(), "it ends too soon");
@@ -89,7 +89,7 @@ class Mcap : public PieceFile {
     if (crc != footer.crc) throw Damage(footer.at, "the summary has another checksum");
   }
 
-  /// The summary, where it tells of every message: all are in chunks, and each chunk's channels are indexed.
+  /// Reads the summary. False unless it covers every message: all are in chunks, and each chunk's channels are indexed.
   bool try_summary() {
     try {
       const Footer footer = read_footer();
@@ -119,7 +119,7 @@ class Mcap : public PieceFile {
     return false;
   }
 
-  /// Adds a chunk as its index entry has it; returns where it ends.
+  /// Adds a chunk by its index entry; returns its end.
   std::uint64_t add_chunk(const ChunkIndex& index, std::uint64_t least_at, std::uint64_t& found) {
     if (index.chunk_at < least_at) throw Damage(index.chunk_at, "chunks are not in order");
     if (index.chunk_at >= file_.size()) throw Damage(index.chunk_at, "a chunk is beyond the end");
@@ -144,10 +144,10 @@ class Mcap : public PieceFile {
     return chunk.end();
   }
 
-  /// Without a summary that tells everything every record is looked at.
+  /// Reads every record, if the summary is incomplete.
   void scan() {
     std::uint64_t at = magic.size();
-    Piece loose;  // messages outside chunks
+    Piece loose;  // collects messages outside chunks
     const auto close = [&] {
       if (loose.end > loose.begin) add_piece(loose);
       loose = {at, at, Compression::none, 0, 0, {}, 0, {}};
@@ -180,7 +180,7 @@ class Mcap : public PieceFile {
     }
   }
 
-  /// The chunk that the end of the file cuts off still holds whole messages.
+  /// A chunk that the end of the file cuts off still has complete messages.
   void scan_cut_chunk(std::uint64_t at) try {
     constexpr std::uint64_t front_bytes = 9;
     if (at >= file_.size() || file_.size() - at < front_bytes) return;

@@ -6,7 +6,7 @@ namespace modebank::mcap {
 
 namespace {
 
-/// A record's whole content, which is copied: other views may follow.
+/// A copy of a record's content, since later views invalidate it.
 std::string content_of(ByteSource& bytes, const Record& record) {
   constexpr std::uint64_t most_bytes = 16 * most_definition_bytes;
   if (record.content_bytes > most_bytes)
@@ -18,7 +18,7 @@ Compression compression_of(std::string_view name, std::uint64_t at) {
   if (name.empty()) return Compression::none;
   if (name == "lz4") return Compression::lz4;
   if (name == "zstd") return Compression::zstd;
-  throw Damage(at, fmt::format("chunks compressed by \"{}\" are not read (only none, lz4 and zstd)", name));
+  throw Damage(at, fmt::format("the compression \"{}\" is not supported (only none, lz4 and zstd)", name));
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ RecordHead read_head(ByteSource& bytes, std::uint64_t at, std::uint64_t end) {
 
 namespace {
 
-/// A chunk's fields before its content; `packed_bytes`: what they say of its length.
+/// A chunk's fields before its content. `packed_bytes`: the declared length of the content.
 Piece chunk_front(ByteSource& bytes, std::uint64_t at, std::uint64_t end, std::uint64_t& packed_bytes) {
   constexpr std::uint64_t longest_front = 64;  // times, size, checksum, compression, length
   FieldReader fields(bytes.view(at, std::min(end - at, longest_front)), at);

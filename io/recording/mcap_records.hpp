@@ -19,23 +19,22 @@ enum class Op : std::uint8_t {
   data_end = 0x0f
 };
 
-/// A record: what it is, its length in eight bytes, its content.
+/// A record: its type, its length in eight bytes, its content.
 struct Record {
   Op op{};
   std::uint64_t at = 0, content_at = 0, content_bytes = 0;
   std::uint64_t end() const { return content_at + content_bytes; }
 };
 
-/// The record at `at`. Throws Damage when it does not end by `end`.
+/// The record at `at`. Throws Damage unless it ends by `end`.
 Record read_record(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
 
 RecordHead read_head(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
 
-/// The content of a chunk, from the fields before it. Throws Damage for a compression that is not read and sizes that
-/// no chunk has.
+/// The content of a chunk, from its first fields. Throws Damage for an unknown compression and for impossible sizes.
 Piece read_chunk(ByteSource& bytes, const Record& record);
 
-/// The same of a chunk whose content the end of the file cuts off.
+/// The same for a chunk whose content is cut off by the end of the file.
 Piece read_cut_chunk(ByteSource& bytes, std::uint64_t content_at);
 
 struct Schema {
@@ -49,14 +48,14 @@ struct Channel {
 
 struct ChunkIndex {
   std::uint64_t chunk_at = 0, chunk_bytes = 0;
-  std::map<std::uint16_t, std::uint64_t> message_indexes;  ///< where each channel's is
+  std::map<std::uint16_t, std::uint64_t> message_indexes;  ///< position of each channel's index
 };
 
-/// The number of a schema, and what it says.
+/// The number of a schema, and the schema.
 std::pair<std::uint16_t, Schema> read_schema(ByteSource& bytes, const Record& record);
 Channel read_channel(ByteSource& bytes, const Record& record);
 ChunkIndex read_chunk_index(ByteSource& bytes, const Record& record);
-/// Messages in the whole file, from its statistics.
+/// Number of messages in the file, from its statistics record.
 std::uint64_t read_message_count(ByteSource& bytes, const Record& record);
 
 }  // namespace modebank::mcap

@@ -20,15 +20,15 @@ MessageColumn::Form form_of(Kind kind) {
   return kind == Kind::time ? MessageColumn::Form::time : MessageColumn::Form::number;
 }
 
-/// Goes through one message and notes what it meets.
+/// Walks through one message and lists its columns.
 class Listing {
  public:
   explicit Listing(PayloadReader& payload) : payload_(payload) {}
 
   void list(const MessageType& type, const std::string& prefix) {
     if (type.fields.empty()) return payload_.empty_type();
-    std::vector<std::string> names;                   // what the array `name` holds
-    std::vector<std::pair<std::string, Kind>> keyed;  // arrays of as many values
+    std::vector<std::string> names;                   // content of the array `name`
+    std::vector<std::pair<std::string, Kind>> keyed;  // arrays with the same number of values
     for (const Field& field : type.fields) {
       const std::string path = prefix + field.name;
       if (field.many == Many::one) {
@@ -68,7 +68,7 @@ class Listing {
     skip_elements(field, count - listed, payload_);
   }
 
-  /// Names that no other array's elements could be called by are as good as none.
+  /// Names that are not unique are useless, so none are returned then.
   std::vector<std::string> list_names(const std::string& path, std::uint64_t count) {
     std::vector<std::string> names;
     Value value;
@@ -97,14 +97,14 @@ std::vector<MessageColumn> columns_of(const Schema& schema, std::string_view pay
   Listing listing(reader);
   listing.list(schema.root(), "");
   if (!reader.consumed())
-    throw PayloadError(fmt::format("it goes on at byte {}, where the definition ends", reader.at()));
+    throw PayloadError(fmt::format("it continues at byte {}, where the definition ends", reader.at()));
   return std::move(listing.columns);
 }
 
 void merge_columns(std::vector<MessageColumn>& columns, const std::vector<MessageColumn>& more) {
   std::set<std::string> known;
   for (const MessageColumn& column : columns) known.insert(column.path);
-  std::size_t place = 0;  // behind the column before, so that an array's elements stay together
+  std::size_t place = 0;  // after the previous column, so that an array's elements stay together
   for (const MessageColumn& column : more) {
     if (known.count(column.path) > 0) {
       const auto at =

@@ -15,7 +15,7 @@ namespace {
   throw DefinitionError(fmt::format("{} has no value \"{}\"", type.name, path));
 }
 
-/// The field whose values are called by the strings of the array `name` beside it.
+/// The array field whose elements are named by the strings of the neighbouring array `name`.
 const Field* names_field(const MessageType& type) {
   for (const Field& field : type.fields)
     if (field.name == "name" && field.kind == Kind::string && field.many != Many::one) return &field;
@@ -53,7 +53,7 @@ std::uint64_t length_of(const Field& field, PayloadReader& payload) {
 
 void skip_elements(const Field& field, std::uint64_t count, PayloadReader& payload) {
   if (field.kind != Kind::message) return payload.skip(field.kind, count);
-  if (field.type->least_bytes == 0) return;  // there is nothing in any of them
+  if (field.type->least_bytes == 0) return;  // its elements take no bytes
   for (std::uint64_t i = 0; i < count; ++i) {
     if (field.type->fields.empty()) payload.empty_type();
     for (const Field& inner : field.type->fields) skip_field(inner, payload);
@@ -108,7 +108,7 @@ void MessageReader::read(std::string_view bytes, std::vector<Value>& row) const 
   PayloadReader payload(bytes, schema_->dialect(), wide_bytes_);
   read_message(schema_->root(), root_, payload, row);
   if (!payload.consumed())
-    throw PayloadError(fmt::format("it goes on at byte {}, where the definition ends", payload.at()));
+    throw PayloadError(fmt::format("it continues at byte {}, where the definition ends", payload.at()));
 }
 
 void MessageReader::read_message(const MessageType& type, const Want& want, PayloadReader& payload,
@@ -144,7 +144,7 @@ void MessageReader::read_array(const Field& field, const Want& want, const std::
                                PayloadReader& payload, std::vector<Value>& row) {
   std::uint64_t next = 0;
   const std::uint64_t count = length_of(field, payload);
-  // One element may be wanted by its place and by its name: it is then read twice.
+  // An element may be requested by index and by name; it is then read twice.
   std::multimap<std::uint64_t, const Want*> wanted;
   for (const auto& [index, element] : want.elements)
     if (index < count) wanted.emplace(index, &element);

@@ -10,25 +10,25 @@
 
 namespace modebank {
 
-/// Reads chosen columns (MessageColumn::path) out of messages of one schema; the rest is skipped.
+/// Reads chosen columns (MessageColumn::path) from messages of one schema and skips the rest.
 class MessageReader {
  public:
   explicit MessageReader(std::shared_ptr<const Schema> schema, unsigned wide_bytes);
 
-  /// Where the column's values will be: the same for the same path. Throws DefinitionError when the schema has no such
+  /// Requests a column; returns its index in the rows, equal for equal paths. Throws DefinitionError for an unknown
   /// column.
   std::size_t add(std::string_view path);
 
-  /// `row` gets one value per column that was added: missing where an array is shorter. Throws PayloadError as
+  /// Fills `row` with one value per requested column; missing where an array is too short. Throws PayloadError as
   /// columns_of does.
   void read(std::string_view payload, std::vector<Value>& row) const;
 
  private:
-  /// What is wanted of one field, or of one element of it.
+  /// Requests on one field, or on one element of it.
   struct Want {
-    std::size_t slot = none;                 ///< of the value itself
-    std::map<std::size_t, Want> fields;      ///< of a message
-    std::map<std::uint64_t, Want> elements;  ///< of an array
+    std::size_t slot = none;                 ///< for the value itself
+    std::map<std::size_t, Want> fields;      ///< for a message
+    std::map<std::uint64_t, Want> elements;  ///< for an array
     std::map<std::string, Want, std::less<>> keyed;
     static constexpr std::size_t none = ~std::size_t{0};
   };

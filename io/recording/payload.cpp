@@ -35,8 +35,7 @@ PayloadReader::PayloadReader(std::string_view payload, Dialect dialect, unsigned
 
 void PayloadReader::need(std::uint64_t bytes) const {
   if (bytes > bytes_.size() - at_)
-    throw PayloadError(
-        fmt::format("it ends at byte {}, but {} more are to come at byte {}", bytes_.size(), bytes, at_));
+    throw PayloadError(fmt::format("it ends at byte {}, but needs {} more at byte {}", bytes_.size(), bytes, at_));
 }
 
 void PayloadReader::align(std::uint64_t bytes) {
@@ -89,7 +88,8 @@ void PayloadReader::read(Kind kind, Value& value) {
       return;
     case Kind::time:
     case Kind::duration: {
-      // Seconds are unsigned in a time of ROS 1 alone; nanoseconds are signed in its durations alone.
+      // In ROS 1 the seconds of a time are unsigned, those of a duration signed; only the latter has signed
+      // nanoseconds.
       const auto seconds = static_cast<std::uint32_t>(bits(4)), nanoseconds = static_cast<std::uint32_t>(bits(4));
       const bool natural = !cdr_ && kind == Kind::time;
       const std::int64_t whole = natural ? std::int64_t{seconds} : static_cast<std::int32_t>(seconds);
@@ -171,7 +171,7 @@ void PayloadReader::empty_type() {
 }
 
 bool PayloadReader::consumed() const {
-  // CDR may be filled up to a whole word.
+  // CDR may be padded to a whole word.
   const std::size_t left = bytes_.size() - at_;
   return left == 0 || (cdr_ && left < 4 && bytes_.size() % 4 == 0);
 }

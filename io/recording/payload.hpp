@@ -9,19 +9,19 @@
 
 namespace modebank {
 
-/// A message that does not have the form its definition says.
+/// A message that does not fit its definition.
 struct PayloadError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One value of a message, or none.
+/// One value of a message; may be missing.
 struct Value {
   enum class Form : std::uint8_t {
     missing,
-    real,     ///< number
-    integer,  ///< number and exact
-    natural,  ///< the same, exact as an unsigned number
-    time,     ///< number in seconds, exact in nanoseconds
+    real,     ///< a number
+    integer,  ///< a number, also as an exact integer
+    natural,  ///< a number, also as an exact unsigned integer
+    time,     ///< a number in seconds, also exact in nanoseconds
     text
   };
   Form form = Form::missing;
@@ -30,23 +30,23 @@ struct Value {
   std::string text;
 };
 
-/// Goes through a message in the order of its definition. ROS 1 writes values side by side, little-endian; ROS 2 writes
-/// CDR (XCDR1): every value stands at a multiple of its size, and strings end with a zero byte.
+/// Reads a message in the order of its definition. ROS 1 has contiguous little-endian values. ROS 2 has CDR (XCDR1):
+/// every value is at a multiple of its size, and strings end with a zero byte.
 class PayloadReader {
  public:
-  /// `wide_bytes`: of a character of a wstring, 4 as eProsima's CDR of ROS 2 up to Humble writes it, or 2.
+  /// `wide_bytes`: size of a wstring's character; 4 in eProsima's CDR up to ROS 2 Humble, else 2.
   PayloadReader(std::string_view payload, Dialect dialect, unsigned wide_bytes);
 
   void read(Kind kind, Value& value);
   void skip(Kind kind, std::uint64_t count);
-  /// The length of a sequence whose elements take at least this many bytes.
+  /// The length of a sequence whose elements have at least `least_bytes` each.
   std::uint64_t sequence_length(std::uint64_t least_bytes);
-  /// Throws unless the message has room for so many elements of at least so many bytes.
+  /// Throws unless the message has room for `count` elements of at least `least_bytes` each.
   void check_room(std::uint64_t least_bytes, std::uint64_t count) const;
-  /// The byte that stands for a type without fields.
+  /// Reads the byte of a type without fields.
   void empty_type();
 
-  /// Whether nothing is left but what fills the last word.
+  /// Whether only padding of the last word is left.
   bool consumed() const;
   std::size_t at() const { return at_; }
 

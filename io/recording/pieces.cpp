@@ -10,7 +10,7 @@
 namespace modebank {
 
 bool PieceFile::learn(const RecordHead& head, ByteSource& bytes) {
-  constexpr std::size_t most_given_again = 4096;  // each is gone through for every message
+  constexpr std::size_t most_given_again = 4096;  // limit, because every message searches them
   const auto known = position(head.connection);
   if (known) {
     const Connection& other = connections_[*known];
@@ -52,7 +52,7 @@ std::string PieceFile::damage_text(std::uint64_t at, const std::string& what) co
 
 void PieceFile::note_damage(const Damage& damage) {
   damage_noted_ = true;
-  note(damage_text(damage.at, damage.what()) + "; what is before that is read");
+  note(damage_text(damage.at, damage.what()) + "; data before that are read");
 }
 
 void PieceFile::walk(ByteSource& bytes, std::uint64_t begin, std::uint64_t end, const HeadSink& sink) const {
@@ -71,7 +71,7 @@ void PieceFile::unpack_piece(const Piece& piece, Unpacking& unpacking) const {
   if (!unpacking.result.failure.empty() || piece.crc == 0) return;
   const std::string_view content = unpacking.result.bytes;
   const auto crc = crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
-  if (crc != piece.crc) unpacking.result = {{}, "its content has another checksum than it says"};
+  if (crc != piece.crc) unpacking.result = {{}, "the checksum of its content is wrong"};
 }
 
 void PieceFile::walk_unpacked(const Piece& piece, const Unpacked& unpacked, const HeadSink& sink) const {
@@ -80,7 +80,7 @@ void PieceFile::walk_unpacked(const Piece& piece, const Unpacked& unpacked, cons
     walk(memory, 0, memory.size(), sink);
   } catch (const Damage& damage) {
     const std::string& why = unpacked.failure.empty() ? damage.what() : unpacked.failure;
-    throw Damage(piece.begin, fmt::format("{} (byte {} of what is unpacked from there)", why, damage.at));
+    throw Damage(piece.begin, fmt::format("{} (byte {} of the data unpacked from there)", why, damage.at));
   }
   if (!unpacked.failure.empty()) throw Damage(piece.begin, unpacked.failure);
 }
@@ -112,7 +112,7 @@ void PieceFile::scan_piece(Piece piece) {
 }
 
 std::string PieceFile::visit_pieces(const std::vector<const Piece*>& pieces, const HeadSink& sink) {
-  // Packed pieces are unpacked side by side as long as they fit; what comes out of them is looked at in order.
+  // Compressed pieces are unpacked in parallel in batches of this size; their content is read in order.
   constexpr std::uint64_t batch_bytes = 16 << 20;
   constexpr std::size_t batch_pieces = 8;
   std::vector<Unpacking> unpackings(batch_pieces);
@@ -150,7 +150,7 @@ std::string PieceFile::visit_pieces(const std::vector<const Piece*>& pieces, con
 
 void PieceFile::check_name(const RecordHead& head, ByteSource& bytes) {
   const auto connection = position(head.connection, visited_given_again_);
-  if (!connection) return;  // the index leaves out those without messages
+  if (!connection) return;  // the index leaves out connections without messages
   const Connection& told = connections_[*connection];
   const ConnectionName name = name_of(head, bytes);
   names_differ_ = name != ConnectionName{told.topic, told.type};
@@ -185,7 +185,7 @@ std::string PieceFile::visit(const std::vector<bool>& wanted, const MessageSink&
 }
 
 std::map<std::size_t, std::set<std::size_t>> PieceFile::sampled_pieces() const {
-  // Which pieces hold a connection's first and last message.
+  // For each connection, the pieces with its first and last message.
   std::vector<std::size_t> first(connections_.size(), pieces_.size()), last(connections_.size(), pieces_.size());
   for (std::size_t p = 0; p < pieces_.size(); ++p)
     for (const auto& [connection, messages] : pieces_[p].messages) {

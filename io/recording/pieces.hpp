@@ -16,24 +16,24 @@
 
 namespace modebank {
 
-/// A stretch of a file that holds records: a chunk, or records that stand outside chunks.
+/// A part of a file with records: a chunk, or records outside chunks.
 struct Piece {
-  std::uint64_t begin = 0, end = 0;  ///< of the content, as it lies in the file
+  std::uint64_t begin = 0, end = 0;  ///< begin and end of the content in the file
   Compression compression = Compression::none;
   std::uint64_t unpacked_bytes = 0;
-  std::uint32_t crc = 0;                          ///< of what is unpacked; 0: none
-  std::map<std::size_t, std::uint64_t> messages;  ///< by connection
-  std::size_t given_again = 0;                    ///< numbers that were given again before it
-  std::vector<std::uint64_t> gives_again;         ///< where it gives a number again: RecordHead::at
+  std::uint32_t crc = 0;                          ///< checksum of the unpacked content; 0: none
+  std::map<std::size_t, std::uint64_t> messages;  ///< number of messages by connection
+  std::size_t given_again = 0;                    ///< number of reassignments before this piece
+  std::vector<std::uint64_t> gives_again;         ///< positions (RecordHead::at) that reassign a number
 };
 
-/// One record of a piece.
+/// Position and type of one record of a piece.
 struct RecordHead {
   enum class Kind { message, connection, definition, other };
   Kind kind = Kind::other;
-  std::uint32_t connection = 0;  ///< as the file numbers it
+  std::uint32_t connection = 0;  ///< number by the file
   std::int64_t receive_ns = 0;
-  std::uint64_t payload_at = 0, payload_bytes = 0;  ///< of a message, or of a connection's description
+  std::uint64_t payload_at = 0, payload_bytes = 0;  ///< payload of a message, or of a connection's description
   std::uint64_t at = 0, end = 0;                    ///< of the record
 };
 
@@ -42,7 +42,7 @@ struct ConnectionName {
   bool operator==(const ConnectionName&) const = default;
 };
 
-/// A bag or MCAP file: pieces of records, and an index that tells them where it is sound.
+/// A bag or MCAP file: pieces of records, and an index to them if it is valid.
 class PieceFile : public Container {
  public:
   std::string visit(const std::vector<bool>& wanted, const MessageSink& sink) override;
@@ -52,7 +52,7 @@ class PieceFile : public Container {
  protected:
   explicit PieceFile(const std::filesystem::path& path) : path_(path), file_(path) {}
 
-  /// Begins to read: what is damaged from there on cannot be read at all. Throws DataError, naming file and byte.
+  /// Starts reading; damage at the beginning makes the file unreadable. Throws DataError, with file and byte.
   template <class Open>
   void begin(Open&& open) {
     try {
@@ -62,36 +62,36 @@ class PieceFile : public Container {
     }
   }
 
-  /// The record at `at`, at most to `end`. Throws Damage.
+  /// The record at `at`, ending by `end`. Throws Damage.
   virtual RecordHead head_at(ByteSource& bytes, std::uint64_t at, std::uint64_t end) const = 0;
-  /// Topic and type by a record of Kind::connection.
+  /// Topic and type from a record of Kind::connection.
   virtual ConnectionName name_of(const RecordHead& head, ByteSource& bytes) const = 0;
-  /// The whole of it.
+  /// The complete connection of this record.
   virtual Connection describe(const RecordHead& head, ByteSource& bytes) const = 0;
-  /// Takes in a record of Kind::definition, which connections behind it refer to.
+  /// Reads a record of Kind::definition, to which later connections refer.
   virtual void define(const RecordHead& /*head*/, ByteSource& /*bytes*/) {}
 
-  /// Takes in a record of Kind::connection. The file numbers connections; a number may come again for the same one, or
-  /// be given again to another, of which later messages are then. True: the latter.
+  /// Reads a record of Kind::connection. Numbers of connections may be repeated for the same connection, or reassigned
+  /// to another, to which later messages then belong. Returns true for a reassignment.
   bool learn(const RecordHead& head, ByteSource& bytes);
-  /// The connection that has a number in what was read up to here.
+  /// The connection of a number at the current position.
   std::optional<std::size_t> position(std::uint32_t number) const { return position(number, given_again_.size()); }
-  /// Connections and counts come from an index: records of connections in the pieces are compared with it.
+  /// Connections and counts come from an index. Records of connections in the pieces are compared with it.
   void trust_index() { from_index_ = true; }
-  /// Compares those in the pieces that `sample` looks at. Throws Damage where they differ.
+  /// Compares those of the pieces that `sample` reads. Throws Damage where they differ.
   void check_names();
 
-  /// Reads the piece to learn its connections and count its messages; adds it, as far as it is whole. Throws Damage
-  /// after that.
+  /// Reads a piece for its connections and message counts, and adds the part before any damage. Then throws Damage if
+  /// there is any.
   void scan_piece(Piece piece);
-  /// The same for one record of a piece that is being read.
+  /// Counts one record of a piece that is being read.
   void count(Piece& piece, const RecordHead& head, ByteSource& bytes);
-  /// Adds a piece whose messages are known. Throws Damage when there are too many.
+  /// Adds a piece with known messages. Throws Damage when there are too many.
   void add_piece(Piece piece);
   void forget_all();
 
   void note(std::string text) { notes_.push_back(std::move(text)); }
-  /// Notes where the file stops making sense: whoever visits it stops there without saying so again.
+  /// Stores the position of damage; visits end there without another message.
   void note_damage(const Damage& damage);
   std::string damage_text(std::uint64_t at, const std::string& what) const;
 
@@ -117,10 +117,10 @@ class PieceFile : public Container {
 
   std::vector<Piece> pieces_;
   bool damage_noted_ = false, from_index_ = false, names_differ_ = false;
-  std::unordered_map<std::uint32_t, std::size_t> by_number_;        ///< the first of each number
-  std::vector<std::pair<std::uint32_t, std::size_t>> given_again_;  ///< the others, in the file's order
-  const Piece* visited_ = nullptr;                                  ///< the piece that a sink is given
-  std::size_t visited_given_again_ = 0;                             ///< numbers that were given again before here
+  std::unordered_map<std::uint32_t, std::size_t> by_number_;        ///< for each number its first connection
+  std::vector<std::pair<std::uint32_t, std::size_t>> given_again_;  ///< reassigned numbers, in the file's order
+  const Piece* visited_ = nullptr;                                  ///< the piece that is being visited
+  std::size_t visited_given_again_ = 0;                             ///< number of reassignments before this position
 };
 
 }  // namespace modebank

@@ -22,7 +22,7 @@ std::string type_name(MessageColumn::Form form) {
   return form == MessageColumn::Form::time ? "time" : form == MessageColumn::Form::text ? "text" : "number";
 }
 
-/// Numbers, then text, then stamps and their nanoseconds.
+/// Order of columns: numbers, texts, stamps and their nanoseconds.
 LogRequest log_request(const TableRequest& request) {
   LogRequest wanted{request.table, {}};
   for (const std::string& number : request.numbers) wanted.columns.push_back({number, Form::number});
@@ -32,7 +32,7 @@ LogRequest log_request(const TableRequest& request) {
   return wanted;
 }
 
-/// Columns that show whether the rows of a request are of one motion; none where data.run takes them apart by one.
+/// Columns that show whether the rows of a request belong to one motion; empty if data.run already separates them.
 std::vector<std::string> looked_at_frames(const LogTopic& topic, const TableRequest& request) {
   std::vector<std::string> columns = frame_columns(topic);
   const bool told_apart = std::any_of(columns.begin(), columns.end(), [&](const std::string& column) {
@@ -45,7 +45,7 @@ std::vector<std::string> looked_at_frames(const LogTopic& topic, const TableRequ
 const std::filesystem::path& checked(const std::filesystem::path& definitions) {
   std::error_code error;
   if (!definitions.empty() && !std::filesystem::is_directory(definitions, error))
-    throw ConfigurationError(fmt::format("data.definitions: {} is no folder", definitions.string()));
+    throw ConfigurationError(fmt::format("data.definitions: {} is not a folder", definitions.string()));
   return definitions;
 }
 
@@ -54,7 +54,7 @@ const std::filesystem::path& checked(const std::filesystem::path& definitions) {
   throw DataError(fmt::format("{}:{}: column {}: {}", file, message, column, why));
 }
 
-/// Values that are no numbers become NaN, or are errors.
+/// Values that are not numbers become NaN, or are errors.
 void check_numbers(const std::string& file, const TableRequest& request, Table& table) {
   for (std::size_t i = 0; i < table.numbers.size(); ++i) {
     const bool may_miss = !request.may_miss.empty() && request.may_miss[i];
@@ -67,7 +67,7 @@ void check_numbers(const std::string& file, const TableRequest& request, Table& 
   }
 }
 
-/// Stamps are exact; other columns count what TimeRequest::unit says, or what is found as for any file.
+/// Stamps are exact. Other columns have the unit of TimeRequest::unit, or one that is found as for any file.
 void set_times(const std::string& file, const TimeRequest& request, bool is_stamp, LogColumn& column,
                const LogColumn* second, Table& table) {
   if (!request.may_miss) {
@@ -118,8 +118,8 @@ std::vector<TableInfo> RecordingReader::tables() const {
 std::string RecordingReader::why_without(const std::string& column) const {
   for (const LogTopic& topic : log_.topics())
     if (!topic.problem.empty() && column.starts_with(topic.name + "."))
-      return fmt::format("topic {} ({}) cannot be read: {} (data.definitions = FOLDER names .msg files)", topic.name,
-                         topic.type, topic.problem);
+      return fmt::format("topic {} ({}) cannot be read: {} (name a folder with .msg files in data.definitions)",
+                         topic.name, topic.type, topic.problem);
   return {};
 }
 

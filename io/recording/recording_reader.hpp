@@ -10,11 +10,11 @@
 
 namespace modebank {
 
-/// Recordings of ROS behind the seam: one table per topic, lines are messages of it.
+/// Recordings of ROS as a TableReader: one table per topic, one row per message.
 class RecordingReader : public TableReader {
  public:
-  /// `files`: one, or parts that were written one after the other; `definitions`: a folder of .msg files for types that
-  /// neither the recording nor the library defines; empty: none.
+  /// `files`: one file, or parts in the order in which they were written. `definitions`: a folder of .msg files for
+  /// types that neither the recording nor the library defines; empty: none.
   RecordingReader(const std::vector<std::filesystem::path>& files, const std::filesystem::path& definitions);
 
   std::vector<TableInfo> tables() const override;

@@ -20,7 +20,7 @@ namespace {
 
 using Opener = std::unique_ptr<Container> (*)(const std::filesystem::path&);
 
-/// What reads a file that begins so, or nothing.
+/// The reader for files with these first bytes; null if there is none.
 Opener opener_of(std::string_view first_bytes) {
   struct Magic {
     std::string_view bytes;
@@ -40,8 +40,8 @@ std::unique_ptr<Container> open_container(const std::filesystem::path& path) {
   const std::string_view first = file.view(0, std::min(file.size(), probed_bytes));
   if (const Opener open = opener_of(first)) return open(path);
   if (first.starts_with("\x28\xb5\x2f\xfd"))
-    throw DataError(fmt::format("{0}: the whole file is compressed: `zstd -d {0}` unpacks it", path.string()));
-  throw DataError(fmt::format("{}: no recording of ROS (.bag, .mcap or .db3)", path.string()));
+    throw DataError(fmt::format("{0}: the whole file is compressed; unpack it with `zstd -d {0}`", path.string()));
+  throw DataError(fmt::format("{}: not a recording of ROS (.bag, .mcap or .db3)", path.string()));
 }
 
 /// The first and the last message of each connection.
@@ -71,7 +71,7 @@ RosLog::RosLog(std::vector<std::filesystem::path> files, const KnownDefinitions&
   });
   if (!any)
     throw DataError(
-        fmt::format("{}: holds no messages{}", files_.front().string(),
+        fmt::format("{}: the recording has no messages{}", files_.front().string(),
                     notes_.empty() ? ": the recording was stopped before the first one" : "; " + notes_.front()));
 }
 
@@ -98,7 +98,7 @@ void RosLog::add_connection(Part& part, const Connection& connection, TopicDecod
     added.columns.push_back({connection.topic + ".receive_time", MessageColumn::Form::time});
     topic = topics_.insert(topics_.end(), std::move(added));
   } else if (topic->type != connection.type) {
-    notes_.push_back(fmt::format("topic {} has messages of {} and of {}: only the former are read", connection.topic,
+    notes_.push_back(fmt::format("topic {} has messages of {} and of {}; only the first type is read", connection.topic,
                                  topic->type, connection.type));
     part.topic.push_back(no_topic);
     part.decoders.push_back({});
@@ -146,7 +146,7 @@ std::vector<LogRows> RosLog::read(const std::vector<LogRequest>& requests, std::
         collectors[route.collector].take(route.reader, message, file);
     });
     part.container->close();
-    if (!failure.empty()) notes.push_back(std::move(failure) + "; what is before that is read");
+    if (!failure.empty()) notes.push_back(std::move(failure) + "; data before that are read");
   }
   std::vector<LogRows> rows;
   for (RowCollector& collector : collectors) rows.push_back(collector.finish(notes));

@@ -19,17 +19,18 @@ namespace modebank {
 struct LogTopic {
   std::string name;
   std::string type;
-  std::vector<MessageColumn> columns;  ///< whole names, "/topic.field"; "/topic.receive_time" last
+  std::vector<MessageColumn> columns;  ///< full names, "/topic.field"; "/topic.receive_time" is the last
   std::uint64_t messages = 0;
-  std::string problem;  ///< why its messages cannot be read, or empty: then there is the receive time alone
+  std::string
+      problem;  ///< reason why its messages are unreadable, with the receive time as the only column; else empty
 };
 
-/// A column, and in which form its values are wanted.
+/// A requested column, and the form of its values.
 struct LogWant {
   enum class Form {
-    number,  ///< times in seconds; NaN where a message has no such element
-    text,    ///< numbers written out; empty where a message has no such element
-    exact    ///< times in nanoseconds, whole numbers as they are, least where there is none; other numbers as numbers
+    number,  ///< numbers, times in seconds; NaN where a message lacks the element
+    text,    ///< texts, numbers as text; empty where a message lacks the element
+    exact  ///< times in nanoseconds, whole numbers exact, other numbers as doubles; the smallest integer where missing
   };
   std::string column;
   Form form = Form::number;
@@ -42,7 +43,7 @@ struct LogRequest {
   std::vector<LogWant> columns;
 };
 
-/// The values of one wanted column, in the form that was wanted; the others stay empty.
+/// Values of a requested column, in the requested form; the other forms stay empty.
 struct LogColumn {
   std::vector<double> numbers;
   std::vector<std::string> text;
@@ -50,29 +51,29 @@ struct LogColumn {
 };
 
 struct LogRows {
-  std::vector<LogColumn> columns;      ///< as requested
-  std::vector<std::uint64_t> message;  ///< per row, which of the topic it is in the recording, from 1
+  std::vector<LogColumn> columns;      ///< in the order of the request
+  std::vector<std::uint64_t> message;  ///< per row its index in the topic's messages, from 1
 };
 
-/// A recording of ROS: bag, MCAP or db3, one file or several that were written one after the other. Messages are
+/// A recording of ROS: bag, MCAP or db3, one file or several in the order in which they were written. Messages are
 /// flattened to columns.
 class RosLog {
  public:
-  /// Looks into the index and a few messages. Throws ConfigurationError when a file cannot be read and DataError when
-  /// it is damaged from the beginning or of another form.
+  /// Reads the index and a few messages. Throws ConfigurationError when a file cannot be read, and DataError when it
+  /// has another format or is damaged from the beginning.
   RosLog(std::vector<std::filesystem::path> files, const KnownDefinitions& known);
-  /// recording_files of it.
+  /// The same for recording_files(path).
   RosLog(const std::filesystem::path& path, const KnownDefinitions& known);
   ~RosLog();
 
   const std::vector<LogTopic>& topics() const { return topics_; }
   const std::vector<std::filesystem::path>& files() const { return files_; }
-  /// What a user should know of the recording.
+  /// Remarks on the recording for the user.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Reads the requested columns in one pass; `notes` gets what a user should know of the values. Throws
-  /// ConfigurationError for a column that a topic has not, DataError for a message that its definition does not fit
-  /// (naming topic, type and message). `used`, unless null, takes in all messages of these topics.
+  /// Reads the requested columns in one pass; `notes` gets remarks on the values. Throws ConfigurationError for an
+  /// unknown column. Throws DataError, with topic, type and message, for a message that does not fit its definition.
+  /// `used`, unless null, receives all messages of these topics.
   std::vector<LogRows> read(const std::vector<LogRequest>& requests, std::vector<std::string>& notes,
                             UsedMessages* used = nullptr) const;
 
@@ -81,7 +82,7 @@ class RosLog {
   struct Part {
     std::unique_ptr<Container> container;
     std::vector<TopicDecoder> decoders;  ///< per connection
-    std::vector<std::size_t> topic;      ///< per connection; no_topic: it is not read
+    std::vector<std::size_t> topic;      ///< per connection; no_topic: not read
   };
 
   void open_part(const std::filesystem::path& path, const KnownDefinitions& known);
@@ -93,7 +94,7 @@ class RosLog {
   std::vector<std::string> notes_;
 };
 
-/// Whether RosLog reads what begins with these bytes, or is a folder.
+/// Whether RosLog reads files with these first bytes; true for folders.
 bool is_ros_log(const std::filesystem::path& path, std::string_view first_bytes);
 
 }  // namespace modebank

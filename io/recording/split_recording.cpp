@@ -21,7 +21,7 @@ std::string unquoted(std::string text) {
   return text;
 }
 
-/// The entries of `relative_file_paths` in the YAML that rosbag2 writes: lines "- NAME" below the key.
+/// The entries of `relative_file_paths` in rosbag2's YAML: lines "- NAME" below the key.
 std::vector<Path> listed_files(const Path& folder, const Path& list) {
   std::istringstream lines(read_file(list));
   std::vector<Path> files;
@@ -35,14 +35,14 @@ std::vector<Path> listed_files(const Path& folder, const Path& list) {
     } else if (listing && line.compare(first, 2, "- ") == 0) {
       const Path name = unquoted(line.substr(first + 2));
       if (name.filename() != name || name == "." || name == "..")
-        throw ConfigurationError(fmt::format("{}: {} is no file of its folder", list.string(), name.string()));
+        throw ConfigurationError(fmt::format("{}: {} is not a file in its folder", list.string(), name.string()));
       files.push_back(folder / name);
     } else {
       listing = false;
     }
   }
   if (files.empty())
-    throw ConfigurationError(fmt::format("{}: it lists no files (relative_file_paths)", list.string()));
+    throw ConfigurationError(fmt::format("{}: it lists no files under relative_file_paths", list.string()));
   return files;
 }
 
@@ -83,14 +83,14 @@ std::vector<Path> recording_files(const Path& path) {
     if (own != ".bag" && own != ".mcap" && own != ".db3") continue;
     if (!ending.empty() && own != ending)
       throw ConfigurationError(
-          fmt::format("{}: it holds both {} and {} files, and no metadata.yaml that lists one recording", path.string(),
-                      std::min(own, ending), std::max(own, ending)));
+          fmt::format("{}: the folder has both {} and {} files, and no metadata.yaml that lists one recording",
+                      path.string(), std::min(own, ending), std::max(own, ending)));
     ending = own;
     files.push_back(entry.path());
   }
   if (files.empty())
     throw ConfigurationError(
-        fmt::format("{}: a folder without metadata.yaml and without .bag, .mcap or .db3 files", path.string()));
+        fmt::format("{}: the folder has neither metadata.yaml nor .bag, .mcap or .db3 files", path.string()));
   std::sort(files.begin(), files.end(),
             [](const Path& a, const Path& b) { return natural_less(a.string(), b.string()); });
   return files;

@@ -8,19 +8,19 @@ namespace {
 
 using Schemas = std::vector<std::shared_ptr<const Schema>>;
 
-/// The definition that the recording holds.
+/// Adds the definition in the recording.
 void add_embedded(const Connection& connection, Schemas& candidates, std::string& problem) {
   const bool ros1 = connection.encoding == Connection::Encoding::ros1;
   if (connection.definition.empty()) return;
   if (connection.definition_form != (ros1 ? "ros1msg" : "ros2msg")) {
-    problem = fmt::format("its definition is written in \"{}\", which is not read", connection.definition_form);
+    problem = fmt::format("its definition has the format \"{}\", which is not supported", connection.definition_form);
     return;
   }
   const std::string root = short_type(connection.type);
   const auto parts = split_definitions(root, connection.definition);
   const auto lookup = [&](const std::string& type) -> std::optional<std::string_view> {
     if (const auto found = parts.find(type); found != parts.end()) return found->second;
-    // Some writers leave the package out, or another's in.
+    // Some writers omit the package, or write a wrong one.
     const std::string ending = type.substr(type.find('/') + 1);
     for (const auto& [name, text] : parts)
       if (name.substr(name.find('/') + 1) == ending) return text;
@@ -33,7 +33,7 @@ void add_embedded(const Connection& connection, Schemas& candidates, std::string
   }
 }
 
-/// The columns of the samples by one definition, or why they are not by it.
+/// The columns of the samples by this definition; nullopt, with the reason, if it does not fit.
 std::optional<std::vector<MessageColumn>> try_schema(const Schema& schema, unsigned wide_bytes,
                                                      const std::vector<std::string>& samples, std::string& problem) {
   try {
@@ -53,9 +53,10 @@ TopicDecoder choose_decoder(const Connection& connection, const KnownDefinitions
                             const std::vector<std::string>& samples) {
   TopicDecoder decoder;
   if (connection.encoding == Connection::Encoding::unknown) {
-    decoder.problem = fmt::format("its messages are written in \"{}\", which is not read", connection.encoding_name);
+    decoder.problem =
+        fmt::format("its messages have the format \"{}\", which is not supported", connection.encoding_name);
     if (connection.encoding_name == "protobuf")
-      decoder.problem += "; in Python mcap-protobuf-support reads them, and modebank.run takes its messages as a frame";
+      decoder.problem += "; read them in Python with mcap-protobuf-support and pass them to modebank.run as a frame";
     return decoder;
   }
   std::string problem;

@@ -11,16 +11,16 @@
 
 namespace modebank {
 
-/// How one connection's messages are read: the first of the definitions at hand that consumes its first and its last
-/// message whole.
+/// The definition for one connection's messages: the first candidate that fits its first and its last message without
+/// leftover bytes.
 struct TopicDecoder {
-  std::shared_ptr<const Schema> schema;  ///< none: `problem` says why
+  std::shared_ptr<const Schema> schema;  ///< null: `problem` has the reason
   unsigned wide_bytes = 4;
-  std::vector<MessageColumn> columns;  ///< of its first and its last message
+  std::vector<MessageColumn> columns;  ///< columns of its first and its last message
   std::string problem;
 };
 
-/// `samples`: messages of the connection, if it has any.
+/// `samples`: messages of the connection; may be empty.
 TopicDecoder choose_decoder(const Connection& connection, const KnownDefinitions& known,
                             const std::vector<std::string>& samples);
 

@@ -11,18 +11,18 @@
 
 namespace modebank {
 
-/// What identifies the data that are read of a recording: the topics' names and types, the definitions by which their
-/// messages are read, their receive times and payloads. Whatever else the recording holds, how its chunks are packed
-/// and into how many files it is split changes nothing, so that nothing but what is used has to be read.
+/// Identifies the data that are read from a recording: names and types of topics, definitions, receive times and
+/// payloads of messages. Other topics, the packing of chunks and the split into files do not change it, so only the
+/// messages that are used have to be read.
 class UsedMessages {
  public:
-  /// A connection of a topic of which messages follow.
+  /// Adds the definition of a connection; its messages follow.
   void add_definition(const std::string& topic, const std::string& type, const TopicDecoder& decoder);
-  /// In the recording's order.
+  /// Adds a message; call it in the recording's order.
   void take(const std::string& topic, const RecordedMessage& message);
 
-  /// SHA-256, lowercase hex, of everything so far: of each topic, by name, its name, type, definitions and messages'
-  /// own SHA-256, each text and payload after its length.
+  /// SHA-256 so far, in lowercase hex. It covers, for each topic by name, its name, type, definitions and the SHA-256
+  /// of its messages. Each text and payload comes after its length.
   std::string hex() const;
 
  private:

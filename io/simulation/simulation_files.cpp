@@ -48,13 +48,13 @@ void refuse_other_runs(const fs::path& folder, const std::set<std::string>& ours
     const std::string name = entry.path().filename().string();
     if (is_run_file(name) && ours.count(name) == 0)
       throw ConfigurationError(
-          fmt::format("{} holds {}, which is not of this simulation and would be read as one of its runs: remove it, "
-                      "or set another simulate.output",
+          fmt::format("{} has the file {}, which is not of this simulation and would be read as one of its runs; "
+                      "remove it, or set another simulate.output",
                       folder.string(), name));
   }
 }
 
-/// The names in a file's first line; empty without such a file.
+/// The names in a file's first line; empty if the file does not exist.
 std::set<std::string> columns_of(const fs::path& path) {
   constexpr std::size_t longest = 1 << 16;
   if (!fs::is_regular_file(path)) return {};
@@ -81,7 +81,7 @@ bool has_truth(const std::set<std::string>& columns) {
          std::any_of(columns.begin(), columns.end(), [](const auto& name) { return name.starts_with("true_"); });
 }
 
-/// One of a run's files has the truth, the other one columns that the truth is of.
+/// Whether a run's files are simulated: one of them has truth columns, the other the columns that these belong to.
 bool is_simulated(const fs::path& path) {
   const std::set<std::string> columns = columns_of(path);
   if (has_truth(columns)) return true;
@@ -92,8 +92,8 @@ bool is_simulated(const fs::path& path) {
          });
 }
 
-/// A folder inside the target, on the same file system, gone with this object; so is the target if it was made for this
-/// and nothing came into it.
+/// A folder inside the target, on the same file system. The destructor removes it, and the target, too, if this object
+/// created it and it is empty.
 class StagingFolder {
  public:
   explicit StagingFolder(const fs::path& target) : target_(target) {
@@ -119,7 +119,7 @@ class StagingFolder {
   void remove() const {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
-    if (made_target_) fs::remove(target_, ignored);  // only an empty one
+    if (made_target_) fs::remove(target_, ignored);  // succeeds only for an empty folder
   }
 
   fs::path target_, path_;
@@ -133,8 +133,7 @@ void check_targets(const fs::path& folder, const std::vector<std::string>& names
       check_output({"simulate.output", folder / name, {"a simulated run", is_simulated}}, {});
 }
 
-/// Moves the files to their places. What was there is kept beside them until all are moved, and put back when one
-/// cannot be.
+/// Moves the files to their places. Old files are kept until all are moved, and restored if a move fails.
 void move_all(const fs::path& from, const fs::path& to, const std::vector<std::string>& names) {
   const auto kept = [&](const std::string& name) { return from / (name + ".before"); };
   std::size_t moved = 0;
@@ -163,7 +162,7 @@ void check_column_names(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i].empty() || std::count(names.begin(), names.end(), names[i]) > 1)
       throw ConfigurationError(
-          fmt::format("simulated file: column {} \"{}\" is empty or there twice", i + 1, names[i]));
+          fmt::format("simulated file: the name \"{1}\" of column {0} is empty or occurs twice", i + 1, names[i]));
 }
 
 void write_simulation_files(const fs::path& folder, std::size_t runs,

@@ -9,11 +9,11 @@
 
 namespace modebank {
 
-/// One CSV file: a name and a row of values per column.
+/// One CSV file: its name, and a row of values per column.
 struct SimulationTable {
   std::vector<std::string> names;
   Eigen::MatrixXd values;                            ///< columns x samples
-  std::vector<std::vector<std::string>> texts = {};  ///< further columns, named by the last names
+  std::vector<std::vector<std::string>> texts = {};  ///< text columns, with the last of the names
 };
 
 /// The two files of a run.
@@ -22,16 +22,16 @@ struct SimulationTables {
   SimulationTable states;  ///< imu_NN.csv
 };
 
-/// Throws ConfigurationError when a column's name is empty or there twice.
+/// Throws ConfigurationError when a column's name is empty or occurs twice.
 void check_column_names(const std::vector<std::string>& names);
 
-/// Whether a file is named as those below are: pro_*.csv or imu_*.csv.
+/// Whether a file name is one of a run: pro_*.csv or imu_*.csv.
 bool is_run_file(const std::string& name);
 
-/// Writes pro_NN.csv and imu_NN.csv of `runs` runs, numbers in their shortest form that reads back exactly. All files
-/// or none: they are written to a folder beside the old ones and moved when all are complete. The folder is made if its
-/// parent exists. Throws ConfigurationError when it cannot be made, holds pro_ or imu_ files that would stay, because
-/// `run` would read them as further runs, or files of these names that are no simulated run.
+/// Writes pro_NN.csv and imu_NN.csv of `runs` runs, with numbers in the shortest form that reads back exactly. Either
+/// all files are written or none: they are complete in a folder beside the old ones before they are moved. The folder
+/// is created if its parent exists. Throws ConfigurationError when it cannot be created. It also throws when it has
+/// other pro_ or imu_ files, which are not simulated or would be read by `run` as further runs.
 void write_simulation_files(const std::filesystem::path& folder, std::size_t runs,
                             const std::function<SimulationTables(std::size_t)>& tables_of);
 

@@ -37,7 +37,7 @@ SimulationTable inputs_table(const SimulatedRun& run, const SimulationLayout& la
   return table;
 }
 
-/// Covers all of the run, and one period more so that no rounding of times cuts its last sample off.
+/// Times to the end of the run and one period more, so that rounding does not lose the last sample.
 VectorXd states_times(const VectorXd& time_s, double rate_hz) {
   const double duration_s = time_s(time_s.size() - 1) - time_s(0);
   VectorXd result(static_cast<Index>(std::ceil(duration_s * rate_hz)) + 2);
@@ -56,7 +56,7 @@ SimulationTable states_table(const SimulatedRun& run, const SimulationLayout& la
 void check_layout(const std::vector<SimulatedRun>& runs, const SimulationLayout& layout) {
   constexpr double highest_rate_hz = 1e6;
   if (!(layout.state_rate_hz > 0.0 && layout.state_rate_hz <= highest_rate_hz))
-    throw ConfigurationError(fmt::format("simulated states' rate {} Hz: must be above 0 and at most {}",
+    throw ConfigurationError(fmt::format("the rate of the simulated states is {} Hz; it must be above 0 and at most {}",
                                          layout.state_rate_hz, highest_rate_hz));
   check_column_names(inputs_header(layout));
   check_column_names(states_header(layout));

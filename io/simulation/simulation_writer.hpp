@@ -19,23 +19,24 @@ struct SimulationLayout {
   double state_rate_hz = 65.0;
 };
 
-/// Truth columns are named true_<state>; `mode` counts from 0. All files or none; simulated runs of the same names
-/// are replaced. Throws ConfigurationError when the folder cannot be made or holds other runs' files.
+/// Truth columns have names true_<state>; `mode` counts from 0. Either all files are written or none; simulated runs of
+/// the same names are replaced. Throws ConfigurationError when the folder cannot be created or has other runs' files.
 void write_simulation(const std::vector<SimulatedRun>& runs, const SimulationLayout& layout);
 
-/// Names of the measured columns of a simulated vehicle; all others are fixed.
+/// Names of a simulated vehicle's measured columns; other names are fixed.
 struct VehicleLayout {
   std::filesystem::path folder;     ///< created if its parent exists
-  std::vector<std::string> states;  ///< yaw rate, then forward speed, then sideways speed: those that are measured
+  std::vector<std::string> states;  ///< the measured ones of yaw rate, forward speed and sideways speed, in this order
   std::vector<std::string> inputs;  ///< left and right wheel speed
-  std::vector<std::string> grounds = {};  ///< names of the kinds of ground; empty: they are numbered alone
+  std::vector<std::string> grounds = {};  ///< names of the kinds of ground; empty: only numbers
 };
 
-/// Writes simulated vehicle runs in the two-file layout that `import` reads. pro_NN.csv, at the stamps of the wheels'
-/// clock: time, the wheel speeds, their set-points as cmd_<input>. imu_NN.csv, at true time: time, the measured states,
-/// and the truth: true_<state> of all three states (those not measured are called vx, vy), true_<input>, x, y, heading,
-/// friction (mean of the wheels), mode (ground under the centre, from 0) and, where it has a name, ground. Truth stands
-/// beside the states because the inputs' stamps may be wrong. All files or none. Throws ConfigurationError when names
+/// Writes simulated vehicle runs as the two files that `import` reads. pro_NN.csv has the stamps of the wheels' clock:
+/// time, wheel speeds, and their set-points as cmd_<input>. imu_NN.csv has true time: time, the measured states, and
+/// the truth. The truth is true_<state> of all three states (vx, vy where not measured), true_<input>, x, y, heading,
+/// friction (mean of the wheels), mode (ground under the centre, from 0) and, with names, ground. It is beside the
+/// states because the inputs' stamps may be wrong. Either all files are written or none. Throws ConfigurationError when
+/// names do not fit or the folder cannot be created.
 /// do not fit or the folder cannot be made.
 void write_simulation(const std::vector<VehicleRun>& runs, const VehicleLayout& layout);
 

@@ -8,7 +8,7 @@
 
 namespace modebank {
 
-/// What is between the fields of a row. blank: any number of blanks and tabs.
+/// Separator of the fields in a row. blank: any number of blanks and tabs.
 enum class Separator { automatic, comma, semicolon, tab, pipe, blank };
 
 template <>
@@ -23,7 +23,7 @@ struct EnumNames<DecimalMark> {
   static constexpr Names<3> values{"auto", "point", "comma"};
 };
 
-/// Whether the first row names the columns; without, they are c1, c2, ...
+/// Whether the first row names the columns; otherwise they are c1, c2, ...
 enum class HeaderRow { automatic, yes, no };
 
 template <>
@@ -31,15 +31,15 @@ struct EnumNames<HeaderRow> {
   static constexpr Names<3> values{"auto", "true", "false"};
 };
 
-/// What users say about files that say too little themselves: text files (automatic: it is found out) and recordings.
+/// Options on formats that files do not state: of text files (automatic: it is found) and of recordings.
 struct FormatOptions {
   Separator separator = Separator::automatic;
   DecimalMark decimal = DecimalMark::automatic;
   HeaderRow header = HeaderRow::automatic;
   std::vector<std::string> na{"NA", "N/A", "null", "-"};  ///< words for a missing value, beside empty fields and NaN
   std::size_t skip_rows = 0;                              ///< lines above the table
-  bool skip_automatic = false;                            ///< lines above the table are found out in place of skip_rows
-  std::string definitions = {};  ///< folder of .msg files, for types that a recording leaves undefined; empty: none
+  bool skip_automatic = false;                            ///< the number of title lines is found, and skip_rows ignored
+  std::string definitions = {};  ///< folder of .msg files for types that a recording does not define; empty: none
 };
 
 }  // namespace modebank

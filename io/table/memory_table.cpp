@@ -24,7 +24,8 @@ std::string text_of(const MemoryColumn& column, std::size_t row) {
   return std::visit([&](const auto& values) { return fmt::format("{}", values[row]); }, column.values);
 }
 
-/// The column's name and values, each text with its length, so that no other column has the same bytes.
+/// Adds the column's name and values to the hash. Each text comes after its length, so different columns have different
+/// bytes.
 void add_to_hash(const MemoryColumn& column, Sha256& hash, std::uint64_t& bytes) {
   const auto add = [&](const void* data, std::size_t size) {
     hash.update(data, size);
@@ -50,7 +51,7 @@ MemoryTable::MemoryTable(std::string name, std::vector<MemoryColumn> columns)
     : name_(std::move(name)), columns_(std::move(columns)) {
   rows_ = columns_.empty() ? 0 : rows_of(columns_.front());
   for (const MemoryColumn& column : columns_)
-    if (rows_of(column) != rows_) throw std::invalid_argument(name_ + ": its columns differ in length");
+    if (rows_of(column) != rows_) throw std::invalid_argument(name_ + ": the columns differ in length");
 }
 
 std::vector<TableInfo> MemoryTable::tables() const {
@@ -140,7 +141,7 @@ void MemoryTable::stamps(const TimeRequest& request, Table& table) const {
     if (!request.second.empty())
       status = stamps.add(first[row], second[row]);
     else if (const auto* whole = std::get_if<std::span<const std::int64_t>>(&source.values))
-      status = (*whole)[row] == missing_stamp ? status : stamps.add((*whole)[row]);  // which is numpy's NaT
+      status = (*whole)[row] == missing_stamp ? status : stamps.add((*whole)[row]);  // NaT of numpy
     else
       std::visit([&](const auto& values) { status = stamps.add(values[row]); }, source.values);
     if (status == NumberStatus::missing && request.may_miss)

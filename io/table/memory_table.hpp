@@ -10,17 +10,17 @@
 
 namespace modebank {
 
-/// A column of numbers that someone else keeps, or of texts.
+/// A column of numbers that the caller owns, or of texts.
 struct MemoryColumn {
   ColumnInfo info;
   std::variant<std::span<const double>, std::span<const std::int64_t>, std::vector<std::string>> values;
 };
 
-/// A table that is in memory: what a program hands over in place of a file. Its hash is that of the columns that are
-/// read, their names and values; messages say name:row, from 0.
+/// A table in memory that a program passes in place of a file. Its hash is that of the names and values of the columns
+/// that are read. Messages have the form name:row, from 0.
 class MemoryTable final : public TableReader {
  public:
-  /// Throws std::invalid_argument unless all columns have as many rows.
+  /// Throws std::invalid_argument unless all columns have equal lengths.
   MemoryTable(std::string name, std::vector<MemoryColumn> columns);
 
   std::vector<TableInfo> tables() const override;

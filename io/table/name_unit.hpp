@@ -4,14 +4,14 @@
 
 namespace modebank {
 
-/// A channel's name that says its unit in brackets after a blank: "wz [deg/s]", "t (ms)".
+/// A channel's name with its unit in brackets after a blank: "wz [deg/s]", "t (ms)".
 struct NameAndUnit {
   std::string_view name;
-  std::string_view unit;  ///< empty: the name says none
+  std::string_view unit;  ///< empty: the name has none
 };
 NameAndUnit split_unit(std::string_view name);
 
-/// Of "[rad/s]", "(rad/s)" and "rad/s" the last.
+/// rad/s for "[rad/s]", "(rad/s)" and "rad/s".
 std::string_view bare_unit(std::string_view unit);
 
 }  // namespace modebank

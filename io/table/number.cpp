@@ -12,7 +12,7 @@ namespace modebank {
 
 namespace {
 
-/// from_chars reports underflow and overflow alike; the wider type tells them apart (strtod would obey the locale).
+/// from_chars reports underflow and overflow alike, so a wider type separates them (strtod would depend on the locale).
 ParsedNumber parse_extreme(std::string_view number) {
   long double wide = 0.0L;
   const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), wide);
@@ -20,13 +20,13 @@ ParsedNumber parse_extreme(std::string_view number) {
   return {value, error != std::errc() || std::isinf(value) ? NumberStatus::out_of_range : NumberStatus::ok};
 }
 
-/// A finite number and nothing else: nearly every field of nearly every file.
+/// Fast path for a finite number and nothing else, which nearly all fields are.
 bool parse_plain(std::string_view field, double& value) {
   const auto [stop, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   return error == std::errc() && stop == field.data() + field.size() && std::isfinite(value);
 }
 
-/// As Python (True), R (TRUE) and JSON (true) write it.
+/// Truth values of Python (True), R (TRUE) and JSON (true).
 ParsedNumber parse_truth(std::string_view word) {
   for (const std::string_view written : {"true", "True", "TRUE"})
     if (word == written) return {1.0, NumberStatus::ok};

@@ -14,7 +14,7 @@ namespace modebank {
 
 namespace {
 
-/// Takes digits off the front of `text`, at least one.
+/// Removes leading digits from `text` and returns them; nullopt without any.
 std::optional<std::string_view> take_digits(std::string_view& text) {
   std::size_t count = 0;
   while (count < text.size() && is_digit(text[count])) ++count;

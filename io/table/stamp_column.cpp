@@ -14,10 +14,10 @@ namespace modebank {
 
 namespace {
 
-constexpr double largest_whole = 9.2e18;  // that 64 bits hold
-constexpr double exact_below = 1e6;       // a double tells billionths of what is smaller
+constexpr double largest_whole = 9.2e18;  // limit of 64 bits
+constexpr double exact_below = 1e6;       // smaller numbers have exact billionths in a double
 
-/// Units of which billionths are coarser than what a double tells.
+/// Whether a billionth of the unit is coarser than a double's precision.
 bool is_long(TimeUnit unit) { return ns_per(unit) > billion; }
 
 std::optional<std::int64_t> nanoseconds_in(std::string_view text) {
@@ -66,7 +66,7 @@ NumberStatus StampColumn::add(std::string_view text, std::string_view second) {
     const std::optional<std::int64_t> fine = nanoseconds_in(second);
     if (!fine) return NumberStatus::text;
     if (const NumberStatus status = add(text); status != NumberStatus::ok) return status;
-    if (stamps_.back().billionths != 0) return NumberStatus::text;  // the seconds have a fraction of their own
+    if (stamps_.back().billionths != 0) return NumberStatus::text;  // an error: the seconds already have a fraction
     stamps_.back().billionths = static_cast<std::int32_t>(*fine);
     return NumberStatus::ok;
   }
@@ -93,7 +93,7 @@ void StampColumn::add_missing() {
   for (Reading& reading : readings_) reading.stamps.emplace_back();
 }
 
-/// Keeps the patterns that fit the first text.
+/// Collects the patterns that fit the first text.
 bool StampColumn::start_readings(std::string_view text) {
   for (const StampPattern& pattern : patterns_.empty() ? known_stamp_patterns() : patterns_)
     if (pattern.read(text)) readings_.push_back({pattern, std::vector<Stamp>(as_written_.size())});
@@ -151,18 +151,18 @@ std::string StampColumn::complaint(NumberStatus status, std::string_view text) c
   const std::string shown = shown_field(text);
   if (!patterns_.empty()) return fmt::format("{} does not fit data.time_format = {}", shown, request_.format);
   if (!readings_.empty())
-    return fmt::format("{} does not fit {}, as \"{}\" before it does (data.time_format = PATTERN states the form)",
-                       shown, readings_.front().pattern.text(), first_value_);
+    return fmt::format("{} does not fit {}, as \"{}\" before it does (set data.time_format = PATTERN)", shown,
+                       readings_.front().pattern.text(), first_value_);
   if (!request_.second.empty() && kind_ != Kind::text)
     return shown +
            " in two columns is not a time (whole seconds and nanoseconds below 1e9, or a date and a time of day)";
   return fmt::format(
-      "{} is not a time (seconds, or as 2024-05-01T10:00:00.25Z; data.time_format states another form, as "
-      "%d.%m.%Y %H:%M:%S.%f)",
+      "{} is not a time (expected seconds, or a form such as 2024-05-01T10:00:00.25Z; set data.time_format for another "
+      "form, such as %d.%m.%Y %H:%M:%S.%f)",
       shown);
 }
 
-/// A stated or named unit comes before the one that the numbers show.
+/// A stated unit or one in the name takes precedence over one that the numbers indicate.
 StampForm StampColumn::found_form(std::vector<std::string>& notes) const {
   using Ground = StampForm::Ground;
   if (!request_.second.empty()) return {Ground::stated, TimeUnit::s};
@@ -187,7 +187,7 @@ std::int64_t StampColumn::nanoseconds(std::size_t row, const StampForm& form) co
   return stamps_[row].whole * scale + stamps_[row].billionths / (billion / scale);
 }
 
-/// Patterns whose stamps advance evenly come before others; patterns that read all stamps alike count as one.
+/// Prefers patterns whose stamps advance evenly. Patterns that read all stamps alike count as one.
 void StampColumn::decide_reading(Table& table) {
   const auto uneven = [&](const Reading& reading) { return !reading.is_even(as_written_); };
   if (readings_.size() > 1 && !std::all_of(readings_.begin(), readings_.end(), uneven))

@@ -13,41 +13,41 @@
 
 namespace modebank {
 
-/// A column of stamps, taken row by row as a file has them: numbers whose unit is found once all are there, or times as
-/// text, by every pattern that fits all of them. Every reader's stamps go through it, so that they are read one way.
+/// A column of stamps, read row by row. For numbers the unit is found at the end. Texts are read by every pattern that
+/// fits all of them. The stamps of every format use this class, so all are read alike.
 class StampColumn {
  public:
-  /// `stated_unit`: where the format says it ("ms"), else empty. Throws std::invalid_argument for a request whose
-  /// format is no StampPattern.
+  /// `stated_unit`: unit in the format ("ms"), else empty. Throws std::invalid_argument for a request with an invalid
+  /// StampPattern.
   StampColumn(const TimeRequest& request, std::string_view stated_unit);
 
   void reserve(std::size_t rows);
-  /// The next row's stamp; nothing is added unless it is `ok`.
+  /// Adds the next row's stamp. Adds nothing unless the result is `ok`.
   NumberStatus add(std::string_view text);
-  /// The next row's stamp in two columns: whole seconds and nanoseconds, or a date and a time of day.
+  /// Adds the next row's stamp from two columns: whole seconds and nanoseconds, or a date and a time of day.
   NumberStatus add(std::string_view text, std::string_view second);
   NumberStatus add(double value);
   NumberStatus add(std::int64_t value);
-  /// The next row's stamp is missing.
+  /// Adds a missing stamp.
   void add_missing();
 
-  /// The ending of a message about a text that `add` gave this status for.
+  /// The end of a message on a text for which `add` returned this status.
   std::string complaint(NumberStatus status, std::string_view text) const;
 
-  /// Decides on the form and fills time_ns, time_s, form and notes of `table`, whose lines are there. Throws DataError,
-  /// naming `file`, for a stamp that no 64 bits of nanoseconds hold. Once, as the last call.
+  /// Finds the format and fills time_ns, time_s, form and notes of `table`, whose lines are set. Throws DataError, with
+  /// `file`, for a stamp that overflows 64 bits of nanoseconds. Call it once, as the last.
   void finish(std::string_view file, Table& table);
 
  private:
-  /// The text so far by one pattern.
+  /// The texts so far, read by one pattern.
   struct Reading {
     StampPattern pattern;
     std::vector<Stamp> stamps;
-    DayCount days{};  ///< of times of day
+    DayCount days{};  ///< for times of day
     bool fits = true;
 
     void push(Stamp stamp);
-    /// Whether the stamps advance in steps without a gap.
+    /// Whether the stamps advance without a gap.
     bool is_even(const std::vector<double>& missing) const;
   };
 
@@ -60,11 +60,11 @@ class StampColumn {
 
   TimeRequest request_;
   std::string stated_unit_;
-  std::vector<StampPattern> patterns_;  // one where the user states it, else none
+  std::vector<StampPattern> patterns_;  // one if the user states it, else several
   enum class Kind { unknown, number, text } kind_ = Kind::unknown;
-  std::vector<Stamp> stamps_;       // of numbers
+  std::vector<Stamp> stamps_;       // stamps from numbers
   std::vector<double> as_written_;  // NaN: missing
-  std::vector<Reading> readings_;   // of text
+  std::vector<Reading> readings_;   // stamps from texts
   std::string first_value_;
   std::size_t first_row_ = 0;
   bool whole_numbers_ = true;

@@ -14,8 +14,8 @@ constexpr std::size_t rows_for_unit = 4096;
 constexpr double minute_s = 60.0, hour_s = 3600.0, day_s = 86400.0;
 
 struct Numbers {
-  double size = 0.0;     ///< median
-  double spacing = 0.0;  ///< median of those that advance; 0: none does
+  double size = 0.0;     ///< median of the numbers
+  double spacing = 0.0;  ///< median of the increments above 0; 0: there are none
   std::vector<double> first;
 };
 
@@ -39,15 +39,15 @@ Numbers first_numbers(const std::vector<double>& values) {
 
 bool is_multiple(double value, double of) { return std::fmod(value, of) == 0.0; }
 
-/// Whether loggers that stamp in whole units since an epoch sample so: every minute at least, or each full minute, hour
-/// or day.
+/// Whether a logger that stamps in whole units since an epoch samples at this interval: at least every minute, or at
+/// each full minute, hour or day.
 bool is_logging_interval(double seconds) {
   if (seconds <= minute_s) return true;
   if (seconds <= hour_s) return is_multiple(seconds, minute_s);
   return seconds <= day_s ? is_multiple(seconds, hour_s) && is_multiple(day_s, seconds) : is_multiple(seconds, day_s);
 }
 
-/// Epochs of robots: 1998 to 2103, in seconds.
+/// The unit for which the numbers are an epoch of robots: 1998 to 2103 in seconds.
 std::optional<TimeUnit> unit_of_epoch(const Numbers& numbers, bool whole) {
   constexpr double first_s = 9e8, last_s = 4.2e9;
   double scale = 1.0;
@@ -60,9 +60,8 @@ std::optional<TimeUnit> unit_of_epoch(const Numbers& numbers, bool whole) {
   return std::nullopt;
 }
 
-/// The unit of whole numbers. A robot samples at 0.1 Hz or faster, so numbers further apart than ten do not count
-/// seconds, unless they count full minutes. It runs for less than ten days, unless it would then sample faster than
-/// 2 kHz.
+/// The unit of whole numbers. A robot samples at 0.1 Hz or faster, so numbers more than ten apart are not seconds,
+/// unless they are full minutes. It runs for less than ten days, unless it would then sample faster than 2 kHz.
 TimeUnit unit_of_spacing(const Numbers& numbers) {
   constexpr double slowest_s = 10.0, longest_s = 9e5, fastest_s = 5e-4;
   if (numbers.spacing <= slowest_s || (numbers.spacing <= hour_s && is_multiple(numbers.spacing, minute_s)))
@@ -76,10 +75,10 @@ TimeUnit unit_of_spacing(const Numbers& numbers) {
   return TimeUnit::ns;
 }
 
-/// Whether numbers, read as days, lie on the full seconds or minutes at which loggers write: one each 5 or 10 s, each
-/// minute, each quarter of an hour.
+/// Whether numbers, taken as days, are at full seconds or minutes at which loggers write: every 5 or 10 s, every
+/// minute, every quarter of an hour.
 bool are_at_logging_intervals(const Numbers& numbers) {
-  constexpr double rounding_s = 0.1;  // of days with six decimals
+  constexpr double rounding_s = 0.1;  // rounding of days with six decimals
   const double interval_s = std::round(numbers.spacing * day_s);
   if (interval_s < 2.0 || !is_logging_interval(interval_s)) return false;
   const double grid_s = std::min(interval_s, minute_s);
@@ -88,8 +87,8 @@ bool are_at_logging_intervals(const Numbers& numbers) {
   });
 }
 
-/// Days since an epoch with the time of day as their fraction: as seconds they would be sampled faster than 20 kHz, or
-/// faster than 1 kHz at what are full seconds of days.
+/// Whether numbers are days since an epoch with the time of day as fraction. They are if, as seconds, they would be
+/// sampled faster than 20 kHz, or faster than 1 kHz at full seconds of days.
 bool are_serial_days(const Numbers& numbers) {
   constexpr double fastest_s = 5e-5, fast_s = 1e-3;
   return first_day_of(numbers.size) != 0 && numbers.spacing > 0.0 &&
@@ -100,8 +99,8 @@ bool are_serial_days(const Numbers& numbers) {
 
 std::int64_t first_day_of(double serial_day) {
   constexpr std::int64_t spreadsheet = 25569, matlab = 719529;
-  if (serial_day > 2e4 && serial_day < 8e4) return spreadsheet;  // 1954 to 2119
-  return serial_day > 7.1e5 && serial_day < 8e5 ? matlab : 0;    // 1943 to 2190
+  if (serial_day > 2e4 && serial_day < 8e4) return spreadsheet;  // years 1954 to 2119
+  return serial_day > 7.1e5 && serial_day < 8e5 ? matlab : 0;    // years 1943 to 2190
 }
 
 bool join_patterns(StampForm& ours, const StampForm& theirs) {
@@ -135,16 +134,17 @@ StampForm form_of_numbers(std::string_view column, const std::vector<double>& va
   if (all_whole) {
     const TimeUnit unit = unit_of_spacing(numbers);
     if (unit == TimeUnit::s && numbers.spacing > 1.0)
-      notes.push_back(
-          fmt::format("column {}: whole numbers {} apart are taken for seconds (data.time_unit = ms says otherwise)",
-                      column, numbers.spacing));
+      notes.push_back(fmt::format(
+          "column {}: whole numbers {} apart are taken for seconds (for milliseconds set data.time_unit = ms)", column,
+          numbers.spacing));
     return {Ground::spacing, unit};
   }
   if (are_serial_days(numbers)) return {Ground::magnitude, TimeUnit::d};
   constexpr double doubtful_s = 1e-3;
   if (first_day_of(numbers.size) != 0 && (numbers.spacing < doubtful_s || are_at_logging_intervals(numbers)))
-    notes.push_back(fmt::format("column {}: numbers {:.3g} apart are taken for seconds (data.time_unit = d reads days)",
-                                column, numbers.spacing));
+    notes.push_back(
+        fmt::format("column {}: numbers {:.3g} apart are taken for seconds (for days set data.time_unit = d)", column,
+                    numbers.spacing));
   return {Ground::assumed, TimeUnit::s};
 }
 

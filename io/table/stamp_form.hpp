@@ -9,36 +9,38 @@
 
 namespace modebank {
 
-/// How a column writes its stamps, and what shows it.
+/// Format of a column's stamps, and how it was found.
 struct StampForm {
   enum class Ground {
     none,       ///< no stamp was read
-    stated,     ///< by the user, the format or the column's name
+    stated,     ///< stated by the user, the format or the column's name
     magnitude,  ///< numbers that count from an epoch
-    spacing,    ///< whole numbers, by how far apart they are
-    assumed,    ///< seconds for want of anything else
+    spacing,    ///< whole numbers, by their increments
+    assumed,    ///< seconds, because nothing indicates another unit
     text        ///< times as text
   };
   Ground ground = Ground::none;
-  TimeUnit unit = TimeUnit::s;             ///< of numbers
-  std::int64_t first_day = 0;              ///< of days: the number of 1970-01-01 where they count from another epoch
-  std::vector<std::string> patterns = {};  ///< of text: all that fit every value; several: the values do not tell which
-  std::vector<std::string> alike = {};     ///< of text: others that read every value as the first of `patterns` does
-  std::string value = {};                  ///< the first stamp, as it is written
-  std::uint64_t line = 0;                  ///< where it stands
-  bool clock = false;                      ///< whether it is a time of day, which counts from midnight
+  TimeUnit unit = TimeUnit::s;  ///< for numbers
+  std::int64_t first_day = 0;   ///< for days since another epoch: the number of 1970-01-01
+  std::vector<std::string> patterns =
+      {};  ///< for text: all patterns that fit every value; several if the values are ambiguous
+  std::vector<std::string> alike = {};  ///< for text: patterns that read every value as the first of `patterns` does
+  std::string value = {};               ///< the first stamp, as written
+  std::uint64_t line = 0;               ///< line of the first stamp
+  bool clock = false;                   ///< whether it is a time of day, counted from midnight
 };
 
-/// The form of numbers, found by magnitude and spacing together. `values`: NaN where missing.
-/// `all_whole`: of all of them. What the user should know is added to `notes`.
+/// The format of numbers, from their magnitude and increments together. `values`: NaN where missing. `all_whole`:
+/// whether all are whole. Adds remarks for the user to `notes`.
 StampForm form_of_numbers(std::string_view column, const std::vector<double>& values, bool all_whole,
                           std::vector<std::string>& notes);
 
-/// Makes `patterns` and `alike` of one file's texts those of two files. False: no pattern fits both, and all stays.
+/// Reduces `patterns` and `alike` to those that fit both files' texts. False, without a change, if no pattern fits
+/// both.
 bool join_patterns(StampForm& ours, const StampForm& theirs);
 
-/// The number of 1970-01-01 in serial days of this size: those of spreadsheets (since 1899-12-30) and of MATLAB (since
-/// the year 0). 0: others.
+/// The number of 1970-01-01 in serial days of this size: of spreadsheets (since 1899-12-30) or of MATLAB (since the
+/// year 0). 0: neither.
 std::int64_t first_day_of(double serial_day);
 
 }  // namespace modebank

@@ -9,15 +9,16 @@
 
 namespace modebank {
 
-/// One way to write a time as text, in strptime's letters (C locale) and %f for the fraction of a second. A fraction
-/// behind a point or comma and a zone (%z) at the end may be missing in a value. Without a zone UTC is meant, without a
-/// date the stamp counts from midnight, and hours of %H at the beginning may go on past 23.
+/// A format of times as text, in strptime's letters (C locale) and %f for the fraction of a second. A value may lack
+/// the fraction with its point or comma, and a zone (%z) at the end. Without a zone the time is UTC. Without a date the
+/// stamp counts from midnight, and a leading %H may exceed 23.
 class StampPattern {
  public:
-  /// Throws std::invalid_argument for a letter that strptime lacks, and for a pattern without any time.
+  /// Throws std::invalid_argument for a letter that strptime lacks, and for a pattern without a time.
   explicit StampPattern(std::string text);
 
-  /// Seconds since 1970, or since midnight without a date. Blanks around are tolerated. Empty: does not fit.
+  /// Seconds since 1970, or since midnight without a date. Blanks around the value are allowed. Nullopt if it does not
+  /// fit.
   std::optional<Stamp> read(std::string_view value) const;
 
   const std::string& text() const { return text_; }
@@ -25,15 +26,15 @@ class StampPattern {
 
  private:
   std::string text_;
-  std::string head_, tail_;  ///< before and behind the fraction, which has its point in `head_` if it must be there
-  bool fraction_ = false;    ///< whether there is one
+  std::string head_, tail_;  ///< parts before and after the fraction; `head_` has the point if it is required
+  bool fraction_ = false;    ///< whether the pattern has a fraction
   bool may_lack_fraction_ = false, has_date_ = false;
 };
 
-/// The forms that loggers, spreadsheets and robots write, in the order in which they are tried.
+/// Formats of loggers, spreadsheets and robots, in the order in which they are tried.
 const std::vector<StampPattern>& known_stamp_patterns();
 
-/// Whether any of them fits.
+/// Whether one of these formats fits.
 bool is_known_time(std::string_view value);
 
 }  // namespace modebank

@@ -14,36 +14,36 @@
 
 namespace modebank {
 
-/// A column of a table. `name` is unique within the file: a CSV header's, or "/imu/data.angular_velocity.z" of a
-/// recording.
+/// A column of a table. `name` is unique within the file: a name in a CSV header, or "/imu/data.angular_velocity.z" in
+/// a recording.
 struct ColumnInfo {
   std::string name;
-  std::string unit = {};  ///< where the format says so
-  std::string type = {};  ///< the format's word for it; "time": stamps, to be asked for as TableRequest::time
+  std::string unit = {};  ///< unit, if the format states it
+  std::string type = {};  ///< type by the format; "time": stamps, to be requested as TableRequest::time
 };
 
-/// One table of a file: rows that share their times. A recording has one per topic.
+/// One table of a file: rows with common times. A recording has one table per topic.
 struct TableInfo {
   std::string name;  ///< empty: the file is one table
-  std::string type;  ///< the format's word for a row, as "sensor_msgs/Imu"; may be empty
+  std::string type;  ///< the format's word for a row, such as "sensor_msgs/Imu"; may be empty
   std::vector<ColumnInfo> columns;
-  std::uint64_t rows = 0;     ///< 0: not known without reading
-  std::uint64_t skipped = 0;  ///< lines of a title above it, in text
+  std::uint64_t rows = 0;     ///< 0: unknown before reading
+  std::uint64_t skipped = 0;  ///< number of title lines above a table of text
 };
 
-/// The column of times; an empty one asks for none. Stamps in two columns have their nanoseconds in the second, or the
-/// time of day beside a date.
+/// The columns of times; empty requests none. A stamp in two columns has nanoseconds in the second, or the time of day
+/// beside a date.
 struct TimeRequest {
   std::string column = {};
   std::string second = {};
   TimeUnit unit = TimeUnit::automatic;
-  std::string format = {};  ///< a StampPattern; empty: found
+  std::string format = {};  ///< a StampPattern; empty: find one
   bool may_miss = false;    ///< whether a missing stamp becomes missing_stamp; else it is an error
 };
 
-/// Which columns of a table are wanted; the others are skipped unread and may hold anything.
+/// Requested columns of a table; other columns are skipped without a check.
 struct TableRequest {
-  std::size_t table = 0;                ///< position in TableReader::tables
+  std::size_t table = 0;                ///< index in TableReader::tables
   std::vector<std::string> numbers;     ///< columns of finite numbers, each once
   std::vector<std::string> texts = {};  ///< columns of text, each once
   std::vector<bool> may_miss = {};      ///< per number: whether missing values become NaN; empty: they are errors
@@ -55,66 +55,64 @@ struct LineRange {
   std::uint64_t first = 0, last = 0;
 };
 
-/// "rows 3 to 7 and 2 more ranges"; of one range at least.
+/// "rows 3 to 7 and 2 more ranges"; needs at least one range.
 std::string rows_text(const std::vector<LineRange>& ranges);
-/// The range that holds the line, or the end.
+/// The range that contains the line, or the end.
 std::vector<LineRange>::const_iterator range_of(const std::vector<LineRange>& ranges, std::uint64_t line);
-/// "; rows 3 to 7 were never written" where a range holds the line, else empty.
+/// "; rows 3 to 7 were never written" if a range contains the line, else empty.
 std::string unwritten_text(const std::vector<LineRange>& ranges, std::uint64_t line);
 
 inline constexpr std::int64_t missing_stamp = std::numeric_limits<std::int64_t>::min();
 
 struct Table {
   std::vector<std::vector<double>> numbers;     ///< one vector per requested column, one value per row
-  std::vector<std::vector<std::string>> texts;  ///< the same for text, without blanks around
-  std::vector<std::uint64_t> line;              ///< per row, where it stands (messages say file:line): line or message
+  std::vector<std::vector<std::string>> texts;  ///< the same for texts, without blanks around them
+  std::vector<std::uint64_t> line;              ///< per row its line or message number, for messages file:line
   std::vector<std::int64_t> time_ns;            ///< per row, exact; empty when no time was requested
-  /// The same times as they were written, where that is seconds in text, which may be finer; else empty.
+  /// Stamps written as seconds in text, which may be finer than time_ns; else empty.
   std::vector<double> time_s;
-  std::map<std::string, std::size_t> missing_words;  ///< how often each word of data.na stands for a missing number
-  StampForm form = {};                               ///< of the times, where they were found in numbers or text
-  std::vector<std::string> notes;  ///< what the reader found out and the user should know; without the file's name, so
-                                   ///< that many files say it once
+  std::map<std::string, std::size_t> missing_words;  ///< number of missing values by word of data.na
+  StampForm form = {};                               ///< stamp format, if the times were numbers or text
+  std::vector<std::string> notes;  ///< remarks of the reader for the user; without the file's name, so that equal
+                                   ///< remarks on many files are merged
 
-  std::vector<LineRange> unwritten;  ///< lines whose times the file declares and never got: they read as a fill value
+  std::vector<LineRange> unwritten;  ///< lines whose times were never written, so that they read as a fill value
 
-  /// In words, where rows that follow one another are of different frames, and the key that takes them apart.
+  /// A sentence if consecutive rows belong to different frames, with the key that separates them.
   std::string alternation;
 
   std::size_t rows() const { return line.size(); }
 };
 
-/// The one seam between files and runs: how a format tells its tables and gives their values. Everything behind it
-/// (plans, joining, lags, gaps, roles) knows tables alone. A new format derives a class and is named in open_table.
+/// The interface between file formats and runs: a file's tables and their values. All code behind it (plans, joining,
+/// lags, gaps, roles) is independent of formats. A new format derives a class and is listed in open_table.
 class TableReader {
  public:
   virtual ~TableReader() = default;
 
-  /// The tables and their columns, read only as far as needed. Throws ConfigurationError when the file cannot be read
-  /// or has no columns, DataError when they are malformed.
+  /// The tables and their columns. Reads only as far as needed. Throws ConfigurationError when the file cannot be read
+  /// or has no columns, DataError when it is malformed.
   virtual std::vector<TableInfo> tables() const = 0;
 
-  /// What identifies the data that `read` gives for these requests: equal data have equal hashes. Throws when it cannot
-  /// be read.
+  /// Identifies the data of these requests: equal data have equal hashes. Throws when the file cannot be read.
   virtual InputFile describe(const std::vector<TableRequest>& requests) const = 0;
 
-  /// Reads what is wanted, one table per request, in one pass over the file; `file` becomes what `describe` says of it,
-  /// unless it is null. Throws as
-  /// column_position does, and DataError, naming file, line and column, for text where a number is wanted, a missing
-  /// value (empty, NaN or infinite) in a column that may not miss any and a malformed row.
+  /// Reads the requested columns in one pass over the file, one table per request. Sets `file`, unless null, to the
+  /// result of `describe`. Throws as column_position does. Throws DataError, with file, line and column, for text in
+  /// place of a number, a missing value (empty, NaN or infinite) in a column without may_miss, and a malformed row.
   virtual std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const = 0;
 
-  /// A line for everything that the file holds and no table gives, saying what helps.
+  /// One line, with advice, for every object of the file that gives no table.
   virtual std::vector<std::string> left_out() const { return {}; }
 
-  /// Why a column that a user may expect is not there; empty when there is nothing to say.
+  /// Reason why a column that a user may expect is missing; empty if unknown.
   virtual std::string why_without(const std::string& /*column*/) const { return {}; }
 };
 
 std::vector<std::string> column_names(const TableInfo& table);
 
-/// Position of a column. Throws ConfigurationError, naming `file`, when it is missing (listing those that exist and the
-/// nearest name) or there twice.
+/// Index of a column. Throws ConfigurationError, with `file`, when it is missing (with the existing names and the
+/// nearest one) or occurs twice.
 std::size_t column_position(std::string_view file, const std::vector<std::string>& columns, const std::string& column);
 
 }  // namespace modebank

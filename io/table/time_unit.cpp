@@ -16,7 +16,7 @@ struct Unit {
   TimeUnit unit;
   std::int64_t ns;
   std::string_view plural;
-  std::string_view words;  ///< with blanks around each
+  std::string_view words;  ///< with blanks around each word
 };
 
 constexpr std::array units{
@@ -45,14 +45,14 @@ std::optional<TimeUnit> unit_of_word(std::string_view word) {
   return found == units.end() ? std::nullopt : std::optional(found->unit);
 }
 
-/// The part that begins with the last capital letter behind a small one: US of TimeUS.
+/// The part from the last capital letter that follows a small one: US of TimeUS.
 std::string_view last_capitalised(std::string_view word) {
   for (std::size_t i = word.size(); i-- > 1;)
     if (is_upper(word[i]) && is_lower(word[i - 1])) return word.substr(i);
   return {};
 }
 
-/// The part behind a word for times: ns of timestampns.
+/// The part after a word for times: ns of timestampns.
 std::string_view behind_time(std::string_view word) {
   for (const std::string_view time : {"timestamp", "time", "stamp", "clock"})
     if (word.size() > time.size() + 1 && word.starts_with(time)) return word.substr(time.size());
@@ -75,7 +75,7 @@ std::optional<TimeUnit> named_time_unit(std::string_view name) {
   while (!name.empty() && std::string_view(")] ").find(name.back()) != std::string_view::npos) name.remove_suffix(1);
   const std::size_t separator = name.find_last_of("_[( ./");
   const std::string_view word = separator == std::string_view::npos ? name : name.substr(separator + 1);
-  if (name.size() < 2) return std::nullopt;  // a column called "s" may be anything
+  if (name.size() < 2) return std::nullopt;  // a column with the name "s" may mean anything
   for (const std::string_view part : {word, last_capitalised(word), behind_time(word)})
     if (const auto unit = unit_of_word(part)) return unit;
   return std::nullopt;

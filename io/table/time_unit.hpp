@@ -8,8 +8,8 @@
 
 namespace modebank {
 
-/// What a column of times counts. automatic: told by the format, by the column's name or unit, or by how large and how
-/// far apart the stamps are.
+/// Unit of a column of times. automatic: by the format, by the column's name or unit, or by magnitude and increments of
+/// the stamps.
 enum class TimeUnit { automatic, s, ms, us, ns, min, h, d };
 
 template <>
@@ -17,16 +17,17 @@ struct EnumNames<TimeUnit> {
   static constexpr Names<8> values{"auto", "s", "ms", "us", "ns", "min", "h", "d"};
 };
 
-/// Nanoseconds in one of the unit; of seconds for automatic.
+/// Nanoseconds per unit; automatic counts as seconds.
 std::int64_t ns_per(TimeUnit unit);
 
-/// "milliseconds".
+/// Name of a unit: "milliseconds".
 std::string_view in_words(TimeUnit unit);
 
-/// The unit that a format states: "ms", "[h]", "seconds since 1970-01-01". Empty: no known unit of time.
+/// The unit in a format's text: "ms", "[h]", "seconds since 1970-01-01". Nullopt for an unknown unit.
 std::optional<TimeUnit> stated_time_unit(std::string_view stated);
 
-/// The unit that a column's name ends in: time_ms, "stamp [us]", TimeUS, timeMs, "Time [h]", hours. Empty: in none.
+/// The unit at the end of a column's name: time_ms, "stamp [us]", TimeUS, timeMs, "Time [h]", hours. Nullopt without
+/// one.
 std::optional<TimeUnit> named_time_unit(std::string_view name);
 
 }  // namespace modebank

@@ -1,4 +1,4 @@
-// The installed face of the bank loader.
+// The installed interface of the bank loader.
 #include <memory>
 
 #include "io/archive/bank/load_bank.hpp"
@@ -10,7 +10,7 @@ namespace modebank::archive {
 filter::Bank load_bank(const std::string& path, const std::string& which) {
   try {
     return filter::Bank(std::make_shared<const modebank::Bank>(modebank::load_bank(path, which)));
-  } catch (const ConfigurationError& error) {  // a path that a user of the program would have typed
+  } catch (const ConfigurationError& error) {  // a wrong path is a DataError in the installed interface
     throw DataError(error.what());
   }
 }

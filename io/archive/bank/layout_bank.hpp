@@ -11,7 +11,7 @@
 /// The layout of banks; see io/archive/layout.hpp.
 namespace modebank::layout {
 
-/// A part that an std::optional holds.
+/// A part in a std::optional.
 template <class Io, class T, class Body>
 void exchange_part(Io& io, const std::string& name, T& part, const Sizes& known, Body body) {
   io.optional_group(name, part.has_value(), known, [&](auto& member) {
@@ -56,7 +56,7 @@ void exchange_model_parameters(Io& io, P& parameters, const std::string& kind) {
 /// - term_low: lower bound of each variable
 /// - term_high: upper bound of each variable
 /// - term_unit: unit of each variable
-/// - term_coefficients: of each mode
+/// - term_coefficients: coefficients of each mode
 template <class Io, class S>
 void exchange_terms(Io& io, S& stored) {
   io.optional_attribute_texts("term_kinds", stored.term_kinds);
@@ -75,7 +75,7 @@ void exchange_terms(Io& io, S& stored) {
 /// - weight: mixture weight of each mode
 /// - c: constant increment of the state
 /// - A: x[k+1] = x[k] + A x[k] + B u[k] + c; n counts lagged states too
-/// - B: of the inputs; m counts lagged inputs too
+/// - B: matrix of the inputs; m counts lagged inputs too
 /// - Q: process noise covariance of a step
 /// - parameters: theta of each mode
 /// - parameter_covariance: covariance of theta among the mode's windows
@@ -83,14 +83,14 @@ void exchange_terms(Io& io, S& stored) {
 /// - R: measurement noise covariance
 /// - quantum: step of the measured values; 0: continuous
 /// - transition: row = from, column = to
-/// - transition_weights: of the transition logit on features of state and input
+/// - transition_weights: weights of the transition logit on features of state and input
 /// - transition_reference: value of the features at which `transition` holds
 /// - initial_probability: of each mode at the start of a run
 /// - drift_scale: root mean square of each regressor, with `bank.drift`
 /// - drift_rates: rate, start and leak
 /// - noise_directions: rows over their root mean square
 /// - noise_weights: every Q is times exp(sum weights log(|directions . (z, v)| + 0.1) - offset), bounded to 0.2 to 5
-/// - noise_offset: of that sum
+/// - noise_offset: offset of that sum
 /// - motion_parameters: parameters of a motion model
 /// - motion_standard_error: their standard errors
 template <class Io, class S>
@@ -132,17 +132,17 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
     io.finish([&] { stored.structure = restore_structure(stored.structure, io.size("n"), io.size("p")); });
 }
 
-/// Names, period and screened modes, then everything that StoredBank holds.
-/// - parameter_labels: what each parameter weighs on what, `wz <- velL`
+/// Names, period and screened modes, then all members of StoredBank.
+/// - parameter_labels: output and regressor of each parameter, `wz <- velL`
 /// - equations: lines of text, where there are terms
 /// - dt_s: period of a step [s]
-/// - noise_forgetting: of adaptive noise
-/// - noise_prior_samples: of adaptive noise
-/// - shrunk_modes: modes that were drawn towards one motion for stability
-/// - shrunk_share: how far
-/// - shrunk_growth: growth of their mean square before
-/// - screened: components that became no mode
-/// - spectral_radius: of I + A
+/// - noise_forgetting: forgetting factor of adaptive noise
+/// - noise_prior_samples: prior samples of adaptive noise
+/// - shrunk_modes: modes that were shrunk towards one motion for stability
+/// - shrunk_share: share of the shrinkage
+/// - shrunk_growth: growth of their mean square before shrinkage
+/// - screened: components that did not become modes
+/// - spectral_radius: spectral radius of I + A
 template <class Io, class B>
 void exchange_bank(Io& io, B& bank, const Units& units) {
   io.attribute_texts("state_names", bank.state_names);

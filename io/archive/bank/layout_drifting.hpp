@@ -9,17 +9,17 @@
 /// horizons.
 namespace modebank::layout {
 
-/// /drifting: one motion whose coefficients wander.
+/// /drifting: one motion whose coefficients drift.
 /// - states: number of measured states
 /// - q: variance that a step adds to every coefficient
 /// - p0: variance of the coefficients at the start
-/// - leak: share of their difference from `parameters` that a step leaves
+/// - leak: factor by which a step multiplies their difference from `parameters`
 /// - wandering: `constant` or `gain` (one factor on the inputs' coefficients); absent: all coefficients
 /// - lam: forgetting factor of the running variance
 /// - nu: degrees of freedom of the noise; 0: Gaussian
-/// - training_log_score: [nat] per sample
-/// - at_grid_end: names of settings that ended at the end of their grid
-/// - parameters: where the coefficients start
+/// - training_log_score: log score [nat] per sample of the training runs
+/// - at_grid_end: names of settings that are at the end of their grid
+/// - parameters: coefficients at the start of a run
 /// - regressor_scale: root mean square of each regressor
 /// - initial_variance: variance of the training residuals
 /// - variance_floor: least noise variance

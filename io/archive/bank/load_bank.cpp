@@ -31,8 +31,8 @@ Bank load_bank(const OpenArchive& archive, const std::string& which) {
     });
     if (!bank && which == "nonlinear")
       throw DataError(
-          "holds no nonlinear, as its training runs asked for no terms or window.terms = none; its filters are bank, "
-          "baseline, noise_only, one_motion, drifting and combined");
+          "has no filter nonlinear, because terms gained nothing on its training runs or window.terms was none; its "
+          "filters are bank, baseline, noise_only, one_motion, drifting and combined");
     if (!bank) throw DataError("holds no " + which);
   });
   return *bank;

@@ -9,17 +9,17 @@
 namespace modebank {
 
 /// One bank of an archive: "bank" or the competitor "baseline", "noise_only", "one_motion", "drifting" or "nonlinear".
-/// Nothing else of the file is decoded. Throws DataError when the archive holds no such bank.
+/// Decodes nothing else of the file. Throws DataError when the archive has no such bank.
 Bank load_bank(const OpenArchive& archive, const std::string& which = "bank");
 
 class GroupReader;
-/// Runs `body` on the root of an archive; messages name its path.
+/// Calls `body` with the root of an archive; messages contain its path.
 void read_root(const OpenArchive& archive, const std::function<void(GroupReader&)>& body);
 
-/// The resolved configuration an archive was made with.
+/// The resolved configuration from which an archive was made.
 std::string load_configuration(const OpenArchive& archive);
 
-/// The hash of the data it was made from.
+/// The hash of the data from which it was made.
 std::string load_data_hash(const OpenArchive& archive);
 
 }  // namespace modebank

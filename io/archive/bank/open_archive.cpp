@@ -30,10 +30,10 @@ std::vector<std::string> user_block_problems(const UserBlock& block, std::string
   const std::string_view stored(block.data(), hash_bytes);
   std::vector<std::string> problems;
   if (!is_sha256(stored))
-    problems.push_back("the user block holds no SHA-256 in bytes 0-63: damaged, or not a modebank archive");
+    problems.push_back("the user block has no SHA-256 in bytes 0-63; the file is damaged or not a modebank archive");
   else if (stored != content_sha256)
-    problems.push_back("the content's SHA-256 is " + std::string(content_sha256) + ", the user block says " +
-                       std::string(stored) + ": the file was damaged or changed after it was written");
+    problems.push_back("the content's SHA-256 is " + std::string(content_sha256) + ", but the user block has " +
+                       std::string(stored) + "; the file was damaged or changed after it was written");
   const auto odd = std::find_if(block.begin() + hash_bytes, block.end(), [](char c) { return c != '\0'; });
   if (odd != block.end())
     problems.push_back("byte " + std::to_string(odd - block.begin()) + " of the user block is not zero");
@@ -53,7 +53,7 @@ std::size_t read_bytes(int descriptor, char* to, std::size_t count, std::uintmax
   return got;
 }
 
-/// Of everything after the user block.
+/// SHA-256 of all bytes after the user block.
 std::string content_hash(int descriptor) {
   Sha256 hash;
   std::vector<char> buffer(std::size_t{1} << 20);
@@ -65,7 +65,7 @@ std::string content_hash(int descriptor) {
   return hash.hex();
 }
 
-/// The descriptor of HDF5's own driver.
+/// The file descriptor of HDF5's own driver.
 int descriptor_of(const hdf5::Handle& file) {
   void* descriptor = nullptr;
   hdf5::check(H5Fget_vfd_handle(file.id(), H5P_DEFAULT, &descriptor), "find the open file");
@@ -81,7 +81,7 @@ void require_readable(const fs::path& path) {
   if (!fs::is_regular_file(status)) throw DataError("is not a regular file");
 }
 
-/// Why HDF5 does not open a file: what its first bytes and its hash show, else HDF5's own reason.
+/// Throws with the reason why HDF5 does not open a file: from its first bytes and its hash, else HDF5's own reason.
 [[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
   std::string bytes(user_block_bytes + hdf5_signature.size(), '\0');
   std::ifstream stream = open_file(path);
@@ -104,7 +104,7 @@ hdf5::Handle open_checked(const fs::path& path) {
   }
 }
 
-/// Throws DataError unless the hash is right; returns it.
+/// Returns the hash. Throws DataError unless it is right.
 std::string checked_hash(const hdf5::Handle& file) {
   const int descriptor = descriptor_of(file);
   UserBlock block{};
@@ -140,7 +140,8 @@ void check_schema(const hdf5::Handle& root) {
   if (major > major_version(schema_version))
     throw DataError("the archive's schema " + version + " is newer than " + schema_version +
                     ", which this version of modebank reads");
-  if (major < major_version(schema_version)) throw DataError("made by modebank 0.1; run again");
+  if (major < major_version(schema_version))
+    throw DataError("made by modebank 0.1; make the archive again with modebank run");
 }
 
 }  // namespace

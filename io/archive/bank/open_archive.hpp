@@ -21,24 +21,24 @@ using UserBlock = std::array<char, user_block_bytes>;
 
 UserBlock make_user_block(std::string_view content_sha256);
 
-/// What is wrong with a block whose content has the given hash; empty when nothing is.
+/// Faults of a user block, given the hash of the content; empty if there are none.
 std::vector<std::string> user_block_problems(const UserBlock& block, std::string_view content_sha256);
 
 /// SHA-256 of everything after a file's user block. Throws DataError when the file cannot be read.
 std::string content_hash(const std::filesystem::path& path);
 
-/// An archive that is open for reading. It is opened once, and its hash is checked once through the descriptor that
-/// HDF5 reads by; copies share it. A path stands for the archive where it is read only once.
+/// An archive open for reading. It is opened once, and its hash is checked once through the descriptor that HDF5 reads;
+/// copies share it. Functions that read an archive only once also take its path.
 class OpenArchive {
  public:
-  /// Throws ConfigurationError when the file is missing, and DataError, which names the path, for one that is
+  /// Throws ConfigurationError when the file is missing. Throws DataError, with the path, for a file that is
   /// unreadable, truncated, damaged (its hash does not match), not a modebank archive, or of another major schema.
   OpenArchive(const std::filesystem::path& path);  // NOLINT(google-explicit-constructor): see above
   OpenArchive(const std::string& path) : OpenArchive(std::filesystem::path(path)) {}  // NOLINT
   OpenArchive(const char* path) : OpenArchive(std::filesystem::path(path)) {}         // NOLINT
 
   const std::filesystem::path& path() const;
-  /// SHA-256 of its content, as its user block states it: tells archives apart.
+  /// SHA-256 of the content, from the user block: identifies the archive.
   const std::string& digest() const;
   /// The root group. Calls of HDF5 need a hdf5::Quiet.
   hdf5::Handle root() const;

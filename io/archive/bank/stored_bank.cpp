@@ -35,12 +35,12 @@ void check_count(const std::string& what, const std::vector<std::string>& names,
 }
 
 void check_lags(const LinearStructure& s, Index dimension) {
-  constexpr Index most_states = 1'000'000;  // so that the sizes made of them are numbers
+  constexpr Index most_states = 1'000'000;  // so that products of sizes do not overflow
   if (dimension < 1 || dimension > most_states || s.inputs < 0 || s.state_lags < 1 || s.input_lags < 1 ||
       s.input_delay < 0 || dimension % s.state_lags != 0)
     throw DataError(std::to_string(dimension) + " states, " + std::to_string(s.inputs) + " inputs and lags of " +
                     std::to_string(s.state_lags) + ", " + std::to_string(s.input_lags) + ", " +
-                    std::to_string(s.input_delay) + " make no model");
+                    std::to_string(s.input_delay) + " are not possible");
 }
 
 [[noreturn]] void parameters_do_not_fit(Index parameters, Index states) {
@@ -58,8 +58,8 @@ namespace {
 
 enum class Presence { always, if_any };
 
-/// Every array of the modes: visit(where it is stored, its name in messages, rows, columns, how a mode holds it, and
-/// whether banks may lack it).
+/// Calls visit(member of StoredBank, name in messages, rows, columns, member of a mode, whether banks may lack it) for
+/// every array of the modes.
 template <class Visit>
 void for_each_mode_array(const LinearStructure& s, Index p_motion, Index terms, Visit visit) {
   const Index n = s.dimension(), p = s.parameters();
@@ -94,7 +94,7 @@ void for_each_mode_array(const LinearStructure& s, Index p_motion, Index terms, 
       [](auto& mode) -> auto& { return mode.motion_standard_error; }, always);
 }
 
-/// The bank's own matrices: visit(where it is stored, how the bank holds it).
+/// Calls visit(member of StoredBank, member of the bank) for the bank's own matrices.
 template <class Visit>
 void for_each_bank_matrix(Visit visit) {
   visit(&StoredBank::C, &Bank::C);
@@ -104,7 +104,7 @@ void for_each_bank_matrix(Visit visit) {
   visit(&StoredBank::transition_weight_error, &Bank::transition_weight_error);
 }
 
-/// The layout has a place for weights that depend on the mode before; ours are the same for all.
+/// The layout has room for weights that depend on the previous mode. Here they are equal for all.
 void store_logit(const Bank& bank, StoredBank& stored) {
   const TransitionLogit& logit = bank.transition_logit;
   if (logit.empty()) return;
@@ -117,14 +117,15 @@ void store_logit(const Bank& bank, StoredBank& stored) {
 TransitionLogit restore_logit(const StoredBank& stored, Index modes) {
   const Eigen::MatrixXd& weights = stored.transition_weights;
   if (weights.size() == 0) {
-    if (stored.transition_reference.size() > 0) throw DataError("a transition reference without transition weights");
+    if (stored.transition_reference.size() > 0)
+      throw DataError("there is a transition reference, but no transition weights");
     return {};
   }
   if (weights.rows() != modes * stored.transition_reference.size())
     throw DataError("transition weights and their reference differ in the number of features");
   for (Index k = 1; k < weights.cols(); ++k)
     if (weights.col(k) != weights.col(0))
-      throw DataError("transition weights that differ by the mode before are none of this version's");
+      throw DataError("transition weights depend on the previous mode, which this version does not support");
   return {one_of(weights, 0, modes, stored.transition_reference.size()), stored.transition_reference};
 }
 
@@ -147,7 +148,7 @@ void store_terms(const MotionTerms& terms, StoredBank& stored) {
   stored.term_unit = terms.unit;
 }
 
-/// Sizes that do not fit are left for check_terms.
+/// check_terms reports sizes that do not fit.
 MotionTerms restore_terms(const StoredBank& stored) {
   MotionTerms terms{stored.term_directions, stored.term_low, stored.term_high, stored.term_unit, {}};
   const Index T = std::ssize(stored.term_kinds);
@@ -167,7 +168,7 @@ MotionTerms restore_terms(const StoredBank& stored) {
     for (const double variable : stored.term_variables.col(t)) {
       if (variable == -1.0) continue;
       if (!(variable >= 0.0 && variable < static_cast<double>(terms.variables())))
-        throw DataError("term " + std::to_string(t) + " names a variable that is none of the " +
+        throw DataError("term " + std::to_string(t) + " names a variable outside of the " +
                         std::to_string(terms.variables()));
       term.variables.push_back(static_cast<Index>(variable));
     }
@@ -231,7 +232,7 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
     throw DataError("B has " + std::to_string(stored.B.rows() / n) + " inputs, the parameters " +
                     std::to_string(s.acting_inputs()));
   if (stored.motion_parameters.rows() != p_motion || stored.motion_standard_error.rows() != p_motion)
-    throw DataError("the motion parameters are not as many as their names");
+    throw DataError("the numbers of motion parameters and of their names differ");
   bank.model = stored.model;
   bank.structure = s;
   bank.terms = restore_terms(stored);
@@ -276,7 +277,7 @@ Bank restore_drifting(const StoredDrifting& stored, const Bank& rest) {
   check_lags(s, s.dimension());
   if (stored.parameters.size() != s.parameters()) parameters_do_not_fit(stored.parameters.size(), s.states);
   if (stored.variance.size() != s.states || stored.horizon.size() != stored.factor.size())
-    throw DataError("its arrays are not of one size");
+    throw DataError("its arrays differ in size");
   Bank bank = one_mode_bank(s, stored.parameters, stored.variance);
   bank.model = "varx";
   bank.state_names = rest.state_names;

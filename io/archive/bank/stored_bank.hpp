@@ -9,11 +9,11 @@
 
 namespace modebank {
 
-/// Forms in which the archive stores values whose structs are shaped otherwise. Each `store_` has a `restore_` that
-/// gives back the same bits. Arrays hold one window or mode per column; matrices within a column are row-major.
-/// store_ throws std::invalid_argument for sizes that disagree, restore_ DataError for content that cannot be.
+/// Forms in which the archive stores structs of another shape. Each `store_` has a `restore_` that returns the same
+/// bits. Arrays have one window or mode per column; matrices within a column are row-major. store_ throws
+/// std::invalid_argument for sizes that disagree, restore_ DataError for invalid content.
 
-/// One matrix per mode laid into the columns of a rows * cols x count array. `what`: for messages.
+/// Puts one matrix per mode into the columns of a (rows * cols) x count array. `what`: its name in messages.
 template <class Get>
 Eigen::MatrixXd side_by_side(std::size_t count, Eigen::Index rows, Eigen::Index cols, const char* what, Get get) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -28,30 +28,30 @@ Eigen::MatrixXd side_by_side(std::size_t count, Eigen::Index rows, Eigen::Index 
   }
   return result;
 }
-/// One of them.
+/// One of these matrices.
 Eigen::MatrixXd one_of(const Eigen::MatrixXd& columns, Eigen::Index k, Eigen::Index rows, Eigen::Index cols);
 
 struct StoredChannels {
   std::vector<std::string> names;
   std::vector<std::string> units;
-  std::vector<std::string> averaged = {};  ///< of recorded channels: the names of those that are
+  std::vector<std::string> averaged = {};  ///< for recorded channels: names of the averaged ones
 };
 
-/// Names and units of a motion model's parameters; where a search starts is not kept.
+/// Names and units of a motion model's parameters; start values of searches are not stored.
 StoredChannels store_model_parameters(const std::vector<ModelParameter>& parameters);
 std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored);
 
-/// Throws DataError unless there are as many names as they name, or none at all.
+/// Throws DataError unless the number of names is the number of the columns, or 0.
 void check_count(const std::string& what, const std::vector<std::string>& names, std::size_t named);
 
-/// The structure with the states that its dimension n says. Throws DataError when p parameters do not fit.
+/// The structure with the number of states that its dimension n implies. Throws DataError when p parameters do not fit.
 LinearStructure restore_structure(LinearStructure stored, Eigen::Index dimension, Eigen::Index parameters);
 
-/// Throw DataError for lags that make no model of so many states, for parameters that do not fit them.
+/// Throw DataError for lags that do not fit the number of states, and for a number of parameters that does not fit.
 void check_lags(const LinearStructure& structure, Eigen::Index dimension);
 [[noreturn]] void parameters_do_not_fit(Eigen::Index parameters, Eigen::Index states);
 
-/// A bank's modes side by side (K columns) and its matrices so that their memory is row-major.
+/// A bank's modes as columns (K of them), and its matrices transposed so that memory is row-major.
 struct StoredBank {
   std::string model;
   LinearStructure structure;
@@ -68,7 +68,7 @@ struct StoredBank {
   Eigen::MatrixXd Q_standard_error;           ///< n*n x K, empty without
   Eigen::MatrixXd R_standard_error;           ///< transposed, empty without
   Eigen::MatrixXd transition_standard_error;  ///< transposed, empty without
-  Eigen::MatrixXd transition_weights;         ///< K*d x K: of every mode before, empty without
+  Eigen::MatrixXd transition_weights;         ///< K*d x K, equal for every previous mode; empty without
   Eigen::VectorXd transition_reference;       ///< d, empty without
   Eigen::MatrixXd transition_weight_error;    ///< d x K, empty without
   Eigen::MatrixXd C;                          ///< transposed
@@ -81,7 +81,7 @@ struct StoredBank {
   Eigen::MatrixXd noise_directions;  ///< (n+m) x d; empty unless noise follows state and input
   Eigen::VectorXd noise_weights;     ///< d
   double noise_offset = 0.0;
-  // Terms; all empty without.
+  // Terms; all arrays are empty without terms.
   std::vector<std::string> term_kinds;             ///< T
   Eigen::MatrixXd term_variables;                  ///< 3 x T positions, -1 where there is none
   Eigen::VectorXd term_knots;                      ///< T
@@ -91,10 +91,10 @@ struct StoredBank {
   Eigen::MatrixXd bend_standard_error;             ///< n_y*T x K
 };
 StoredBank store_bank(const Bank& bank);
-/// Fills what StoredBank holds and leaves names, dt_s and the screened modes as they are.
+/// Fills the members of StoredBank in; names, dt_s and screened modes stay as they are.
 Bank restore_bank(const StoredBank& stored, Bank named);
 
-/// The arrays of /drifting, a bank of one mode with running noise; other banks have other arrays.
+/// The arrays of /drifting: a bank of one mode whose noise adapts. Other banks have other arrays.
 struct StoredDrifting {
   LinearStructure structure;
   Eigen::VectorXd parameters;       ///< p
@@ -103,7 +103,7 @@ struct StoredDrifting {
   Eigen::VectorXd horizon, factor;  ///< H
 };
 StoredDrifting store_drifting(const Bank& bank);
-/// Fills what StoredDrifting holds. Throws DataError where sizes do not fit each other.
+/// Fills the members of StoredDrifting in. Throws DataError where sizes do not fit each other.
 Bank restore_drifting(const StoredDrifting& stored, const Bank& rest);
 
 }  // namespace modebank

@@ -11,21 +11,21 @@
 
 namespace modebank {
 
-/// "(a)^2" or "(a)*(b)"; unknown when either is.
+/// "(a)^2" or "(a)*(b)"; unknown when one of them is.
 std::string unit_product(const std::string& a, const std::string& b);
-/// "a/b", "1" for equal units; unknown when either is.
+/// "a/b", "1" for equal units; unknown when one of them is.
 std::string unit_ratio(const std::string& a, const std::string& b);
 
-/// Entry by entry: unit of a variance.
+/// Units of variances, entry by entry.
 Unit squared(const Unit& unit);
 /// Row-major units of a covariance matrix.
 Unit outer(const Unit& unit);
 /// Row-major units of a matrix that maps `from` to `to`.
 Unit ratios(const Unit& to, const Unit& from);
-/// One text for a table's array column: the common unit, or all of them by commas; empty when one is unknown.
+/// One text for a table's array column: the common unit, or all of them with commas; empty when one is unknown.
 std::string joined(const Unit& unit);
 
-/// Units of the recorded channels, and what follows from them for a model's arrays.
+/// Units of the recorded channels, and those of a model's arrays that follow from them.
 class Units {
  public:
   Units() = default;
@@ -33,7 +33,7 @@ class Units {
 
   Unit states() const { return of(states_); }
   Unit inputs() const { return of(inputs_); }
-  /// Of named channels, which may be more than the recorded ones: a lagged one, "wz[k-1]", has its channel's unit.
+  /// Units of named channels, which include lagged ones: "wz[k-1]" has the unit of its channel.
   Unit states(const std::vector<std::string>& names) const { return of(states_, names); }
   Unit inputs(const std::vector<std::string>& names) const { return of(inputs_, names); }
 
@@ -48,8 +48,8 @@ class Units {
 /// Units of a motion model's parameters.
 Unit unit_of(const std::vector<ModelParameter>& parameters);
 
-/// Units of the features of a mixture of these windows by name: of their parameters, of those of their one-lag fits,
-/// "1" of logarithms.
+/// Units of a mixture's features by name: those of the windows' parameters or of their one-lag fits, "1" for
+/// logarithms.
 Unit feature_units(const std::vector<std::string>& names, const WindowFits& fits, const Units& units);
 
 /// Units of theta, the row-major vec of [A B (c)].

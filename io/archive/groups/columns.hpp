@@ -11,14 +11,14 @@
 
 namespace modebank {
 
-/// One member of a row struct as a column of a table.
+/// A member of a row struct as a column of a table.
 template <class Row, class T>
 struct Column {
   std::string name;
   T Row::*member;
   std::string unit = {};
   bool optional = false;  ///< archives of earlier minor versions lack it; their rows keep the member's default
-  Rule rule = rule::any;  ///< of its values
+  Rule rule = rule::any;  ///< for its values
 
   Column obeying(const Rule& other) const {
     Column column = *this;
@@ -32,13 +32,13 @@ Column<Row, T> column(std::string name, T Row::*member, std::string unit = {}) {
   return {std::move(name), member, std::move(unit)};
 }
 
-/// Of shares and probabilities.
+/// Column of shares or probabilities.
 template <class Row, class T>
 Column<Row, T> share_column(std::string name, T Row::*member, std::string unit = {}) {
   return column(std::move(name), member, std::move(unit)).obeying(rule::share_or_missing);
 }
 
-/// Of what is never negative: errors, distances, lengths.
+/// Column of values >= 0: errors, distances, lengths.
 template <class Row, class T>
 Column<Row, T> amount_column(std::string name, T Row::*member, std::string unit = {}) {
   return column(std::move(name), member, std::move(unit)).obeying(rule::not_negative_or_missing);
@@ -49,8 +49,8 @@ Column<Row, T> later_column(std::string name, T Row::*member) {
   return {std::move(name), member, {}, true};
 }
 
-/// What a value is in the file: booleans are 8-bit integers (MATLAB and Octave read HDF5's own as enumerations),
-/// enumerations are their words.
+/// The value in the file. Booleans are 8-bit integers, because MATLAB and Octave read HDF5's own as enumerations.
+/// Enumerations are words.
 template <class T>
 auto to_stored(const T& value) {
   if constexpr (std::is_same_v<T, bool>)
@@ -70,14 +70,14 @@ void from_stored(const Stored& stored, T& value) {
     value = stored != 0;
   } else if constexpr (std::is_enum_v<T>) {
     const auto parsed = parse_name<T>(stored);
-    if (!parsed) throw DataError("'" + stored + "' is not one of the known words");
+    if (!parsed) throw DataError("'" + stored + "' is not a known word");
     value = *parsed;
   } else {
     value = static_cast<T>(stored);
   }
 }
 
-/// All rows' values of one column. Vectors become the columns of a matrix and must be of one length.
+/// All rows' values of one column. Vectors become the columns of a matrix and must have equal lengths.
 template <class Row, class T>
 hdf5::TableColumn encode(const std::vector<Row>& rows, const Column<Row, T>& column) {
   if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
@@ -96,13 +96,13 @@ hdf5::TableColumn encode(const std::vector<Row>& rows, const Column<Row, T>& col
   }
 }
 
-/// What of a column's stored values breaks its rule; empty when nothing does.
+/// First fault of a column's stored values by its rule; empty if there is none.
 inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::TableColumn& column, hsize_t first_row) {
   return std::visit(
       [&](const auto& values) {
         using Values = std::decay_t<decltype(values)>;
         if constexpr (std::is_same_v<Values, std::vector<std::string>>)
-          return broken_text(values, true);  // messages have lines
+          return broken_text(values, true);  // messages may contain line ends
         else if constexpr (std::is_same_v<Values, Eigen::MatrixXd>)
           return broken(rule, sizes, {static_cast<hsize_t>(values.cols()), static_cast<hsize_t>(values.rows())},
                         values.data(), first_row);
@@ -112,8 +112,7 @@ inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::Tabl
       column.values);
 }
 
-/// Reads one column into the rows, which become as many as were read. `judged`: by all rules, not those of positions
-/// alone.
+/// Reads one column into the rows and resizes them. `judged`: applies all rules, else only those on positions.
 template <class Row, class T>
 void decode(const hdf5::TableRows& read, const Column<Row, T>& column, const Sizes& sizes, bool judged,
             std::vector<Row>& rows) {
@@ -121,7 +120,7 @@ void decode(const hdf5::TableRows& read, const Column<Row, T>& column, const Siz
   hdf5::TableColumn stored = encode(std::vector<Row>(), column);
   hdf5::read_column(read, stored);
   if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
-    // One value per measured signal, whatever the table; an empty table's column has the least length.
+    // One value per measured signal, for every table; the column of an empty table has the smallest length.
     const Eigen::Index length = std::get<Eigen::MatrixXd>(stored.values).rows();
     if (const auto signals = sizes.find("n_y");
         signals && read.rows.count > 0 && *signals != static_cast<hsize_t>(length))

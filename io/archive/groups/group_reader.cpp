@@ -7,7 +7,7 @@ namespace modebank {
 
 namespace {
 
-/// A problem that already names its place; the groups around it must not name theirs again.
+/// A problem whose text already has its path; enclosing groups must not add theirs.
 struct PlacedError : DataError {
   using DataError::DataError;
 };
@@ -50,7 +50,7 @@ hdf5::StoredArray GroupReader::open_array(const std::string& name) const {
 }
 
 void GroupReader::check_numbers(const hdf5::StoredArray& array, const Letters& letters, H5T_class_t kind) {
-  if (array.type_class() != kind) throw DataError("holds another kind of value");
+  if (array.type_class() != kind) throw DataError("has values of another type");
   const std::string problem = sizes_.agree(letters, array.shape());
   if (!problem.empty()) throw DataError("has " + problem);
 }
@@ -59,7 +59,7 @@ hdf5::StoredArray GroupReader::open_attribute(const std::string& name, H5T_class
   if (!hdf5::has_attribute(group_.id(), name)) throw DataError("the attribute is missing");
   hdf5::StoredArray array(group_.id(), hdf5::Place::attribute, name);
   if (array.type_class() != kind || array.shape().size() != (scalar ? 0 : 1) || (scalar && array.elements() != 1))
-    throw DataError("the attribute holds another kind of value");
+    throw DataError("the attribute has a value of another type");
   return array;
 }
 
@@ -71,7 +71,8 @@ void GroupReader::constant_attribute(const std::string& name, const std::string&
   guarded(name, [&] {
     std::string found;
     read_attribute(name, found);
-    if (found != expected) throw DataError("the attribute is '" + found + "', this version knows '" + expected + "'");
+    if (found != expected)
+      throw DataError("the attribute is '" + found + "', this version supports '" + expected + "'");
   });
 }
 

@@ -17,16 +17,16 @@ namespace modebank {
 
 class SampleReader;
 
-/// Parts of an archive that a reader leaves in the file.
+/// Parts of an archive that a reader does not read.
 struct LeftOut {
   std::set<std::string> fields;  ///< paths
   bool evaluations = false;      ///< arrays of filters over the samples
 };
 
-/// The reading side of the layout's description: the same calls as GroupWriter. Shapes must agree, and numbers that
-/// become positions or sizes must lie within bounds; the first problem is thrown as DataError. With a list of problems
-/// all values are judged, problems are listed and reading goes on, which is what verification does: it judges large
-/// arrays block by block and leaves them empty.
+/// Reader by the layout's description, with the calls of GroupWriter. Shapes must agree, and numbers that become
+/// positions or sizes must be within bounds; the first problem is thrown as DataError. Verification passes a list of
+/// problems: then all values are checked, problems are listed and reading continues. It checks large arrays block by
+/// block and leaves them empty.
 class GroupReader {
  public:
   static constexpr bool reads = true;
@@ -37,9 +37,9 @@ class GroupReader {
         problems_before_(problems ? problems->size() : 0),
         path_(std::move(path)) {}
 
-  /// Whether all values are judged.
+  /// Whether all values are checked.
   bool verifies() const { return problems_ != nullptr; }
-  /// `parts` that this reader and its member groups leave out must outlive them.
+  /// This reader and its member groups do not read `parts`, which must outlive them.
   void leave_out(const LeftOut& parts) { left_out_ = &parts; }
   bool leaves_evaluations() const { return left_out_ && left_out_->evaluations; }
 
@@ -51,7 +51,7 @@ class GroupReader {
       body(member);
     });
   }
-  /// Reads the part if it is there.
+  /// Reads the part if it exists.
   template <class Body>
   void optional_group(const std::string& name, bool /*present*/, const Sizes& known, Body body) {
     if (has(name)) group(name, known, body);
@@ -100,7 +100,7 @@ class GroupReader {
       check_values(rule, array.shape(), values, 0);
     });
   }
-  /// One that is written block by block.
+  /// An array that is written block by block.
   template <class Source>
   void through_rows(const std::string& name, Source& values, const Letters& letters, const Rule& rule = rule::any) {
     Eigen::MatrixXd all;
@@ -135,7 +135,7 @@ class GroupReader {
   void optional_table(const std::string& name, std::vector<Row>& rows, const Column<Row, T>&... columns) {
     if (has(name)) table(name, rows, columns...);
   }
-  /// A long table, whose rows are handed over one by one: `take(row)`.
+  /// A long table: calls take(row) for each row.
   template <class Make, class Take, class Row, class... T>
   void table_rows(const std::string& name, const Make& /*make*/, Take take, const Column<Row, T>&... columns) {
     constexpr hsize_t rows_at_once = 16384;
@@ -150,34 +150,35 @@ class GroupReader {
     });
   }
 
-  /// Works on the stored form of a value: `body` reads it, `from` makes the value of it, unless something is amiss.
+  /// Reads a value through its stored form: `body` reads the form, `from` makes the value unless there was a problem.
   template <class Value, class To, class From, class Body>
   void through(Value& value, To, From from, Body body) {
     std::invoke_result_t<To, const Value&> stored{};
     body(stored);
     finish([&] { value = from(stored); });
   }
-  /// Runs `step`, which relies on what has been read from this group, unless that had problems.
+  /// Runs `step`, which relies on members read from this group, unless these had problems.
   void finish(const std::function<void()>& step);
-  /// The same for what is only judged.
+  /// The same for a step that only checks.
   void judge(const std::function<void()>& step) {
     if (verifies()) finish(step);
   }
 
-  /// Binds a letter from outside the arrays.
+  /// Binds a letter to an extent that no array of the group has.
   void set_size(const std::string& letter, std::size_t extent) { sizes_.set(letter, extent); }
   /// 0 for a letter that no array has bound.
   Eigen::Index size(const std::string& letter) const {
     return static_cast<Eigen::Index>(sizes_.find(letter).value_or(0));
   }
 
-  /// What the arrays so far have decided, to hand on to a member group.
+  /// Extents bound so far, for a member group.
   Sizes known(const Letters& letters) const { return sizes_.only(letters); }
 
  private:
   friend class SampleReader;
 
-  static constexpr hsize_t most_at_once = hsize_t{1} << 20;  ///< elements that verification holds of an array
+  static constexpr hsize_t most_at_once = hsize_t{1}
+                                          << 20;  ///< number of elements of an array that verification reads at a time
 
   template <class Derived>
   using StoredOf = decltype(to_stored(std::declval<typename Derived::Scalar>()));
@@ -185,7 +186,7 @@ class GroupReader {
   static constexpr H5T_class_t kind_of() {
     return std::is_floating_point_v<StoredOf<Derived>> ? H5T_FLOAT : H5T_INTEGER;
   }
-  /// Makes room for rows of an array of this shape.
+  /// Resizes an array to take rows of this shape.
   template <class Derived>
   static void shape_values(Eigen::PlainObjectBase<Derived>& values, const hdf5::Shape& shape, Eigen::Index rows) {
     if constexpr (Derived::IsVectorAtCompileTime)
@@ -229,7 +230,7 @@ class GroupReader {
   void guarded(const std::string& name, const std::function<void()>& step);
   GroupReader open_member(const std::string& name) const;
   hdf5::StoredArray open_array(const std::string& name) const;
-  /// Throws DataError for values of another kind and for extents that disagree.
+  /// Throws DataError for values of another type and for extents that disagree.
   void check_numbers(const hdf5::StoredArray& array, const Letters& letters, H5T_class_t kind);
   hdf5::StoredArray open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const;
   void read_attribute(const std::string& name, std::string& value) const;

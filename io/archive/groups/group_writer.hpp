@@ -13,11 +13,11 @@
 
 namespace modebank {
 
-/// Binds the letters of an array; throws std::invalid_argument, which names its place, where extents disagree.
+/// Binds the letters of an array; throws std::invalid_argument, with its path, where extents disagree.
 void agree(Sizes& sizes, const std::string& place, const Letters& letters, const hdf5::Shape& shape);
 
-/// Shape of an array that holds one sample, window or mode per column; the middle of three extents must be known
-/// already. `all`: its first extent where `values` are some of its rows, else 0.
+/// Shape of an array with one sample, window or mode per column; for three extents, the middle one must be bound.
+/// `all`: the first extent where `values` are only some of the rows, else 0.
 hdf5::Shape shape_of(Sizes& sizes, const std::string& place, const Letters& letters, hsize_t rows, hsize_t cols,
                      bool is_vector, hsize_t all);
 template <class Derived>
@@ -30,15 +30,15 @@ hdf5::Shape shape_of(Sizes& sizes, const std::string& place, const Letters& lett
 /// The attribute `units`: one for all entries, or one for each entry of the trailing extents.
 void write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape);
 
-/// The writing side of the layout's description (io/archive/layout.hpp): one group of a file in the making.
-/// Arrays hold one sample, window or mode per column, which in memory is just the row-major (count, ...) dataset.
+/// Writer by the layout's description (io/archive/layout.hpp): one group of a file. Arrays have one sample, window or
+/// mode per column, so their memory is the row-major (count, ...) dataset.
 class GroupWriter {
  public:
   static constexpr bool reads = false;
 
   explicit GroupWriter(hdf5::Handle group, std::string path = {}) : group_(std::move(group)), path_(std::move(path)) {}
 
-  /// Makes a member group, or goes on with one that is there, and runs `body(writer)` on it.
+  /// Makes a member group, or reopens an existing one, and calls `body(writer)` with it.
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
     if (!complete()) return;
@@ -46,14 +46,14 @@ class GroupWriter {
     member.sizes_ = known;
     body(member);
   }
-  /// An absent part is left out.
+  /// Writes nothing for an absent part.
   template <class Body>
   void optional_group(const std::string& name, bool present, const Sizes& known, Body body) {
     if (present) group(name, known, body);
   }
 
-  /// From here on calls hand over windows first .. first + count - 1 of `total`: arrays over windows (letter M) are
-  /// written into their rows, everything else with the last of them. `texts`: all that their texts can be.
+  /// Later calls write windows first .. first + count - 1 of `total`. Arrays over windows (letter M) are written into
+  /// these rows, all others with the last part. `texts`: all values that texts may have.
   void windows_from(hsize_t first, hsize_t count, hsize_t total, std::vector<std::string> texts) {
     part_ = Part{first, count, total, std::move(texts)};
   }
@@ -62,12 +62,12 @@ class GroupWriter {
   void attribute(const std::string& name, const T& value, const Rule& = rule::any) {
     if (complete()) write_attribute(name, to_stored(value));
   }
-  /// What older archives lack.
+  /// A member that older archives lack.
   template <class T>
   void optional_attribute(const std::string& name, const T& value, const Rule& = rule::any) {
     attribute(name, value);
   }
-  /// What is left out where it says nothing.
+  /// Leaves out a value that equals the default.
   template <class T>
   void attribute_unless(const T& absent, const std::string& name, const T& value, const Rule& = rule::any) {
     if (value != absent) attribute(name, value);
@@ -82,7 +82,7 @@ class GroupWriter {
   void optional_attribute_texts(const std::string& name, const std::vector<std::string>& texts) {
     if (!texts.empty()) attribute_texts(name, texts);
   }
-  /// Every pair becomes an attribute.
+  /// Writes every pair as an attribute.
   void attributes(const std::vector<std::pair<std::string, std::string>>& pairs) {
     for (const auto& [name, value] : pairs) attribute(name, value);
   }
@@ -96,8 +96,8 @@ class GroupWriter {
     hdf5::write_texts(group_.id(), hdf5::Place::dataset, name, values, {values.size()});
   }
 
-  /// A vector has one letter; a matrix has two, or three when each column is itself a matrix. The middle extent must
-  /// then be known already.
+  /// A vector has one letter. A matrix has two, or three when each column is itself a matrix; then the middle extent
+  /// must be bound.
   template <class Derived>
   void field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
              const Unit& unit = {}, const Rule& = rule::any) {
@@ -115,7 +115,8 @@ class GroupWriter {
                                                    hdf5::memory_type<Stored>(), shape, values.data());
     write_unit(dataset, unit, shape);
   }
-  /// An array whose columns are made as they are written: `values` has windows(), components() and block(first, count).
+  /// An array whose columns are computed as they are written: `values` has windows(), components() and block(first,
+  /// count).
   template <class Source>
   void through_rows(const std::string& name, const Source& values, const Letters& letters, const Rule& = rule::any) {
     constexpr Eigen::Index rows_at_once = 16384;
@@ -128,19 +129,19 @@ class GroupWriter {
                        {{static_cast<hsize_t>(first), static_cast<hsize_t>(block.cols())}}, block.data());
     }
   }
-  /// An array computed from others: for readers of the file, ignored when read back.
+  /// An array computed from others, for users of the file; readers here ignore it.
   template <class Derived>
   void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                      const Unit& unit = {}, const Rule& = rule::any) {
     field(name, values, letters, unit);
   }
-  /// One that older files lack; `make` computes it only when it is written.
+  /// A derived array that older files lack; `make` computes it only for writing.
   template <class Make>
   void optional_derived_field(const std::string& name, Make make, const Letters& letters, const Unit& unit = {},
                               const Rule& = rule::any) {
     optional_field(name, make(), letters, unit);
   }
-  /// An empty array is left out.
+  /// Leaves out an empty array.
   template <class Derived>
   void optional_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                       const Unit& unit = {}, const Rule& = rule::any) {
@@ -153,14 +154,14 @@ class GroupWriter {
                        {columns.unit...});
   }
 
-  /// An empty table is left out.
+  /// Leaves out an empty table.
   template <class Row, class... T>
   void optional_table(const std::string& name, const std::vector<Row>& rows, const Column<Row, T>&... columns) {
     if (!rows.empty()) table(name, rows, columns...);
   }
 
-  /// A long table: make(append) calls append(rows) for one part of the rows after the other, since rows take several
-  /// times as much memory as their columns.
+  /// A long table: make(append) calls append(rows) for each part of the rows, since rows take several times as much
+  /// memory as their columns.
   template <class Make, class Take, class Row, class... T>
   void table_rows(const std::string& name, Make make, const Take& /*take*/, const Column<Row, T>&... columns) {
     std::vector<hdf5::TableColumn> encoded{encode(std::vector<Row>(), columns)...};
@@ -172,16 +173,16 @@ class GroupWriter {
     write_column_units(hdf5::write_table(group_.id(), name, std::move(encoded), count), {columns.unit...});
   }
 
-  /// Works on the stored form of a value: `to` makes it, `body` writes it.
+  /// Writes a value through its stored form: `to` makes the form, `body` writes it.
   template <class Value, class To, class From, class Body>
   void through(const Value& value, To to, From, Body body) {
     const auto stored = to(value);
     body(stored);
   }
 
-  /// Binds a letter from outside the arrays.
+  /// Binds a letter to an extent that no array of the group has.
   void set_size(const std::string& letter, std::size_t extent) { sizes_.set(letter, extent); }
-  /// What the arrays so far have decided, to hand on to a member group.
+  /// Extents bound so far, for a member group.
   Sizes known(const Letters& letters) const { return sizes_.only(letters); }
 
  private:
@@ -196,7 +197,7 @@ class GroupWriter {
     hdf5::write_array(group_.id(), hdf5::Place::attribute, name, hdf5::file_type<Number>(), hdf5::memory_type<Number>(),
                       {}, &value);
   }
-  /// The dataset that parts of windows are written into: made with the first of them.
+  /// The dataset for parts of windows; it is created with the first part.
   hdf5::Handle rows_of(const std::string& name, hid_t file_type, const hdf5::Shape& shape) const;
   void write_column_units(const hdf5::Handle& table, const std::vector<std::string>& units);
 

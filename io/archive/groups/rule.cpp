@@ -24,13 +24,13 @@ std::string number_text(double value) {
   return text.str();
 }
 
-/// Some rows of an array, and which row of the array they begin with.
+/// Some rows of an array, and the index of the first.
 struct Stretch {
   const hdf5::Shape& shape;
   hsize_t first_row;
 };
 
-/// The place of the i-th value: "(3, 0)"; empty for a single one.
+/// Position of the i-th value: "(3, 0)"; empty for a scalar.
 std::string place(const Stretch& rows, std::size_t i) {
   const hdf5::Shape& shape = rows.shape;
   if (shape.empty()) return {};
@@ -43,7 +43,7 @@ std::string place(const Stretch& rows, std::size_t i) {
   return " at (" + text + ")";
 }
 
-/// The bounds with the letter's extent.
+/// The rule with its bound for positions below the letter's extent.
 Rule bound(Rule rule, const Sizes& sizes) {
   if (rule.below.empty()) return rule;
   if (const auto extent = sizes.find(rule.below)) rule.most = static_cast<double>(*extent) - 1.0 + rule.beyond;
@@ -68,7 +68,7 @@ std::string demand(const Rule& rule) {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// How many values one matrix or row takes whose extents are the last `dimensions`.
+/// Number of values in one matrix or row, whose extents are the last `dimensions`.
 std::size_t values_in(const hdf5::Shape& shape, std::size_t dimensions) {
   std::size_t count = 1;
   for (std::size_t d = shape.size() - std::min(dimensions, shape.size()); d < shape.size(); ++d)
@@ -90,16 +90,17 @@ std::string broken_sums(Rule::Form form, const Stretch& rows, std::span<const do
   for (std::size_t begin = 0; row > 0 && begin < values.size(); begin += row) {
     double sum = 0.0;
     for (std::size_t i = begin; i < begin + row; ++i) sum += values[i];
-    const bool above = sum > 1.0 + tolerance, below = sum < 1.0 - tolerance;  // neither where one is missing
+    const bool above = sum > 1.0 + tolerance, below = sum < 1.0 - tolerance;  // neither if a value is missing
     if (above || (below && form == Rule::Form::probabilities))
-      return "holds probabilities that sum to " + number_text(sum) + place(rows, begin);
+      return "has probabilities that sum to " + number_text(sum) + place(rows, begin);
   }
   return {};
 }
 
 using MatrixOfFile = Eigen::Map<const RowMajor>;
 
-/// Whether a matrix could be a covariance where it is known, rounding allowed for: what was computed and is only shown.
+/// Whether a matrix may be a covariance, up to rounding and missing entries. Used for computed values that are only
+/// shown.
 bool is_spread(const MatrixOfFile& matrix) {
   constexpr double rounding = 1e-6;
   double largest = 0.0;
@@ -120,7 +121,8 @@ std::string broken_matrices(Rule::Form form, const Stretch& rows, std::span<cons
     const MatrixOfFile here(values.data() + begin, side, side);
     const bool square = static_cast<std::size_t>(side * side) == matrix;
     if (!square || !(form == Rule::Form::covariances ? is_covariance(here) : is_spread(here)))
-      return "holds a matrix" + place(rows, begin) + " that cannot be a covariance: not symmetric or not definite";
+      return "holds a matrix" + place(rows, begin) +
+             " that is not a covariance: not symmetric or not positive semidefinite";
   }
   return {};
 }
@@ -168,7 +170,7 @@ template std::string broken(const Rule&, const Sizes&, const hdf5::Shape&, const
 std::string broken_text(const std::vector<std::string>& texts, bool whole) {
   for (const std::string& text : texts)
     if (whole ? holds_controls(text) : name_holds_controls(text))
-      return "holds the text \"" + printable_name(text) + "\", which has control characters";
+      return "has the text \"" + printable_name(text) + "\", which contains control characters";
   return {};
 }
 

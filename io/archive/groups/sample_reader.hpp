@@ -10,16 +10,16 @@
 
 namespace modebank {
 
-/// The reading side of arrays over the samples of all runs (letter S): the rows of one run, read in blocks of rows of
-/// several runs where runs are short.
+/// Reader of arrays over the samples of all runs (letter S). It returns the rows of one run, and reads short runs in
+/// blocks of several.
 class SampleReader {
  public:
   static constexpr bool reads = true;
 
-  /// Arrays of the group, which must outlive this. `total`: samples of all runs.
+  /// Reads arrays of the group, which must outlive this. `total`: samples of all runs.
   SampleReader(GroupReader& group, hsize_t total);
 
-  /// From here on fields are those of the run that has these rows. `wanted`: the fields to read; without, all.
+  /// Later fields are those of the run with these rows. `wanted`: the fields to read; null: all.
   void begin_run(const hdf5::Rows& rows, const std::set<std::string>* wanted = nullptr) {
     run_ = rows;
     wanted_ = wanted;
@@ -42,7 +42,7 @@ class SampleReader {
       column.has_problem = false;
     });
   }
-  /// Left empty where no run has it, or where all its rows of this run are NaN or -1.
+  /// Left empty where no run has the array, or where all its rows of this run are NaN or -1.
   template <class Derived>
   void optional_field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                       const Unit& unit = {}, const Rule& rule = rule::any) {
@@ -58,15 +58,15 @@ class SampleReader {
   void finish(const std::function<void()>& step) { group_.finish(step); }
 
  private:
-  /// One array, and rows of it that were read.
+  /// One array, with some rows already read.
   struct Column {
     std::optional<hdf5::StoredArray> array;
-    bool has_problem = false;  ///< stated already
+    bool has_problem = false;  ///< already reported
     hdf5::Rows block = {};
     std::string cells = {};
   };
   Column& column_of(const std::string& name);
-  /// The run's rows as they are in memory, which `cell_bytes` a number make.
+  /// The run's rows as in memory, with `cell_bytes` per number.
   void read_rows(Column& column, hid_t memory_type, std::size_t cell_bytes, void* values) const;
   template <class Derived>
   void read_run(Column& column, const Letters& letters, Eigen::PlainObjectBase<Derived>& values) {

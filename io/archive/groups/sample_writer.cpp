@@ -9,7 +9,7 @@ namespace modebank {
 namespace {
 
 constexpr hsize_t block_rows = 65536;
-/// HDF5 joins the stretches of a selection in a time that grows with the square of their number.
+/// HDF5's time to join parts of a selection grows with the square of their number.
 constexpr std::size_t most_stretches = 256;
 
 }  // namespace
@@ -19,7 +19,7 @@ SampleWriter::SampleWriter(const GroupWriter& group, hsize_t total)
 
 void SampleWriter::begin_run(const hdf5::Rows& rows) {
   end_run();
-  // HDF5 takes the values of a selection in the order of its rows.
+  // HDF5 writes the values of a selection in the order of its rows.
   const bool goes_back = !waiting_.empty() && rows.first < waiting_.back().end();
   const bool follows = !waiting_.empty() && rows.first == waiting_.back().end();
   if (goes_back || waiting_rows_ + rows.count > block_rows || (!follows && waiting_.size() >= most_stretches)) flush();

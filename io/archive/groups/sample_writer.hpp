@@ -9,21 +9,21 @@
 
 namespace modebank {
 
-/// The writing side of arrays over the samples of all runs (letter S): one array per quantity, in which each run has
-/// its rows. Rows are gathered over runs into blocks; a block is written by one call per array. Runs come in any order,
+/// Writer of arrays over the samples of all runs (letter S): one array per quantity, in which each run has its rows.
+/// Rows are collected over runs into blocks, and each block is written by one call per array. Runs come in any order,
 /// each once. An array that no run has is absent; a run without it has NaN or -1 in its rows.
 class SampleWriter {
  public:
   static constexpr bool reads = false;
 
-  /// Arrays go into the group; `total`: samples of all runs.
+  /// Writes arrays into the group; `total`: samples of all runs.
   SampleWriter(const GroupWriter& group, hsize_t total);
 
-  /// From here on fields are those of the run that has these rows.
+  /// Later fields are those of the run with these rows.
   void begin_run(const hdf5::Rows& rows);
-  /// Writes the rows that were gathered.
+  /// Writes the collected rows.
   void flush();
-  /// Flushes; throws std::invalid_argument unless all rows have come.
+  /// Flushes; throws std::invalid_argument unless all rows were written.
   void finish();
 
   /// An array that every run has.
@@ -37,7 +37,7 @@ class SampleWriter {
     shape.front() = total_;
     put(column_of<Number>(name, shape, unit), values.data());
   }
-  /// An empty array is left out.
+  /// Leaves out an empty array.
   template <class Derived>
   void optional_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                       const Unit& unit = {}, const Rule& = rule::any) {
@@ -45,7 +45,7 @@ class SampleWriter {
   }
 
  private:
-  /// One array: the rows that wait, as they are in memory.
+  /// One array, with its waiting rows as in memory.
   struct Column {
     std::string name;
     hdf5::Handle dataset;
@@ -69,21 +69,21 @@ class SampleWriter {
   }
   Column& column_of(const std::string& name, hid_t file_type, hid_t memory_type, const std::string& missing,
                     const hdf5::Shape& shape, const Unit& unit);
-  /// The run's rows of an array.
+  /// Adds the run's rows of an array.
   void put(Column& column, const void* values);
   static void fill(Column& column, hsize_t rows);
   void write_missing(const Column& column) const;
-  /// Completes the arrays that the run lacks.
+  /// Fills the arrays that the run lacks.
   void end_run();
 
   const hdf5::Handle group_;
   std::string path_;
   Sizes sizes_;
-  hsize_t total_, came_ = 0;  ///< rows, and those of the runs that came
+  hsize_t total_, came_ = 0;  ///< number of rows, and of those from runs so far
   hdf5::Rows run_;
-  bool at_once_ = false;  ///< the run is written as it comes, from where it is
+  bool at_once_ = false;  ///< the run is written directly from the caller's memory
   std::vector<Column> columns_;
-  std::vector<hdf5::Rows> waiting_;  ///< whose rows the arrays' waiting values are
+  std::vector<hdf5::Rows> waiting_;  ///< rows of the arrays' waiting values
   hsize_t waiting_rows_ = 0;
 };
 

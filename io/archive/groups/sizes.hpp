@@ -10,21 +10,21 @@
 
 namespace modebank {
 
-/// Unit of every entry of one sample; an empty text is an unknown unit, an empty list stands for "no unit".
+/// Unit of every entry of one sample; an empty text is an unknown unit, an empty list means no unit.
 using Unit = std::vector<std::string>;
 
 /// Letters of the layout (M windows, K modes, n states, ...), one per dimension of an array.
 using Letters = std::vector<std::string>;
 
-/// The extents that the letters have taken so far within one part of the archive. The first array to use a letter
-/// decides it; every later one must agree.
+/// The extents bound to letters so far within one part of the archive. The first array with a letter binds it; every
+/// later one must agree.
 class Sizes {
  public:
   void set(const std::string& letter, hsize_t extent) { extents_[letter] = extent; }
   std::optional<hsize_t> find(const std::string& letter) const;
-  /// Only these letters, as far as they are bound.
+  /// Only these letters, if they are bound.
   Sizes only(const Letters& letters) const;
-  /// Binds free letters; otherwise says what disagrees, e.g. "shape (10, 3), but M is 12". Empty when all is well.
+  /// Binds free letters. Returns a disagreement, e.g. "shape (10, 3), but M is 12"; empty without one.
   std::string agree(const Letters& letters, const hdf5::Shape& shape);
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Everything that modebank installs. Including it asks for no more than the components that a program links; the
-/// functions of others are declared and cannot be called.
+/// All installed headers. A program may include this and link only some components; functions of the others are
+/// declared, but cannot be called.
 
 #include "modebank/archive/load_bank.hpp"
 #include "modebank/base/dual.hpp"

@@ -4,7 +4,7 @@
 
 namespace modebank::test {
 
-/// What the stages before a bank leave, field by field.
+/// Compares the results of the stages before a bank, field by field.
 void expect_same(const Recording& actual, const Recording& expected);
 void expect_same(const LagReport& actual, const LagReport& expected);
 void expect_same(const WindowFits& actual, const WindowFits& expected);

@@ -11,7 +11,7 @@
 #include "tests/io/archive/archive_patch.hpp"
 #include "tests/support/effort.hpp"
 
-// HDF5 1.10 leaks inside when a metadata checksum is wrong; the sanitizer build shall still report our own leaks.
+// HDF5 1.10 leaks at a wrong metadata checksum. The sanitizer build must still report leaks of modebank.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }     // NOLINT
 extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }  // NOLINT
 
@@ -55,7 +55,7 @@ TEST_F(ArchiveDamage, TruncatedFilesAreErrorsAtEveryLength) {
 
 TEST_F(ArchiveDamage, AFileThatHdf5CannotOpenIsCalledDamaged) {
   std::string bytes = read_file(path);
-  bytes[bytes.find("OHDR") + 5] ^= 1;  // of the root group
+  bytes[bytes.find("OHDR") + 5] ^= 1;  // object header of the root group
   test::write_file(path, bytes);
   const auto says = ThrowsMessage<DataError>(AllOf(HasSubstr(path.string()), HasSubstr("damaged")));
   EXPECT_THAT([&] { read_archive(path); }, says);
@@ -94,7 +94,7 @@ TEST_F(ArchiveDamage, ForeignHdf5AndOtherSchemasAreNamed) {
   test::patch_text_attribute(path, "/", "schema_version", "4.0");
   expect_unreadable("schema 4.0 is newer than 3.0");
   test::patch_text_attribute(path, "/", "schema_version", "2.0");
-  expect_unreadable("made by modebank 0.1; run again");
+  expect_unreadable("made by modebank 0.1; make the archive again");
   test::patch_text_attribute(path, "/", "schema_version", "two");
   expect_unreadable("is not a version");
   test::patch_text_attribute(path, "/", "schema_version", "3.0");
@@ -102,7 +102,7 @@ TEST_F(ArchiveDamage, ForeignHdf5AndOtherSchemasAreNamed) {
   expect_unreadable("not a modebank archive");
 }
 
-// What the first release with archives wrote: the table of candidates has grown at its end since.
+// An archive of the first release; since then the table of candidates has more columns at its end.
 TEST_F(ArchiveDamage, AnArchiveOfAnEarlierMinorVersionOpens) {
   const Archive whole = test::full_archive(2, 1);
   write_archive(path, whole);
@@ -151,7 +151,7 @@ TEST_F(ArchiveDamage, HostileContentIsAnErrorAndNeverMore) {
   refuses("/bank/weight", {3}, test::Kind::text, "another kind");
 }
 
-/// Whatever an archive holds: weights of switches that no filter could run do not become a bank.
+/// Invalid weights of transitions in an archive never become a bank.
 TEST(StoredSwitches, OfOtherSizesOrNoNumbersAreRefused) {
   const Bank bank = *test::full_archive(2, 1).bank;
   const auto refuses = [&](void (*change)(StoredBank&), const std::string& reason) {
@@ -173,7 +173,7 @@ TEST(StoredSwitches, OfOtherSizesOrNoNumbersAreRefused) {
       "weights of the transition");
   refuses([](StoredBank& s) { s.transition_weights(0, 1) += 1.0; }, "differ by the mode before");
   refuses([](StoredBank& s) { s.transition_weights.resize(0, 0); }, "without transition weights");
-  StoredBank huge = store_bank(bank);  // finite is enough: log odds have limits of their own
+  StoredBank huge = store_bank(bank);  // valid because finite: log odds are bounded elsewhere
   huge.transition_weights.setConstant(1e300);
   EXPECT_NO_THROW(restore_bank(huge, Bank()));
 }
@@ -183,9 +183,9 @@ TEST_F(ArchiveDamage, ContentElsewhereIsRefused) {
   expect_unreadable("keeps its content in another file");
 }
 
-/// Reads, inspects and verifies the archive with pieces of its metadata damaged in turn.
+/// Reads, inspects and verifies the archive, with one part of its metadata damaged after the other.
 void use_with_damaged_metadata(const fs::path& path) {
-  constexpr int stride = test::in_release(4, 15);  // not every piece: each costs a whole verification
+  constexpr int stride = test::in_release(4, 15);  // not every part, since each needs a whole verification
   int piece = 0;
   const std::string bytes = read_file(path);
   for (const char* signature : {"OHDR", "OCHK", "FRHP", "FHDB", "BTHD", "BTLF"})

@@ -15,7 +15,7 @@
 
 namespace modebank::test {
 
-/// An archive under a name in a folder of its own.
+/// An archive's path in an empty folder.
 class ArchiveFile : public ::testing::Test {
  protected:
   void SetUp() override { write_archive(path, full_archive(2, 1)); }

@@ -6,25 +6,25 @@
 
 namespace modebank::test {
 
-/// Every field of the Archive struct filled, three runs, K = 3 modes, M = 9 windows. Entry i of sample (window, mode)
-/// s of an array is base + 100 s + i + 1/3: tests/golden/generate/check_archive.py states the same formula, and the
-/// third has no finite binary expansion, so a lost bit shows.
+/// An Archive with every field filled: three runs, K = 3 modes, M = 9 windows. Entry i of sample (window, mode) s of an
+/// array is base + 100 s + i + 1/3, as in tests/golden/generate/check_archive.py. A third has no finite binary
+/// expansion, so a lost bit shows.
 Archive full_archive(Index states, Index inputs);
 
-/// Its part on evaluation, with every field filled, for the runs and the bank that the archive holds.
+/// Adds evaluations, with every field filled, for the archive's runs and bank.
 void add_evaluation(Archive& archive);
 
 /// rows x cols of base + 100 col + row + 1/3.
 Eigen::MatrixXd pattern(Index rows, Index cols, double base);
 
-/// The same over 10^4: what lies in 0 .. 1.
+/// The same over 10^4, for values in 0 .. 1.
 Eigen::MatrixXd share_pattern(Index rows, Index cols, double base);
 /// The same, but the last row makes each column sum to 1.
 Eigen::MatrixXd probability_pattern(Index rows, Index cols, double base);
-/// side^2 x count: pattern, but each column is a symmetric matrix, whose lower half is its upper one.
+/// side^2 x count: pattern, but each column is a symmetric matrix with mirrored lower half.
 Eigen::MatrixXd spread_pattern(Index side, Index count, double base);
 
-/// All fields of both archives are the same bits (NaN included).
+/// Expects all fields of both archives to have the same bits (NaN included).
 void expect_same(const Archive& actual, const Archive& expected);
 void expect_same(const Bank& actual, const Bank& expected);
 ::testing::AssertionResult same_bits(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected);

@@ -1,4 +1,4 @@
-// The part of the archive of archive_fixture.cpp that says what filters said and how good that was.
+// The part of archive_fixture.cpp with evaluations and scores.
 #include "ident/base/not_a_number.hpp"
 #include "tests/io/archive/archive_fixture.hpp"
 
@@ -20,7 +20,7 @@ RunEvaluation make_evaluation(Index n, Index samples, Index count) {
   evaluation.mode_probability_predicted = probability_pattern(count, samples, 78.0);
   evaluation.mode_probability = probability_pattern(count, samples, 79.0);
   evaluation.spread_share = share_pattern(samples, 1, 81.0);
-  if (count == 1) return evaluation;  // as without filter.smooth
+  if (count == 1) return evaluation;  // without filter.smooth
   evaluation.smoothed_state = pattern(n, samples, 82.0);
   evaluation.smoothed_covariance = spread_pattern(n, samples, 83.0);
   evaluation.viterbi_mode.resize(samples);

@@ -51,7 +51,7 @@ TEST(ArchiveRoundTrip, KeepsANoiseComponent) {
   expect_same(round_trip(archive), archive);
 }
 
-/// Features of one-lag fits and how many windows candidates were compared on.
+/// Features of one-lag fits, and the number of windows on which candidates were compared.
 TEST(ArchiveRoundTrip, KeepsFeaturesThatAreNotTheWindowsOwn) {
   Archive archive = full_archive(2, 1);
   MixtureResult& mixture = *archive.mixture;
@@ -156,7 +156,7 @@ TEST(ArchiveRoundTrip, LargeArchivesAreMadeInTheFileSystem) {
   expect_same(read_archive(folder.path() / "a.h5"), archive);
 }
 
-/// One run of the linear system with a name beyond ASCII, 300 samples.
+/// A run of the linear system, with a name beyond ASCII and 300 samples.
 Recording streamed_recording() {
   Recording recording;
   recording.states = {{"wz", "rad/s"}};

@@ -1,4 +1,4 @@
-// bank_loader ARCHIVE: the least a robot links to load a bank.
+// bank_loader ARCHIVE: links only what a robot needs to load a bank.
 #include <cstdio>
 #include <exception>
 

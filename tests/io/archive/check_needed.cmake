@@ -1,4 +1,4 @@
-# Holds a program to the shared libraries that it may need itself: cmake -DPROGRAM=... -DALLOWED=regex -P check_needed.cmake
+# Checks which shared libraries a program needs itself: cmake -DPROGRAM=... -DALLOWED=regex -P check_needed.cmake
 execute_process(COMMAND objdump -p ${PROGRAM} OUTPUT_VARIABLE header COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "NEEDED +[^\n]+" needed "${header}")
 if(NOT needed)

@@ -1,4 +1,4 @@
-// Checkpoints that were changed behind the program's back.
+// Checkpoints that another program changed.
 #include "io/archive/filter_checkpoint.hpp"
 
 #include <gmock/gmock.h>

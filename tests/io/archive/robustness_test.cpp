@@ -1,5 +1,5 @@
-// Archives that another program changed and signed: shapes and positions are refused by every reader, values are found
-// by verification.
+// Archives that another program changed and signed. Every reader refuses wrong shapes and positions; verification finds
+// wrong values.
 #include <cmath>
 #include <limits>
 
@@ -22,7 +22,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std:
 
 class Robustness : public ArchiveFile {
  protected:
-  /// Found by verification. Afterwards the archive is whole again.
+  /// Expects verification to find the change, then restores the archive.
   void finds(const std::function<void()>& change, const std::string& reason) {
     change();
     EXPECT_THAT(verify_archive(path).problems, Contains(HasSubstr(reason)));
@@ -34,7 +34,7 @@ class Robustness : public ArchiveFile {
   void finds_attribute(const std::string& object, const std::string& name, double value) {
     finds([&] { patch_number_attribute(path, object, name, value); }, object + "/" + name + ": holds");
   }
-  /// Refused by readers, too.
+  /// Expects readers to refuse it, too.
   void refuses(const std::function<void()>& change, const std::string& reason) {
     change();
     expect_unreadable(reason);
@@ -93,19 +93,19 @@ TEST_F(Robustness, D2MatricesThatAreNoCovariances) {
     finds_number("/bank/Q", 0, variance, "/bank/Q: holds");
     finds_number("/baseline/R", 3, variance, "/baseline/R: holds");
   }
-  finds_number("/bank/Q", 1, 0.5, "/bank/Q: holds a matrix at (0, 0, 0) that cannot be a covariance");  // not symmetric
+  finds_number("/bank/Q", 1, 0.5, "/bank/Q: holds a matrix at (0, 0, 0) that is not a covariance");  // not symmetric
   finds(
       [&] {
         patch_number(path, "/bank/Q", 5, 50.0);
         patch_number(path, "/bank/Q", 6, 50.0);
       },
-      "/bank/Q: holds a matrix at (1, 0, 0) that cannot be a covariance");  // not definite
+      "/bank/Q: holds a matrix at (1, 0, 0) that is not a covariance");  // not positive semidefinite
   finds_number("/mixture/covariances", 1, 1e3, "/mixture/covariances: holds a matrix");
 }
 
 TEST_F(Robustness, D2ProbabilitiesThatDoNotSumToOne) {
   finds_number("/bank/transition", 0, 2.0, "/bank/transition: holds 2");
-  finds_number("/bank/transition", 0, 0.5, "/bank/transition: holds probabilities that sum to 0.8");
+  finds_number("/bank/transition", 0, 0.5, "/bank/transition: has probabilities that sum to 0.8");
   finds_number("/bank/initial_probability", 0, 0.0, "/bank/initial_probability: holds probabilities");
   finds_number("/mixture/weights", 0, 0.1, "the weights sum to");
   finds_number("/mixture/responsibilities", 0, 1.5, "/mixture/responsibilities: holds 1.5");
@@ -134,7 +134,7 @@ TEST_F(Robustness, ComputedSpreadsSharesAndAmountsThatCannotBe) {
         "/bank/parameter_covariance", "/evaluation/bank/covariance", "/evaluation/bank/innovation_covariance",
         "/evaluation/bank/smoothed_covariance"})
     finds_number(spread, 0, -1.0, spread + ": holds a matrix at (0");
-  finds_number("/windows/covariance", 1, 1e6, "that cannot be a covariance");  // not symmetric
+  finds_number("/windows/covariance", 1, 1e6, "that is not a covariance");  // not symmetric
   for (const std::string error :
        {"/windows/standard_error", "/windows/global/noise_variance", "/bank/parameter_standard_error",
         "/bank/Q_standard_error", "/bank/R_standard_error", "/bank/transition_standard_error",
@@ -154,7 +154,7 @@ TEST_F(Robustness, ProbabilitiesOfModesThatDoNotSumToOne) {
   finds_number("/evaluation/bank/mode_probability", 1, 0.9, "mode_probability: holds probabilities that sum to");
   finds_number("/evaluation/bank/mode_probability_predicted", 0, 0.9, "holds probabilities that sum to");
   finds_number("/mixture/responsibilities", 0, 0.999, "responsibilities: holds probabilities that sum to");
-  patch_number(path, "/evaluation/bank/mode_probability", 1, nan);  // not known
+  patch_number(path, "/evaluation/bank/mode_probability", 1, nan);  // unknown
   EXPECT_THAT(verify_archive(path).problems, ::testing::IsEmpty());
 }
 
@@ -209,7 +209,7 @@ TEST_F(Robustness, OnlyVerificationJudgesValues) {
   EXPECT_NO_THROW(read_archive(path, Evaluations::in_file));
 }
 
-/// As h5repack lays them out.
+/// The layout of h5repack.
 TEST_F(Robustness, ArraysInChunksAreRead) {
   replace_by_chunks(path, "/bank/A", {3, 2, 2});
   EXPECT_THAT(verify_archive(path).problems, ::testing::IsEmpty());

@@ -1,4 +1,4 @@
-"""Writes sound HDF5 files of kinds that loggers leave behind: h5py_files.py FOLDER.
+"""Writes valid HDF5 files as loggers make them: h5py_files.py FOLDER.
 
 Each holds time = k / 4, wz = k and a = 2 k for k = 0 .. 19.
 """
@@ -25,7 +25,7 @@ def write(name, make=None, **options):
 
 
 def preallocated(fill):
-    """40 rows declared in chunks of 5, of which HDF5 allocates those that are written."""
+    """40 rows in chunks of 5; HDF5 allocates only the written ones."""
     def make(file):
         for column, values in columns.items():
             file.create_dataset(column, (2 * N,), "f8", chunks=(5,), fillvalue=fill)[:N] = values
@@ -65,4 +65,4 @@ with h5py.File(folder / "writer.h5", "w", libver="latest") as file:
         file[column].resize((N,))
         file[column][...] = values
         file[column].flush()
-    shutil.copy(folder / "writer.h5", folder / "swmr.h5")  # as a recorder leaves it that is killed
+    shutil.copy(folder / "writer.h5", folder / "swmr.h5")  # a copy as a killed recorder leaves it

@@ -9,7 +9,7 @@
 
 namespace modebank::test {
 
-/// Writes MATLAB files of any version by libmatio.
+/// Writes MATLAB files of any version with libmatio.
 class MatWriter {
  public:
   MatWriter(const std::filesystem::path& path, mat_ft version, matio_compression compression = MAT_COMPRESSION_ZLIB)
@@ -31,7 +31,7 @@ class MatWriter {
     std::array<std::size_t, 2> shape{1, value.size()};
     return Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF8, 2, shape.data(), value.data(), 0);
   }
-  /// `elements`: the fields of each struct of the array.
+  /// `elements`: fields of each struct in the array.
   static matvar_t* structure(const char* name, std::vector<const char*> fields,
                              const std::vector<std::vector<matvar_t*>>& elements) {
     std::array<std::size_t, 2> shape{1, elements.size()};

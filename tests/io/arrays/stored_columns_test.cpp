@@ -40,7 +40,7 @@ std::vector<double> numbers(const ColumnStore& store, const std::string& path) {
   return store.numbers(position(store, path));
 }
 
-/// Which version, and whether values are compressed.
+/// Version of the file, and whether it is compressed.
 class MatFiles : public ::testing::TestWithParam<std::pair<mat_ft, matio_compression>> {
  protected:
   MatWriter writer() const { return {file, GetParam().first, GetParam().second}; }
@@ -79,7 +79,7 @@ TEST_P(MatFiles, GiveVectorsMatricesAndNestedStructs) {
   EXPECT_EQ(store->columns()[position(*store, "log.imu.wz")].group, "log.imu");
 }
 
-/// As `out.ScopeData` of To Workspace and Scope blocks: time, and signals with values and a label each.
+/// `out.ScopeData` of To Workspace and Scope blocks: a time, and signals with values and labels.
 TEST_P(MatFiles, NameSignalsOfSimulinksStructureWithTime) {
   const auto signal = [](const char* label, std::vector<double> values, std::size_t rows) {
     return std::vector<matvar_t*>{MatWriter::matrix("values", std::move(values), rows),
@@ -111,7 +111,7 @@ TEST(MatObjects, AreNamedWithTheLineThatConvertsThem) {
   EXPECT_THAT(matlab_object("", "a.b", "log.mat"), HasSubstr("a.b is a MATLAB object"));
 }
 
-/// tests/golden/generate/mat_objects.py: by scipy, and one as MATLAB's own class system is stored.
+/// From tests/golden/generate/mat_objects.py: written by scipy, and one in the form of MATLAB's own class system.
 TEST(MatObjects, AreNamedAsFarAsMatioDoes) {
   const auto message = [](const char* name) {
     return message_of<ConfigurationError>([&] { open_mat_columns(test::golden_dir() / name); });
@@ -129,7 +129,7 @@ TEST(OtherFormats, AreRefusedInMatiosWords) {
   const TemporaryFolder folder;
   test::write_file(folder.path() / "log.mat", "MATLAB 5.0 MAT-file");
   EXPECT_THAT(message_of<DataError>([&] { open_mat_columns(folder.path() / "log.mat"); }),
-              AllOf(HasSubstr("log.mat: not a MATLAB file that matio reads"), HasSubstr("save plain -struct s -v7")));
+              AllOf(HasSubstr("log.mat: matio cannot read this MATLAB file"), HasSubstr("save plain -struct s -v7")));
 }
 
 class Hdf5Files : public ::testing::Test {
@@ -219,7 +219,7 @@ TEST_F(Hdf5Files, NameMatlabsObjects) {
               HasSubstr("speed is a MATLAB timeseries: convert it in MATLAB with s = struct('t', speed.Time"));
 }
 
-/// tests/golden/generate/pandas_files.py
+/// From tests/golden/generate/pandas_files.py.
 TEST(PandasFiles, GiveTheirColumns) {
   struct Case {
     const char* name;

@@ -1,4 +1,4 @@
-// Numbers as text files write them: decimal marks, marks of thousands, words for a missing value.
+// Numbers in text files: decimal marks, thousands separators, words for missing values.
 #include "io/csv/csv_number.hpp"
 
 #include <gtest/gtest.h>

@@ -43,7 +43,7 @@ TEST(TemporaryFile, StandsBesideItsTargetUnderANewName) {
 TEST(Robustness, D16TheNextRunTakesAwayWhatAKilledOneLeft) {
   const TemporaryFolder folder;
   const fs::path left = leave_behind(folder.path() / "k.h5"), other_target = leave_behind(folder.path() / "x.csv");
-  // A file that is being written stays, and so does one of another name.
+  // A file that is being written stays, and so does one with another name.
   const fs::path living = temporary_path(folder.path() / "k.h5"), old = folder.path() / ".k.h5.1-0.tmp",
                  other = folder.path() / ".k.modebank-0123456789ag.tmp";
   for (const fs::path& path : {living, old, other}) std::ofstream(path) << "half";
@@ -57,7 +57,7 @@ TEST(Robustness, D16TheNextRunTakesAwayWhatAKilledOneLeft) {
   EXPECT_EQ(text_of(folder.path() / "k.h5"), "whole");
 }
 
-/// Killed between any two writes: the target is absent or whole.
+/// After a kill between any two writes the target is absent or complete.
 TEST(Robustness, AKilledWriterLeavesTheTargetAsItWas) {
   const TemporaryFolder folder;
   const fs::path target = folder.path() / "k.h5";
@@ -82,7 +82,7 @@ TEST(Robustness, D16SymbolicLinksThatAUserNamesAreWrittenThrough) {
   fs::create_directory(folder.path() / "far");
   fs::create_symlink("far/target.h5", folder.path() / "relative");
   fs::create_symlink(folder.path() / "relative", folder.path() / "absolute");
-  for (const char* text : {"made", "replaced"}) {  // the first where the link dangles
+  for (const char* text : {"made", "replaced"}) {  // at first the link leads to nothing
     replace_file(final_target(folder.path() / "absolute"), {text});
     EXPECT_EQ(text_of(folder.path() / "far/target.h5"), text);
     EXPECT_TRUE(fs::is_symlink(folder.path() / "absolute"));
@@ -105,7 +105,7 @@ TEST(Robustness, D16ALinkToItselfOrToADeviceIsRefused) {
   refused(device, "not a regular file");
 }
 
-/// In a folder that others sent, a file of ours takes the place of a link of its name.
+/// In a folder from somebody else, a new file replaces a link of its name.
 TEST(OwnFiles, TakeThePlaceOfLinks) {
   const TemporaryFolder folder;
   const fs::path theirs = folder.path() / "theirs", own = folder.path() / "own";
@@ -161,7 +161,7 @@ TEST(Outputs, AreNeitherWhatIsReadNorOfAnotherForm) {
   refused(page, " is read by this command");
   const fs::path other = folder.path() / "other.txt";
   write_file(other, "a text of mine");
-  refused(other, " is there and not replaced, for it is not a page");
+  refused(other, " exists and is not replaced, because it is not a page");
   fs::create_symlink("page.html", folder.path() / "link");
   refused(folder.path() / "link", " is read by this command");
   fs::create_hard_link(page, folder.path() / "second");

@@ -7,7 +7,7 @@
 
 namespace modebank::test {
 
-/// The message of the `Error` that `action` throws; a failure when it throws nothing or something else.
+/// The message of the `Error` that `action` throws; a test failure for another exception or none.
 template <class Error, class Action>
 std::string message_of(Action&& action) {
   try {

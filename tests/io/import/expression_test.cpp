@@ -23,7 +23,7 @@ using ::testing::NanSensitiveDoubleEq;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 using Columns = std::map<std::string, std::vector<double>>;
 
-/// At 0, 0.5, 1, ... seconds, as many rows as the columns have (one without any).
+/// Values at 0, 0.5, 1, ... seconds, one per row of the columns (one row without columns).
 std::vector<double> values(const std::string& text, const Columns& columns = {}) {
   const Expression expression("data.derive", text);
   std::vector<std::span<const double>> operands;
@@ -82,7 +82,7 @@ TEST(Expression, NamesChannelsThatAreNoIdentifiersInQuotes) {
 
 TEST(Expression, TakesYawFromAQuaternion) {
   for (const double yaw : {-3.0, -0.4, 0.0, 1.2, 3.1}) {
-    const double pitch = 0.3, roll = -0.7;  // Rz(yaw) Ry(pitch) Rx(roll), composed by the half-angle formula
+    const double pitch = 0.3, roll = -0.7;  // rotation Rz(yaw) Ry(pitch) Rx(roll), composed by the half-angle formula
     const double cy = std::cos(yaw / 2), sy = std::sin(yaw / 2), cp = std::cos(pitch / 2), sp = std::sin(pitch / 2),
                  cr = std::cos(roll / 2), sr = std::sin(roll / 2);
     EXPECT_NEAR(value("yaw(x, y, z, w)", {{"x", {sr * cp * cy - cr * sp * sy}},
@@ -94,7 +94,7 @@ TEST(Expression, TakesYawFromAQuaternion) {
 }
 
 TEST(Expression, RotatesVectors) {
-  // A gyro on its side: gravity on +y becomes gravity on +z when turned by a quarter about x.
+  // A gyro on its side: a quarter turn about x moves gravity from +y to +z.
   EXPECT_NEAR(value("rotate_z(pi/2, 0, 0, 0.1, 9.8, 0.2)"), 9.8, 1e-12);
   EXPECT_NEAR(value("rotate_y(pi/2, 0, 0, 0.1, 9.8, 0.2)"), -0.2, 1e-12);
   EXPECT_NEAR(value("rotate_x(0, pi/2, 0, 1, 2, 3)"), 3.0, 1e-12);
@@ -139,7 +139,7 @@ TEST(Expression, SaysWhereItIsNone) {
   EXPECT_THAT(error("a = 2"), HasSubstr("a comparison is =="));
   EXPECT_THAT(error("a ? 1"), HasSubstr("lacks its : B"));
   EXPECT_THAT(error("'a"), HasSubstr("does not end"));
-  EXPECT_THAT(error("2v"), HasSubstr("at character 1 (\"2v\"): a number must end"));
+  EXPECT_THAT(error("2v"), HasSubstr("at character 1 (\"2v\"): a number and a name need an operator"));
   EXPECT_THAT(error("diff()"), HasSubstr("diff needs an argument"));
   EXPECT_THAT(error("1 + diff(a, b)"), HasSubstr("at character 11 (\", b)\"): a comma"));
   EXPECT_THAT(error("1e999"), HasSubstr("fits a double"));
@@ -159,7 +159,7 @@ TEST(Expression, BoundsWhatIsHostile) {
   EXPECT_EQ(value(sum), 900.0);
 }
 
-/// Whatever is written, it is a formula or a ConfigurationError.
+/// Any text is a formula or a ConfigurationError.
 TEST(Expression, SurvivesRandomText) {
   std::mt19937_64 generator(1);
   const std::vector<std::string> pieces{"a",       "'b c'", "1", ".5e3", "+",    "-",    "*",  "/",    "^",     "(",

@@ -111,7 +111,7 @@ TEST_F(FilePatterns, PartnersNeedTheSameStars) {
               AllOf(HasSubstr("pro_*.csv"), HasSubstr("imu.csv"), HasSubstr("both or neither")));
 }
 
-/// Lists of files, and recordings in parts.
+/// Lists of files, and parts of recordings.
 class ListedFiles : public FilePatterns {
  protected:
   RunFiles listed(const std::string& text, const char* key = "data.inputs") const {
@@ -164,7 +164,7 @@ TEST_F(ListedFiles, SayWhatIsWrongWithAList) {
   EXPECT_THAT(error("a.csv, b*.csv"), HasSubstr("a * stands alone"));
   EXPECT_THAT(error("a.csv,"), HasSubstr("an entry is empty"));
   EXPECT_THAT(error("a.csv, none.csv"), HasSubstr("none.csv"));
-  EXPECT_THAT(error("a.csv, b/a.csv"), HasSubstr("would both be run a"));
+  EXPECT_THAT(error("a.csv, b/a.csv"), HasSubstr("would both have the run name a"));
 }
 
 }  // namespace

@@ -128,12 +128,12 @@ TEST_F(ImportDerived, NamesWhatIsWrongBeforeAnySampleIsRead) {
   EXPECT_THAT(said({"a = steeer + 1"}), HasSubstr("data.derive, a: no column \"steeer\", did you mean steer?"));
   EXPECT_THAT(said({"a = a + 1"}), HasSubstr("a uses itself"));
   EXPECT_THAT(said({"a = b", "b = a"}),
-              HasSubstr("a uses b: a derived channel may use earlier ones alone, so derive b"));
+              HasSubstr("a uses b, but a derived channel may only use earlier ones; put the line of b before it"));
   EXPECT_THAT(said({"a = x +"}), HasSubstr("data.derive, a: at character 4 (\"end\"): the expression ends too early"));
-  EXPECT_THAT(said({"a = x", "a = y"}), HasSubstr("a is derived twice"));
-  EXPECT_THAT(said({"x = y"}), HasSubstr("imu_0.csv has a column of that name"));
+  EXPECT_THAT(said({"a = x", "a = y"}), HasSubstr("a is defined twice"));
+  EXPECT_THAT(said({"x = y"}), HasSubstr("imu_0.csv already has a column of that name"));
   EXPECT_THAT(said({"a"}), HasSubstr("no = after the name; a derived channel is NAME [unit] = EXPRESSION"));
-  EXPECT_THAT(said({"a [m = x"}), HasSubstr("bracket does not close"));
+  EXPECT_THAT(said({"a [m = x"}), HasSubstr("bracket of the unit is not closed"));
   EXPECT_THAT(said({"1a = x"}), HasSubstr("no name"));
   EXPECT_THAT(said({"a = 2"}), HasSubstr("names no channel"));
   EXPECT_THAT(said({}, "x > xx"), HasSubstr("data.where: no column \"xx\""));

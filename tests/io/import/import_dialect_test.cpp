@@ -1,4 +1,4 @@
-// The same table in other dialects and with other stamps is the same recording.
+// The same table in other dialects, or with other stamps, gives the same recording.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ using ::testing::IsEmpty;
 constexpr int log_rows = 40;
 constexpr std::int64_t epoch_ns = 1'714'557'600'000'000'000;  // 2024-05-01T10:00:00Z
 
-/// 50 Hz and a jitter of microseconds; every stamp is a whole number of these.
+/// 50 Hz with a jitter of microseconds; every stamp is a whole number of microseconds.
 std::int64_t stamp_ns(int k) { return 20'000'000LL * k + 1'000LL * (k * 7 % 13); }
 double x_of(int k) { return 0.25 * k - 0.0625 * (k % 5); }
 double u_of(int k) { return 1.5 - 0.125 * (k % 7); }
@@ -64,7 +64,7 @@ class ImportDialect : public test::ImportFixture {
     return table("time,x,u\n", [](int k) { return fmt::format("{},{},{}", seconds(k), x_of(k), u_of(k)); });
   }
 
-  /// `content` gives what plain() does, with times from its first sample on.
+  /// Expects `content` to give the values of plain(), with times from its first sample on.
   void expect_plain(const std::string& content, std::int64_t origin_ns = 0) {
     const Trajectory run = read(content).recording.runs.at(0);
     ASSERT_EQ(run.samples(), log_rows);
@@ -211,7 +211,7 @@ TEST_F(ImportDialect, MarksOfThousands) {
   EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:3: column t: \"0.5\" is"));
   options.format.decimal = DecimalMark::automatic;
   write("log.csv", "t,x,u\n0.1,1.5,1\n0.2,\"2,499\",1\n");
-  EXPECT_THAT(error<DataError>(), HasSubstr("\"2,499\" may be thousands or have a decimal comma"));
+  EXPECT_THAT(error<DataError>(), HasSubstr("\"2,499\" is ambiguous (thousands or a decimal comma)"));
 }
 
 TEST_F(ImportDialect, WordsForMissingValuesAreCounted) {
@@ -229,8 +229,8 @@ TEST_F(ImportDialect, WordsForMissingValuesAreCounted) {
   EXPECT_TRUE(std::isnan(data.recording.runs[0].state(0, 7)));
   EXPECT_TRUE(std::isnan(data.recording.runs[0].state(0, 30)));
   EXPECT_EQ(data.recording.runs[0].state(0, 8), x_of(8));
-  EXPECT_THAT(data.notes, AllOf(Contains(HasSubstr("\"NA\" stands for a missing value 2 times (data.na)")),
-                                Contains(HasSubstr("\"-\" stands for a missing value 1 time (data.na)"))));
+  EXPECT_THAT(data.notes, AllOf(Contains(HasSubstr("\"NA\" is read as a missing value 2 times (data.na)")),
+                                Contains(HasSubstr("\"-\" is read as a missing value 1 time (data.na)"))));
   options.format.na = {"-999"};
   EXPECT_TRUE(std::isnan(read("time,x,u\n0,1,2\n1,-999.0,2\n2,3,2\n3,4,2\n").recording.runs[0].state(0, 1)));
   write("log.csv", table("time,x,u\n", text));
@@ -273,7 +273,7 @@ TEST_F(ImportDialect, LinesAboveTheTableAreSkipped) {
   write("log.csv", "a title\n\ntime,x,u\n0,1,2\n1,oh,3\n");
   EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:5: column x: \"oh\"")) << "lines are the file's";
   options.format.skip_rows = 50;
-  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("is empty behind its first 50 lines (data.skip_rows)"));
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("is empty after its first 50 lines (data.skip_rows)"));
 }
 
 TEST_F(ImportDialect, TheTableIsFoundBehindItsTitle) {
@@ -293,7 +293,7 @@ TEST_F(ImportDialect, TheTableIsFoundBehindItsTitle) {
                   numbers("1,2\n") + numbers("1,2\n")),
             60U);
   for (const std::string& none : {plain(), numbers("1,2\n"), "t,x,note\n" + numbers("1,2,\"a, b\"\n"), std::string(),
-                                  "\"time\" \"wz\"\n" + numbers("\"1\" 0.1 2\n"),  // R's header, one short
+                                  "\"time\" \"wz\"\n" + numbers("\"1\" 0.1 2\n"),  // R's header, which lacks one name
                                   std::string("only a title\nand another line\n")})
     EXPECT_EQ(lines(none), 0U) << none;
 }
@@ -360,7 +360,7 @@ TEST_F(ImportDialect, UnitsRowAndComments) {
 TEST_F(ImportDialect, Utf16) {
   expect_plain(utf16(plain(), true));
   expect_plain(utf16(plain(), false));
-  expect_plain(utf16(plain(), true).substr(2));  // without its mark
+  expect_plain(utf16(plain(), true).substr(2));  // without its byte-order mark
 }
 
 TEST_F(ImportDialect, NoHeader) {
@@ -442,10 +442,10 @@ TEST_F(ImportDialect, DisorderIsExplained) {
 
 TEST_F(ImportDialect, BytesOfNoFormatAndAWrongSeparatorAreNamed) {
   write("log.csv", std::string("\x01\x02\0\x04 time", 9));
-  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("no known format: it begins with the bytes 01 02 00 04"));
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("nor a known format; it begins with the bytes 01 02 00 04"));
   write("log.csv", plain());
   options.format.separator = Separator::semicolon;
-  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("columns: time,x,u (a single one: data.separator"));
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("columns: time,x,u (a single one; set data.separator"));
 }
 
 TEST_F(ImportDialect, OctavesTextIsNamed) {

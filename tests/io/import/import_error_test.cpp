@@ -70,7 +70,7 @@ TEST_F(ImportError, UnreadableFile) {
   std::filesystem::create_directory(folder.path() / "pro_2.csv");
   write("imu_2.csv", "time,x\n0,1\n1,2\n");
   EXPECT_EQ(error<ConfigurationError>(),
-            path("pro_2.csv") + ": a folder without metadata.yaml and without .bag, .mcap or .db3 files");
+            path("pro_2.csv") + ": the folder has neither metadata.yaml nor .bag, .mcap or .db3 files");
 }
 
 TEST_F(ImportError, TextMissingValueAndWidth) {
@@ -86,10 +86,10 @@ TEST_F(ImportError, TextMissingValueAndWidth) {
 
 TEST_F(ImportError, TimeBackwardsOrRepeated) {
   write("imu_1.csv", "time,x\n0,1\n1,2\n0.5,3\n");
-  EXPECT_EQ(error<DataError>(), path("imu_1.csv") + ":4: column time: 0.5 after 1: time going backwards or repeated");
+  EXPECT_EQ(error<DataError>(), path("imu_1.csv") + ":4: column time: time goes backwards or repeats: 0.5 after 1");
   write_run("1");
   write("pro_1.csv", "time,note,u\n0,\"a\nb\",1\n1,,2\n1,,3\n");
-  EXPECT_EQ(error<DataError>(), path("pro_1.csv") + ":5: column time: 1 after 1: time going backwards or repeated");
+  EXPECT_EQ(error<DataError>(), path("pro_1.csv") + ":5: column time: time goes backwards or repeats: 1 after 1");
 }
 
 TEST_F(ImportError, TimeBackwardsInsideOneRunOfAFile) {
@@ -97,7 +97,7 @@ TEST_F(ImportError, TimeBackwardsInsideOneRunOfAFile) {
   options.states.clear();
   options.run = "lap";
   write("all.csv", "lap,time,x,u\na,5,1,1\nb,1,1,1\na,6,1,1\nb,0,1,1\n");
-  EXPECT_EQ(error<DataError>(), path("all.csv") + ":5: column time: 0 after 1: time going backwards or repeated");
+  EXPECT_EQ(error<DataError>(), path("all.csv") + ":5: column time: time goes backwards or repeats: 0 after 1");
 }
 
 TEST_F(ImportError, RowCountsMustAgree) {

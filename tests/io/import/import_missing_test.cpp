@@ -1,4 +1,4 @@
-// data.missing and data.disorder: what happens to imperfect logs that the user decided to read.
+// data.missing and data.disorder: reading imperfect logs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -58,8 +58,8 @@ TEST_F(ImportMissing, GapsInTimeSplitTheRunInEveryMode) {
     EXPECT_THAT(names(data), ElementsAre("a.1", "a.2"));
     EXPECT_EQ(data.recording.runs[0].time_s.transpose(), row({0, 1, 2, 3}));
     EXPECT_EQ(data.recording.runs[1].time_s.transpose(), row({8.5, 9.5, 14.5})) << "5 periods are no gap";
-    EXPECT_THAT(data.notes,
-                ElementsAre(StartsWith("steps scatter by 179 %"), "run a has gaps: it is taken as 2 runs, a.1 to a.2"));
+    EXPECT_THAT(data.notes, ElementsAre(StartsWith("steps scatter by 179 %"),
+                                        "run a has gaps, so it is split into 2 runs, a.1 to a.2"));
   }
 }
 

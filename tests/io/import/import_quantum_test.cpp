@@ -1,4 +1,4 @@
-// data.quantum: what is taken for rounded.
+// data.quantum: detection of rounded states.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ class ImportQuantum : public test::ImportFixture {
  protected:
   ImportQuantum() { options.states.clear(); }
 
-  /// A noisy signal of standard deviation near one, in multiples of `quantum`, with its inputs or between them.
+  /// Writes a noisy signal with standard deviation near one in multiples of `quantum`, at the inputs' times or between.
   void write_noisy(double quantum) const {
     for (const std::string name : {"a", "b"}) {
       std::string text = "time,x,u\n";

@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-constexpr double mean_tolerance = 1e-12;  // another order of summation over at most 1590 values below one
+constexpr double mean_tolerance = 1e-12;  // summation order over at most 1590 values below one
 
 DataOptions ice_options() {
   DataOptions options;

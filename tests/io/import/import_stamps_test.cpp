@@ -1,4 +1,4 @@
-// Times as loggers write them: units by name, size and spacing, calendars and clocks, one form for all files.
+// Times from typical loggers: units by name, size and spacing, calendars and clocks, one format for all files.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,14 +23,14 @@ class ImportStamps : public test::ImportFixture {
     options.inputs = "log.csv";
   }
 
-  /// A table of the named column of times, x and u.
+  /// A table with this column of times, x and u.
   static std::string table(const std::string& time, const std::function<std::string(int)>& stamp) {
     std::string content = time + ",x,u\n";
     for (int k = 0; k < stamped_rows; ++k) content += fmt::format("{},{},{}\n", stamp(k), 0.25 * (k % 17), k % 3);
     return content;
   }
 
-  /// The run as it is read by that column; its steps are `step_s` but for `tolerance_s`.
+  /// Expects steps of `step_s` +- `tolerance_s` in the run that is read with this column.
   void expect_even(const std::string& time, double step_s, const std::function<std::string(int)>& stamp,
                    double tolerance_s = 1e-9) {
     write("log.csv", table(time, stamp));
@@ -98,18 +98,19 @@ TEST_F(ImportStamps, SerialDaysOfSpreadsheetsAndMatlab) {
       "Time", 60.0, [](int k) { return fmt::format("{:.6f}", 45764.5 + k / 1440.0); }, 0.1);
   expect_even(
       "Timestamp", 10.0, [](int k) { return fmt::format("{:.9f}", 45764.25 + k / 8640.0); }, 1e-3);
-  // As seconds: 1,440 Hz, off the full seconds of days; 288 Hz, which is doubted because days would be 5 minutes apart.
+  // As seconds these would be 1,440 Hz and not at full seconds of days, or 288 Hz, which is doubtful because as days
+  // they are 5 minutes apart.
   expect_even(
       "Time", 1.0 / 1440.0, [](int k) { return fmt::format("{:.9f}", 45764.51234 + k / 1440.0); }, 1e-8);
   expect_even(
       "Time", 1.0 / 288.0, [](int k) { return fmt::format("{:.9f}", 45764.5 + k / 288.0); }, 1e-8);
-  EXPECT_THAT(import().notes, Contains(HasSubstr("are taken for seconds (data.time_unit = d reads days)")));
+  EXPECT_THAT(import().notes, Contains(HasSubstr("are taken for seconds (for days set data.time_unit = d)")));
 }
 
 TEST_F(ImportStamps, OneUnitForAllFilesOfAPattern) {
   options.inputs = "px4_*.csv";
   options.time = {"timestamp"};
-  for (const auto& [early, late] : {std::pair{9'990, 9'990}, {9'990, 10'010}}) {  // by itself the former is ms
+  for (const auto& [early, late] : {std::pair{9'990, 9'990}, {9'990, 10'010}}) {  // alone the first is read as ms
     write("px4_early.csv",
           table("timestamp", [&, step = early](int k) { return fmt::to_string(500'000'000 + step * k); }));
     write("px4_late.csv",
@@ -123,10 +124,10 @@ TEST_F(ImportStamps, OneUnitForAllFilesOfAPattern) {
                                         HasSubstr("px4_late.csv:2"), HasSubstr("data.time_unit = UNIT")));
 }
 
-/// Seconds since 1970 of 2017-07-30T23:58:00Z.
+/// 2017-07-30T23:58:00Z in seconds since 1970.
 constexpr std::int64_t start_s = 1'501'459'080;
 
-/// Second k behind 23:58:00 on the 30th of July, by the letters of fmt's arguments: day, hour, minute, second.
+/// Second k after 23:58:00 on the 30th of July, with fmt's arguments day, hour, minute, second.
 std::string late_evening(const std::string& form, int k) {
   const int second = 23 * 3600 + 58 * 60 + k;
   return fmt::format(fmt::runtime(form), fmt::arg("d", 30 + second / 86400), fmt::arg("H", second / 3600 % 24),
@@ -203,7 +204,7 @@ TEST_F(ImportStamps, OneFileDecidesForTheOthers) {
                                         HasSubstr("data.time_format = PATTERN")));
 }
 
-/// A date that both readings take for the same day decides nothing for other files.
+/// A date that both readings take for the same day does not determine those of other files.
 TEST_F(ImportStamps, AFileOfOneReadingAloneDoesNotDecide) {
   options.inputs = "run_*.csv";
   const auto dated = [&](const std::string& name, const std::string& date) {
@@ -243,7 +244,7 @@ TEST_F(ImportStamps, DateAndTimeOfDayInTwoColumns) {
 }
 
 TEST_F(ImportStamps, RowsFromBeforeTheClockWasSetAreLeftOut) {
-  for (const bool runs_on : {false, true}) {  // a clock that stands at 0, or runs from it
+  for (const bool runs_on : {false, true}) {  // a clock that stays at 0, or runs from it
     write("log.csv", table("time", [&](int k) {
             return fmt::format("{:.1f}", k < 5 ? (runs_on ? 0.1 * k : 0.0) : 1.7e9 + 0.1 * k);
           }));

@@ -1,4 +1,4 @@
-// States and inputs of several tables of one file, as recordings have them, and runs that are split into blocks.
+// States and inputs from several tables of one file, as in recordings, and runs split into blocks.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -118,7 +118,7 @@ TEST_F(ImportLabel, MustBeThere) {
   EXPECT_THAT(error<ConfigurationError>(), HasSubstr("no column \"ground\""));
 }
 
-/// The first state and the input are of one topic, the second state of another: its rows are other instants.
+/// The first state and the input are in one topic, the second state is in another, with other times.
 TEST(ImportTopics, AStateOfAnotherTopicIsBroughtToTheOthersTimes) {
   MODEBANK_NEEDS_SHARED_DATA();
   const auto imported = [](std::vector<std::string> states) {
@@ -131,7 +131,7 @@ TEST(ImportTopics, AStateOfAnotherTopicIsBroughtToTheOthersTimes) {
   };
   const std::string gyro = "/imu/data.angular_velocity.y";
   const Trajectory both = imported({"/husky_velocity_controller/odom.twist.twist.linear.x", gyro});
-  const Trajectory alone = imported({gyro});  // input and state are of two topics
+  const Trajectory alone = imported({gyro});  // input and state in two topics
   ASSERT_GT(both.samples(), 3900);
   EXPECT_EQ(both.input, alone.input);
   EXPECT_TRUE(near(both.state.row(1), alone.state.row(0), 1e-12));
@@ -172,7 +172,7 @@ TEST(ReadColumns, LeaveOutANameThatComesTwice) {
   const FileColumns read = read_columns(*reader, reader->tables(), choice_of(file.string(), reader->tables(), {}));
   EXPECT_EQ(std::get<std::vector<double>>(read.tables.at(0).at(1)), (std::vector<double>{1, 2}));
   EXPECT_TRUE(std::holds_alternative<std::monostate>(read.tables.at(0).at(3)));
-  EXPECT_THAT(read.notes, ElementsAre("left out: column \"spare\", which comes 2 times"));
+  EXPECT_THAT(read.notes, ElementsAre("column \"spare\" is left out, because it occurs 2 times"));
   EXPECT_THROW(choice_of(file.string(), reader->tables(), {"spare"}), ConfigurationError);
 }
 

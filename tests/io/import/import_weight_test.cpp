@@ -47,9 +47,10 @@ TEST_F(ImportWeight, StaysWithItsSampleWhenGapsSplitTheRun) {
 TEST_F(ImportWeight, MustBeANumberThatIsNotNegativeAndNotMissing) {
   options.states.clear();
   write("pro_a.csv", "time,x,u,w\n0,1,9,1\n1,2,9,-0.5\n2,3,9,1\n");
-  EXPECT_EQ(error<DataError>(), path("pro_a.csv") +
-                                    ":3: column w: -0.5 is negative: a weight is at least 0, and 0 leaves the "
-                                    "sample's transition out");
+  EXPECT_EQ(error<DataError>(),
+            path("pro_a.csv") +
+                ":3: column w: the weight -0.5 is negative; a weight is at least 0, and 0 leaves the "
+                "sample's transition out");
   for (const Missing missing : {Missing::error, Missing::gap, Missing::predict}) {
     options.missing = missing;
     write("pro_a.csv", "time,x,u,w\n0,1,9,1\n1,2,9,NaN\n2,3,9,1\n");

@@ -1,4 +1,4 @@
-// What a damaged recording is told to be; that none does worse is what tests/fuzz tells.
+// Messages on damaged recordings; tests/fuzz covers other damage.
 #include "tests/io/recording/recording_fixture.hpp"
 
 namespace modebank::test {
@@ -20,7 +20,7 @@ TEST(DamagedRecordings, AreNamed) {
     return folder.path() / name;
   };
   EXPECT_THAT(error_of(written("a.bag", "#ROSBAG V1.2\nabc")),
-              HasSubstr("a bag of format 1.2, of which only 2.0 is read"));
+              HasSubstr("this bag has format 1.2, but only 2.0 is supported"));
   EXPECT_THAT(error_of(written("b.bag", "#ROSBAG V2.0\n")), HasSubstr("damaged at byte 13"));
   EXPECT_THAT(error_of(written("c.mcap", "\x89MCAP0\r\n")), HasSubstr("damaged at byte"));
   EXPECT_THAT(error_of(written("d.mcap", "time,x\n0,1\n")), HasSubstr("no recording of ROS"));
@@ -35,7 +35,7 @@ TEST(DamagedRecordings, AreNamed) {
               HasSubstr("encrypted (rosbag/AesCbcEncryptor)"));
 }
 
-/// A database whose tables are views could compute for ever, or call what its maker likes.
+/// Views of a malicious database could compute for ever, or call arbitrary functions.
 TEST(DamagedRecordings, DatabasesOfOtherTablesAreRefused) {
   const TemporaryFolder folder;
   const auto database = [&](const std::string& name, const std::string& sql) {
@@ -59,9 +59,9 @@ TEST(DamagedRecordings, DatabasesOfOtherTablesAreRefused) {
 TEST(SplitRecordings, AreListedByTheirFolder) {
   const TemporaryFolder folder;
   const auto error = [&] { return message_of<ConfigurationError>([&] { RosLog(folder.path(), KnownDefinitions()); }); };
-  EXPECT_THAT(error(), HasSubstr("a folder without metadata.yaml and without .bag, .mcap or .db3 files"));
+  EXPECT_THAT(error(), HasSubstr("the folder has neither metadata.yaml nor .bag, .mcap or .db3 files"));
   write_file(folder.path() / "metadata.yaml", "a:\n  relative_file_paths:\n    - ../../etc/passwd\n");
-  EXPECT_THAT(error(), HasSubstr("is no file of its folder"));
+  EXPECT_THAT(error(), HasSubstr("is not a file in its folder"));
 }
 
 }  // namespace modebank::test

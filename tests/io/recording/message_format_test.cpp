@@ -49,7 +49,7 @@ const std::string little = bytes({0, 1, 0, 0}), big = bytes({0, 0, 0, 0});
 
 TEST(MessageFormat, CdrPutsEveryValueAtAMultipleOfItsSize) {
   const std::string definition = "uint8 a\nint16 b\nuint8 c\nint32 d\nuint8 e\nfloat64 f\n";
-  // a at 0, b at 2, c at 4, d at 8, e at 12, f at 16: counted behind the header.
+  // Offsets after the header: a at 0, b at 2, c at 4, d at 8, e at 12, f at 16.
   const std::string payload =
       little + bytes({1, 9, 2, 0, 3, 9, 9, 9, 4, 0, 0, 0, 5, 9, 9, 9, 0, 0, 0, 0, 0, 0, 0xf8, 0x3f});
   EXPECT_EQ(value_of(definition, payload, "a").number, 1.0);
@@ -95,7 +95,7 @@ TEST(MessageFormat, NestedTypesTakeTheirPackageFromWhereTheyAreNamed) {
   EXPECT_EQ(value_of(definition, little + bytes({1, 2, 3}), "inner[1].x").number, 2.0);
 }
 
-/// Which of the two a column means cannot be told.
+/// With two fields of the same name a column is ambiguous.
 TEST(MessageFormat, OneNameIsOfOneField) {
   EXPECT_THAT(message_of<DefinitionError>([] { schema_of("uint8 x\nfloat64[2] x\n"); }), HasSubstr("two fields \"x\""));
 }
@@ -120,7 +120,7 @@ TEST(MessageFormat, WideStringsAreFourOrTwoBytesPerCharacter) {
   const std::string two = little + bytes({3, 0, 0, 0, 'a', 0, 0xac, 0x20, 'b', 0});
   EXPECT_EQ(value_of("wstring s\n", four, "s").text, "a\u20ac");
   EXPECT_EQ(value_of("wstring s\n", two, "s", Dialect::ros2, 2).text, "a\u20acb");
-  // Which of them it is, a message tells.
+  // Messages determine which of them is meant.
   Connection connection{"/t", "p/msg/T", Connection::Encoding::cdr, "cdr", "wstring s\n", "ros2msg", 1};
   EXPECT_EQ(choose_decoder(connection, KnownDefinitions(), {four}).wide_bytes, 4u);
   EXPECT_EQ(choose_decoder(connection, KnownDefinitions(), {two}).wide_bytes, 2u);
@@ -159,7 +159,7 @@ TEST(MessageFormat, WhatDoesNotFitSaysWhere) {
               }),
               HasSubstr("has no end"));
   EXPECT_THAT(error("int32 a\n", bytes({0, 7, 0, 0, 1, 0, 0, 0})), HasSubstr("encapsulation 0x0007"));
-  // The last word may be filled up.
+  // The last word may be padded.
   EXPECT_NO_THROW(columns_of(*schema_of("uint8 a\n"), little + bytes({1, 0, 0, 0}), 4));
 }
 
@@ -169,14 +169,14 @@ TEST(MessageFormat, DefinitionsThatCannotBeAreRefused) {
   };
   EXPECT_THAT(error("Self x\n===\nMSG: p/Self\nSelf y\n"), HasSubstr("p/Self contains itself"));
   EXPECT_THAT(error("q/Missing x\n"), HasSubstr("no definition of q/Missing"));
-  EXPECT_THAT(error("int32[99999999999999999999] x\n"), HasSubstr("is no array's size"));
+  EXPECT_THAT(error("int32[99999999999999999999] x\n"), HasSubstr("is not the size of an array"));
   EXPECT_THAT(error("int32 9x-y\n"), HasSubstr("is no field"));
   std::string deep = "A0 x\n";
   for (int i = 0; i < 40; ++i) deep += "===\nMSG: p/A" + std::to_string(i) + "\nA" + std::to_string(i + 1) + " x\n";
   EXPECT_THAT(error(deep), HasSubstr("nested more than 32 deep"));
 }
 
-/// Sixteen levels of 4,000 empty values each would take for ever to walk through.
+/// Sixteen levels of 4,000 empty values each would take for ever to visit.
 TEST(MessageFormat, NothingIsWalkedThroughThatHasNoBytes) {
   std::string definition = "A0[4000] x\nuint8 a\n";
   for (int i = 0; i < 16; ++i)
@@ -188,7 +188,7 @@ TEST(MessageFormat, NothingIsWalkedThroughThatHasNoBytes) {
 }
 
 TEST(MessageFormat, ATypeBetweenReleasesIsReadByTheOneThatFits) {
-  // sensor_msgs/Range without and with the variance that ROS 2 Iron added.
+  // sensor_msgs/Range without the variance that ROS 2 Iron added, and with it.
   const std::string header = little + bytes({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0});
   const std::string range = header + bytes({1, 9, 9}) + std::string(16, '\0');
   Connection connection{"/r", "sensor_msgs/msg/Range", Connection::Encoding::cdr, "cdr", "", "", 1};

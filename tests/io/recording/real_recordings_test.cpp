@@ -32,7 +32,7 @@ std::map<std::string, std::vector<double>> read_numbers(const std::filesystem::p
 
 struct Extract {
   std::string file, topic;
-  std::map<std::string, std::string> columns;  ///< of the extract: of the message
+  std::map<std::string, std::string> columns;  ///< columns of the extract, by column of the message
 };
 
 const std::vector<Extract> extracts{
@@ -77,13 +77,13 @@ TEST(RealRecordings, TheHuskyBagHasTheNumbersOfItsExtracts) {
     for (const auto& [name, field] : extract.columns) {
       const std::vector<double>& read = topic.column(field).numbers;
       ASSERT_EQ(read.size(), expected.at(name).size());
-      // As printed: nine decimals.
+      // Printed with nine decimals.
       for (std::size_t k = 0; k < read.size(); ++k) ASSERT_NEAR(read[k], expected.at(name)[k], 0.5000001e-9) << field;
     }
     for (const auto& [name, field] : {std::pair{"t", "header.stamp"}, std::pair{"t_rec", "receive_time"}}) {
       const std::vector<std::int64_t>& read = topic.column(field).exact;
       ASSERT_EQ(read.size(), expected.at(name).size());
-      // Stamps are doubles there: whole seconds and rest apart lose nothing here.
+      // Stamps there are doubles; whole seconds and the rest apart are exact.
       for (std::size_t k = 0; k < read.size(); ++k)
         ASSERT_NEAR(static_cast<double>(read[k] % 1'000'000'000'000) / 1e9, std::fmod(expected.at(name)[k], 1000.0),
                     2.4e-7)
@@ -121,7 +121,7 @@ TEST(RealRecordings, TheHuskyBagIsWhatRosbagReads) {
   }
 }
 
-/// Both containers of a recording hold the same messages.
+/// Both containers have the same messages.
 class BothContainers : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(BothContainers, Agree) {
@@ -143,7 +143,7 @@ TEST(RealRecordings, EveryPrimitiveOfCdrHasItsValue) {
   const RosLog log(shared_data_dir() / "ros2" / "cdr_test_0.mcap", KnownDefinitions());
   const LogTopic& arrays = log.topics()[topic_position(log, "/array_topic")];
   EXPECT_EQ(arrays.messages, 4u);
-  // Defaults in the definition say what the recorder's fixture wrote: the most and the least of each type.
+  // The definition's defaults are the values in the recorder's fixture: the largest and the smallest of each type.
   const auto values = [&](const std::string& field, std::size_t i) {
     return read_column(log, "/array_topic", "/array_topic." + field + "[" + std::to_string(i) + "]").numbers.front();
   };
@@ -170,12 +170,12 @@ TEST(RealRecordings, WhatADoubleDoesNotHoldIsSaid) {
   std::vector<std::string> notes;
   log.read({{topic_position(log, "/array_topic"), {{"/array_topic.int64_values_default[1]"}}}}, notes);
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_THAT(notes.front(), ::testing::HasSubstr("4 values are beyond 2^53"));
+  EXPECT_THAT(notes.front(), ::testing::HasSubstr("4 values above 2^53"));
 }
 
 TEST(RealRecordings, TypesThatNobodyDefinesAreReadByAFolder) {
   MODEBANK_NEEDS_SHARED_DATA();
-  // A copy without its own definitions, which read as "not there".
+  // A copy without definitions, as if they were missing.
   const TemporaryFolder folder;
   const std::string copy = (folder.path() / "copy.db3").string();
   std::filesystem::copy_file(shared_data_dir() / "ros2" / "cdr_test_0.db3", copy);

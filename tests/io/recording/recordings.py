@@ -43,7 +43,7 @@ def reference(bag_path, out_path):
 
 
 def ros2_definition(text):
-    """A definition of ROS 1 as ROS 2 writes it: a header has no count, and times are messages."""
+    """A definition of ROS 1 in ROS 2's form: a header has no count, and times are messages."""
     text = re.sub(r"^uint32 seq\s*$", "", text, flags=re.MULTILINE)
     text = re.sub(r"^time ", "builtin_interfaces/Time ", text, flags=re.MULTILINE)
     return re.sub(r"^Header ", "std_msgs/Header ", text, flags=re.MULTILINE)
@@ -104,7 +104,7 @@ def compare(first, *others):
             for stage in (name for name in archive if name in stages):
                 archive[stage].visititems(lambda name, item: found.__setitem__(f"{stage}/{name}", item[()].tobytes() if item.dtype.kind != "O" else repr(item[()].tolist()))
                                           if isinstance(item, h5py.Dataset) else None)
-            found["data/runs"] = archive["data/runs"][()][["name", "role", "first", "samples"]].tolist()  # but for the file
+            found["data/runs"] = archive["data/runs"][()][["name", "role", "first", "samples"]].tolist()  # except for the file name
         return found
 
     reference = contents(first)

@@ -7,7 +7,7 @@
 
 namespace modebank::test {
 
-/// A minute of the Husky's drive, written by python3-rosbag and by this folder's writers of MCAP and db3.
+/// A minute of the Husky's drive, written by python3-rosbag and by writers for MCAP and db3 in this folder.
 class SameDrive : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -51,7 +51,7 @@ TEST_F(SameDrive, IsTheSameAsRos1WritesIt) {
     EXPECT_TRUE(log.notes().empty());
     for (const LogTopic& topic : reference.topics()) {
       WholeTopic ros1 = read_topic(log, topic.name);
-      // ROS 1 alone counts its headers.
+      // Only ROS 1 numbers its headers.
       const auto seq = std::find_if(ros1.topic.columns.begin(), ros1.topic.columns.end(),
                                     [&](const MessageColumn& c) { return c.path == topic.name + ".header.seq"; });
       ASSERT_NE(seq, ros1.topic.columns.end());
@@ -62,7 +62,7 @@ TEST_F(SameDrive, IsTheSameAsRos1WritesIt) {
   }
 }
 
-/// The hash is of the messages that are read and of what they are read by, not of the file that holds them.
+/// The hash covers the messages that are read and their definitions, not the container.
 TEST_F(SameDrive, HasTheSameHashHoweverItIsStored) {
   MODEBANK_NEEDS_DRIVE();
   const auto hash = [](const std::string& name, const std::vector<std::string>& topics) {
@@ -84,7 +84,7 @@ TEST_F(SameDrive, HasTheSameHashHoweverItIsStored) {
   EXPECT_NE(hash("drive_none.bag", used), hash("drive_none.bag", {"/imu/data"}));
 }
 
-/// What is cut off in the middle gives a prefix of the whole.
+/// A truncated recording gives the first part of the whole.
 TEST_F(SameDrive, CutOffGivesTheMessagesBefore) {
   MODEBANK_NEEDS_DRIVE();
   const TemporaryFolder cut;
@@ -106,7 +106,7 @@ TEST_F(SameDrive, CutOffGivesTheMessagesBefore) {
   }
 }
 
-/// A bag that was not closed has no index: its header says 0.
+/// A bag that was not closed has no index; its header has 0.
 TEST_F(SameDrive, WithoutIndexIsReadWhole) {
   MODEBANK_NEEDS_DRIVE();
   const RosLog whole(file("drive_lz4.bag"), KnownDefinitions());

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Recordings whose topics are easily mixed up, and readers of their own for bags (python3-rosbag), MCAP and db3.
+"""Recordings whose topics are easily confused, and independent readers for bags (python3-rosbag), MCAP and db3.
 
 Usage: topics.py write FOLDER            the recordings
        topics.py read FILE OUT.json      {topic: [[receive time [ns], value of Float64 or null], ...]}, by receive time
@@ -47,7 +47,7 @@ float64 w
 CDR_FLOAT = ("std_msgs/msg/Float64", "float64 data\n", lambda value: b"\0\1\0\0" + struct.pack("<d", value))
 
 
-# ROS 1 bags, as `rosbag record` writes them.
+# ROS 1 bags as from `rosbag record`.
 
 def fields(values):
     return b"".join(struct.pack("<I", len(k) + 1 + len(v)) + k + b"=" + v for k, v in values.items())
@@ -65,7 +65,7 @@ def bag_connection(number, topic, publisher, kind):
 
 
 def write_bag(path, topics, messages, publisher=lambda topic: {}, index=True, kind=FLOAT, compression="none", chunks=1):
-    """topics: of each connection; messages: [(connection, time [ns], value)]; publisher: what else its data hold."""
+    """topics: of each connection; messages: [(connection, time [ns], value)]; publisher: further fields of its data."""
     connections = [bag_connection(c, topic, publisher(topic), kind) for c, topic in enumerate(topics)]
     out, infos, size = b"", b"", -(-len(messages) // chunks)
     begin = 13 + 4096 + 8
@@ -91,7 +91,7 @@ def write_bag(path, topics, messages, publisher=lambda topic: {}, index=True, ki
                      + b" " * (4096 - len(head)) + out + (b"".join(connections) + infos if index else b""))
 
 
-# MCAP: channels stand where they are first used.
+# MCAP: channels are defined before their first use.
 
 def text(value):
     data = value if isinstance(value, bytes) else value.encode()
@@ -107,7 +107,7 @@ def mcap_channel(number, topic):
 
 
 def write_mcap(path, chunks, chunked=True, summary=True):
-    """chunks: [({channel: topic}, [(channel, time [ns], value)])]; a channel's topic holds until the next."""
+    """chunks: [({channel: topic}, [(channel, time [ns], value)])]; a channel keeps its topic until it gets another.""" 
     schema = mcap_record(3, struct.pack("<H", 1) + text(CDR_FLOAT[0]) + text("ros2msg") + text(CDR_FLOAT[1]))
     out, indexes, last = b"\x89MCAP0\r\n" + mcap_record(1, text("ros2") + text("test")), [], {}
     for topics, messages in chunks:
@@ -137,7 +137,7 @@ def write_mcap(path, chunks, chunked=True, summary=True):
 
 
 def write_db3(path, topics, messages, killed=False):
-    """killed: as a recorder leaves it that never moved its journal into the file."""
+    """killed: in the state after a killed recorder, with the journal not yet in the file."""
     database = sqlite3.connect(path.with_suffix(".live") if killed else path)
     if killed:
         database.execute("PRAGMA journal_mode = WAL")
@@ -187,7 +187,7 @@ def drive(folder):
     write_mcap(folder / "drive.mcap", [({0: "/cmd", 1: "/speed"}, messages)])
 
 
-# Readers of their own.
+# Independent readers.
 
 def read_bag(path):
     import rosbag

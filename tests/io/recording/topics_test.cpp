@@ -1,4 +1,4 @@
-// Topics by whose numbers connections are written, against readers of other people's making (topics.py).
+// Topics with reassigned connection numbers, compared with other readers (topics.py).
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -28,7 +28,7 @@ class Topics : public ::testing::Test {
   }
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
 
-  /// Messages of a file by the other reader.
+  /// Messages of a file, from the other reader.
   json reference(const std::filesystem::path& path) const {
     const ProgramResult read = topics_script({"read", path.string(), file("reference.json").string()});
     EXPECT_EQ(read.status, 0) << path << read.err;
@@ -38,7 +38,7 @@ class Topics : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Every topic, its messages' stamps to the nanosecond and the values of std_msgs/Float64.
+/// Compares every topic, its stamps in nanoseconds and the values of std_msgs/Float64.
 void expect_reference(const RosLog& log, const json& reference, const std::string& name) {
   std::size_t with_messages = 0;
   for (const LogTopic& topic : log.topics()) with_messages += topic.messages > 0;
@@ -57,12 +57,12 @@ void expect_reference(const RosLog& log, const json& reference, const std::strin
   }
 }
 
-/// The topic stands in the connection record's header; the data repeat it for publishers in Python alone.
+/// The topic is in the connection record's header; only publishers in Python repeat it in the data.
 TEST_F(Topics, OfBagsAreThoseThatRosbagReads) {
   MODEBANK_NEEDS_ROSBAG();
   for (const char* name : {"header_only.bag", "repeated_in_data.bag", "remapped.bag"})
     expect_reference(RosLog(file(name), KnownDefinitions()), reference(file(name)), name);
-  const json same = reference(file("header_only.bag"));  // rosbag reads no bag without its index
+  const json same = reference(file("header_only.bag"));  // rosbag needs the index
   ASSERT_EQ(same.at("/cmd").size(), 80u) << "of two publishers";
   ASSERT_EQ(same.at("/speed").size(), 60u);
   expect_reference(RosLog(file("no_index.bag"), KnownDefinitions()), same, "no_index.bag");
@@ -85,7 +85,7 @@ TEST_F(Topics, OfADb3WithItsJournalAreThoseOfBoth) {
               HasSubstr("no recording of rosbag2"));
 }
 
-/// A number that is given again is another channel's from there on, whatever the summary says of it.
+/// A reassigned number belongs to another channel from there on, whatever the summary contains.
 TEST_F(Topics, AChannelsNumberMayBeGivenAgain) {
   for (const char* name : {"reused.mcap", "reused_no_summary.mcap", "reused_loose.mcap"}) {
     const json expected = reference(file(name));
@@ -114,14 +114,15 @@ TEST_F(Topics, ARecordingWithoutMessagesIsNamed) {
     for (; bytes > 0; --bytes, value >>= 8) text += static_cast<char>(value & 0xff);
     return text;
   };
-  for (const std::uint64_t index_at : {std::uint64_t{4117}, std::uint64_t{0}}) {  // whole; stopped in its first second
+  for (const std::uint64_t index_at :
+       {std::uint64_t{4117}, std::uint64_t{0}}) {  // complete; stopped in the first second
     const std::string header = field("op=\x03") + field("index_pos=" + number(index_at, 8)) +
                                field("conn_count=" + number(0, 4)) + field("chunk_count=" + number(0, 4));
     const std::size_t padding = 4096 - header.size();
     write_file(file("empty.bag"),
                "#ROSBAG V2.0\n" + number(header.size(), 4) + header + number(padding, 4) + std::string(padding, ' '));
     EXPECT_THAT(message_of<DataError>([&] { RosLog(file("empty.bag"), KnownDefinitions()); }),
-                HasSubstr("empty.bag: holds no messages"));
+                HasSubstr("empty.bag: the recording has no messages"));
   }
   const std::string end("\x0f\x04\0\0\0\0\0\0\0\0\0\0\0\x02\x14\0\0\0\0\0\0\0", 22);
   write_file(file("empty.mcap"), "\x89MCAP0\r\n" + end + std::string(20, '\0') + "\x89MCAP0\r\n");

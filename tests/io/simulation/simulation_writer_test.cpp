@@ -14,11 +14,11 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// Interpolating there and back moves a value by its slope times the rounding of a time.
+// Interpolation in both directions changes a value by its slope times the rounding of a time.
 constexpr double round_trip_tolerance = 1e-12;
 constexpr double dt_s = 1.0 / 6.5;
 
-/// Rough signals with all their digits: two states, two inputs.
+/// Irregular signals with all digits: two states, two inputs.
 SimulatedRun make_run(Index samples, std::uint64_t index) {
   std::mt19937_64 generator = make_generator(7, "simulation_writer_test", index);
   const auto noise = [&](Index rows) {
@@ -166,17 +166,17 @@ TEST_F(SimulationWriter, ReplacesSimulatedRunsAlone) {
     const std::string before = read_file(layout.folder / name);
     test::write_file(layout.folder / name, mine);
     EXPECT_THAT(test::message_of<ConfigurationError>([&] { write_simulation({make_run(9, 1)}, layout); }),
-                AllOf(HasSubstr("simulate.output: "), HasSubstr(name + " is there and not replaced")));
+                AllOf(HasSubstr("simulate.output: "), HasSubstr(name + " exists and is not replaced")));
     EXPECT_EQ(read_file(layout.folder / name), mine);
     test::write_file(layout.folder / name, before);
   };
-  layout.states = {"wz,x", "vx"};  // a name that is quoted
+  layout.states = {"wz,x", "vx"};  // a name that needs quotes
   write_simulation({make_run(3, 0)}, layout);
   for (const char* mine : {"precious", "time,left,right,mode\n0,1,2,3\n"}) refuses("pro_00.csv", mine);
   for (const char* mine : {"precious", "time,wz,vx,left\n0,1,2,3\n"}) refuses("imu_00.csv", mine);
   layout.inputs = {"throttle", "steering"};
   write_simulation({make_run(4, 0)}, layout);
-  test::write_file(layout.folder / "pro_00.csv", "");  // holds nothing that could be lost
+  test::write_file(layout.folder / "pro_00.csv", "");  // an empty file may be replaced
   test::write_file(layout.folder / "imu_00.csv", "");
   write_simulation({make_run(4, 0)}, layout);
   std::filesystem::remove(layout.folder / "pro_00.csv");
@@ -194,7 +194,7 @@ TEST_F(SimulationWriter, LayoutThatDoesNotFit) {
   EXPECT_THAT(error(wrong), HasSubstr("1 state and 2 input names for 2 simulated states and 2 inputs"));
   wrong = layout;
   wrong.inputs = {"velL", "mode"};
-  EXPECT_THAT(error(wrong), HasSubstr("\"mode\" is empty or there twice"));
+  EXPECT_THAT(error(wrong), HasSubstr("\"mode\" of column"));
   wrong = layout;
   wrong.state_rate_hz = 0;
   EXPECT_THAT(error(wrong), HasSubstr("rate 0 Hz"));

@@ -58,7 +58,7 @@ TEST_F(VehicleWriter, ImportGivesTheSameSamples) {
   }
 }
 
-// The inputs' stamps are early by lag_s; data.lag_s = the same brings every set-point back to the moment it acted.
+// The inputs' stamps are early by lag_s; the same data.lag_s moves every set-point to its true time.
 TEST_F(VehicleWriter, TheSameLagAtImportUndoesTheSimulatedOne) {
   for (const double lag_s : {0.34, -0.26}) {
     simulation.sensors.lag_s = lag_s;
@@ -93,7 +93,7 @@ TEST_F(VehicleWriter, LayoutThatDoesNotFit) {
   EXPECT_THAT(error(wrong), HasSubstr("1 state names for 2 simulated states"));
   wrong = layout;
   wrong.states = {"wz", "mode"};
-  EXPECT_THAT(error(wrong), HasSubstr("\"mode\" is empty or there twice"));
+  EXPECT_THAT(error(wrong), HasSubstr("\"mode\" of column"));
   EXPECT_FALSE(std::filesystem::exists(layout.folder));
 }
 
