@@ -13,7 +13,7 @@
 
 namespace modebank::app {
 
-/// Which filter of an archive `track` runs.
+/// The filter of an archive that `track` runs.
 enum class TrackedFilter { bank, baseline, noise_only, one_motion, drifting, combined, nonlinear };
 
 struct TrackConfig {
@@ -22,14 +22,14 @@ struct TrackConfig {
   Index checkpoint_interval = 0;
   std::string resume;
   bool forecast = false;
-  double watchdog_s = 0.0;  ///< period of lines that say how it fares; 0: none
-  bool json = false;        ///< lines out are objects whatever comes in: --json
+  double watchdog_s = 0.0;  ///< period of the status lines on standard error; 0: none
+  bool json = false;        ///< --json: output lines are JSON objects for any form of input
 };
 
-/// The [report] section: what a page may hold.
+/// The [report] section: limits of a page.
 struct ReportConfig {
   double size_mb = 64.0;  ///< largest page [1e6 bytes]
-  Index runs = 10;        ///< of a study, with pages of their own
+  Index runs = 10;        ///< number of a study's runs that get pages of their own
 };
 
 struct ArchiveConfig {
@@ -50,7 +50,7 @@ struct JobConfig {
 enum class SimulatedSystem { linear, vehicle };
 
 struct SimulateConfig {
-  std::string name = "husky_ice";  ///< of a system or of its file, which decides on all down to ground_names
+  std::string name = "husky_ice";  ///< of a built-in system, or a system file; it sets all members down to ground_names
   SimulatedSystem kind = SimulatedSystem::linear;
   SimulationOptions system;               ///< the linear system; commands, runs and outliers also of the vehicle
   VehicleSimulationOptions vehicle;       ///< what only a vehicle has
@@ -60,22 +60,22 @@ struct SimulateConfig {
   double state_rate_hz = 65.0;
 };
 
-/// How a number of lags, the delay or the windows' length came into a configuration.
+/// Origin of a number of lags, of the delay or of the windows' length.
 enum class LagChoice { by_model, automatic, number };
 
-/// Whether the number is found: `by_model` where nothing is said of it.
+/// Whether the number is searched for. `by_model`: the model decides, because the configuration leaves the key out.
 inline bool is_automatic(LagChoice choice, bool by_model) {
   return choice == LagChoice::automatic || (choice == LagChoice::by_model && by_model);
 }
 
-/// The numbers of the model's structure that are searched for, and the length that follows from it.
+/// Which numbers of the model's structure are searched for, and the window length that follows from them.
 struct StructureConfig {
   bool automatic_model = true;  ///< window.model = auto: by_model means automatic
   LagChoice state = LagChoice::by_model, input = LagChoice::by_model, delay = LagChoice::by_model;
-  LagChoice length = LagChoice::by_model, step = LagChoice::by_model;  ///< of windows
+  LagChoice length = LagChoice::by_model, step = LagChoice::by_model;  ///< length and step of windows
 };
 
-/// Every stage's options, as one configuration file states them. The option table lists their keys.
+/// Options of every stage, as one configuration file states them. The option table lists their keys.
 struct Config {
   DataOptions data;
   FitOptions window;
@@ -86,7 +86,7 @@ struct Config {
   BankOptions bank;
   std::vector<std::string> mode_names;
   FilterOptions filter;
-  ScoringOptions scoring;  ///< of the [filter] section what is not about how a filter steps
+  ScoringOptions scoring;  ///< the keys of [filter] that do not change how a filter steps
   TrackConfig track;
   ReportConfig report;
   ArchiveConfig archive;
@@ -95,15 +95,15 @@ struct Config {
   StudyConfig study;
 };
 
-/// What of it decides the numbers of a run.
+/// The options that determine the numbers of a run.
 ChainOptions chain_options(const Config& config);
 
-/// The data section with what it takes from others: how much of a window lies between the blocks of data.split.
+/// The data section, with the gap between the blocks of data.split that a window and its lags need.
 DataOptions data_options_of(const Config& config);
 
-/// The window section as a model is fitted, before anything is found.
+/// The window section as a model is fitted, before lags are searched for.
 FitOptions window_options_of(const Config& config);
-/// Which of its lags are found.
+/// Which of its lags are searched for.
 SearchedLags searched_lags_of(const Config& config);
 /// Which numbers of windows follow from the structure and the data.
 AutomaticWindows automatic_windows_of(const Config& config);

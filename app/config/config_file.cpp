@@ -44,13 +44,13 @@ void set_option(Config& config, const Option& option, const std::string& where, 
                 bool has_comment) {
   const std::string& key = option.key;
   if (holds_controls(value) && !is_path(key))
-    throw ConfigurationError(fmt::format("{}: {} = '{}' holds control characters{}", where, key, printable(value),
-                                         takes_quotes(key) ? "; rename the column that is called so" : ""));
+    throw ConfigurationError(fmt::format("{}: {} = '{}' contains control characters{}", where, key, printable(value),
+                                         takes_quotes(key) ? "; rename that column in the log" : ""));
   try {
     option.set(config, value);
   } catch (const std::invalid_argument& error) {
     const std::string unit = option.unit.empty() ? "" : " [" + option.unit + "]";
-    const std::string hint = has_comment ? "; # starts a comment, so no value can hold one" : "";
+    const std::string hint = has_comment ? "; # starts a comment, so a value cannot contain it" : "";
     throw ConfigurationError(fmt::format("{}: {} = '{}' {}{}; allowed: {}{}{}", where, key, value, error.what(),
                                          instead_of_gone(key, value), option.range, unit, hint));
   }
@@ -63,13 +63,13 @@ void apply(Config& config, const std::string& where, const std::string& key, con
   set_option(config, known_option(where, key), where, value, has_comment);
 }
 
-/// The command line's values of a repeatable key take the place of all of the file's.
+/// A repeatable key on the command line replaces all of the file's lines of this key.
 void clear_overridden(Config& config, const KeyValues& overrides) {
   for (const auto& [key, value] : overrides)
     if (const Option* option = find_option(key); option && option->repeatable) option->set(config, "");
 }
 
-/// A model that the command line asks to be found takes none of the file's lags.
+/// With window.model = auto on the command line, lags of the file are ignored.
 void forget_lags(Config& config, const KeyValues& overrides) {
   if (std::find(overrides.begin(), overrides.end(), KeyValues::value_type("window.model", "auto")) == overrides.end())
     return;
@@ -91,7 +91,7 @@ void apply_overrides(Config& config, const KeyValues& overrides) {
   }
 }
 
-/// What follows from the file's place and name where nothing is said.
+/// Defaults that follow from the file's folder and name.
 void apply_defaults_of_file(Config& config, const std::filesystem::path& path, Origins& origins) {
   if (config.data.root.empty()) {
     const char* environment = std::getenv("MODEBANK_DATA");
@@ -134,11 +134,11 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
   std::ifstream stream(path);
   if (stream && looks_like_log(path))
     throw ConfigurationError(
-        fmt::format("{0} is not a configuration; of a log `modebank run {0}` makes a model, and `modebank init {0}` a "
+        fmt::format("{0} is a log, not a configuration: `modebank run {0}` makes a model of it, `modebank init {0}` a "
                     "configuration",
                     path.string()));
   if (!stream || std::filesystem::is_directory(path))
-    throw ConfigurationError(fmt::format("{}: cannot read this configuration file", path.string()));
+    throw ConfigurationError(fmt::format("cannot read the configuration {}", path.string()));
   return config_of_text({std::istreambuf_iterator<char>(stream), {}}, path, overrides, origins);
 }
 
@@ -173,7 +173,7 @@ Config config_of_text(const std::string& bytes, const std::filesystem::path& pat
 
 namespace {
 
-/// The known keys of a resolved configuration whose name `wanted` takes.
+/// The keys of a resolved configuration that exist today and for which `wanted` is true.
 template <class Wanted>
 Config config_of(const std::string& resolved, Wanted wanted) {
   Config config;

@@ -6,9 +6,9 @@
 namespace modebank::app {
 namespace {
 
-/// Lines of a file, and of each the section it stands in.
+/// A line of a file, with the section around it.
 struct Line {
-  std::string text, section, name;  ///< name: of the key that it sets; empty: it sets none
+  std::string text, section, name;  ///< name: the key that the line sets; empty: none
   bool blank = false;
 };
 

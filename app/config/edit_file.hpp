@@ -5,15 +5,15 @@
 
 namespace modebank::app {
 
-/// A key that a configuration file is to have.
+/// A key to set in a configuration file.
 struct KeyEdit {
   std::string key;                  ///< "section.name"
   std::vector<std::string> values;  ///< one line for each
-  std::string comment;              ///< why, in a line above them
+  std::string comment;              ///< the reason, written in a line above them
 };
 
-/// The text of a configuration file with the keys set and all else as it is. A line that set one of them before stays
-/// as a comment; a key that the file does not have is put at the end of its section.
+/// The text of a configuration file with these keys set and everything else unchanged. Lines that set them before stay
+/// as comments. A new key is put at the end of its section.
 std::string edited_text(const std::string& text, const std::vector<KeyEdit>& edits);
 
 }  // namespace modebank::app

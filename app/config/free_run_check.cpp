@@ -10,7 +10,7 @@ void check_free_run(const LinearStructure& structure, const FreeRunOptions& opti
   const Index fewest = fewest_start_samples(structure);
   if (options.samples > 0 && options.samples < fewest)
     throw ConfigurationError(
-        fmt::format("filter.simulate = {}: a model with these lags starts from at least {} measured samples",
+        fmt::format("filter.simulate = {}: with these lags a free run starts from at least {} measured samples",
                     options.samples, fewest));
 }
 

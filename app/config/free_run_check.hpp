@@ -5,7 +5,7 @@
 
 namespace modebank {
 
-/// Throws ConfigurationError, naming the key, unless a free run of this model can start from so many samples.
+/// Throws ConfigurationError, naming the key, where a free run of this model needs more measured samples at its start.
 void check_free_run(const LinearStructure& structure, const FreeRunOptions& options);
 
 }  // namespace modebank

@@ -30,7 +30,7 @@ bool takes_quotes(const std::string& key) {
 
 namespace {
 
-/// The value in the quotes that `text` begins with; nullopt where more than a comment follows them.
+/// The value in the quotes that `text` begins with; nullopt where text other than a comment follows them.
 std::optional<std::string> unquoted(std::string_view text) {
   std::string value;
   std::size_t i = 1;
@@ -54,7 +54,7 @@ std::optional<std::string> unquoted(std::string_view text) {
   return rest.empty() || rest.front() == '#' ? std::optional(value) : std::nullopt;
 }
 
-/// A line of such a key whose value is in quotes; `section` as it stands in the file, "[data]".
+/// A line whose key takes_quotes and whose value is in quotes. `section` as the file states it, "[data]".
 std::optional<FileEntry> quoted_entry(const std::string& section, const std::string& line, int number) {
   const std::size_t equal = line.find('='), quote = equal == std::string::npos ? equal : line.find('"', equal);
   if (quote == std::string::npos || !boost::trim_copy(line.substr(equal + 1, quote - equal - 1)).empty())

@@ -4,10 +4,10 @@
 #include <string_view>
 #include <vector>
 
-/// The lines of a configuration file, or of a system's (system_file.hpp).
+/// Lines of a configuration file or of a system file (system_file.hpp).
 namespace modebank::app {
 
-/// A key as it stands in a file.
+/// A key as the file states it.
 struct FileEntry {
   std::string key, value;
   int line = 0;
@@ -18,10 +18,10 @@ struct FileEntry {
 /// ConfigurationError for a line that is neither a section nor key = value. `path`: for messages.
 std::vector<FileEntry> parse_lines(std::string_view text, const std::string& path);
 
-/// Whether a key's value is one path, which may hold any character.
+/// Whether a key's value is a single path, which may contain any character.
 bool is_path(const std::string& key);
-/// Whether a key's value may stand in double quotes, with \" \\ \n and \x1b inside: paths, and names of columns,
-/// which may hold a #. Elsewhere quotes are part of the value.
+/// Whether a key's value may be in double quotes, with \" \\
+///  and \x1b inside: paths, and column names, which may contain a #. In other keys quotes are part of the value.
 bool takes_quotes(const std::string& key);
 
 }  // namespace modebank::app

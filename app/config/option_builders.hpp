@@ -16,13 +16,13 @@
 #include "app/config/option_table.hpp"
 #include "app/config/option_text.hpp"
 
-/// What the lines of the option table are written with.
+/// Functions that build the lines of the option table.
 namespace modebank::app {
 
-/// For touch(): among the few keys that most users set.
+/// For touch(): the key is among the few that most users set.
 inline constexpr bool basic = true;
 
-/// Allowed numbers, in words and as a test.
+/// A range of numbers: its words for help, and its bounds.
 struct Range {
   std::string text;
   std::function<bool(double)> contains;
@@ -65,8 +65,8 @@ bool in_range(const Range& range, const std::vector<T>& values) {
   return std::all_of(values.begin(), values.end(), [&range](const T& value) { return in_range(range, value); });
 }
 
-/// A member of a Config, to be written and to be read. Plain functions, so that what follows is compiled once per type
-/// of member, not once per key.
+/// Write and read access to a member of a Config. Plain functions, so that code is compiled once per type of member,
+/// not once per key.
 template <class T>
 struct Field {
   T& (*in)(Config&);
@@ -125,7 +125,7 @@ Option text(std::string key, std::string what, std::string help, Field<T> field)
   return option(std::move(key), std::move(what), "", std::move(help), field);
 }
 
-/// A key whose value decides several members: `set` and `get` are to be given.
+/// A key whose value sets several members. The caller fills in `set` and `get`.
 inline Option of_several(std::string key, std::string range, std::string unit, std::string help) {
   Option result;
   result.key = std::move(key);
@@ -135,8 +135,8 @@ inline Option of_several(std::string key, std::string range, std::string unit, s
   return result;
 }
 
-/// A key that may stand in several lines. Its text has one line per value; setting it adds lines, the empty text
-/// clears.
+/// A key that may have several lines. Its text has one line per value. Setting it adds lines; an empty text clears
+/// them.
 inline Option lines(const std::string& key, const std::string& what, const std::string& help,
                     const std::function<void(const std::string&)>& check, Field<std::vector<std::string>> field) {
   Option result;

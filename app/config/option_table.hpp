@@ -11,11 +11,11 @@
 
 namespace modebank::app {
 
-/// The words to choose from, of a text such as "auto | point | comma"; empty where it is another text.
+/// The alternatives in a range such as "auto | point | comma"; empty for any other range.
 std::vector<std::string> choices_in(const std::string& text);
 
-/// One configuration key: the only place that has its name, range, unit, help text and stage. Its default is the
-/// Config's own.
+/// One configuration key: the only place of its name, range, unit, help text and stage. Its default is that of a new
+/// Config.
 struct Option {
   std::string key;    ///< "section.name", also the command line's --section.name
   std::string range;  ///< what is allowed, in words
@@ -24,15 +24,15 @@ struct Option {
   std::function<void(Config&, const std::string&)> set;  ///< throws std::invalid_argument when the text is not in range
   std::function<std::string(const Config&)> get;         ///< text that `set` reads back to the same value
   std::optional<SimulatedSystem> only_for = {};          ///< the simulated system that has this key; empty: all
-  std::optional<Stage> stage = {};                       ///< first stage whose numbers it can change; empty: none
-  bool basic = false;                                    ///< among the few that most users set; help shows them first
-  std::string when = {};                                 ///< when to touch it: a sentence without its full stop
-  bool repeatable = false;  ///< may stand in several lines of a file; `get` joins them by newlines
+  std::optional<Stage> stage = {};                       ///< earliest stage whose numbers the key changes; empty: none
+  bool basic = false;       ///< one of the few keys that most users set; help shows these first
+  std::string when = {};    ///< when to change it: a sentence without its full stop
+  bool repeatable = false;  ///< may have several lines in a file; `get` joins them by newlines
 
-  /// The words to choose from, of a range such as "auto | point | comma"; empty where other values are allowed.
+  /// The alternatives in `range`, such as "auto | point | comma"; empty where other values are allowed.
   std::vector<std::string> choices() const { return choices_in(range); }
 
-  /// When to touch it, and what follows.
+  /// Sets `when`, `stage` and `basic`.
   Option touch(std::string sentence, std::optional<Stage> changed = {}, bool among_basic = false) && {
     when = std::move(sentence);
     stage = changed;

@@ -10,7 +10,8 @@
 
 namespace modebank::app {
 
-/// Text of a configuration value and back, one pair per type. parse_value throws std::invalid_argument with the reason.
+/// Conversion between text and configuration value, one pair per type. parse_value throws std::invalid_argument with
+/// the reason.
 void parse_value(const std::string& text, std::string& value);
 void parse_value(const std::string& text, bool& value);
 void parse_value(const std::string& text, int& value);
@@ -39,7 +40,7 @@ std::string format_value(const Eigen::VectorXd& value);
 std::string format_value(const std::vector<Eigen::VectorXd>& value);
 std::string format_value(const Eigen::MatrixXd& value);
 
-/// The words of an enumeration, as help shows them.
+/// The alternatives of an enumeration, as help shows them.
 template <class E>
 std::string words_of() {
   std::string words;

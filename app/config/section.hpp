@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// Calls the library, whose ConfigurationErrors begin with the name of an option ("step = 0 is out of range"), and puts
-/// the section of the configuration in front, in which the key has the same name: "window.step = 0 is out of range".
+/// Calls the library and puts the section of the configuration in front of its ConfigurationErrors. These begin with
+/// the name of an option, so "step = 0 is out of range" becomes "window.step = 0 is out of range".
 template <class Call>
 auto in_section(const std::string& section, Call&& call) {
   try {

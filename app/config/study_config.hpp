@@ -8,16 +8,16 @@
 
 namespace modebank::app {
 
-/// What `modebank study` does: everything, or one step of it.
+/// The steps of `modebank study`: one of them, or all.
 enum class StudyStage { all, plan, run, merge, status, submit };
 
-/// What a failed trial means for the others.
+/// Whether a study goes on after a failed trial.
 enum class OnFailure { record, stop };
 
-/// The [study] section. The texts of vary, together and when are taken apart by app/study/space/study_space.hpp.
+/// The [study] section. app/study/space/study_space.hpp parses the texts of vary, together and when.
 struct StudyConfig {
   std::vector<std::string> vary;      ///< "KEY = v1 | v2", one key each
-  std::vector<std::string> together;  ///< "KEY, KEY": varied in step
+  std::vector<std::string> together;  ///< "KEY, KEY": keys whose values are paired
   std::vector<std::string> when;      ///< "KEY if OTHER = v1 | v2"
   std::int64_t sample = 0;            ///< 0: the full grid
   std::int64_t repeats = 1;
@@ -28,8 +28,8 @@ struct StudyConfig {
   StudyStage stage = StudyStage::all;
   std::int64_t shard_index = 0, shard_count = 1;
   bool flat = false;
-  std::int64_t slurm_tasks = 0;  ///< 0: by the number of runs
-  std::string slurm_options;     ///< of sbatch, separated by spaces
+  std::int64_t slurm_tasks = 0;  ///< 0: from the number of runs
+  std::string slurm_options;     ///< options for sbatch, separated by spaces
 };
 
 }  // namespace modebank::app

@@ -21,14 +21,14 @@ bool fits(const Config& config) {
   }
 }
 
-/// A key's default, which of lags and the windows' length depends on the model.
+/// A key's default. That of lags and of the windows' length depends on the model.
 std::string standard_of(const Option& option, const Config& config) {
   Config standard;
   if (option.key != "window.model") standard.structure.automatic_model = config.structure.automatic_model;
   return option.get(standard);
 }
 
-/// Keys that the file sets to something else than their defaults, and no override takes back.
+/// Keys that the file sets to another value than their defaults, except those that an override replaces.
 Options set_by_file(const Config& config, const Origins& origins) {
   Options options;
   for (const Option& option : option_table()) {
@@ -39,7 +39,7 @@ Options set_by_file(const Config& config, const Origins& origins) {
   return options;
 }
 
-/// The fewest of the options, three at most, whose defaults fit the rest of the configuration; empty: there are none.
+/// The smallest set of at most three options whose defaults fit the rest of the configuration; empty if none does.
 Options fewest_to_reset(const Config& config, const Options& options, std::size_t first, std::size_t most) {
   for (std::size_t i = first; most > 0 && i < options.size(); ++i) {
     Config changed = config;
@@ -58,7 +58,7 @@ Options fewest_to_reset(const Config& config, const Options& options, std::size_
   return fewest;
 }
 
-/// "; set --window.state_lags 1, too, since robot.ini:12 says 3"; empty where nothing is overridden or nothing helps.
+/// "; set --window.state_lags 1, too, because robot.ini:12 has 3"; empty without overrides, or if nothing helps.
 std::string what_to_set_too(const Config& config, const KeyValues& overrides, const Origins& origins) {
   constexpr std::size_t most = 3;
   if (overrides.empty()) return "";
@@ -66,10 +66,10 @@ std::string what_to_set_too(const Config& config, const KeyValues& overrides, co
   for (const Option* option : fewest_to_reset(config, set_by_file(config, origins), 0, most)) {
     const std::string standard = standard_of(*option, config);
     settings.push_back(fmt::format("--{} {}", option->key, standard.empty() ? "''" : standard));
-    reasons.push_back(fmt::format("{} says {}", origins.at(option->key), option->get(config)));
+    reasons.push_back(fmt::format("{} has {}", origins.at(option->key), option->get(config)));
   }
   if (settings.empty()) return "";
-  return fmt::format("; set {}, too, since {}", boost::join(settings, " "), boost::join(reasons, ", "));
+  return fmt::format("; set {}, too, because {}", boost::join(settings, " "), boost::join(reasons, ", "));
 }
 
 }  // namespace

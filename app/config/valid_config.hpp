@@ -6,8 +6,8 @@
 
 namespace modebank::app {
 
-/// load_config, whose values fit each other. Where it is an override that does not fit what the file says, the
-/// ConfigurationError names the keys of the file that would have to be set, too.
+/// load_config, then a check that the values fit each other. Where an override does not fit the file, the
+/// ConfigurationError names the file's keys that must be set, too.
 Config load_valid_config(const std::filesystem::path& path, const KeyValues& overrides);
 
 }  // namespace modebank::app

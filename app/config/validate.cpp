@@ -18,58 +18,58 @@ void require(bool condition, const std::string& message) {
 void check_prior(const FitOptions& window, Index parameters) {
   const Index sds = std::ssize(window.prior_sd);
   require(sds <= 1 || sds == parameters,
-          fmt::format("window.prior has {} standard deviations: give one, or one per parameter ({}), or none", sds,
+          fmt::format("window.prior has {} standard deviations; give one, one per parameter ({}), or none", sds,
                       parameters));
 }
 
-/// bank.transition = logit has no meaning where no bank is refined, and none in filters that know a constant T alone.
+/// bank.transition = logit needs a refined bank, and a filter that takes other than constant transition matrices.
 void check_logit(const Config& config) {
   if (config.bank.transition != TransitionSource::logit) return;
   require(config.bank.refine != Refine::none && is_linear(config.window),
           "bank.transition = logit is learned by refinement: it needs bank.refine = auto or em, and window.model = "
           "linear or varx");
   require(config.filter.variant != FilterVariant::salvi2025,
-          "bank.transition = logit needs another filter.variant than salvi2025, whose equations know a constant "
-          "transition matrix alone");
+          "bank.transition = logit does not work with filter.variant = salvi2025, whose transition matrix is constant; "
+          "use filter.variant = imm");
 }
 
-/// Motion models and linear have no lags to find.
+/// Motion models and linear have no lags to search for.
 void check_searched(const Config& config) {
   const SearchedLags searched = searched_lags_of(config);
   if (!searched.any()) return;
   const StructureConfig& structure = config.structure;
-  require(structure.automatic_model || config.window.model == "varx",
-          fmt::format("window.state_lags, window.input_lags and window.input_delay = auto are those of model = varx or "
-                      "auto, not of {}",
-                      config.window.model));
+  require(
+      structure.automatic_model || config.window.model == "varx",
+      fmt::format(
+          "window.state_lags, window.input_lags and window.input_delay = auto need window.model = varx or auto, not {}",
+          config.window.model));
   require(config.window.prior_sd.size() <= 1,
-          "window.prior: where lags are found the number of parameters is not known beforehand; give one value for "
-          "all, or none");
+          "window.prior: the number of parameters is unknown while lags are searched for; give one value for all "
+          "parameters, or none");
   const bool of_inputs = structure.input == LagChoice::automatic || structure.delay == LagChoice::automatic;
   require(!of_inputs || !config.data.input.empty(),
-          "window.input_lags = auto and window.input_delay = auto need inputs: name them with data.input");
+          "window.input_lags = auto and window.input_delay = auto need inputs; name them in data.input");
 }
 
-/// Modes that drift are learned by refinement, for states measured exactly and the one filter that knows them.
+/// Drifting modes are learned by refinement. They need states measured exactly and filter.variant = imm.
 void check_drift(const Config& config) {
   if (config.bank.em.drift == Drift::none) return;
   const std::string drift = fmt::format("bank.drift = {}", name_of(config.bank.em.drift));
   require(is_linear(config.window),
           fmt::format("{} needs window.model = linear, varx or auto, not {}", drift, config.window.model));
-  require(refinement_asked(config.bank, true) == Refine::em,
-          drift + " is learned by refinement: it needs bank.refine = em, or auto with nothing that keeps it from em");
+  require(refinement_asked(config.bank, true) == Refine::em, drift + " is learned by refinement; set bank.refine = em");
   require(!config.bank.measurement_variance,
-          drift + " needs states measured exactly: leave bank.measurement_variance empty");
+          drift + " needs states measured exactly; leave bank.measurement_variance empty");
   require(config.data.quantum.empty() && !config.data.quantum_auto,
-          drift + " needs states measured exactly: data.quantum = none");
+          drift + " needs states measured exactly; set data.quantum = none");
   require(config.filter.variant == FilterVariant::imm,
           fmt::format("{} needs filter.variant = imm, not {}", drift, name_of(config.filter.variant)));
   const bool paths =
       config.scoring.free_run.method == FreeRunMethod::paths || config.bank.transition == TransitionSource::logit;
   require(config.scoring.free_run.samples == 0 || !paths,
           drift +
-              " knows no free run by sample paths: it needs filter.simulate_method = moments and "
-              "bank.transition = labels, or filter.simulate = 0");
+              " has no free run by sample paths; set filter.simulate_method = moments and bank.transition = labels, or "
+              "filter.simulate = 0");
 }
 
 }  // namespace
@@ -79,18 +79,17 @@ void validate(const Config& config) {
   require(!data.inputs.empty(), "data.inputs is empty: it names the files to read, for example pro_*.csv");
   require(!data.state.empty(), "data.state is empty: it names the columns of the measured states");
   require(data.truth.empty() || data.truth.size() == data.state.size(),
-          fmt::format("data.truth names {} columns, data.state {}: there must be as many, or none", data.truth.size(),
-                      data.state.size()));
+          fmt::format("data.truth names {} columns, data.state {}; name as many in data.truth, or none",
+                      data.truth.size(), data.state.size()));
   const Index states = std::ssize(data.state), inputs = std::ssize(data.input);
   check_searched(config);
   const FitOptions window = window_options_of(config);
   in_section("window", [&] { check_model(window, states, inputs); });
   check_free_run(linear_structure(states, inputs, window), config.scoring.free_run);
   check_prior(window, parameter_count(window, states, inputs));
-  require(
-      !config.mixture.error_aware || config.window.covariance != CovarianceKind::sandwich,
-      "mixture.error_aware = true needs window.covariance = model: a sandwich covariance does not say how much of a "
-      "window's theta is the prior's, so that cannot be taken off");
+  require(!config.mixture.error_aware || config.window.covariance != CovarianceKind::sandwich,
+          "mixture.error_aware = true needs window.covariance = model: a sandwich covariance does not separate the "
+          "prior's share of a window's parameters");
   require(config.bank.refine != Refine::em || is_linear(config.window),
           fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
                       config.window.model));

@@ -25,11 +25,11 @@ std::vector<std::string> words_between(const std::string& text, const char* sepa
 const Option& variable_option(const std::string& key) {
   const Option* option = find_option(key);
   if (!option) throw std::invalid_argument(fmt::format("names an unknown key {}{}", key, nearest_key_hint(key)));
-  if (!option->stage) throw std::invalid_argument(fmt::format("varies {}, which decides no number of a run", key));
+  if (!option->stage) throw std::invalid_argument(fmt::format("varies {}, which changes no number of a run", key));
   return *option;
 }
 
-/// The value as a resolved configuration states it.
+/// The value in the form of a resolved configuration.
 std::string canonical(const Option& option, const std::string& value) {
   Config scratch;
   try {
@@ -47,12 +47,13 @@ double number_in(const std::string& text, const std::string& braces) {
     parse_value(text, value);
   } catch (const std::invalid_argument&) {
     throw std::invalid_argument(fmt::format(
-        "has {{{}}}: it must be {{3..12}}, {{2..20 step 2}}, {{0..1 lin 5}} or {{0.001..1 log 7}}", braces));
+        "has {{{}}}; expected a range such as {{3..12}}, {{2..20 step 2}}, {{0..1 lin 5}} or {{0.001..1 log 7}}",
+        braces));
   }
   return value;
 }
 
-/// What stands between braces.
+/// A span between braces: low..high, with what divides it.
 struct Span {
   double low = 0.0, high = 0.0, argument = 0.0;
   std::string kind;  ///< step, lin, log or empty
@@ -75,7 +76,8 @@ Span parse_span(const std::string& text) {
   span.has_argument = words.size() > 2;
   const bool known = span.kind.empty() || span.kind == "step" || span.kind == "lin" || span.kind == "log";
   if (!known || words.size() > 3 || (span.kind == "step" && !span.has_argument)) number_in("", text);
-  if (!(span.low < span.high)) throw std::invalid_argument(fmt::format("has {{{}}}: it must go upwards", text));
+  if (!(span.low < span.high))
+    throw std::invalid_argument(fmt::format("has {{{}}}; the first number must be the smaller one", text));
   if (span.kind == "log" && span.low <= 0.0)
     throw std::invalid_argument(fmt::format("has {{{}}}: a logarithmic range must be above 0", text));
   return span;
@@ -91,7 +93,7 @@ std::vector<std::string> steps_of(const Span& span, const std::string& text) {
     throw std::invalid_argument(
         fmt::format("has {{{}}}: a step must be above 0 and give at most {} values", text, most_values));
   std::vector<std::string> values;
-  const double slack = 1e-9;  // of a step: 0..1 step 0.1 ends at 1
+  const double slack = 1e-9;  // so that 0..1 step 0.1 ends at 1 despite rounding
   for (double i = 0; span.low + i * step <= span.high + slack * step; ++i)
     values.push_back(fmt::format("{:.12g}", span.low + i * step));
   return values;
@@ -117,19 +119,18 @@ std::vector<std::string> expand_piece(const std::string& piece) {
   if (open == std::string::npos && close == std::string::npos) return {piece};
   if (open == std::string::npos || close == std::string::npos || close < open ||
       piece.find('{', open + 1) != std::string::npos)
-    throw std::invalid_argument(fmt::format("has '{}': one pair of braces in a value", piece));
+    throw std::invalid_argument(fmt::format("has '{}'; a value takes one pair of braces", piece));
   const std::string text = piece.substr(open + 1, close - open - 1);
   const Span span = parse_span(text);
   if (is_open(span))
-    throw std::invalid_argument(
-        fmt::format("has {{{}}}: say how many values (lin N, log N or step S); a range stands alone", text));
+    throw std::invalid_argument(fmt::format("has {{{}}}; add a number of values (lin N, log N or step S)", text));
   std::vector<std::string> values =
       span.kind == "lin" || span.kind == "log" ? divisions_of(span, text) : steps_of(span, text);
   for (std::string& value : values) value = piece.substr(0, open) + value + piece.substr(close + 1);
   return values;
 }
 
-/// A whole value in braces without a number of values, such as {0.001..1 log}.
+/// A whole value that is a range without a number of values, such as {0.001..1 log}.
 bool read_range(const std::string& text, VariedKey& varied) {
   if (text.size() < 2 || text.front() != '{' || text.back() != '}' || text.find('|') != std::string::npos) return false;
   const Span span = parse_span(text.substr(1, text.size() - 2));
@@ -140,7 +141,7 @@ bool read_range(const std::string& text, VariedKey& varied) {
   return true;
 }
 
-/// KEY and what follows the equal sign.
+/// Splits a line into KEY and the text after the equal sign.
 std::pair<std::string, std::string> split_equation(const std::string& line) {
   const auto equal = line.find('=');
   if (equal == std::string::npos) throw std::invalid_argument("has no =");

@@ -6,13 +6,13 @@
 namespace modebank::app {
 namespace {
 
-/// A number of samples, and whether errors are counted.
+/// bank.look_ahead: a number of samples, with "error" behind it where squared errors are scored.
 Option look_ahead_option() {
   Option result = of_several(
       "bank.look_ahead", "1 to 1000, and error or nothing", "samples",
-      "what em chooses by: the mean log score of predictions 1 to so many samples ahead of the runs left out; "
-      "error: their squared error, which the parameters of a bank of at most 50 free numbers then minimise where "
-      "the runs left out gain by it, for forecasts and free runs; em chooses by one step");
+      "longest prediction by which em chooses a bank: the mean log score of predictions 1 to N samples ahead in runs "
+      "left out. With error em chooses by one step, then minimises the squared errors of these predictions where runs "
+      "left out gain (a bank of at most 50 free numbers). Forecasts and free runs use the result");
   result.set = [](Config& config, const std::string& text) {
     const bool errors = text.ends_with(" error");
     Eigen::Index samples = 0;
@@ -34,52 +34,60 @@ std::vector<Option> bank_options() {
   using enum Stage;
   return {
       words("bank.theta",
-            "a mode's parameters: pooled least squares; or the component's mean, where unstable and starved modes stay "
-            "in the bank",
+            "source of a mode's parameters: least squares over the windows of its component, or the component's mean; "
+            "with mean, modes that are unstable or have few windows stay in the bank",
             MODEBANK_FIELD(bank.theta))
           .touch("mean, for the published recipe", competitors),
       text("bank.mode_names", "names",
-           "one per mode in the bank's order, for people; empty, or where there are fewer: by data.label, the label "
-           "that holds 60 % of a mode's held-out samples",
+           "names of the modes in the bank's order, separated by commas. A mode without a name takes the label "
+           "(data.label) of at least 60 % of its held-out samples",
            MODEBANK_FIELD(mode_names))
           .touch("when you know what the modes are and show the results to others", bank),
-      words("bank.noise", "process noise Q", MODEBANK_FIELD(bank.noise))
-          .touch("shared or fixed, to see what the modes' own noise is worth; such a bank is not refined", competitors),
+      words("bank.noise", "process noise covariance Q: one per mode, one for all modes, or bank.process_variance",
+            MODEBANK_FIELD(bank.noise))
+          .touch("shared or fixed, to measure what separate noise per mode is worth; such a bank is not refined",
+                 competitors),
       words("bank.noise_by_input",
-            "whether one factor on all process noise, a fifth to five, follows states and inputs: auto: where training "
-            "runs left out gain by it; it is not asked of adaptive noise, rounded or weighted samples, banks that em "
-            "does not refine, modes that drift, a given R, bank.transition = logit or bank.look_ahead above 1",
+            "a factor of 0.2 to 5 on all process noise, as a function of state and input. auto uses it where training "
+            "runs left out gain. It is not tried with adaptive noise, rounded or weighted samples, drifting modes, a "
+            "given R, bank.transition = logit, bank.look_ahead above 1, or without em",
             MODEBANK_FIELD(noise_by_input))
-          .touch("none, for a bank that is exported to C or whose R is looked for", competitors),
+          .touch("none, for a bank that is exported to C, or when you want an estimate of R", competitors),
       words("bank.transition",
-            "transition matrix from window labels, or bank.stay; logit: as from labels, and in a refined bank a "
-            "function of state and input where training runs left out gain by it",
+            "source of the mode transition matrix: counted from the windows' labels, or made from bank.stay. logit: in "
+            "a refined bank the probabilities are a function of state and input where training runs left out gain",
             MODEBANK_FIELD(bank.transition))
-          .touch("stay, when switches are too few to count; logit, when they depend on where one drives", competitors),
+          .touch("stay, when the log has few switches; logit, when switches depend on state or input", competitors),
       numeric("bank.stay", above_to(0, 1), "",
-              "probability to stay in a mode, for transition = stay; 1: modes never change", MODEBANK_FIELD(bank.stay))
-          .touch("with transition = stay: 1 - 1/N for a mode that lasts N samples", bank),
-      numeric("bank.process_variance", above(0), "state unit^2", "Q for noise = fixed",
-              MODEBANK_FIELD(bank.process_variance))
-          .touch("with noise = fixed: the Q you would have tuned by hand", bank),
-      numeric("bank.measurement_variance", above(0), "state unit^2", "R; empty: the baseline's",
+              "probability that a mode continues at the next sample, for bank.transition = stay; 1: modes never change",
+              MODEBANK_FIELD(bank.stay))
+          .touch("with bank.transition = stay: 0.98 for modes that last 50 samples (1 - 1/N for N samples)", bank),
+      numeric("bank.process_variance", above(0), "state unit^2",
+              "process noise variance of every state, for bank.noise = fixed", MODEBANK_FIELD(bank.process_variance))
+          .touch("with bank.noise = fixed: the Q that you would tune by hand", bank),
+      numeric("bank.measurement_variance", above(0), "state unit^2",
+              "measurement noise variance R; empty: the one that the baseline learns",
               MODEBANK_FIELD(bank.measurement_variance))
-          .touch("when you know the sensor's noise and a warning says that R cannot be told", competitors),
+          .touch("when a warning says that R cannot be estimated: the square of your sensor's noise", competitors),
       numeric("bank.modes", between(0, 1000), "",
-              "at most so many modes: the closest components are merged by moments; 0: no limit",
+              "largest number of modes; the closest components are merged until the bank has no more than that. 0: no "
+              "limit",
               MODEBANK_FIELD(bank.modes))
-          .touch("when the filter must be small, on a microcontroller: then the least that your score allows", bank,
-                 basic),
+          .touch("for a small filter, as on a microcontroller: the smallest number whose log score is good enough",
+                 bank, basic),
       words("bank.refine",
-            "em: expectation-maximisation of the switching model from the mixture's start; auto: that, but none for a "
-            "motion model and where bank.theta, bank.noise or bank.transition = stay ask for what em would undo",
+            "learning after the mixture. em: expectation-maximisation of the switching model. none: the mixture's "
+            "modes stay. auto: em, but none for a motion model, bank.theta = mean, bank.noise = shared or fixed, and "
+            "bank.transition = stay",
             MODEBANK_FIELD(bank.refine))
-          .touch("none, for a look at the data in seconds, or to keep the mixture's own modes", competitors, basic),
-      look_ahead_option().touch("when predictions several samples ahead matter (control): the number of samples; with "
-                                "error, when the mean of long predictions matters (free run) and not their spread",
+          .touch("none, for a first look at the data in seconds, or to keep the mixture's own modes", competitors,
+                 basic),
+      look_ahead_option().touch("for control: the number of samples that you predict ahead; with error, for free runs "
+                                "whose mean matters more than their band",
                                 competitors),
       words("bank.drift",
-            "whether each mode's theta goes on learning within a run: auto: as fast as training runs left out like it",
+            "whether each mode's parameters continue to adapt within a run. auto: at the rate at which training runs "
+            "left out are predicted best",
             MODEBANK_FIELD(bank.em.drift))
           .touch(
               "auto, when conditions change within a run (wear, load, temperature) and a competitor that drifts wins",
@@ -90,39 +98,42 @@ std::vector<Option> bank_options() {
 std::vector<Option> filter_options() {
   using enum Stage;
   return {
-      words("filter.variant", "multiple-model filter", MODEBANK_FIELD(filter.variant))
-          .touch("never, unless you compare filters: imm serves; kf is the one model alone", competitors),
-      words("filter.noise", "the modes' noise as learned, or times a scale that follows the run",
+      words("filter.variant",
+            "filter that is judged: imm (interacting multiple model), salvi2025 (of the published recipe) or kf (one "
+            "Kalman filter)",
+            MODEBANK_FIELD(filter.variant))
+          .touch("rarely: to compare filters", competitors),
+      words("filter.noise",
+            "process noise of the modes: as learned (gaussian), or multiplied by a scale that adapts within the run "
+            "(adaptive)",
             MODEBANK_FIELD(filter.noise))
-          .touch("adaptive, when the band is found false: the noise's scale then follows the run", competitors),
+          .touch("adaptive, when the coverage of the 95 % band is wrong", competitors),
       numeric("filter.horizon", each(between(1, 10'000)), "samples",
-              "predictions this far ahead are scored, too: a number, a range such as 1..10, or a list; 1: the summary "
-              "alone",
+              "how far ahead predictions are scored: a number, a range such as 1..10, or a list; 1: the screen's "
+              "summary only",
               MODEBANK_FIELD(scoring.horizon))
-          .touch("when you predict for control: the number of samples that the controller looks ahead", competitors,
-                 basic),
+          .touch("for control: the number of samples that the controller predicts ahead", competitors, basic),
       numeric("filter.simulate", between(0, 1'000'000'000), "samples",
-              "free run: after so many measured samples of each run the rest is predicted from the inputs alone, and "
-              "scored; 0: none",
+              "measured samples at the start of a free run; the rest of each run is predicted from its inputs alone, "
+              "and scored. 0: no free run",
               MODEBANK_FIELD(scoring.free_run.samples))
-          .touch("when the model shall simulate: so many measured samples at the start, then inputs alone",
+          .touch("when you will use the model as a simulator: 50, or as many samples as its start needs",
                  competitor_scores, basic),
       numeric("filter.simulate_horizon", between(0, 1'000'000'000), "samples",
-              "of the free run: so many are predicted; 0: to the end of the run",
-              MODEBANK_FIELD(scoring.free_run.horizon))
-          .touch("when runs are so long that a free run to their end means nothing", competitor_scores),
+              "length of a free run; 0: to the end of the run", MODEBANK_FIELD(scoring.free_run.horizon))
+          .touch("when runs are long: the length over which your simulations must be good", competitor_scores),
       words("filter.simulate_start",
-            "of the free run: what the filter knows after the measured samples; or the last of them as if it were the "
-            "first",
+            "start of a free run: the filter's estimate after the measured samples (estimated), or the last measured "
+            "sample alone (fixed)",
             MODEBANK_FIELD(scoring.free_run.start))
           .touch("fixed, for comparison with benchmarks that start a free run from a measurement", competitor_scores),
       words("filter.simulate_method",
-            "of the free run: the modes' probabilities, means and covariances, exact for a constant transition matrix, "
-            "each mode taken for a Gaussian; or sample paths, which bank.transition = logit always takes",
+            "computation of a free run: one Gaussian per mode (moments; exact for a constant transition matrix), or "
+            "sample paths, which bank.transition = logit always uses",
             MODEBANK_FIELD(scoring.free_run.method))
-          .touch("paths, when a mode's spread is no Gaussian and the band must show it; it takes longer",
+          .touch("paths, when a mode's distribution is not Gaussian and the band must show it; it takes longer",
                  competitor_scores),
-      flag("filter.smooth", "smoothed states and the most probable sequence of modes, too",
+      flag("filter.smooth", "whether smoothed states and the most probable sequence of modes are archived, too",
            MODEBANK_FIELD(scoring.smooth))
           .touch("false, when archives of long runs are too large", competitor_scores),
   };

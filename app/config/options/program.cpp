@@ -8,60 +8,60 @@ std::vector<Option> archive_options() {
   return {
       text("archive.output", "a path", "archive to write; empty: this file's name with .h5, in the current folder",
            MODEBANK_FIELD(archive.output))
-          .touch("when the archive shall have another name or place than the configuration's", std::nullopt, basic),
-      text("archive.input", "an archive", "supplies the earlier stages of identify, cluster and evaluate",
+          .touch("for another name or folder", std::nullopt, basic),
+      text("archive.input", "an archive", "archive with the earlier stages, for `identify`, `cluster` and `evaluate`",
            MODEBANK_FIELD(archive.input))
-          .touch("when windows or a mixture were archived before and only later stages change", std::nullopt, basic),
-      text("archive.bank", "an archive", "evaluate: its banks are run instead of learning new ones",
+          .touch("when windows or a mixture exist in an archive and only later stages change", std::nullopt, basic),
+      text("archive.bank", "an archive", "archive whose banks `evaluate` judges; it learns no new ones",
            MODEBANK_FIELD(archive.bank))
-          .touch("when a bank that exists is judged on other runs"),
-      numeric("job.threads", between(0, 1024), "", "0: all cores; never changes a number", MODEBANK_FIELD(job.threads))
-          .touch("when the machine is shared: fewer", std::nullopt, basic),
-      option("job.seed", "a whole number >= 0", "", "the one seed; every use of randomness derives from it",
-             MODEBANK_FIELD(job.seed))
-          .touch("to see how much of a result is luck: repeat with three other seeds", mixture, basic),
+          .touch("to judge an existing bank on other runs"),
+      numeric("job.threads", between(0, 1024), "", "number of threads; 0: all cores. It never changes a result",
+              MODEBANK_FIELD(job.threads))
+          .touch("fewer, on a shared machine", std::nullopt, basic),
+      option("job.seed", "a whole number >= 0", "", "seed of all random numbers", MODEBANK_FIELD(job.seed))
+          .touch("to see how much a result depends on chance: repeat with 1, 2 and 3", mixture, basic),
   };
 }
 
 std::vector<Option> track_options() {
   return {
       words("track.filter",
-            "which of the archive's filters runs; combined: all, their predictions weighted by how well each has "
-            "predicted so far",
+            "filter of the archive that runs; combined: all of them, each weighted by its log score so far",
             MODEBANK_FIELD(track.filter))
-          .touch("when the finding names a simpler description: that one", std::nullopt, basic),
-      text("track.checkpoint", "a path", "where the filter's state is kept at the end of the input or on SIGINT",
+          .touch("when the screen recommends another filter: that one", std::nullopt, basic),
+      text("track.checkpoint", "a path", "file for the filter's state, written at the end of the input and on SIGINT",
            MODEBANK_FIELD(track.checkpoint))
-          .touch("when the filter must go on after a restart as if there had been none", std::nullopt, basic),
-      numeric("track.checkpoint_interval", at_least(0), "samples", "and this often; 0: at the end only",
+          .touch("when the filter must continue after a restart", std::nullopt, basic),
+      numeric("track.checkpoint_interval", at_least(0), "samples",
+              "samples between two writes of the checkpoint; 0: at the end only",
               MODEBANK_FIELD(track.checkpoint_interval))
-          .touch("with a checkpoint: when power may fail"),
-      text("track.resume", "a checkpoint", "go on from there", MODEBANK_FIELD(track.resume))
-          .touch("after a restart: the checkpoint that was kept", std::nullopt, basic),
+          .touch("with track.checkpoint, when power may fail: 1000"),
+      text("track.resume", "a checkpoint", "checkpoint to continue from", MODEBANK_FIELD(track.resume))
+          .touch("after a restart: the path of track.checkpoint", std::nullopt, basic),
       flag("track.forecast",
-           "lines also have what is expected at the time of the newest sample, where estimates wait for inputs that "
-           "come "
-           "late (data.lag_s below 0)",
+           "whether output lines also contain a forecast to the newest sample, where estimates wait for late inputs "
+           "(data.lag_s below 0)",
            MODEBANK_FIELD(track.forecast))
-          .touch("when inputs come late and the state of now is wanted"),
+          .touch("when inputs come late and you need the state of now"),
       numeric("track.watchdog_s", between(0, 86400), "s",
-              "this often a line on standard error says what came, how late the slowest estimate was and how likely "
-              "the modes are, also when no input comes; 0: never",
+              "period of a status line on standard error: samples since the last one, the longest delay of an "
+              "estimate, and mode probabilities. It comes without input, too; 0: never",
               MODEBANK_FIELD(track.watchdog_s))
-          .touch("when the filter runs unattended and someone reads its log"),
+          .touch("when the filter runs unattended: 60"),
   };
 }
 
 std::vector<Option> report_options() {
   return {
       numeric("report.size_mb", between(8, 2000), "MB",
-              "largest page; what would exceed it is drawn by minima and maxima of more samples, and the page says so",
+              "largest size of a page. Longer plots are drawn by minima and maxima over more samples, with a note on "
+              "the page",
               MODEBANK_FIELD(report.size_mb))
-          .touch("when the page of long runs must show more samples, or must be sent by mail"),
+          .touch("larger, to show more samples of long runs; 8, to send the page by mail"),
       numeric("report.runs", between(0, 10000), "",
-              "a study's best runs that get pages of their own, in a folder beside the study's page",
+              "number of a study's best runs that get pages of their own, in a folder beside the study's page",
               MODEBANK_FIELD(report.runs))
-          .touch("0, when a study's page alone is enough; more, when you look into many runs"),
+          .touch("0, when the study's page is enough; more, to look into many runs"),
   };
 }
 

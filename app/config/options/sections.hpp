@@ -4,7 +4,7 @@
 
 #include "app/config/option_table.hpp"
 
-/// The sections of the option table.
+/// Sections of the option table.
 namespace modebank::app {
 
 std::vector<Option> data_options();
@@ -18,7 +18,7 @@ std::vector<Option> track_options();
 std::vector<Option> report_options();
 std::vector<Option> simulate_options();
 
-/// The lines of a system file, keys of its section [system]; no keys of a configuration.
+/// Keys of a system file's section [system]; a configuration does not have them.
 const std::vector<Option>& system_parameters();
 
 }  // namespace modebank::app

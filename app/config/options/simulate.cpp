@@ -16,55 +16,57 @@ std::vector<Option> only_for(SimulatedSystem system, std::vector<Option> options
 
 std::vector<Option> common_parameters() {
   return {
-      words("system.kind", "switching linear system, or skid-steer robot on patches of ground",
+      words("system.kind", "kind of system: a switching linear system, or a skid-steer robot on patches of ground",
             MODEBANK_FIELD(simulate.kind))
           .touch("always"),
       numeric("system.outlier_fraction", between(0, 1), "", "share of measurements with an outlier",
               MODEBANK_FIELD(simulate.system.outlier_fraction))
-          .touch("to see how a robust loss copes"),
-      numeric("system.outlier_sd", at_least(0), "state unit", "size of outliers",
+          .touch("to see what a robust loss does: 0.01 to 0.1"),
+      numeric("system.outlier_sd", at_least(0), "state unit", "standard deviation of outliers",
               MODEBANK_FIELD(simulate.system.outlier_sd))
-          .touch("with outlier_fraction: some ten times the noise"),
-      words("system.input_law", "inputs redrawn every sample, held, or driven (steps, ramps, standstill, equal wheels)",
+          .touch("with outlier_fraction: about ten times the noise"),
+      words("system.input_law",
+            "law of the inputs: drawn anew at every sample, held, or driven (steps, ramps, standstill, equal wheels)",
             MODEBANK_FIELD(simulate.system.input_law))
           .touch("white for the best excitation, drive for what robots do"),
       numeric("system.hold_samples", at_least(1), "samples", "mean length of a command",
               MODEBANK_FIELD(simulate.system.hold_samples))
-          .touch("longer, to see how poor excitation hurts"),
+          .touch("longer, to see the effect of poor excitation"),
       numeric("system.input_amplitude", above(0), "input unit", "largest command",
               MODEBANK_FIELD(simulate.system.input_amplitude))
-          .touch("when your system's inputs are of another size"),
+          .touch("when your system's inputs have another size"),
       numeric("system.input_quantum", at_least(0), "input unit",
-              "inputs (vehicle: commands) are multiples of this; 0: any value",
+              "step of the inputs (vehicle: of the commands), which are multiples of it; 0: any value",
               MODEBANK_FIELD(simulate.system.input_quantum))
           .touch("when your commands come in steps"),
       numeric("system.standstill_fraction", between(0, 1), "", "share of commands with all inputs zero (drive)",
               MODEBANK_FIELD(simulate.system.standstill_fraction))
-          .touch("as in your logs; much of it leaves windows rank deficient"),
+          .touch("as in your logs; a large share leaves windows rank deficient"),
       numeric("system.equal_fraction", between(0, 1), "", "share of commands with all inputs equal (drive)",
               MODEBANK_FIELD(simulate.system.equal_fraction))
-          .touch("as in your logs: straight driving tells little about turning"),
+          .touch("as in your logs; straight driving excites turning little"),
   };
 }
 
 std::vector<Option> linear_parameters() {
   return {
-      numeric("system.modes", any(), "", "parameters [A B (c)] row by row, one set per mode, sets separated by |",
+      numeric("system.modes", any(), "", "parameters of each mode: [A B (c)] row by row, modes separated by |",
               MODEBANK_FIELD(simulate.system.modes))
-          .touch("always with linear: it is the system"),
-      numeric("system.process_sd", each(at_least(0)), "state unit", "process noise per mode, or one for all",
+          .touch("always with linear"),
+      numeric("system.process_sd", each(at_least(0)), "state unit",
+              "standard deviation of the process noise, one per mode or one for all",
               MODEBANK_FIELD(simulate.system.process_sd))
-          .touch("always with linear: noise in the motion"),
-      numeric("system.measurement_sd", at_least(0), "state unit", "measurement noise",
+          .touch("always with linear"),
+      numeric("system.measurement_sd", at_least(0), "state unit", "standard deviation of the measurement noise",
               MODEBANK_FIELD(simulate.system.measurement_sd))
-          .touch("when your sensor's noise is not small beside the motion's"),
+          .touch("when your sensor's noise is as large as the motion's"),
       numeric("system.transition", each(between(0, 1)), "",
-              "mode transition matrix, rows separated by |; empty: from dwell_samples",
+              "mode transition matrix, rows separated by |; empty: made from dwell_samples",
               MODEBANK_FIELD(simulate.system.transition))
-          .touch("when modes follow each other by a known matrix; else dwell_samples is enough"),
-      numeric("system.dwell_samples", at_least(0), "samples", "mean stay in a mode; 0: each run stays in one mode",
+          .touch("when you know the matrix; else set dwell_samples"),
+      numeric("system.dwell_samples", at_least(0), "samples", "mean duration of a mode; 0: each run stays in one mode",
               MODEBANK_FIELD(simulate.system.dwell_samples))
-          .touch("for modes that switch within a run; a few windows long, to be found well"),
+          .touch("for modes that switch within a run: a few windows long, so that they can be found"),
   };
 }
 
@@ -75,28 +77,29 @@ std::vector<Option> vehicle_parameters() {
       numeric("system.yaw_inertia", above(0), "kg m^2", "moment of inertia about the vertical axis",
               MODEBANK_FIELD(simulate.vehicle.vehicle.yaw_inertia_kg_m2))
           .touch("for your vehicle"),
-      numeric("system.track", above(0), "m", "between left and right wheels",
+      numeric("system.track", above(0), "m", "distance between left and right wheels",
               MODEBANK_FIELD(simulate.vehicle.vehicle.track_m))
           .touch("for your vehicle"),
-      numeric("system.wheelbase", at_least(0), "m", "between front and rear axle",
+      numeric("system.wheelbase", at_least(0), "m", "distance between front and rear axle",
               MODEBANK_FIELD(simulate.vehicle.vehicle.wheelbase_m))
-          .touch("for your vehicle; 0 turns without scrubbing"),
+          .touch("for your vehicle; 0: it turns without scrubbing"),
       numeric("system.contact_length", above(0), "m", "length of a tyre's contact patch",
               MODEBANK_FIELD(simulate.vehicle.vehicle.contact_m))
-          .touch("never, unless you know your tyres"),
+          .touch("when you know your tyres"),
       numeric("system.slip_speed", above(0), "m/s",
-              "slip is relative to wheel speed plus this; small: sharper stick and slip, shorter steps",
+              "speed added to the wheel speed in the slip ratio's denominator; a smaller value makes stick and slip "
+              "sharper and integration steps shorter",
               MODEBANK_FIELD(simulate.vehicle.vehicle.slip_speed_m_s))
-          .touch("never, unless stick and slip near standstill is what you study"),
+          .touch("rarely: to study stick and slip near standstill"),
       numeric("system.drive_mass", above(0), "kg", "inertia of one side's wheels and gears, at the rim",
               MODEBANK_FIELD(simulate.vehicle.vehicle.drive_mass_kg))
-          .touch("never, unless you know your drive"),
+          .touch("when you know your drive"),
       numeric("system.drive_time", above(0), "s", "time constant of the wheel speed loop",
               MODEBANK_FIELD(simulate.vehicle.vehicle.drive_time_s))
-          .touch("for your vehicle's speed controller: its step response"),
+          .touch("for your vehicle: from a step response of its speed controller"),
       numeric("system.drive_force", above(0), "N", "largest force of one side's motor at the rim",
               MODEBANK_FIELD(simulate.vehicle.vehicle.drive_force_N))
-          .touch("for your vehicle; on grip it limits what wheels can follow"),
+          .touch("for your vehicle; on grip it limits the acceleration of the wheels"),
       numeric("system.friction", each(above(0)), "", "friction coefficient of each kind of ground",
               MODEBANK_FIELD(simulate.vehicle.friction))
           .touch("for your grounds: 0.05 to 0.1 is ice, 0.6 dry floor"),
@@ -105,41 +108,42 @@ std::vector<Option> vehicle_parameters() {
           .touch("when modes shall be named after the grounds"),
       numeric("system.shear", each(above(0)), "m", "shear deformation modulus of each kind of ground, or one for all",
               MODEBANK_FIELD(simulate.vehicle.shear_m))
-          .touch("never, unless grounds shall differ in stiffness, too"),
+          .touch("rarely: when grounds shall differ in stiffness, too"),
       numeric("system.resistance", each(at_least(0)), "",
               "motion resistance over weight on each kind of ground, or one for all",
               MODEBANK_FIELD(simulate.vehicle.resistance))
           .touch("higher for soft ground"),
       numeric("system.patch", at_least(0), "m",
-              "side of the square tiles whose ground is drawn; 0: each run stays on one kind",
+              "side of the square tiles, whose ground is random; 0: each run stays on one kind of ground",
               MODEBANK_FIELD(simulate.vehicle.patch_m))
-          .touch("0, for one ground a run; larger, for longer stays on each"),
-      numeric("system.forward_speed", any(), "m/s", "added to both wheels of every command but standstill",
+          .touch("0, for one ground per run; larger, for longer stays on each"),
+      numeric("system.forward_speed", any(), "m/s", "speed added to both wheels in every command except standstill",
               MODEBANK_FIELD(simulate.vehicle.forward_speed_m_s))
           .touch("0, for turning on the spot alone"),
       numeric("system.turn_scale", at_least(0), "", "factor on the turning part of commands",
               MODEBANK_FIELD(simulate.vehicle.turn_scale))
           .touch("below 1, for a driver who turns gently"),
       numeric("system.gyro_noise_density", at_least(0), "rad/s/sqrt(Hz)",
-              "a sample's standard deviation is this times sqrt(state_rate_hz)",
+              "noise density of the gyro; a sample's standard deviation is this times sqrt(state_rate_hz)",
               MODEBANK_FIELD(simulate.vehicle.sensors.gyro_noise_density))
           .touch("from your gyro's data sheet"),
-      numeric("system.gyro_bias", any(), "rad/s", "bias at the start of a run",
+      numeric("system.gyro_bias", any(), "rad/s", "gyro bias at the start of a run",
               MODEBANK_FIELD(simulate.vehicle.sensors.gyro_bias))
-          .touch("from your gyro's data sheet, to see what window.intercept does"),
-      numeric("system.gyro_bias_walk", at_least(0), "rad/s/sqrt(s)", "random walk of the bias",
+          .touch("from your gyro's data sheet; window.intercept then estimates its effect"),
+      numeric("system.gyro_bias_walk", at_least(0), "rad/s/sqrt(s)", "random walk of the gyro bias",
               MODEBANK_FIELD(simulate.vehicle.sensors.gyro_bias_walk))
           .touch("from your gyro's data sheet"),
       numeric("system.speed_noise_sd", at_least(0), "m/s",
-              "noise of forward and sideways speed, which are measured when data.state names them after the yaw rate",
+              "standard deviation of the measured forward and sideways speed; data.state names them after the yaw rate",
               MODEBANK_FIELD(simulate.vehicle.sensors.speed_noise_sd))
           .touch("when data.state names speeds, too"),
-      numeric("system.wheel_quantum", at_least(0), "m/s", "wheel speeds are multiples of this; 0: exact",
+      numeric("system.wheel_quantum", at_least(0), "m/s",
+              "step of the wheel speeds, which are multiples of it; 0: exact",
               MODEBANK_FIELD(simulate.vehicle.sensors.wheel_quantum_m_s))
           .touch("for your encoders"),
-      numeric("system.step", at_least(0), "s", "integration step; 0: from the stiffest ground",
+      numeric("system.step", at_least(0), "s", "integration step; 0: chosen for the stiffest ground",
               MODEBANK_FIELD(simulate.vehicle.step_s))
-          .touch("never, unless you check the integration: half of it must change nothing"),
+          .touch("rarely: to check the integration, whose result must not change with half the step"),
   };
 }
 
@@ -147,16 +151,16 @@ std::vector<Option> vehicle_parameters() {
 
 std::vector<Option> simulate_options() {
   std::vector<Option> all{
-      text("simulate.output", "a folder", "where the runs are written", MODEBANK_FIELD(simulate.output))
-          .touch("for every simulation that is to be kept", std::nullopt, basic),
+      text("simulate.output", "a folder", "folder to write the runs to", MODEBANK_FIELD(simulate.output))
+          .touch("for every simulation", std::nullopt, basic),
       text("simulate.system", "a name, or a file",
            "what is simulated: husky_ice, three_grips, or a file with a section [system]",
            MODEBANK_FIELD(simulate.name))
           .touch("for a system of your own: copy one of configs/systems and change it", std::nullopt, basic),
       numeric("simulate.runs", between(1, 100'000), "", "number of runs", MODEBANK_FIELD(simulate.system.runs))
-          .touch("when an answer needs more (or fewer) runs: evidence needs some", std::nullopt, basic),
+          .touch("more, for smaller standard errors; at least 8 for evidence", std::nullopt, basic),
       numeric("simulate.samples", between(2, 1e8), "", "samples per run", MODEBANK_FIELD(simulate.system.samples))
-          .touch("when an answer needs longer runs", std::nullopt, basic),
+          .touch("more, when runs are too short for their modes", std::nullopt, basic),
       numeric("simulate.rate_hz", between(1e-6, 1e6), "Hz", "rate of commands and of the inputs file",
               MODEBANK_FIELD(simulate.rate_hz))
           .touch("as in your logs"),
@@ -166,15 +170,16 @@ std::vector<Option> simulate_options() {
           .touch("as in your logs; equal to rate_hz where both come together"),
   };
   for (Option& entry :
-       only_for(SimulatedSystem::vehicle, {numeric("simulate.lag_s", any(), "s",
-                                                   "the inputs file's times are this much early (negative: late): "
-                                                   "data.lag_s with the same value undoes it",
-                                                   MODEBANK_FIELD(simulate.vehicle.sensors.lag_s))
-                                               .touch("to see whether lag_s = auto finds it"),
-                                           numeric("simulate.drift", between(-0.5, 0.5), "s/s",
-                                                   "true time = t + lag_s + drift * t for a time t of the inputs file",
-                                                   MODEBANK_FIELD(simulate.vehicle.sensors.drift))
-                                               .touch("to see whether lag_s = auto finds it")}))
+       only_for(SimulatedSystem::vehicle,
+                {numeric("simulate.lag_s", any(), "s",
+                         "time by which stamps of the inputs are early (negative: late); data.lag_s with the same "
+                         "value corrects it",
+                         MODEBANK_FIELD(simulate.vehicle.sensors.lag_s))
+                     .touch("to see whether lag_s = auto finds it"),
+                 numeric("simulate.drift", between(-0.5, 0.5), "s/s",
+                         "clock drift of the inputs file: its time t is the true time t + lag_s + drift * t",
+                         MODEBANK_FIELD(simulate.vehicle.sensors.drift))
+                     .touch("to see whether lag_s = auto finds it")}))
     all.push_back(std::move(entry));
   return all;
 }

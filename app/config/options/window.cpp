@@ -9,15 +9,14 @@
 namespace modebank::app {
 namespace {
 
-/// auto, linear, varx and every motion model that is compiled in.
+/// window.model: auto, linear, varx and each compiled motion model.
 Option model_option() {
   std::vector<std::string> models = model_names();
   models.insert(models.begin() + 2, "auto");
-  Option result =
-      text("window.model", fmt::format("{}", fmt::join(models, " | ")),
-           "A x + B u; with lags; with lags and a delay chosen by training runs left out; or a motion model of "
-           "ident/model/models",
-           MODEBANK_FIELD(window.model));
+  Option result = text("window.model", fmt::format("{}", fmt::join(models, " | ")),
+                       "model of a window. linear: A x + B u. varx: with lags. auto: with lags and a delay that "
+                       "training runs left out choose. Others: motion models of ident/model/models",
+                       MODEBANK_FIELD(window.model));
   result.set = [set = result.set, models](Config& config, const std::string& value) {
     if (std::find(models.begin(), models.end(), value) == models.end())
       throw std::invalid_argument("is none of its words");
@@ -30,7 +29,7 @@ Option model_option() {
   return result;
 }
 
-/// A number, or auto in its place, which with model = auto is the default. `meanwhile`: the number until it is found.
+/// A number or auto; with window.model = auto the default is auto. `meanwhile`: the number until one is found.
 Option number_or_auto(Option number, const std::string& means, std::ptrdiff_t meanwhile, Field<std::ptrdiff_t> count,
                       Field<LagChoice> choice) {
   Option result = std::move(number);
@@ -53,10 +52,10 @@ Option lag_option(std::string key, const Range& range, const std::string& help, 
                         count, choice);
 }
 
-/// Each window has a residual scale, or each run.
+/// window.scale: residual scale of each window, or of each run.
 Option scale_option() {
   Option result =
-      words("window.scale", "residual scale sigma: of each window, or of its run", MODEBANK_FIELD(window.scale));
+      words("window.scale", "residual scale sigma: one per window, or one per run", MODEBANK_FIELD(window.scale));
   result.range = "window | run";
   result.set = [set = result.set](Config& config, const std::string& text) {
     if (text != "window" && text != "run") throw std::invalid_argument("is none of its words");
@@ -65,14 +64,13 @@ Option scale_option() {
   return result;
 }
 
-/// A word, or the standard deviations of the global prior in its place.
+/// window.prior: a word, or standard deviations of the global prior.
 Option prior_option() {
   const Range range = each(above(0));
-  Option result =
-      of_several("window.prior", "none | global | each > 0", "parameter unit",
-                 "Gaussian prior on a window's parameters; global: about the fit of all training runs, 3 times "
-                 "the standard deviation of full-rank windows wide; numbers: about that fit, with these widths, "
-                 "one per parameter or one for all");
+  Option result = of_several("window.prior", "none | global | each > 0", "parameter unit",
+                             "Gaussian prior on a window's parameters. global: its mean is the fit of all training "
+                             "runs, its standard deviation 3 times that of full-rank windows. Numbers: the same mean, "
+                             "with these standard deviations, one per parameter or one for all");
   result.set = [range](Config& config, const std::string& text) {
     std::vector<double> widths;
     Prior kind = Prior::global;
@@ -93,11 +91,10 @@ Option prior_option() {
 }
 
 Option terms_option() {
-  Option result =
-      text("window.terms", "auto | none | TERM, TERM, ...",
-           "whether one motion may bend, as the competitor nonlinear: auto: by terms that training runs left "
-           "out ask for; or by these: NAME * NAME, |NAME|, max(0, NAME - NUMBER)",
-           MODEBANK_FIELD(terms));
+  Option result = text("window.terms", "auto | none | TERM, TERM, ...",
+                       "nonlinear terms of the competitor nonlinear. auto: those by which training runs left out gain; "
+                       "or a list of NAME * NAME, |NAME|, max(0, NAME - NUMBER)",
+                       MODEBANK_FIELD(terms));
   result.set = [set = result.set](Config& config, const std::string& text) {
     if (lists_terms(text)) read_terms(text);
     set(config, text);
@@ -110,51 +107,49 @@ Option terms_option() {
 std::vector<Option> window_options() {
   using enum Stage;
   return {
-      model_option().touch("auto, when the screen's last lines say that errors follow a pattern, or the plant answers "
-                           "late; a motion model, when its parameters (a track, a radius) are what you are after",
+      model_option().touch("auto, when the screen reports a pattern in the errors, or the plant answers late; a motion "
+                           "model, when you need its parameters (a track, a radius)",
                            structure, basic),
-      lag_option("window.state_lags", between(1, 100), "varx: states x[k], x[k-1], ... that predict x[k+1]",
+      lag_option("window.state_lags", between(1, 100),
+                 "number of past states x[k], x[k-1], ... that predict x[k+1], with varx",
                  MODEBANK_FIELD(window.state_lags), MODEBANK_FIELD(structure.state))
           .touch("with varx, or to keep auto from searching: when the order of the motion is known", structure),
-      lag_option("window.input_lags", between(1, 100), "varx: input samples that act on one transition",
+      lag_option("window.input_lags", between(1, 100), "number of input samples that act on one transition, with varx",
                  MODEBANK_FIELD(window.input_lags), MODEBANK_FIELD(structure.input))
           .touch("with varx, or to keep auto from searching: when the length of the input's effect is known",
                  structure),
       lag_option("window.input_delay", between(0, 1000),
-                 "varx: from an input to its first effect; 0: u[k+1] acts on x[k+1]",
+                 "time from an input to its first effect, with varx; 0: u[k+1] acts on x[k+1]",
                  MODEBANK_FIELD(window.input_delay), MODEBANK_FIELD(structure.delay))
-          .touch("with varx, or to keep auto from searching: when a dead time of whole samples is known; for lags of "
-                 "clocks data.lag_s",
+          .touch("with varx, or to keep auto from searching: when a dead time of whole samples is known. Lags between "
+                 "clocks are data.lag_s",
                  structure),
       number_or_auto(
           numeric("window.length", between(1, 1e6), "transitions", "length of a window", MODEBANK_FIELD(window.length)),
-          "25, or 1.5 to 3 times the model's regressors where that is more, the less the more often motion changes",
+          "25, or 1.5 to 3 times the number of regressors if that is more; few where the motion changes often",
           shortest_automatic_length, MODEBANK_FIELD(window.length), MODEBANK_FIELD(structure.length))
-          .touch("when `modebank check` suggests another: longer where windows are rank deficient, shorter where modes "
+          .touch("when `modebank check` suggests another: longer for rank-deficient windows, shorter for modes that "
                  "last less than a window; auto, when the model has many lags",
                  windows, basic),
-      number_or_auto(numeric("window.step", between(1, 1e6), "transitions", "from one window's start to the next",
-                             MODEBANK_FIELD(window.step)),
-                     "1, or as many as leave 100,000 windows", 1, MODEBANK_FIELD(window.step),
+      number_or_auto(numeric("window.step", between(1, 1e6), "transitions",
+                             "distance from one window's start to the next", MODEBANK_FIELD(window.step)),
+                     "1, or the distance that leaves 100,000 windows", 1, MODEBANK_FIELD(window.step),
                      MODEBANK_FIELD(structure.step))
-          .touch("larger, when windows are too many to wait for: neighbours share most of their samples; beyond "
-                 "100,000 windows auto does it",
-                 windows),
+          .touch("larger, when the windows take too long: neighbours share most of their samples", windows),
       words("window.loss", "robust loss of a sample's residual", MODEBANK_FIELD(window.loss))
           .touch("when `modebank check` suggests it: tukey for gross errors, trivial for clean data", windows),
-      scale_option().touch("run, when windows are so short that their own scale is noise", windows),
-      prior_option().touch(
-          "none, when windows excite everything and you want each one's own fit, as the published recipe; standard "
-          "deviations, when the prior pulls windows of a rare ground towards the common one",
-          windows),
-      terms_option().touch(
-          "a list, when physics says how the motion bends, such as vx * wz; none, to leave nonlinear and its time out",
-          competitors),
-      flag("window.intercept", "estimate a constant term c", MODEBANK_FIELD(window.intercept))
-          .touch("when the motion has a constant part: a slope, a leak, a sensor's offset", windows),
-      words("window.covariance", "covariance of a window's parameters: M-estimator or HC3 sandwich",
+      scale_option().touch("run, when windows are too short to estimate their own scale", windows),
+      prior_option().touch("none, when every window has full rank, and for the published recipe; standard deviations, "
+                           "when the prior pulls windows of a rare ground towards the common one",
+                           windows),
+      terms_option().touch("a list, when physics gives the terms, such as vx * wz; none, to leave the competitor "
+                           "nonlinear and its time out",
+                           competitors),
+      flag("window.intercept", "whether the model has a constant term c", MODEBANK_FIELD(window.intercept))
+          .touch("true, when the motion has a constant part: a slope, a leak, a sensor's offset", windows),
+      words("window.covariance", "covariance of a window's parameters: of the M-estimator (model), or HC3 sandwich",
             MODEBANK_FIELD(window.covariance))
-          .touch("sandwich, when noise differs within a window and you use the windows' standard errors", windows),
+          .touch("sandwich, when noise varies within a window and you use the windows' standard errors", windows),
   };
 }
 

@@ -68,12 +68,12 @@ TEST_F(ConfigFile, OtherBytesThanUtf8AreWindows1252) {
   EXPECT_EQ(load("[data]\nstate = größe\n").data.state, std::vector<std::string>{"größe"});
 }
 
-/// What `make reference-ini` wrote of the help says what stands in the program.
+/// configs/reference.ini, written by `make reference-ini`, agrees with the program.
 TEST_F(ConfigFile, TheReferenceHoldsEveryKeyAtItsDefault) {
   const std::filesystem::path file = test::project_dir() / "configs/reference.ini";
   const Config read = load_config(file, {}), defaults{};
   for (const Option& option : option_table())
-    // These follow from the file's place and name where they are empty.
+    // These keys have defaults that depend on the file's place and name.
     if (option.key != "data.root" && option.key != "archive.output" && option.key != "study.output") {
       EXPECT_EQ(option.get(read), option.get(defaults)) << option.key;
     }
@@ -124,7 +124,7 @@ TEST_F(ConfigFile, EveryOptionReadsItsOwnDefaultBack) {
   for (const Option& option : option_table()) {
     Config config;
     const std::string text = option.get(defaults);
-    // An empty number would mean nothing; only texts, lists and optional numbers may be empty.
+    // Only texts, lists and optional numbers may be empty.
     EXPECT_NO_THROW(option.set(config, text)) << option.key << " = " << text;
     EXPECT_EQ(option.get(config), text) << option.key;
     EXPECT_FALSE(option.help.empty()) << option.key;
@@ -142,7 +142,7 @@ TEST_F(ConfigFile, KeyOutsideAnySectionIsExplained) {
   }
 }
 
-/// Words of former versions that are no longer understood.
+/// Words of former versions that are no longer accepted.
 TEST_F(ConfigFile, WordsThatAreGoneAreAnsweredWithThoseThatAreLeft) {
   using Case = std::array<std::string, 3>;
   for (const auto& [key, gone, left] :
@@ -155,7 +155,7 @@ TEST_F(ConfigFile, WordsThatAreGoneAreAnsweredWithThoseThatAreLeft) {
     }
 }
 
-/// Keys and values of former versions are refused with what takes their place.
+/// Keys and values of former versions are refused, with the replacement.
 TEST_F(ConfigFile, KeysThatWentAreAnsweredWithWhatTakesTheirPlace) {
   using Case = std::array<std::string, 2>;
   for (const auto& [text, instead] :

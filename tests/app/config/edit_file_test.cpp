@@ -1,4 +1,4 @@
-// Keys set in the text of a configuration file.
+// Setting keys in the text of a configuration file.
 #include "app/config/edit_file.hpp"
 
 #include <gtest/gtest.h>

@@ -31,8 +31,8 @@ class ValidConfig : public ::testing::Test {
 
 TEST_F(ValidConfig, AnOverrideThatContradictsTheFileSaysWhatToSetToo) {
   const std::string message = objection("[window]\nmodel = varx\nstate_lags = 3\n", {{"window.model", "linear"}});
-  EXPECT_THAT(message, HasSubstr("set --window.state_lags 1, too, since "));
-  EXPECT_THAT(message, EndsWith("c.ini:7 says 3"));
+  EXPECT_THAT(message, HasSubstr("set --window.state_lags 1, too, because "));
+  EXPECT_THAT(message, EndsWith("c.ini:7 has 3"));
 }
 
 TEST_F(ValidConfig, AllKeysThatStandInTheWayAreNamed) {
