@@ -1,4 +1,4 @@
-// What filters predict several samples ahead, each by itself and all of them combined.
+// Predictions several samples ahead, by each filter and by all of them combined.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -16,17 +16,18 @@
 namespace modebank {
 namespace {
 
-/// A horizon that no judged run reaches has no scores: an error where it was stated, else it is left out.
+/// Removes horizons that no judged run reaches, which have no scores. `stated`: the configuration names them, so
+/// throws.
 void keep_reached_horizons(Archive& archive, bool stated) {
   std::vector<Index> unreached;
   for (const HorizonRow& row : archive.horizons)
     if (row.filter == "bank" && row.run == "*" && row.role == judged_role(archive) && row.samples == 0)
       unreached.push_back(row.horizon);
-  // Lags take more of a run than was known before it was modelled.
+  // Lags shorten a run only when it is modelled, so horizons cannot be checked before.
   if (stated && !unreached.empty())
-    throw DataError(fmt::format(
-        "filter.horizon = {}: no run reaches so many samples ahead of where the filter starts, its sample {}",
-        unreached.front(), archive.bank->structure.first_transition() + 1));
+    throw DataError(
+        fmt::format("filter.horizon = {}: no run is long enough; the filter starts at sample {}. Give a smaller number",
+                    unreached.front(), archive.bank->structure.first_transition() + 1));
   std::erase_if(archive.horizons, [&](const HorizonRow& row) {
     return std::find(unreached.begin(), unreached.end(), row.horizon) != unreached.end();
   });
@@ -40,7 +41,7 @@ void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Arc
   std::vector<std::string> names;
   for (const Forecaster& one : all) names.push_back(one.name);
   std::vector<Index> horizons = scoring.horizon;
-  horizons.push_back(1);  // that live filters are weighted by
+  horizons.push_back(1);  // live filters are weighted by one step ahead
   std::sort(horizons.begin(), horizons.end());
   horizons.erase(std::unique(horizons.begin(), horizons.end()), horizons.end());
   ForecastTables tables(names, runs, start_weights(archive.left_out, horizons, names));
@@ -56,7 +57,8 @@ void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Arc
     if (role == Role::train) tables.start_as_trained();
   }
   archive.horizons.clear();
-  if (scoring.horizon != std::vector<Index>{1}) archive.horizons = tables.horizons();  // else the summary scores it
+  if (scoring.horizon != std::vector<Index>{1})
+    archive.horizons = tables.horizons();  // the summary has the scores of one step
   std::erase_if(archive.horizons, [&](const HorizonRow& row) {
     return std::find(scoring.horizon.begin(), scoring.horizon.end(), row.horizon) == scoring.horizon.end();
   });

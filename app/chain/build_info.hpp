@@ -2,10 +2,10 @@
 
 namespace modebank::build_info {
 
-/// What this program was built from; defined by a generated file.
+/// Origin of this program's build; defined by a generated file.
 extern const char* const version;
 extern const char* const git_revision;
-extern const char* const date;  ///< of the revision, else of the build
+extern const char* const date;  ///< date of the revision, or of the build
 extern const char* const ceres;
 extern const char* const eigen;
 extern const char* const hdf5;

@@ -17,7 +17,7 @@ namespace modebank {
 
 namespace {
 
-/// The part of an archive that is of type P, alone and out of the archive.
+/// Moves the part of type P out of an archive into an archive of its own.
 template <class P>
 Archive part_out_of(Archive& archive) {
   Archive part;
@@ -36,9 +36,9 @@ void Chain::provide(Stage stage, const StagePart& part) {
   std::string& held = held_[index_of(stage)];
   const std::string& wanted = wanted_[index_of(stage)];
   if (held == wanted) return;
-  held.clear();  // if this throws, what is there belongs to no run
+  held.clear();  // if this throws, the archive belongs to no run
   const Stopwatch watch;
-  // What goes into a file as it is made is in no memory for another run to take.
+  // Results written to a file while they are made are not in memory, so a later run cannot reuse them.
   const bool streamed = sink_ && (stage == Stage::competitor_scores || stage == Stage::bank_scores);
   if (streamed)
     part.compute();
@@ -60,7 +60,7 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
   sink_ = sink;
   seconds_.fill(0.0);
   inputs_ = chain_inputs(options);
-  wanted_ = stage_keys(inputs_, "");  // what the data hold is known when they are read
+  wanted_ = stage_keys(inputs_, "");  // the data's hash is known once they are read
   import(inputs_.data);
   if (last >= Stage::bank_scores && options.scoring.horizon != ScoringOptions::default_horizon)
     refuse_unreached_horizons(*archive_.recording, options.scoring.horizon);
@@ -78,7 +78,7 @@ void Chain::import(const DataInputs& inputs) {
   const auto compute = [&] {
     const Stopwatch watch;
     data_ = import_data(inputs.data, memory_);
-    archive_.provenance.data_hash = data_.data_hash;  // listeners may want to know which data they are
+    archive_.provenance.data_hash = data_.data_hash;  // listeners may need the data's hash
     for (const std::string& note : data_.notes) listener_.warning(note);
     static_cast<DataPart&>(archive_) = {std::move(data_.recording), std::move(data_.labels), data_.step_scatter,
                                         std::move(data_.lag)};
@@ -111,7 +111,7 @@ void Chain::learn(const ChainOptions& options, Stage last) {
     wanted_[index_of(Stage::data)] = data_key;
     provide_learned(stage, compute);
   };
-  // Steps of many lengths make modes of one motion, and least squares alone keeps its time constant.
+  // Scattered sample periods look like modes of one motion; only least squares keeps its time constant.
   const bool one_model = archive_.step_scatter > most_step_scatter;
   learn_all(*archive_.recording, options, last, one_model, hooks, listener_, archive_);
 }

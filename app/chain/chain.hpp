@@ -13,23 +13,23 @@
 
 namespace modebank {
 
-/// How a stage's result comes into the chain's archive, and out of it: no part of it is copied.
+/// How a stage's result enters the chain's archive and leaves it. No part of it is copied.
 struct StagePart {
   std::function<void()> compute;
   std::function<Archive()> give;        ///< an archive of the result alone, which `take` must get back
-  std::function<void(Archive&&)> take;  ///< puts the result that such an archive holds in place
-  double writing_s = 0.0;  ///< about how long its writing takes: what is computed faster is not worth keeping
+  std::function<void(Archive&&)> take;  ///< puts the result from such an archive in its place
+  double writing_s = 0.0;               ///< expected time to write it; a result computed faster is not worth a file
 };
 
-/// Decides where stages' results come from. This one computes them all.
+/// Decides where the results of stages come from: this base class computes all of them.
 class StageSource {
  public:
   virtual ~StageSource() = default;
-  /// Calls part.compute, or part.take with what an earlier part.give gave for the same key.
+  /// Calls part.compute, or part.take with the result of an earlier part.give for the same key.
   virtual void provide(Stage, const std::string& /*key*/, const StagePart& part) { part.compute(); }
 };
 
-/// Takes from an archive what it holds of the data and of the stages up to `until`; the others are computed.
+/// Takes data and stages up to `until` from an archive, as far as it has them. The others are computed.
 class StoredStages : public StageSource {
  public:
   /// Throws DataError when the archive holds no data.
@@ -42,40 +42,40 @@ class StoredStages : public StageSource {
   Stage until_;
 };
 
-/// What an archive says of itself beside its numbers: the part on data is the chain's.
+/// An archive's statements about itself. The chain adds the data's hash.
 struct Execution {
-  std::string config;  ///< resolved
+  std::string config;  ///< the resolved configuration
   Provenance provenance;
 };
 
-/// The one order of stages, from data to scores. Options that follow one another are fastest when they share early
-/// stages: a stage whose key is that of the last run is left as it is.
+/// The one order of stages, from data to scores. A stage is skipped if its key is that of the last run. So a series of
+/// options is fastest when neighbours share early stages.
 class Chain {
  public:
-  /// All must outlive the chain. `memory`: runs that are in memory; null: they are files.
+  /// All arguments must outlive the chain. `memory`: runs in memory; null: the data are files.
   Chain(StageSource& source, const Listener& listener, const MemoryTables* memory = nullptr)
       : source_(source), listener_(listener), memory_(memory) {}
 
-  /// The archive after the stage `last` (bank_scores: all), which must not be earlier than in the run before. Throws
-  /// what the stages throw; what then is there is not used again. `sink`: takes evaluations as they are made, which
-  /// then are not in the archive; null: they are.
+  /// The archive after the stage `last` (bank_scores: all stages), which must not be earlier than in the run before.
+  /// Throws what the stages throw; results up to then are not reused. `sink` takes evaluations as they are made, and
+  /// the archive then has none; null: the archive has them.
   const Archive& run(const ChainOptions& options, Stage last, const Execution& execution,
                      const EvaluationSink* sink = nullptr);
 
-  /// Scores the banks of another archive on the data; nothing is learned. Throws DataError when their channels do not
-  /// fit the data's. Not to be mixed with run().
+  /// Scores the banks of another archive on the data, without learning. Throws DataError when their channels do not fit
+  /// the data's. One chain calls either this or run().
   const Archive& judge_stored(const std::filesystem::path& banks, const ChainOptions& options,
                               const Execution& execution, const EvaluationSink* sink = nullptr);
 
-  /// Inputs of the last run, with the structure that it found.
+  /// Inputs of the last run, with the structure that was found.
   const ChainInputs& inputs() const { return inputs_; }
 
-  /// Seconds that the last run spent on each stage; 0 for those left as they were.
+  /// Seconds that the last run spent on each stage; 0 for a stage that was skipped.
   const std::array<double, stage_count>& seconds() const { return seconds_; }
 
  private:
   void provide(Stage stage, const StagePart& part);
-  /// A stage whose result is the part of the archive that is of type P.
+  /// A stage whose result is the part of type P in the archive.
   template <class P>
   void provide(Stage stage, const std::function<void()>& compute);
   void import(const DataInputs& inputs);
@@ -99,7 +99,7 @@ class Chain {
   const Listener& listener_;
   const MemoryTables* memory_;
   Archive archive_;
-  ImportedData data_;  ///< what is said of the recording: files and hash
+  ImportedData data_;  ///< files and hash of the recording
   ChainInputs inputs_;
   StageKeys wanted_, held_;
   std::array<double, stage_count> seconds_{};

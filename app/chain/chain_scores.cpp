@@ -1,4 +1,4 @@
-// Filters scored: those that the chain learned, and those of another archive.
+// Scores of filters: of those that the chain learned, and of those from another archive.
 #include <fmt/format.h>
 
 #include "app/chain/chain.hpp"
@@ -19,7 +19,7 @@ void Chain::score(const std::string& filter, const FilterOptions& options, const
     put(score_filter(filter, *bank, *archive_.recording, options, scoring, stream ? &*stream : nullptr));
 }
 
-/// Several steps ahead, all filters together, and what the scores come to.
+/// Scores of predictions several steps ahead, of combined filters, and the finding.
 void Chain::conclude(const FilterOptions& filter, const ScoringOptions& scoring) {
   score_ahead(filter, scoring, archive_);
   forget(combined_name);
@@ -73,7 +73,7 @@ void Chain::forget(const std::string& filter) {
   put_rows<ResidualTestSet>(filter, {}, archive_.residual_tests);
 }
 
-/// A run may have fewer than the one before.
+/// A run may have fewer filters than the run before.
 void Chain::forget_competitors() {
   for (const char* filter : competitor_names) forget(filter);
 }
@@ -112,7 +112,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   wanted_ = stage_keys(chain_inputs(options), "");
   import({options.data});
   const Stopwatch watch;
-  // One model is the global one, as where banks are learned.
+  // As in learning, a single model is the global one.
   StoredBanks stored = read_banks(banks, *archive_.recording, options.filter.variant == FilterVariant::kf, listener_);
   archive_.bank = std::move(stored.bank);
   archive_.baseline = std::move(stored.baseline);

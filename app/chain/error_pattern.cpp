@@ -14,11 +14,11 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr Index rows_per_column = 50;  // a column that predicts nothing costs half a nat, here .01 nats per sample
+constexpr Index rows_per_column = 50;  // a useless column costs half a nat, so here 0.01 nats per sample
 constexpr Index most_entries = 1'000'000;
 constexpr Index most_folds = 5;
 
-/// The training runs with the bank's z in place of their states.
+/// The training runs, with the bank's normal scores z in place of states.
 Recording runs_of_errors(const Recording& recording, const FilterEvaluation& bank) {
   Recording errors{recording.states, recording.inputs, {}, {}};
   for (std::size_t i = 0; i < recording.runs.size(); ++i) {
@@ -34,7 +34,7 @@ Recording runs_of_errors(const Recording& recording, const FilterEvaluation& ban
   return errors;
 }
 
-/// The residuals of `z` by least squares, each fold of parts predicted by the others.
+/// Residuals of a least-squares fit to `z`, where each fold of parts is predicted from the others.
 MatrixXd left_out_errors(const TermRows& rows, const MatrixXd& z) {
   const Index folds = std::min(most_folds, rows.parts);
   MatrixXd errors = z;

@@ -17,7 +17,7 @@ namespace {
 constexpr double worth_a_line_s = 30.0;
 constexpr double second_per_minute = 60.0;
 
-/// "45 s", "3 min".
+/// Such as "45 s" or "3 min".
 std::string rounded_time(double seconds) {
   return seconds < 2.0 * second_per_minute ? fmt::format("{:.0f} s", seconds)
                                            : fmt::format("{:.0f} min", seconds / second_per_minute);
@@ -26,7 +26,7 @@ std::string rounded_time(double seconds) {
 }  // namespace
 
 double expected_windows_s(const Recording& recording, const FitOptions& window) {
-  constexpr double ceres_s = 7e-5, ceres_entry_s = 1.6e-8, batch_entry_s = 5e-9;  // an entry: of L q x q products
+  constexpr double ceres_s = 7e-5, ceres_entry_s = 1.6e-8, batch_entry_s = 5e-9;  // per entry of L products of q x q
   const LinearStructure s = linear_structure(recording.state_count(), recording.input_count(), window);
   const Index count = count_windows(recording, window);
   const double q = static_cast<double>(s.regressors()), entries = q * q * static_cast<double>(window.length);
@@ -38,7 +38,7 @@ double expected_windows_s(const Recording& recording, const FitOptions& window) 
 }
 
 double expected_mixture_s(const WindowFits& windows, const ClusterOptions& options) {
-  constexpr double number_s = 1.7e-8;  // of a component's mean, variances and weight, for a point and a restart
+  constexpr double number_s = 1.7e-8;  // per number of a component (mean, variances, weight), point and restart
   const Index all = windows.parameter_count() + windows.structure.states;
   const Index features = clusters_one_lag(windows, options.features)
                              ? windows.structure.with_one_lag().parameters() + windows.structure.states
@@ -54,7 +54,7 @@ double expected_mixture_s(const WindowFits& windows, const ClusterOptions& optio
 }
 
 double expected_learning_s(const Recording& recording, const LinearStructure& structure, const RefineOptions& options) {
-  constexpr double coefficient_s = 4e-4;  // for a transition, by default starts and folds
+  constexpr double coefficient_s = 4e-4;  // per coefficient and transition, with default starts and folds
   const Index all = recording.transitions(Role::train);
   const Index learned = options.transitions > 0 ? std::min(all, options.transitions) : all;
   return coefficient_s * static_cast<double>(learned) * static_cast<double>(structure.parameters());
@@ -63,7 +63,7 @@ double expected_learning_s(const Recording& recording, const LinearStructure& st
 void tell_if_long(const Listener& listener, const std::string& stage, double seconds, const std::string& instead) {
   if (seconds > worth_a_line_s)
     listener.progress(
-        fmt::format("{}: begins, expected to take {} of processor time; {}", stage, rounded_time(seconds), instead));
+        fmt::format("{}: expected to take {} of processor time; {}", stage, rounded_time(seconds), instead));
 }
 
 }  // namespace modebank

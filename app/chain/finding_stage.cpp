@@ -20,7 +20,7 @@ Densities densities_of(const FilterEvaluation& evaluation, const Recording& reco
   return densities;
 }
 
-/// Per run of a recording, which of its samples rest.
+/// For each run and sample of a recording: whether the robot rests.
 using Rests = std::vector<std::vector<bool>>;
 
 Rests rests_of(const Recording& recording) {
@@ -35,7 +35,7 @@ Rests rests_of(const Recording& recording) {
   return rests;
 }
 
-/// Median standard deviation of the predictions of measurement i, in motion.
+/// Median standard deviation of the predictions of measurement i, over samples in motion.
 double innovation_sd(const FilterEvaluation& bank, const Recording& recording, const Rests& rests, Role role, Index i) {
   std::vector<double> variances;
   for (std::size_t r = 0; r < recording.runs.size(); ++r) {
@@ -51,7 +51,7 @@ double innovation_sd(const FilterEvaluation& bank, const Recording& recording, c
   return std::sqrt(*middle);
 }
 
-/// The values that are missing do not count; 0 without any.
+/// Standard deviation of the finite values; 0 without any.
 double standard_deviation(const Eigen::VectorXd& values) {
   const auto known = values.array().isFinite();
   const auto count = static_cast<double>(known.count());
@@ -68,8 +68,8 @@ std::vector<std::pair<std::string, double>> coefficients_of(const Bank& bank) {
   return coefficients;
 }
 
-/// Over the judged runs, one after another. `quantum`: of the bank; where it has one its scores take values for
-/// intervals. A sample at rest repeats the one before because nothing moves, however fine the measurement.
+/// Resolution of each state over all judged runs. `quantum`: rounding steps of the bank; scores of such a state already
+/// take values as intervals. Samples at rest are left out, because there a fine measurement repeats, too.
 std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Eigen::VectorXd& quantum,
                                     const Recording& recording, Role role) {
   const Rests rests = rests_of(recording);

@@ -6,10 +6,10 @@
 
 namespace modebank {
 
-/// Hears what a chain does while it does it.
+/// Receives messages and results from a running chain.
 class Listener : public Progress {
  public:
-  /// The stage's result has come into the archive.
+  /// Called when the stage's result has entered the archive.
   virtual void done(Stage, const Archive&) const {}
 };
 

@@ -10,10 +10,10 @@
 #include "filter/judge/decide/finding.hpp"
 #include "io/archive/archive.hpp"
 
-/// An archive's rows on evaluation, model by model.
+/// Functions on an archive's rows of evaluation, by model.
 namespace modebank {
 
-/// The order of models in the rows of an archive: the global model, the bank, its competitors in theirs.
+/// Order of models in the rows of an archive: the global model, the bank, then its competitors in their order.
 inline std::size_t model_rank(const std::string& model) {
   if (model == "global") return 0;
   if (model == "bank") return 1;
@@ -38,7 +38,7 @@ void put_rows(const std::string& model, std::vector<Row> rows, std::vector<Row>&
                    [](const Row& a, const Row& b) { return model_rank(model_of(a)) < model_rank(model_of(b)); });
 }
 
-/// Takes the rows of these models out.
+/// Removes the rows of these models.
 template <class Row>
 std::vector<Row> rows_out_of(std::vector<Row>& all, const std::vector<std::string>& models) {
   const auto others = std::stable_partition(all.begin(), all.end(), [&](const Row& row) {
@@ -49,7 +49,7 @@ std::vector<Row> rows_out_of(std::vector<Row>& all, const std::vector<std::strin
   return rows;
 }
 
-/// Takes everything out that was found out about these models, with the recording: an archive of scores holds it.
+/// Removes all results on these models, and the recording: an archive of scores has them.
 inline Archive scores_out_of(Archive& archive, const std::vector<std::string>& models) {
   Archive part;
   part.recording = std::exchange(archive.recording, {});
@@ -61,7 +61,7 @@ inline Archive scores_out_of(Archive& archive, const std::vector<std::string>& m
   return part;
 }
 
-/// Where a part was given with the recording. One from a file has its own, of the same data.
+/// Whether a part is stored with the recording. A part from a file has a recording of its own, with the same data.
 inline void put_back_recording(Archive& part, Archive& archive) {
   if (!archive.recording) archive.recording = std::move(part.recording);
 }

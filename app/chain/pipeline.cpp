@@ -18,17 +18,17 @@ namespace {
 void check_usage(const std::string& command, const Config& config) {
   if (command == "run" && !config.archive.input.empty())
     throw ConfigurationError(
-        "archive.input: run starts from the data; identify, cluster and evaluate take earlier stages");
+        "archive.input does not work with run, which starts from the data; use identify, cluster or evaluate");
   if (command != "evaluate" && !config.archive.bank.empty())
-    throw ConfigurationError("archive.bank: only evaluate runs a stored bank");
+    throw ConfigurationError("archive.bank works with evaluate only: modebank evaluate CONFIG --archive.bank FILE");
   if (!config.archive.bank.empty() && !config.archive.input.empty())
-    throw ConfigurationError("archive.bank and archive.input: give one of them");
+    throw ConfigurationError("archive.bank and archive.input are both set; give one of them");
   for (const std::string& file : {config.archive.input, config.archive.bank})
     if (!file.empty() && !std::filesystem::exists(file))
       throw ConfigurationError(fmt::format("{}: no such file", file));
 }
 
-/// Files that the command reads.
+/// Input files of a command.
 std::vector<std::filesystem::path> sources_of(const Config& config, const std::filesystem::path& configuration,
                                               const MemoryTables* memory) {
   std::vector<std::filesystem::path> sources;
@@ -48,7 +48,7 @@ void Adviser::done(Stage stage, const Archive& archive) const {
     counts.add(*archive.windows);
     warn_of_windows(*archive.windows, counts);
   }
-  // A refined bank has other starts, too, and keeps nothing of the mixture.
+  // A refined bank has its own starts and keeps nothing of the mixture.
   if (stage == Stage::bank && archive.mixture && !archive.unrefined)
     for (const std::string& text : selection_warnings(archive.mixture->candidates)) warning("mixture: " + text);
   if (const std::string text = refinement_warning(archive.measured_fit); stage == Stage::bank && !text.empty())

@@ -6,8 +6,8 @@
 
 namespace modebank {
 
-/// Program, libraries and time of this execution, with the configuration's hash and what was typed; the data's part is
-/// added by the chain.
+/// Program, libraries and time of this execution, with the configuration's hash and the command line. The chain adds
+/// the data's hash.
 Provenance make_provenance(const std::string& config_hash, const std::string& command_line);
 
 }  // namespace modebank

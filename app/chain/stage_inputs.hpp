@@ -5,7 +5,7 @@
 #include "app/config/chain_options.hpp"
 #include "filter/learn/chain/inputs.hpp"
 
-/// The options that each stage around learning gets (those of learning: filter/learn/chain/inputs.hpp).
+/// Options of each stage around learning (for the stages of learning: filter/learn/chain/inputs.hpp).
 namespace modebank {
 
 struct DataInputs {
@@ -23,19 +23,19 @@ struct BankScoreInputs {
   ScoringOptions scoring;
 };
 
-/// Of a whole chain.
+/// Inputs of a whole chain.
 struct ChainInputs : LearningInputs {
   DataInputs data;
   CompetitorScoreInputs competitor_scores;
   BankScoreInputs bank_scores;
 };
 
-/// What is found out about filters, with the chain's seed where something is drawn.
+/// Options of scoring; the seed is the chain's where something is drawn.
 ScoringOptions scoring_inputs(const ChainOptions& options);
 
-/// Parts the options into what each stage needs.
+/// Splits the options into the inputs of each stage.
 ChainInputs chain_inputs(const ChainOptions& options);
-/// With the inputs of learning that are given.
+/// The same, with the inputs of learning already given.
 ChainInputs chain_inputs(const ChainOptions& options, LearningInputs learning);
 
 }  // namespace modebank

@@ -7,8 +7,7 @@
 #include "app/chain/build_info.hpp"
 #include "io/files/sha256.hpp"
 
-// The fields of a struct, all of them: a field that is missing here does not compile, because a structured binding
-// names each one.
+// All fields of a struct. A structured binding names each of them, so a field that is missing here does not compile.
 #define MODEBANK_KEY_FIELDS(Struct, ...)            \
   void add(KeyText& key, const Struct& fields_of) { \
     const auto& [__VA_ARGS__] = fields_of;          \
@@ -18,7 +17,7 @@
 namespace modebank {
 namespace {
 
-/// Values one after another, each so that no other value has the same text.
+/// Appends values one after another, such that different values never give the same text.
 class KeyText {
  public:
   template <class... T>
@@ -93,7 +92,7 @@ template <class T>
 requires std::is_aggregate_v<T>
 void KeyText::put(const T& value) { add(*this, value); }
 
-/// `earlier`: whatever else the stage starts from, as text.
+/// `earlier`: text on the results that the stage starts from.
 template <class Inputs, class... Earlier>
 std::string key_of(Stage stage, const Inputs& inputs, const Earlier&... earlier) {
   KeyText key;

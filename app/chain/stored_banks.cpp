@@ -20,20 +20,21 @@ bool trained_on(const Recording& recording, const Trajectory& run) {
   });
 }
 
-/// What makes a stored bank's scores mean something else than they seem to.
+/// Warns of reasons why a stored bank's scores are easily misread.
 void warn_of_foreign_bank(const std::string& file, const Archive& stored, const Recording& recording,
                           const Listener& listener) {
   std::vector<std::string> trained;
   for (const Trajectory& run : recording.runs)
     if (run.role == Role::test && stored.recording && trained_on(*stored.recording, run)) trained.push_back(run.run);
   if (!trained.empty())
-    listener.warning(fmt::format("{}: its bank was trained on {}: the scores of the test runs are not held out", file,
-                                 fmt::join(trained, ", ")));
+    listener.warning(
+        fmt::format("{}: its bank was trained on {}, so these runs are not held out and their scores are too good",
+                    file, fmt::join(trained, ", ")));
   const Bank& bank = *stored.bank;
   if (bank.state_names != state_names(recording, bank.structure) ||
       bank.input_names != input_names(recording, bank.structure))
-    listener.warning(fmt::format("{}: its bank was learned from columns {}; {}, the data have {}; {}", file,
-                                 fmt::join(bank.state_names, ", "), fmt::join(bank.input_names, ", "),
+    listener.warning(fmt::format("{}: its bank was learned from the states {} and inputs {}; the data have {} and {}",
+                                 file, fmt::join(bank.state_names, ", "), fmt::join(bank.input_names, ", "),
                                  fmt::join(names_of(recording.states), ", "),
                                  fmt::join(names_of(recording.inputs), ", ")));
   if (const std::string remark = period_remark(file, bank, recording); !remark.empty()) listener.warning(remark);
@@ -42,24 +43,24 @@ void warn_of_foreign_bank(const std::string& file, const Archive& stored, const 
 }  // namespace
 
 std::string period_remark(const std::string& file, const Bank& bank, const Recording& recording) {
-  constexpr double tolerated = 0.1;  // a tenth more or less time per step changes increments by as much
+  constexpr double tolerated = 0.1;  // time per step, and so increments, may differ by a tenth
   const double dt_s = recording.median_period_s();
   if (std::abs(dt_s - bank.dt_s) <= tolerated * bank.dt_s) return "";
-  return fmt::format("{}: its bank steps by {:.4g} s, the data by {:.4g} s", file, bank.dt_s, dt_s);
+  return fmt::format("{}: one step of its bank is {:.4g} s, of the data {:.4g} s", file, bank.dt_s, dt_s);
 }
 
 StoredBanks read_banks(const std::filesystem::path& path, const Recording& recording, bool one_model,
                        const Listener& listener) {
   const std::string file = path.string();
   Archive stored = read_archive(path);
-  if (!stored.bank) throw DataError(fmt::format("{}: holds no bank", file));
+  if (!stored.bank) throw DataError(fmt::format("{}: this archive has no bank", file));
   const LinearStructure& structure = stored.bank->structure;
   if (structure.states != recording.state_count() || structure.inputs != recording.input_count())
     throw DataError(fmt::format("{}: its bank has {} states and {} inputs, the data have {} and {}", file,
                                 structure.states, structure.inputs, recording.state_count(), recording.input_count()));
   warn_of_foreign_bank(file, stored, recording, listener);
   if (one_model && !stored.baseline && stored.bank->mode_count() > 1)
-    throw DataError(fmt::format("{}: holds no baseline, which the single Kalman filter kf runs", file));
+    throw DataError(fmt::format("{}: this archive has no baseline, which filter.variant = kf runs", file));
   if (one_model && stored.baseline)
     return {*stored.baseline,
             stored.baseline,

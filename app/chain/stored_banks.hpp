@@ -10,7 +10,7 @@
 
 namespace modebank {
 
-/// The banks of an archive, to be scored on other data.
+/// The banks of an archive, to score them on other data.
 struct StoredBanks {
   Bank bank;
   std::optional<Bank> baseline, noise_only, one_motion, unrefined;
@@ -22,12 +22,12 @@ struct StoredBanks {
   std::vector<LeftOutRow> left_out = {};
 };
 
-/// What is to be said where data are sampled at another period than the bank's steps take; empty where they are not.
+/// A remark if the sample period of the data is not the step of the bank; else empty.
 std::string period_remark(const std::string& file, const Bank& bank, const Recording& recording);
 
-/// `one_model`: a single Kalman filter is asked for, so that the bank is the archive's baseline. Warns of what makes
-/// the scores mean something else than they seem to: test runs that the bank was trained on, other columns, another
-/// sample period. Throws DataError when there is no such bank or its channels do not fit the data's.
+/// `one_model`: the bank is the archive's baseline, for a single Kalman filter. Warns of reasons why the scores are
+/// easily misread: test runs that trained the bank, other columns, another sample period. Throws DataError when the
+/// bank does not exist or its channels do not fit the data's.
 StoredBanks read_banks(const std::filesystem::path& file, const Recording& recording, bool one_model,
                        const Listener& listener);
 

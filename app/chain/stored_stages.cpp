@@ -7,7 +7,7 @@ namespace modebank {
 
 StoredStages::StoredStages(const std::filesystem::path& file, Stage until)
     : stored_(read_archive(file)), until_(until) {
-  if (!stored_.recording) throw DataError(fmt::format("{}: holds no data", file.string()));
+  if (!stored_.recording) throw DataError(fmt::format("{}: this archive has no data", file.string()));
   stored_.provenance.inputs.push_back(describe_file(file));
 }
 

@@ -21,7 +21,7 @@ std::string names_of(const std::vector<SurveyedFile>& files, const std::vector<C
   return names.empty() ? "none" : printable_name(fmt::format("{}", fmt::join(names, ", ")));
 }
 
-/// Where a channel is that moves; of several of the name the first.
+/// Place of a moving channel with this name; the first if there are several.
 std::optional<ChannelPlace> find_moving(const std::vector<SurveyedFile>& files, const std::string& name) {
   for (std::size_t f = 0; f < files.size(); ++f)
     for (std::size_t t = 0; t < files[f].tables.size(); ++t)
@@ -41,7 +41,7 @@ std::vector<std::string> moving_channels(const std::vector<SurveyedFile>& files)
   return names;
 }
 
-/// The channels of a line, or what is wrong with it.
+/// Reads the channels that a line names; returns an error message otherwise.
 std::optional<std::vector<ChannelPlace>> places_of(const std::vector<SurveyedFile>& files, const std::string& line,
                                                    std::ostream& questions) {
   std::vector<std::string> names;
@@ -52,7 +52,7 @@ std::optional<std::vector<ChannelPlace>> places_of(const std::vector<SurveyedFil
     const std::optional<ChannelPlace> place = find_moving(files, name);
     if (!place) {
       questions << printable(
-          fmt::format("  no channel that moves is called {}{}\n", name, did_you_mean(name, moving_channels(files))));
+          fmt::format("  no moving channel has the name {}{}\n", name, did_you_mean(name, moving_channels(files))));
       return std::nullopt;
     }
     places.push_back(*place);
@@ -60,7 +60,7 @@ std::optional<std::vector<ChannelPlace>> places_of(const std::vector<SurveyedFil
   return places;
 }
 
-/// Whether they were changed.
+/// Returns whether the channels were changed.
 bool ask(const std::vector<SurveyedFile>& files, const char* what, std::vector<ChannelPlace>& places, bool may_be_none,
          std::istream& answers, std::ostream& questions) {
   std::string line;
@@ -85,9 +85,9 @@ bool ask(const std::vector<SurveyedFile>& files, const char* what, std::vector<C
 
 void confirm_roles(const std::vector<SurveyedFile>& files, Guess& guess, std::istream& answers,
                    std::ostream& questions) {
-  questions << "Return keeps what stands in brackets; other channels are named with commas between them.\n";
-  if (ask(files, "state, which is measured", guess.states, false, answers, questions)) guess.mounting.reset();
-  ask(files, "input, which acts on it (or none)", guess.inputs, true, answers, questions);
+  questions << "Press Return to keep the channels in brackets, or type other names with commas between them.\n";
+  if (ask(files, "state (measured)", guess.states, false, answers, questions)) guess.mounting.reset();
+  ask(files, "input (acts on the state; or none)", guess.inputs, true, answers, questions);
 }
 
 }  // namespace modebank::app

@@ -6,8 +6,8 @@
 
 namespace modebank::app {
 
-/// Shows the guessed state and inputs and takes others in their place: a line of channels each, an empty one keeps
-/// them. Asks again for a channel that there is not, or that stands still; ends of input keep what is left.
+/// Shows the guessed state and inputs and reads others in their place: one line of channels each, where an empty line
+/// keeps the guess. Asks again for a channel that does not exist or does not move. End of input keeps the rest.
 void confirm_roles(const std::vector<SurveyedFile>& files, Guess& guess, std::istream& answers,
                    std::ostream& questions);
 

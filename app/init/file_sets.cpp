@@ -14,7 +14,7 @@ using Path = std::filesystem::path;
 
 bool in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
-/// The common length, cut back to where a word ends in all.
+/// The common length, shortened to the end of a word in all names.
 std::size_t whole_words(const std::vector<std::string>& names, std::size_t common) {
   while (common > 0 && in_word(names.front()[common - 1]) &&
          std::any_of(names.begin(), names.end(),
@@ -63,7 +63,7 @@ void find_pattern(FileSet& set) {
 bool is_of_a_kind(const std::vector<std::string>& a, const std::vector<std::string>& b) {
   const auto shared = std::count_if(
       a.begin(), a.end(), [&](const std::string& name) { return std::find(b.begin(), b.end(), name) != b.end(); });
-  // Two instruments of one robot may share most of their names (a gyro's and an odometry's frames).
+  // A name shared by two instruments of a robot (a gyro's and an odometry's frames) does not make them one kind.
   return 5 * shared >= 4 * std::ssize(a) && 5 * shared >= 4 * std::ssize(b);
 }
 

@@ -6,19 +6,19 @@
 
 namespace modebank::app {
 
-/// Files of one kind, and the pattern with one * that names them and no others, where there is one.
+/// Files of one kind. If one pattern with a single * matches exactly these files, it is used.
 struct FileSet {
   std::vector<std::filesystem::path> files;  ///< absolute, in order of name
-  std::string pattern;                       ///< of one file its own path; empty: they have to be listed
-  std::vector<std::string> runs;             ///< what the * stands for, per file; without one their stems
+  std::string pattern;                       ///< for a single file its path; empty: the files must be listed
+  std::vector<std::string> runs;             ///< the text that * matches, per file; without a pattern the stems
 };
 
-/// Files sorted into sets, those that share four fifths of either's columns into one, in the order in which they are
-/// named. Throws ConfigurationError when one cannot be read.
+/// Sorts files into sets. Two files are of one set if they share at least four fifths of their columns. Order: as
+/// named. Throws ConfigurationError when a file cannot be read.
 std::vector<FileSet> file_sets(const std::vector<std::string>& files);
 
-/// The pattern of file names in one folder: what they begin and end with, cut where a word ends (pro_00 and pro_01 are
-/// pro_*, not pro_0*); empty when they share neither.
+/// The pattern of file names in one folder: their common beginning and end, cut at the end of a word. Example: pro_00
+/// and pro_01 give pro_*, not pro_0*. Empty when nothing is common.
 std::string common_pattern(const std::vector<std::string>& names);
 
 }  // namespace modebank::app

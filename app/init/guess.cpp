@@ -21,19 +21,20 @@ struct Candidate {
   ChannelPlace place;
   const SurveyedTable* table;
   const SurveyedChannel* channel;
-  NameScore score;  ///< all hints
-  NameScore named;  ///< the name alone
+  NameScore score;  ///< from all hints
+  NameScore named;  ///< from the name alone
 
   bool is_held() const { return channel->check.repeated > most_repeated; }
 };
 
 bool same_table(const ChannelPlace& a, const ChannelPlace& b) { return a.file == b.file && a.table == b.table; }
 
-/// Adds the hints beside the names: a value that is held while others of its table move is a command, and some units
-/// are of what is measured or of what acts.
+/// Adds hints other than names. A value that is held while other channels of its table move is a command. Units such as
+/// rad/s mark measurements, units such as V mark inputs.
 void add_hints(std::vector<Candidate>& all) {
   constexpr int held = 3, unit = 2;
-  constexpr double moving = 0.2;  // repeats at most of what an instrument measures anew in nearly every row
+  constexpr double moving =
+      0.2;  // largest share of repeated values in a channel that is measured anew in nearly every row
   for (Candidate& c : all) {
     const bool others_move = std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
       return same_table(other.place, c.place) && other.channel->check.repeated < moving;
@@ -52,7 +53,7 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
   for (std::size_t f = 0; f < files.size(); ++f)
     for (std::size_t t = 0; t < files[f].tables.size(); ++t) {
       const SurveyedTable& table = files[f].tables[t];
-      // Names of CSV columns say nothing of where they come from, the file's name does: imu_03.csv.
+      // CSV columns do not name their instrument, but the file's name does: imu_03.csv.
       const std::string from = table.name.empty() ? files[f].path.stem().string() + " " : "";
       for (std::size_t c = 0; c < table.channels.size(); ++c) {
         const SurveyedChannel& channel = table.channels[c];
@@ -66,8 +67,8 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
   return all;
 }
 
-/// Those of the most points, in the order of the file; within `slack` of the best, by all hints or by names, and in its
-/// table.
+/// The channels of the table of the best candidate with nearly as many points: at most `slack` fewer, by all hints or
+/// by the name. Order: as in the file.
 std::vector<const Candidate*> best_of(const std::vector<Candidate>& all, int NameScore::*points, int slack,
                                       std::size_t most) {
   const Candidate* best = nullptr;
@@ -82,7 +83,7 @@ std::vector<const Candidate*> best_of(const std::vector<Candidate>& all, int Nam
   return chosen;
 }
 
-/// Whether an instrument measures it beside others, as one axis of several.
+/// Whether a channel is one axis of a vector that an instrument measures.
 bool is_of_axes(const Candidate& c) {
   for (const Axis axis : {Axis::x, Axis::y, Axis::z})
     if (names_angular_rate(c.channel->name, axis) || names_acceleration(c.channel->name, axis) ||
@@ -91,16 +92,16 @@ bool is_of_axes(const Candidate& c) {
   return false;
 }
 
-/// Without a hint on any state: the last channel that nothing takes for an input is the state, as usual in tables of u
-/// and y.
+/// Used without a hint on any state. In tables of u and y the last channel is usually y, so this takes the last channel
+/// that is least likely an input.
 void guess_state_by_place(const std::vector<Candidate>& all, Guess& guess) {
   const auto least = std::min_element(
       all.rbegin(), all.rend(), [](const Candidate& a, const Candidate& b) { return a.score.input < b.score.input; });
   guess.states = {least->place};
 }
 
-/// Where nothing names an input: what lies beside the state and is not measured with it, for a table of few channels or
-/// one that is held.
+/// Used where no name means an input. Takes channels beside the state that are not measured with it, if they are held
+/// or the table has few channels.
 void guess_inputs_by_place(const std::vector<Candidate>& all, bool by_place, Guess& guess) {
   constexpr std::ptrdiff_t few = 4;
   const auto beside = std::count_if(all.begin(), all.end(),
@@ -115,7 +116,7 @@ void guess_inputs_by_place(const std::vector<Candidate>& all, bool by_place, Gue
   }
   if (!names.empty())
     guess.reasons.push_back(
-        fmt::format("no name tells an input: {} {} taken for what acts, because nothing else stands beside the state",
+        fmt::format("no name indicates an input; {} {} taken, because no other channel is beside the state",
                     fmt::join(names, ", "), names.size() == 1 ? "is" : "are"));
 }
 
@@ -131,7 +132,7 @@ void guess_inputs(const std::vector<Candidate>& all, Guess& guess) {
   std::vector<Candidate> acting;
   for (const Candidate& c : all) {
     const bool is_state = std::find(guess.states.begin(), guess.states.end(), c.place) != guess.states.end();
-    // What an instrument measures beside the state does not act on it.
+    // A channel that the same instrument measures is not an input.
     const bool beside = same_table(c.place, guess.states.front()) && c.score.input < c.score.state;
     if (!is_state && !beside && c.score.input > 0) acting.push_back(c);
   }
@@ -139,7 +140,7 @@ void guess_inputs(const std::vector<Candidate>& all, Guess& guess) {
     guess.inputs.push_back(input->place);
 }
 
-/// A gyro's rate about the axis that points up takes the place of that about z.
+/// If the gyro is mounted on its side, replaces its rate about z by the rate about the axis that points up.
 void turn_upright(const std::vector<SurveyedFile>& files, Guess& guess) {
   for (ChannelPlace& state : guess.states) {
     const SurveyedTable& table = files[state.file].tables[state.table];
@@ -152,25 +153,24 @@ void turn_upright(const std::vector<SurveyedFile>& files, Guess& guess) {
   }
 }
 
-/// By a name that tells speed or rate rather than a command.
+/// Whether a name means a measured speed or rate, not a command.
 bool is_measured_motion(const std::vector<SurveyedFile>& files, const ChannelPlace& place) {
   constexpr int least_of_command = 5;
   const int points = score_name(channel_at(files, place).name).input;
   return points > 0 && points < least_of_command;
 }
 
-/// Why a channel that a person would take is not taken; empty without a reason.
+/// Reason for leaving out a channel that a user may expect; empty without a reason.
 std::string why_left(const SurveyedTable& table, const SurveyedChannel& channel) {
   if (!channel.why_text.empty()) return fmt::format("; column {}: {}", channel.name, channel.why_text);
   if (!channel.moves()) return "";
   if (!can_be_stated(channel.name))
-    return fmt::format(
-        "; column '{}': no configuration can state a name that is empty or has a control character; rename it",
-        printable_name(channel.name));
+    return fmt::format("; column '{}': a configuration cannot contain an empty name or a control character; rename it",
+                       printable_name(channel.name));
   const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
   if (is_time || !score_name(channel.name).ignored) return "";
   return fmt::format(
-      "; column {}: its name is that of a time, counter, pose, place or label; rename it if it is a signal",
+      "; column {}: the name indicates a time, counter, pose, place or label; rename it if it is a signal",
       channel.name);
 }
 
@@ -193,21 +193,21 @@ const SurveyedChannel& channel_at(const std::vector<SurveyedFile>& files, const 
 Guess guess_roles(const std::vector<SurveyedFile>& files) {
   std::vector<Candidate> all = candidates_of(files);
   if (all.empty()) {
-    throw DataError(fmt::format("{}: no channel moves, and a state needs numbers that change: nothing can be a state{}",
+    throw DataError(fmt::format("{}: no channel can be the state, because no column has numbers that change{}",
                                 files.empty() ? "" : files.front().path.string(), why_nothing_moves(files)));
   }
   Guess guess;
   guess_states(all, guess);
   const bool by_place = guess.states.empty();
   if (by_place) {
-    guess.reasons.emplace_back(
-        "names say nothing of the state: the last channel is taken that no hint takes for an input");
+    guess.reasons.emplace_back("no name indicates the state; the last channel without a hint of an input is taken");
     guess_state_by_place(all, guess);
   }
   guess_inputs(all, guess);
   if (guess.inputs.empty()) guess_inputs_by_place(all, by_place, guess);
   if (guess.inputs.empty())
-    guess.reasons.emplace_back("no channel looks commanded: without inputs modes differ in their own motion alone");
+    guess.reasons.emplace_back(
+        "no channel looks like a command; without inputs modes differ only in the motion of the state itself");
   else if (!by_place && is_measured_motion(files, guess.inputs.front()))
     guess.reasons.emplace_back(
         "no command is recorded: measured motion stands in for it, so the model says how one follows the other");
@@ -239,14 +239,14 @@ std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, c
           left.push_back({fmt::format("column {}", c + 1), "without a name"});
           continue;
         }
-        left.push_back({channel.name, score.ignored ? "its name is that of a time, counter, pose, place or label"
-                                      : !can_be_stated(channel.name)
-                                          ? "its name has a line end or another control character"
-                                      : channel.counts ? "counts up evenly, as times and counters do"
-                                      : score.input > score.state && with_inputs
-                                          ? fmt::format("others are likelier inputs, {} at most are taken", most_inputs)
-                                      : beside || with_inputs ? "measured beside the state, or no hint tells its part"
-                                                              : "of another table than the state and the inputs"});
+        left.push_back(
+            {channel.name, score.ignored                  ? "the name indicates a time, counter, pose, place or label"
+                           : !can_be_stated(channel.name) ? "the name contains a line end or another control character"
+                           : channel.counts               ? "counts up evenly, as times and counters do"
+                           : score.input > score.state && with_inputs
+                               ? fmt::format("other channels are likelier inputs; at most {} are taken", most_inputs)
+                           : beside || with_inputs ? "measured beside the state, or without a hint of its role"
+                                                   : "in another table than the state and the inputs"});
       }
   return left;
 }

@@ -9,7 +9,7 @@
 
 namespace modebank::app {
 
-/// Where a channel stands in what was surveyed.
+/// Position of a channel in the survey.
 struct ChannelPlace {
   std::size_t file = 0, table = 0, channel = 0;
   bool operator==(const ChannelPlace&) const = default;
@@ -17,18 +17,18 @@ struct ChannelPlace {
 
 const SurveyedChannel& channel_at(const std::vector<SurveyedFile>& files, const ChannelPlace& place);
 
-/// A gyro that is mounted on its side: gravity lies along another axis than z.
+/// Mounting of a gyro that lies on its side: gravity acts along another axis than z.
 struct Mounting {
-  Axis up = Axis::z;            ///< the axis that gravity lies along
-  bool reversed = false;        ///< whether it points down
-  double gravity = 0.0;         ///< mean acceleration along it [m/s^2]
-  std::string z_rate, up_rate;  ///< angular rates about z, as named, and about the axis that points up
-  /// Correlation of either with the yaw rate that another table measures, where one does.
+  Axis up = Axis::z;            ///< axis along which gravity acts
+  bool reversed = false;        ///< whether this axis points down
+  double gravity = 0.0;         ///< mean acceleration along this axis [m/s^2]
+  std::string z_rate, up_rate;  ///< channels of angular rate about z, and about the axis that points up
+  /// Correlation of each with the yaw rate of another table, if there is one.
   std::optional<double> z_correlation, up_correlation;
-  std::string other;  ///< that yaw rate
+  std::string other;  ///< name of that yaw rate
 };
 
-/// A channel that moves and has no part.
+/// A channel that moves but is neither state nor input.
 struct ChannelLeft {
   std::string name, reason;
 };
@@ -36,14 +36,14 @@ struct ChannelLeft {
 struct Guess {
   std::vector<ChannelPlace> states, inputs;
   std::optional<Mounting> mounting;
-  std::vector<std::string> reasons;  ///< in words, for the configuration's comments
+  std::vector<std::string> reasons;  ///< sentences for the configuration's comments
 };
 
-/// States and inputs by names, units, movement and position, each a hint with a weight. Throws DataError when no
-/// channel moves.
+/// Guesses states and inputs from names, units, movement and position. Each is a hint with a weight. Throws DataError
+/// when no channel moves.
 Guess guess_roles(const std::vector<SurveyedFile>& files);
 
-/// The channels that move and that `guess` leaves out, with the reason, in the order of the files.
+/// Moving channels that `guess` leaves out, each with the reason, in the order of the files.
 std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, const Guess& guess);
 
 }  // namespace modebank::app

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::VectorXd;
 constexpr std::array axes{Axis::x, Axis::y, Axis::z};
-/// A mean acceleration of these magnitudes is gravity's: half a g from others' sensors' scale at most.
+/// Mean accelerations in this range are gravity, with room for sensors of wrong scale.
 constexpr double least_gravity = 7.0, most_gravity = 12.5;
 
 const SurveyedChannel* channel_of(const SurveyedTable& table, Axis axis, bool (*names)(std::string_view, Axis)) {
@@ -21,7 +21,7 @@ const SurveyedChannel* channel_of(const SurveyedTable& table, Axis axis, bool (*
   return nullptr;
 }
 
-/// A yaw rate that another table measures.
+/// The yaw rate that another table measures.
 std::pair<const SurveyedTable*, const SurveyedChannel*> other_yaw_rate(const std::vector<SurveyedFile>& files,
                                                                        const ChannelPlace& z_rate) {
   for (std::size_t f = 0; f < files.size(); ++f)

@@ -8,12 +8,12 @@
 
 namespace modebank::app {
 
-/// How the instrument is mounted whose rate about z is `z_rate`: empty where its table measures no acceleration, or
-/// gravity lies along z pointing up.
+/// Mounting of the instrument whose rate about z is `z_rate`. Empty if its table has no acceleration, or if gravity
+/// acts along z.
 std::optional<Mounting> find_mounting(const std::vector<SurveyedFile>& files, const ChannelPlace& z_rate);
 
-/// Correlation of two channels of different tables over the time they share, at the slower one's samples and the lag,
-/// of at most 2 s either way, at which it is largest; 0 where they share less than ten samples.
+/// Largest correlation of two channels from different tables over lags of at most 2 s either way, at the samples of the
+/// slower one. 0 if they share fewer than ten samples.
 double correlation(const SurveyedTable& a, const Eigen::VectorXd& in_a, const SurveyedTable& b,
                    const Eigen::VectorXd& in_b);
 

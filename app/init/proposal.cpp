@@ -23,10 +23,10 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// Whether a list of names, or a line of a configuration, has another use for what the name holds.
+/// Whether a name contains characters that a list of names or a configuration line uses otherwise.
 bool needs_quotes(const std::string& name) { return name.find_first_of(",#'\"") != std::string::npos; }
 
-/// The last two parts of a channel's name, as an identifier. Behind a comma spreadsheets write the unit: Flow, l/h.
+/// The last two parts of a channel's name, as an identifier. Spreadsheets write the unit behind a comma: Flow, l/h.
 std::string short_name(const std::string& name) {
   if (const std::size_t comma = name.find(','); comma != std::string::npos && comma > 0) {
     std::string result = letters_and_digits(name.substr(0, comma));
@@ -39,7 +39,7 @@ std::string short_name(const std::string& name) {
   return result.empty() || is_digit(result.front()) ? "channel_" + result : result;
 }
 
-/// One configuration from what was found.
+/// Builds one configuration from the survey.
 class Proposer {
  public:
   Proposer(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess)
@@ -61,8 +61,8 @@ class Proposer {
   const std::vector<SurveyedFile>& surveyed_;
   const Guess& guess_;
   Proposal proposal_;
-  std::string turned_;                              // the name of a derived yaw rate
-  std::map<std::string, std::string> short_names_;  // of channels whose names are long
+  std::string turned_;                              // name of the derived yaw rate
+  std::map<std::string, std::string> short_names_;  // short names of channels whose names are long
 
   const ChannelPlace& state() const { return guess_.states.front(); }
   const ChannelPlace& input() const { return guess_.inputs.empty() ? state() : guess_.inputs.front(); }
@@ -81,7 +81,7 @@ class Proposer {
     return fmt::format("{} runs; * names them: {} to {}", set.runs.size(), set.runs.front(), set.runs.back());
   }
 
-  /// The folder that holds all files of both sets.
+  /// The common folder of all files of both sets.
   static Path common_folder(const FileSet& a, const FileSet& b) {
     Path folder = a.files.front().parent_path();
     const auto holds = [&](const Path& file) { return (file.string()).starts_with((folder / "").string()); };
@@ -96,7 +96,7 @@ class Proposer {
     const Path folder = common_folder(inputs, states);
     const Path relative = folder.lexically_relative(config_folder);
     const bool below = !relative.empty() && *relative.begin() != "..";
-    add("root", below ? relative.string() : folder.string(), "the folder of the data");
+    add("root", below ? relative.string() : folder.string(), "folder of the data");
     const bool listed = inputs.pattern.empty() || states.pattern.empty();
     const auto within = [&](const FileSet& set) {
       if (!listed) return Path(set.pattern).lexically_relative(folder).string();
@@ -107,19 +107,19 @@ class Proposer {
     add("inputs", within(inputs), runs_text(inputs, listed));
     skipped_lines();
     const bool two = input().file != state().file;
-    if (two) add("states", within(states), "the same runs' measured states");
+    if (two) add("states", within(states), "measured states of the same runs");
     for (const FileSet* set : {&inputs, &states})
       for (const Path& file : set->files)
         if (listed && file.string().find(',') != std::string::npos)
-          doubt(fmt::format("a list of files cannot name {}, whose name has a comma", file.string()));
+          doubt(fmt::format("{} is left out: a list of files cannot contain a name with a comma", file.string()));
     for (const FileSet& set : sets_)
       if (&set != &inputs && &set != &states)
-        doubt(fmt::format("{} file{} of other columns and not taken: {}{}", set.files.size(),
+        doubt(fmt::format("{} file{} with other columns left out: {}{}", set.files.size(),
                           set.files.size() == 1 ? " is" : "s are", set.files.front().filename().string(),
                           set.files.size() > 1 ? ", ..." : ""));
     if (two && (inputs.files.size() != states.files.size() || (!listed && inputs.runs != states.runs)) &&
         inputs.files.size() + states.files.size() > 2)
-      doubt(fmt::format("{} and {} are not of the same runs: every inputs file needs its states file", within(inputs),
+      doubt(fmt::format("{} and {} have different runs; every inputs file needs a states file", within(inputs),
                         within(states)));
   }
 
@@ -128,7 +128,7 @@ class Proposer {
     if (inputs.skipped_alike && states.skipped_alike && inputs.skipped == states.skipped) {
       if (inputs.skipped > 0) add("skip_rows", fmt::format("{}", inputs.skipped), "lines of a title above the table");
     } else {
-      add("skip_rows", "auto", "lines of a title above the table, of another number in each file");
+      add("skip_rows", "auto", "title lines above the table; their number differs between files");
     }
   }
 
@@ -138,7 +138,7 @@ class Proposer {
     const char letter = "xyz"[static_cast<int>(m.up)];
     const std::string sign = m.reversed ? "-" : "";
     std::string text = fmt::format(
-        "gravity lies along {}{} of this instrument ({:.2f} m/s^2): it is mounted on its side, and the yaw rate is "
+        "gravity acts along {}{} of this instrument ({:.2f} m/s^2), so it is mounted on its side, and the yaw rate is "
         "{}{}, not {}",
         m.reversed ? "-" : "+", letter, std::abs(m.gravity), sign, m.up_rate, m.z_rate);
     if (m.z_correlation)
@@ -158,7 +158,7 @@ class Proposer {
       turned_ = "yaw_rate";
       add("derive", rotation, "turned upright");
     } else {
-      add("derive", "", fmt::format("derive = {} is the same by rotation", rotation));
+      add("derive", "", fmt::format("derive = {} gives the same by rotation", rotation));
     }
   }
 
@@ -166,7 +166,7 @@ class Proposer {
     return guess_.mounting && channel(place).name == guess_.mounting->up_rate;
   }
 
-  /// Topics make names that no table and no axis has room for: those get short ones.
+  /// Names made from topics are too long for tables and axes, so these channels get short names.
   void shorten(const std::vector<ChannelPlace>& places) {
     constexpr std::size_t longest = 24;
     for (const ChannelPlace& place : places) {
@@ -183,7 +183,7 @@ class Proposer {
       while (is_taken(alias)) alias += "_";
       const std::string& own = channel(place).unit;
       std::string unit = own.empty() ? usual_unit(name) : own;
-      if (unit.find(']') != std::string::npos) unit.clear();  // it would end the unit's bracket
+      if (unit.find(']') != std::string::npos) unit.clear();  // ] would end the unit's bracket
       add("derive", fmt::format("{}{} = {}", alias, unit.empty() ? "" : " [" + unit + "]", quoted_channel_name(name)),
           "");
       short_names_[name] = alias;
@@ -202,7 +202,7 @@ class Proposer {
     return listed_channel_names(all);
   }
 
-  /// Units that the format does not say, but the names; none unless all are known.
+  /// Units from the names, where the format has none; empty unless all are found.
   void units(const char* key, const std::vector<ChannelPlace>& places) {
     std::vector<std::string> all;
     bool said = true;
@@ -215,15 +215,15 @@ class Proposer {
     const auto cannot_be_listed = [](const std::string& unit) { return unit.empty() || needs_quotes(unit); };
     if (said || std::any_of(all.begin(), all.end(), cannot_be_listed)) return;
     const bool alike = std::count(all.begin(), all.end(), all.front()) == std::ssize(all);
-    add(key, alike ? all.front() : fmt::format("{}", fmt::join(all, ", ")), "a guess from the names");
+    add(key, alike ? all.front() : fmt::format("{}", fmt::join(all, ", ")), "guessed from the names");
   }
 
   void channels() {
     for (const std::string& reason : guess_.reasons) doubt(reason);
     shorten(guess_.states);
     shorten(guess_.inputs);
-    add("state", names(guess_.states), "measured: what the model predicts");
-    if (!guess_.inputs.empty()) add("input", names(guess_.inputs), "what acts on it");
+    add("state", names(guess_.states), "measured; the model predicts it");
+    if (!guess_.inputs.empty()) add("input", names(guess_.inputs), "acts on the state");
     units("state_unit", guess_.states);
     if (!guess_.inputs.empty()) units("input_unit", guess_.inputs);
   }
@@ -234,14 +234,14 @@ class Proposer {
     return places.empty() ? 0.0 : least;
   }
 
-  /// A value of few levels repeats because it is rounded, not because its source is slow.
+  /// A rounded value with few levels also repeats; that does not make its source slow.
   bool is_coarse(const ChannelPlace& place) const {
     constexpr double few = 200.0;
     const ChannelCheck& check = channel(place).check;
     return check.quantum > 0.0 && check.largest - check.least < few * check.quantum;
   }
 
-  /// The usual rate within 15 %, else two digits.
+  /// The usual rate within 15 %, else the rate rounded to two digits.
   static double round_rate(double rate_hz) {
     for (const double usual : {1.0, 2.0, 4.0, 5.0, 10.0, 20.0, 25.0, 30.0, 40.0, 50.0, 100.0})
       if (std::abs(rate_hz - usual) < 0.15 * usual) return usual;
@@ -256,18 +256,19 @@ class Proposer {
       const double fresh = rows.rate_hz * (1.0 - stale);
       const double rate = round_rate(fresh);
       add("rate_hz", fmt::format("{:g}", rate),
-          fmt::format("of {:.4g} rows a second {:.0f} % only repeat the state before", rows.rate_hz, 100.0 * stale));
+          fmt::format("{:.4g} rows per second, of which {:.0f} % repeat the state before", rows.rate_hz,
+                      100.0 * stale));
     }
     if (!one_table() && !guess_.inputs.empty())
-      add("lag_s", "auto", "two instruments rarely share a clock: the lag between them is estimated");
+      add("lag_s", "auto", "two instruments rarely share a clock, so the lag between them is estimated");
     bool missing = false, disordered = false, rounded = false;
     for (const std::vector<ChannelPlace>* places : {&guess_.states, &guess_.inputs})
       for (const ChannelPlace& place : *places) missing = missing || channel(place).check.missing > 0;
     for (const ChannelPlace& place : guess_.states) rounded = rounded || channel(place).check.quantum > 0.0;
     for (const ChannelPlace& place : {state(), input()})
       disordered = disordered || table(place).sampling.backward_times + table(place).sampling.repeated_times > 0;
-    if (missing) add("missing", "gap", "some values are missing: runs are split there");
-    if (disordered) add("disorder", "sort", "times repeat or go backwards: rows are sorted by time");
+    if (missing) add("missing", "gap", "some values are missing; runs are split there");
+    if (disordered) add("disorder", "sort", "some times repeat or go backwards; rows are sorted by time");
     if (rounded && one_table()) add("quantum", "auto", "the state is rounded");
   }
 

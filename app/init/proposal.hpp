@@ -8,25 +8,25 @@
 
 namespace modebank::app {
 
-/// A key with its value and why; without a value a comment alone.
+/// A key with its value and reason; without a value only a comment.
 struct ProposedKey {
   std::string key, value, why;
 };
 
-/// What the [data] section is to say, key by key.
+/// The [data] section to propose, key by key.
 struct Proposal {
   std::vector<ProposedKey> keys;
-  std::vector<std::string> doubts;  ///< what the user should look at before anything else
-  std::vector<ChannelLeft> left;    ///< channels that move and were not taken
+  std::vector<std::string> doubts;  ///< points that the user should check first
+  std::vector<ChannelLeft> left;    ///< moving channels that were left out
 
   const ProposedKey* find(const std::string& key) const;
   void add(std::string key, std::string value, std::string why = {});
-  void doubt(const std::string& text);  ///< once
+  void doubt(const std::string& text);  ///< adds a doubt once
   void drop(const std::string& key);
   void set(const std::string& key, const std::string& value, const std::string& why);
 };
 
-/// `surveyed`: each set, by survey_set.
+/// `surveyed`: the result of survey_set for each set.
 Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                  const std::string& config_folder);
 

@@ -9,7 +9,7 @@
 namespace modebank::app {
 namespace {
 
-/// Channels of one reason on one line, the first of them by name.
+/// Channels with the same reason share a line; only the first few names are written.
 std::string left_text(const std::vector<ChannelLeft>& left) {
   constexpr std::size_t named = 8;
   std::vector<std::string> reasons;
@@ -34,7 +34,7 @@ std::string configuration_text(const Proposal& proposal, const std::string& comm
   constexpr std::size_t longest = 100;
   const std::string shown =
       command.size() > longest ? command.substr(0, command.rfind(' ', longest)) + " ..." : command;
-  std::string text = fmt::format("# Written by {}: a start, to be looked at.\n", printable_name(shown));
+  std::string text = fmt::format("# Written by {}. Check the lines below before you use it.\n", printable_name(shown));
   for (const std::string& doubt : proposal.doubts) text += fmt::format("# ! {}\n", printable_name(doubt));
   text += "\n[data]\n";
   for (const ProposedKey& key : proposal.keys) {
@@ -47,9 +47,8 @@ std::string configuration_text(const Proposal& proposal, const std::string& comm
   }
   if (!proposal.left.empty()) text += "\n" + left_text(proposal.left);
   text +=
-      "\n# What is not named stands at its default; `modebank help KEY` says what a key means, `modebank check` on "
-      "this "
-      "file what\n# the data allow and which settings gain.\n";
+      "\n# All other keys have their defaults. `modebank help KEY` explains a key. `modebank check` on this file tests "
+      "the data\n# and suggests settings.\n";
   return text;
 }
 

@@ -8,7 +8,7 @@
 namespace modebank::app {
 namespace {
 
-/// Whether a note repeats the unit in the column's name; others tell what values showed.
+/// Whether a note only repeats the unit in the column's name. Other notes state what the values showed.
 bool is_of_stated_unit(const SurveyedTable& of, const std::string& note) {
   return of.form.ground == StampForm::Ground::stated && note.starts_with(fmt::format("column {} ", of.time.front()));
 }
@@ -21,17 +21,17 @@ std::string why_time(const SurveyedTable& of) {
   return "";
 }
 
-/// Adds doubts about the form of the stamps.
+/// Adds doubts about the format of the stamps.
 void propose_form(const SurveyedTable& of, Proposal& proposal) {
   for (const std::string& note : of.time_notes)
     if (!is_of_stated_unit(of, note)) proposal.doubt(note);
   const SurveyedChannel* column = of.find(of.time.front());
   if (column != nullptr && column->type != "time" && !column->unit.empty() && !stated_time_unit(column->unit))
-    proposal.doubt(fmt::format("{} is not known as a unit of time: {} is taken for {} (data.time_unit)", column->unit,
-                               of.time.front(), in_words(of.form.unit)));
+    proposal.doubt(fmt::format("unknown unit of time {}: {} is taken for {} (change data.time_unit if that is wrong)",
+                               column->unit, of.time.front(), in_words(of.form.unit)));
   if (of.form.patterns.size() < 2) return;
-  proposal.add("time_format", of.form.patterns.front(), "a guess: day and month may be the other way round");
-  proposal.doubt(fmt::format("the times, as {}, allow two readings: {} and {}", of.form.value, of.form.patterns[0],
+  proposal.add("time_format", of.form.patterns.front(), "guessed: day and month may be swapped");
+  proposal.doubt(fmt::format("times such as {} can be read in two ways: {} and {}", of.form.value, of.form.patterns[0],
                              of.form.patterns[1]));
 }
 
@@ -43,22 +43,22 @@ void propose_times(const SurveyedTable& states, const SurveyedTable& inputs, Pro
     return first != nullptr && first->type == "time";
   };
   if (states.time.empty() || inputs.time.empty()) {
-    proposal.add("time", " ", "no column of times was found: row k is k / rate_hz");
-    proposal.add("rate_hz", "1", "samples per second: CHANGE THIS to what it was");
-    proposal.doubt("no column of times was found: data.rate_hz = 1 stands for whatever it was");
+    proposal.add("time", " ", "no column of times was found; row k is at k / rate_hz");
+    proposal.add("rate_hz", "1", "samples per second: CHANGE THIS to the rate of your log");
+    proposal.doubt("no column of times was found; change data.rate_hz = 1 to the rate of your log");
     for (const SurveyedTable* of : {&states, &inputs})
       if (!of->time_problem.empty()) proposal.doubt(of->time_problem);
     return;
   }
   if (states.time_guessed)
-    proposal.doubt(fmt::format("{} rises steadily, {:.4g} times a second: it is taken for the times",
+    proposal.doubt(fmt::format("{} rises evenly, {:.4g} times a second, and is taken for the times",
                                states.time.front(), states.sampling.rate_hz));
   propose_form(states, proposal);
-  if (own(states) && own(inputs)) return;  // what a recording calls its stamps needs no key
+  if (own(states) && own(inputs)) return;  // a recording's usual name for stamps needs no key
   const std::string time = listed_channel_names(states.time);
   if (states.time != inputs.time)
-    proposal.doubt(fmt::format("times are called {} in one table and {} in the other: data.time takes one name", time,
-                               listed_channel_names(inputs.time)));
+    proposal.doubt(fmt::format("the column of times is {} in one table and {} in the other; data.time takes one name",
+                               time, listed_channel_names(inputs.time)));
   if (time != "time") proposal.add("time", time, why_time(states));
 }
 

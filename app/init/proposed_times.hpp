@@ -4,7 +4,7 @@
 
 namespace modebank::app {
 
-/// Adds what [data] says of the times of states and inputs, and doubts about their form.
+/// Adds the [data] keys for times of states and inputs, and doubts about the format of stamps.
 void propose_times(const SurveyedTable& states, const SurveyedTable& inputs, Proposal& proposal);
 
 }  // namespace modebank::app

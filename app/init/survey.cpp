@@ -20,10 +20,10 @@
 namespace modebank::app {
 namespace {
 
-/// Looks at the columns of one table.
+/// Surveys the columns of one table.
 class TableSurvey {
  public:
-  /// `columns`: as they were read; their values are taken.
+  /// `columns` as they were read; their values are moved out.
   TableSurvey(const TableReader& reader, std::size_t position, const TableInfo& info, std::vector<FileColumn>& columns)
       : reader_(reader), position_(position), info_(info), columns_(columns) {}
 
@@ -70,7 +70,7 @@ class TableSurvey {
     return seconds;
   }
 
-  /// The stamps of a candidate, those that were read as such already among them.
+  /// The stamps of a candidate, possibly among those already read.
   Table stamps_of(const std::vector<std::string>& candidate) {
     Table result;
     for (std::size_t i = 0; candidate.size() == 1 && i < columns_.size(); ++i)
@@ -92,7 +92,7 @@ class TableSurvey {
     }
   }
 
-  /// Columns that may be times, the likeliest first: what the format calls so, then names.
+  /// Columns that may be times, the likeliest first: those typed as times, then those with such names.
   std::vector<std::vector<std::string>> time_candidates(const SurveyedTable& table) const {
     std::vector<std::vector<std::string>> typed, named;
     for (std::size_t i = 0; i < table.channels.size(); ++i) {
@@ -120,7 +120,7 @@ class TableSurvey {
     return texts != nullptr && !texts->empty() && is_known_time(texts->front());
   }
 
-  /// The name of the date beside a time of day, both of which are text.
+  /// The name of the date column beside a column with a time of day, if both are text.
   static std::string date_beside(const SurveyedTable& table, std::size_t time) {
     for (const std::size_t i : {time - 1, time + 1})
       if (i < table.channels.size() && names_date(table.channels[i].name) && table.channels[i].type == "text" &&
@@ -140,7 +140,7 @@ class TableSurvey {
     return count;
   }
 
-  /// The first candidate that advances; one that jumps back now and then may be many runs' time.
+  /// Takes the first candidate that advances. One that jumps back sometimes may contain the times of many runs.
   void find_time(SurveyedTable& table) {
     std::optional<std::vector<std::string>> jumping;
     for (const std::vector<std::string>& candidate : time_candidates(table)) {
@@ -173,7 +173,7 @@ class TableSurvey {
     table.time_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(std::max<Eigen::Index>(rows - 1, 0)));
   }
 
-  /// As times do, but not as counters of rows: which are whole numbers one apart.
+  /// Times rise evenly by any step; counters of rows rise by whole ones.
   static bool advances_steadily(const Eigen::VectorXd& values) {
     return rises_evenly(values) &&
            (values.tail(values.size() - 1).array() - values.head(values.size() - 1).array() != 1.0).any();
@@ -190,7 +190,7 @@ class TableSurvey {
     return 10 * near > 9 * steps.size();
   }
 
-  /// Whether the channel's values are times of a rate that instruments have.
+  /// Takes the channel for the times if its rate is one that instruments have.
   bool take_steady(SurveyedTable& table, const std::string& name) {
     constexpr double lowest_hz = 0.01, highest_hz = 20e3;
     if (!take_times(table, stamps_of({name}))) return false;
@@ -207,7 +207,7 @@ class TableSurvey {
     return 0;
   }
 
-  /// False: too few of them. Those from before the clock was set become missing.
+  /// Returns false for fewer than two stamps. Stamps from before the clock was set become missing.
   static bool take_times(SurveyedTable& table, const Table& read) {
     std::vector<std::int64_t> stamps = read.time_ns;
     if (stamps.size() < 2) return false;
@@ -235,7 +235,8 @@ class TableSurvey {
 
   static bool jumps_back(const Eigen::VectorXd& time_s, Eigen::Index k) { return time_s(k) < time_s(k - 1); }
 
-  /// A column that changes wherever time jumps back; without jumps a text that changes at gaps alone, and never back.
+  /// Takes a column that changes wherever time jumps back. Without jumps, takes a text that changes only at gaps and
+  /// never returns to an earlier value.
   void find_run(SurveyedTable& table) {
     std::vector<Eigen::Index> jumps;
     for (Eigen::Index k = 1; k < table.time_s.size(); ++k)
@@ -276,7 +277,7 @@ class TableSurvey {
            std::all_of(jumps.begin(), jumps.end(), [&](Eigen::Index k) { return values(k) != values(k - 1); });
   }
 
-  /// The rows up to the first jump back of time.
+  /// The rows before time first jumps back.
   static Stream one_run(const SurveyedTable& table) {
     Eigen::Index end = std::min<Eigen::Index>(1, table.time_s.size());
     while (end < table.time_s.size() && !(!table.run.empty() && jumps_back(table.time_s, end))) ++end;
@@ -310,7 +311,7 @@ SurveyedFile survey_file(const std::filesystem::path& path) {
   SurveyedFile file{path, {}, {}};
   const std::vector<TableInfo> tables = reader->tables();
   FileColumns columns = read_columns(*reader, tables, [](const TableInfo&, const ColumnInfo& column) {
-    return column.type != "text";  // of which nothing is wanted
+    return column.type != "text";  // text is not surveyed further
   });
   file.notes = std::move(columns.notes);
   for (std::string& line : reader->left_out()) file.notes.push_back(std::move(line));

@@ -20,20 +20,20 @@ SurveyedTable* find_table(SurveyedFile& file, const std::string& name) {
   return found == file.tables.end() ? nullptr : &*found;
 }
 
-/// What moves in any file moves.
+/// A channel moves if it moves in any file.
 void widen(ChannelCheck& check, const ChannelCheck& other) {
   check.least = std::min(check.least, other.least);
   check.largest = std::max(check.largest, other.largest);
   check.missing += other.missing;
 }
 
-/// Text in one of the files.
+/// A channel is text if it is text in one of the files.
 void be_text(SurveyedChannel& ours, const SurveyedChannel& theirs) {
   ours.values.resize(0);
   if (ours.why_text.empty()) ours.why_text = theirs.why_text;
 }
 
-/// Takes another file's table in; its channels that are not in both are `partial`.
+/// Merges another file's table. Channels that are not in both become `partial`.
 void merge(SurveyedTable& table, const SurveyedTable& other, Names& partial) {
   if (!table.form.patterns.empty() && !other.form.patterns.empty()) join_patterns(table.form, other.form);
   std::erase_if(table.channels, [&](const SurveyedChannel& channel) {
@@ -76,7 +76,7 @@ SurveyedFile survey_set(const FileSet& set) {
   for (std::size_t i = 1; i < set.files.size(); ++i) merge(all, survey_file(set.files[i]), partial);
   if (!partial.empty())
     all.notes.push_back(
-        fmt::format("not in all of the {} files, so not taken: {}", set.files.size(), fmt::join(partial, ", ")));
+        fmt::format("left out, because not in all of the {} files: {}", set.files.size(), fmt::join(partial, ", ")));
   return all;
 }
 

@@ -5,8 +5,8 @@
 
 namespace modebank::app {
 
-/// All files of a set as one: the values of the first, ranges and missing values over all. Channels and tables that are
-/// not in every file are left out, and named in `notes`. Throws as survey_file does.
+/// Survey of all files of a set together: values of the first, ranges and missing values over all. Channels and tables
+/// that are not in every file are left out and named in `notes`. Throws as survey_file does.
 SurveyedFile survey_set(const FileSet& set);
 
 }  // namespace modebank::app

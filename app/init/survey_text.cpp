@@ -10,7 +10,7 @@
 namespace modebank::app {
 namespace {
 
-/// Names come from files.
+/// Names come from files, so control characters are replaced.
 std::string shown_name(std::string name) {
   std::replace_if(name.begin(), name.end(), is_control, '?');
   return name;
@@ -42,7 +42,7 @@ Row row_of(const SurveyedChannel& channel, const SurveyedTable& table) {
   return {name, channel.unit, range + notes};
 }
 
-/// Elements of an array that all stand still share a row.
+/// Elements of an array that all do not move share a row.
 std::vector<Row> rows_of(const SurveyedTable& table) {
   const std::vector<SurveyedChannel>& channels = table.channels;
   std::vector<Row> rows;
@@ -61,7 +61,7 @@ std::vector<Row> rows_of(const SurveyedTable& table) {
   return rows;
 }
 
-/// Columns as wide as what stands in them.
+/// Columns as wide as their widest cell.
 std::string rows_text(const SurveyedTable& table) {
   const std::vector<Row> rows = rows_of(table);
   std::size_t name = 0, unit = 0;
@@ -82,8 +82,7 @@ std::string survey_text(const std::vector<FileSet>& sets, const std::vector<Surv
   for (std::size_t i = 0; i < surveyed.size(); ++i) {
     text += surveyed[i].path.string();
     if (sets[i].files.size() > 1)
-      text +=
-          fmt::format(" and {} more: rows, rate and time are of this one, ranges over all", sets[i].files.size() - 1);
+      text += fmt::format(" and {} more; rows, rate and time of this file, ranges over all", sets[i].files.size() - 1);
     text += "\n";
     for (const std::string& note : surveyed[i].notes) text += fmt::format("  {}\n", note);
     for (const SurveyedTable& table : surveyed[i].tables) {
@@ -95,7 +94,8 @@ std::string survey_text(const std::vector<FileSet>& sets, const std::vector<Surv
                                                                 fmt::join(table.time, " + "), rows.duration_s,
                                                                 rows.gaps, rows.gaps == 1 ? "" : "s");
       const std::string unset =
-          table.unset_rows == 0 ? "" : fmt::format(", {} rows before its clock was set left out", table.unset_rows);
+          table.unset_rows == 0 ? ""
+                                : fmt::format("; {} rows left out, stamped before the clock was set", table.unset_rows);
       text += fmt::format(" {}{} rows, {}{}{}\n", name, table.time_s.size(), time,
                           table.run.empty() ? "" : fmt::format(", runs by {}", table.run), unset);
       text += rows_text(table);

@@ -34,8 +34,8 @@ bool has_plan(const std::filesystem::path& folder) {
   return std::filesystem::exists(plan_file(folder));
 }
 
-/// Files of the study whose names others' files may have, each with what its content begins with. Links are not among
-/// them: the study's own file takes their place.
+/// Files that the study writes under common names, each with the text that its own files begin with. Links are not
+/// listed: the study's own file replaces them.
 std::vector<OutputFile> files_in_place(const std::filesystem::path& folder) {
   constexpr std::size_t line_bytes = 4096;
   const auto at = [&](const char* name, FileForm form) {
@@ -50,7 +50,7 @@ std::vector<OutputFile> files_in_place(const std::filesystem::path& folder) {
   return files;
 }
 
-/// Before a study's first file is written in a folder: others' files there stay, and data are not written over.
+/// Checks a folder before the first file of a study is written there: foreign files stay, and data are not overwritten.
 void check_folder(const StudyCommand& command, const StudyPlan& plan) {
   std::vector<std::filesystem::path> sources{command.call.config_file};
   for (const InputFile& file : plan.provenance.inputs) sources.emplace_back(file.path);
@@ -62,7 +62,7 @@ void check_folder(const StudyCommand& command, const StudyPlan& plan) {
   }
 }
 
-/// The plan of the configuration, written to the folder; one that is there must go on in it.
+/// Writes the plan of the configuration to the folder. An earlier plan there must be part of it.
 StudyPlan settle_plan(const StudyCommand& command) {
   StudyPlan plan = make_plan(command.config, make_provenance(config_hash(command.config), command.call.typed));
   check_folder(command, plan);
@@ -95,8 +95,9 @@ RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
   const std::string counts = fmt::format("{} runs made, {} were there, {} failed, in {}", result.computed,
                                          result.present, result.failed.size(), duration_text(result.seconds));
   if (result.broken)
-    throw DataError(fmt::format("the study stopped ({}): {}\nwhat is done stays; the same command goes on from there",
-                                counts, *result.broken));
+    throw DataError(
+        fmt::format("the study stopped ({}): {}\nfinished runs are kept; the same command continues from there", counts,
+                    *result.broken));
   command.call.say(fmt::format("run       {}\n", counts));
   if (!result.failed.empty() && study.on_failure == OnFailure::stop)
     throw DataError(fmt::format("the study stopped at a run that failed (study.on_failure = stop): {}",
@@ -110,10 +111,10 @@ bool is_complete(const StudyTable& table) {
   return true;
 }
 
-/// What merge and status need.
+/// Throws unless there is a plan, which merge and status need.
 void require_plan(const StudyCommand& command) {
   if (!has_plan(command.store.folder()))
-    throw ConfigurationError(fmt::format("{}: there is no plan yet: run the study, or --study.stage plan, first",
+    throw ConfigurationError(fmt::format("{}: the study has no plan yet; run the study, or --study.stage plan, first",
                                          plan_file(command.store.folder()).string()));
 }
 
@@ -121,7 +122,7 @@ int merge(const StudyCommand& command, const std::set<std::string>& whole) {
   command.store.look_again();
   require_plan(command);
   const Claim alone = Claim::wait_for(command.store.plan_claim());
-  const StudyPlan plan = read_plan(command.store.folder());  // another process may have added values
+  const StudyPlan plan = read_plan(command.store.folder());  // read anew, because another process may have added values
   check_plan_is_of(plan, command.config, command.store.folder());
   const StudyTable table = collect_table(command.store, plan, whole);
   const Answers answers = answer(table);

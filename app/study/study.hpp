@@ -8,17 +8,17 @@
 
 namespace modebank::app {
 
-/// A study as it was asked for.
+/// One call of `modebank study`.
 struct StudyCall {
   Config config;
-  std::filesystem::path config_file;                                        ///< it was read from
-  KeyValues overrides;                                                      ///< and these from the command line
+  std::filesystem::path config_file;                                        ///< file of the configuration
+  KeyValues overrides;                                                      ///< keys from the command line
   std::string typed;                                                        ///< the whole command line, for provenance
-  std::function<void(const std::string&)> say = [](const std::string&) {};  ///< takes what it says of its progress
+  std::function<void(const std::string&)> say = [](const std::string&) {};  ///< prints progress
 };
 
-/// Does what study.stage says and says what it did. Returns 0 when every run is done, else 1.
-/// Throws ConfigurationError, and DataError when the study had to stop.
+/// Executes study.stage and reports the result. Returns 0 when every run is done, else 1. Throws ConfigurationError,
+/// and DataError when the study had to stop.
 int do_study(const StudyCall& call);
 
 }  // namespace modebank::app

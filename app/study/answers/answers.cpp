@@ -16,7 +16,7 @@ namespace {
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* modes_column = "modes";
 
-/// Finished trials of one setting, as rows of the table in its order.
+/// For each setting its finished trials, as rows of the table in the table's order.
 using Settings = std::vector<std::vector<std::size_t>>;
 
 Settings finished_settings(const StudyTable& table) {

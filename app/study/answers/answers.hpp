@@ -7,58 +7,58 @@
 #include "app/study/answers/study_table.hpp"
 #include "filter/judge/score/scores.hpp"
 
-/// What a study's table answers, beyond the table itself. A *setting* is one combination of varied values; its repeats
-/// differ in seed alone. Only finished trials count. Nothing here reads a file or prints.
+/// Answers that follow from a study's table. A *setting* is one combination of varied values; its repeats differ in
+/// seed alone. Only finished trials count. This file neither reads files nor prints.
 namespace modebank::app {
 
-/// Mean of a score over all trials in which a varied key had one value (for keys with many numbers: a range of
-/// values), whatever the others were. Confounded where the plan is not a full grid, and drawn down by settings that
-/// nobody would choose: `best` is what the value can reach, and the best of all values is the best setting.
+/// Mean of a score over all trials with one value of a varied key (for keys with many numbers: a range of values).
+/// Unless the plan is a full grid, other keys confound the mean, and bad settings of them lower it. `best` is free of
+/// this: it is the score of the best setting with this value.
 struct MainEffect {
   std::string key, value, score;
   int trials = 0;
   double mean = 0.0;
-  double sd = 0.0;    ///< between those trials; NaN for one
-  double best = 0.0;  ///< of the settings with that value, each by the mean over its repeats
+  double sd = 0.0;    ///< standard deviation between those trials; NaN for one
+  double best = 0.0;  ///< best mean over repeats among the settings with this value
 };
 
-/// How much of a score's variance over the trials the values of one key explain (eta squared, 0 to 1).
+/// Share of a score's variance over the trials that the values of one key explain (eta squared, 0 to 1).
 struct KeyInfluence {
   std::string key, score;
   double share = 0.0;
 };
 
-/// The setting whose mean over its repeats is best.
+/// The setting with the best mean over its repeats.
 struct BestSetting {
   std::string score;
   ScoreGoal goal;
   double value = 0.0;   ///< mean over the repeats
-  int repeats = 1;      ///< finished ones
-  std::size_t row = 0;  ///< of its first finished repeat
+  int repeats = 1;      ///< number of finished repeats
+  std::size_t row = 0;  ///< row of its first finished repeat
 };
 
-/// A setting that no other beats in log score with as few modes.
+/// A setting such that no other with as few modes has a better log score.
 struct ParetoSetting {
-  double modes = 0.0;  ///< mean over the repeats, as the log score
+  double modes = 0.0;  ///< mean over the repeats, as the log score is
   double log_score = 0.0;
   std::size_t row = 0;
 };
 
-/// How far repeats of one setting differ, against how far settings do.
+/// Standard deviation between repeats of one setting, and between settings.
 struct RepeatSpread {
   std::string score;
-  int settings = 0;         ///< with at least two finished repeats
+  int settings = 0;         ///< number of settings with at least two finished repeats
   double sd = 0.0;          ///< root of the mean variance within a setting
-  double largest_sd = 0.0;  ///< of any setting
-  double between_sd = 0.0;  ///< of the settings' means; NaN for one
+  double largest_sd = 0.0;  ///< largest within one setting
+  double between_sd = 0.0;  ///< between the settings' means; NaN for one setting
 };
 
 struct Answers {
-  std::string headline;  ///< score the printed tables are about: the bank's log score, held-out if there is one
+  std::string headline;  ///< score of the printed tables: the bank's log score, held-out if there is one
   std::vector<MainEffect> main_effects;
   std::vector<KeyInfluence> influences;
   std::vector<BestSetting> best;
-  std::vector<ParetoSetting> pareto;  ///< by number of modes; empty when the table has no number of modes
+  std::vector<ParetoSetting> pareto;  ///< by number of modes; empty when the table has no column of modes
   std::vector<RepeatSpread> spread;   ///< empty without repeats
 };
 

@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// Columns printed of main effects: the headline, then rmse and tails of the same filter and role.
+/// Scores in the printed main effects: the headline, then rmse and tails of the same filter and role.
 std::vector<std::string> shown_scores(const StudyTable& table, const std::string& headline) {
   const std::string prefix = headline.substr(0, headline.rfind("log_score"));
   std::vector<std::string> shown{headline};
@@ -44,7 +44,7 @@ std::vector<KeyInfluence> ranked_influences(const Answers& answers) {
   return ranked;
 }
 
-/// The other keys that were varied in step with one: their effects are the same effects.
+/// The other keys that were varied in step with one, and so have the same effects.
 std::vector<std::string> keys_in_step(const StudyTable& table, std::size_t key) {
   const std::vector<ValueGroup> groups = value_groups(table, key);
   const auto same_rows = [](const ValueGroup& a, const ValueGroup& b) { return a.rows == b.rows; };
@@ -58,7 +58,7 @@ std::vector<std::string> keys_in_step(const StudyTable& table, std::size_t key) 
   return names;
 }
 
-/// The key with those varied in step with it; empty when one of these was printed before.
+/// The key with those varied in step with it; empty if one of them is already printed.
 std::string effect_heading(const StudyTable& table, const KeyInfluence& influence, std::set<std::string>& printed) {
   const auto key = std::find(table.varied_keys.begin(), table.varied_keys.end(), influence.key);
   std::string heading = influence.key;
@@ -73,8 +73,8 @@ std::string effect_heading(const StudyTable& table, const KeyInfluence& influenc
 std::string effects_text(const StudyTable& table, const Answers& answers) {
   const std::vector<std::string> scores = shown_scores(table, answers.headline);
   std::string text = fmt::format(
-      "Main effects: means over all trials with a value, whatever the others were; share: of the variance of\n"
-      "{} over the trials that the key explains; sd: between those trials\n{:<28} {:>7} {:>10} {:>9}",
+      "Main effects: mean over all trials with a value of the key. share: part of the variance of {} over the "
+      "trials\nthat the key explains. sd: standard deviation between those trials\n{:<28} {:>7} {:>10} {:>9}",
       answers.headline, "", "trials", "log_score", "sd");
   for (std::size_t i = 1; i < scores.size(); ++i)
     text += fmt::format(" {:>10}", heading_of(scores[i], answers.headline));
@@ -96,7 +96,7 @@ std::string effects_text(const StudyTable& table, const Answers& answers) {
   return text + "\n";
 }
 
-/// The setting without the keys' sections, where the names alone tell them apart.
+/// The setting without the keys' sections, if the names alone are unique.
 std::string short_setting(const StudyTable& table, std::size_t row) {
   const auto name_of_key = [](const std::string& key) { return key.substr(key.find('.') + 1); };
   StudyTable shortened{table.varied_keys, {}, {table.rows[row]}};
@@ -107,7 +107,7 @@ std::string short_setting(const StudyTable& table, std::size_t row) {
   return setting_text(shortened, 0);
 }
 
-/// How many trials answered what on modes of motion.
+/// Number of trials by their finding on modes of motion.
 std::string evidence_text(const StudyTable& table) {
   std::map<std::string, int> answers;
   for (const TrialRow& row : table.rows)
@@ -131,7 +131,7 @@ std::string best_text(const StudyTable& table, const Answers& answers) {
 
 std::string pareto_text(const StudyTable& table, const Answers& answers) {
   if (answers.pareto.empty()) return "";
-  std::string text = fmt::format("\nBest {} with so many modes (Pareto set)\n{:>6} {:>10}  {:<12}  {}\n",
+  std::string text = fmt::format("\nBest {} by number of modes (Pareto set)\n{:>6} {:>10}  {:<12}  {}\n",
                                  answers.headline, "modes", "log_score", "trial", "setting");
   for (const ParetoSetting& point : answers.pareto)
     text += fmt::format("{:>6.3g} {:>10.4f}  {:<12}  {}\n", point.modes, point.log_score,

@@ -6,11 +6,10 @@
 
 namespace modebank::app {
 
-/// "mixture.components = 3, mixture.covariance = full" of a row.
+/// The setting of a row: "mixture.components = 3, mixture.covariance = full".
 std::string setting_text(const StudyTable& table, std::size_t row);
 
-/// The answers as people read them: compact tables about the bank's scores in the headline's role. All others are in
-/// study.h5.
+/// The answers as text: compact tables of the bank's scores in the headline's role. study.h5 has all scores.
 std::string answers_text(const StudyTable& table, const Answers& answers);
 
 }  // namespace modebank::app

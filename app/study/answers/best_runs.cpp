@@ -14,21 +14,21 @@ namespace modebank::app {
 std::string best_run_text(const Config& study, const StudyTable& table, const BestSetting& best) {
   const TrialRow& row = table.rows[best.row];
   Config config = trial_config(study, table.varied_keys, row);
-  config.archive.output.clear();  // the trial's own archive is the study's
+  config.archive.output.clear();  // the trial's path is inside the study's folder
   std::string text =
       fmt::format("# Best of a study by {} ({} is better): {:.6g}", best.score, best.goal.text(), best.value);
   if (best.repeats > 1) text += fmt::format(", mean of {} repeats; the seed is that of the first", best.repeats);
   text += fmt::format("\n# {}\n# trial {}\n", setting_text(table, best.row), row.key);
   if (best.score.find("_test_") != std::string::npos)
-    text += "# Chosen by the held-out runs, which therefore no longer judge it fairly.\n";
+    text += "# It was chosen by the held-out runs, so their scores are too good. Judge it on other runs.\n";
   return text + "\n" + resolved_text(config);
 }
 
 namespace {
 
-/// A score ends in the name of a state, which may hold anything: "/imu.wz" is a name, and a path.
+/// File name of a score. A score ends in a state's name, which may contain any character: "/imu.wz" is also a path.
 std::string file_stem_of(const std::string& score, std::set<std::string>& taken) {
-  constexpr std::size_t longest = 200;  // of the 255 bytes of a file's name
+  constexpr std::size_t longest = 200;  // the longest name of a file is 255 bytes
   const std::string base = letters_and_digits(score).substr(0, longest);
   std::string stem = base;
   for (int i = 2; !taken.insert(stem).second; ++i) stem = fmt::format("{}_{}", base, i);

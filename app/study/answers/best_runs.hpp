@@ -8,11 +8,11 @@
 
 namespace modebank::app {
 
-/// Configuration of the best setting of one score, ready for `modebank run`, under a comment that says what it is.
+/// Configuration of the best setting by one score, ready for `modebank run`, with a comment that explains it.
 std::string best_run_text(const Config& study, const StudyTable& table, const BestSetting& best);
 
-/// Writes study.best.ini (by the headline) and best/SCORE.ini for every score of the bank into the study's folder, each
-/// stretch of a score's name that is neither letter nor digit as one '_'.
+/// Writes study.best.ini (by the headline) and best/SCORE.ini for every score of the bank into the study's folder. In
+/// file names one '_' replaces each sequence of characters other than letters and digits.
 void write_best_runs(const std::filesystem::path& folder, const Config& study, const StudyTable& table,
                      const Answers& answers);
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// What became of one planned row; its scores come back, as they are by name.
+/// Sets the status of one planned row and returns its scores, by name.
 std::optional<TrialScores> settle(const TrialStore& store, const std::set<std::string>& whole, TrialRow& row) {
   row.status = TrialStatus::missing;
   row.message.clear();
@@ -40,7 +40,7 @@ std::optional<TrialScores> settle(const TrialStore& store, const std::set<std::s
   return std::nullopt;
 }
 
-/// Every name that a trial has a score of, in the order in which they come.
+/// All names of scores, in the order in which they appear.
 std::vector<std::string> score_names(const std::vector<std::optional<TrialScores>>& scores) {
   std::vector<std::string> names{"modes"};
   std::set<std::string> seen;
@@ -51,7 +51,7 @@ std::vector<std::string> score_names(const std::vector<std::optional<TrialScores
   return names;
 }
 
-/// All numbers, where empty texts are NaN; nothing when one is another text or all are empty.
+/// The texts as numbers, NaN for empty ones. Nullopt if one is not a number or all are empty.
 std::optional<std::vector<double>> as_numbers(const std::vector<std::string>& texts) {
   std::vector<double> numbers;
   for (const std::string& text : texts) {
@@ -162,7 +162,7 @@ void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTabl
   write_study_file(store.folder() / "study.h5", file, use);
   const std::string csv = table_csv(table);
   replace_file(store.folder() / "study.csv", {csv});
-  // Only over the plan that this table is of: after a long pause another process may have added values meanwhile.
+  // Only for the plan of this table: during a long pause another process may have added values.
   const StudyPlan there = read_plan(store.folder());
   if (there.config != plan.config || there.table.rows.size() != plan.table.rows.size()) return;
   StudyPlan current = plan;

@@ -5,8 +5,8 @@
 
 namespace modebank::app {
 
-/// What `study --json` says of a study's folder: its runs with varied values, status and scores, how many of each
-/// status there are, and the best setting by each score. Empty of what is not there yet.
+/// Output of `study --json` for a study's folder: runs with varied values, status and scores, counts by status, and the
+/// best setting by each score. Parts that do not exist yet are left out.
 nlohmann::json study_json(const std::filesystem::path& folder);
 
 }  // namespace modebank::app

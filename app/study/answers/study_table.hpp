@@ -8,19 +8,19 @@
 
 namespace modebank::app {
 
-/// What became of a trial. dropped: the plan left it out as invalid; missing: planned, but neither done nor failed.
+/// State of a trial. dropped: invalid, so the plan leaves it out; missing: planned, but neither done nor failed.
 enum class TrialStatus { planned, done, failed, dropped, missing };
 
 /// One run of a study.
 struct TrialRow {
   std::string key;                  ///< names trials/<key>.h5; empty when dropped
-  std::vector<std::string> varied;  ///< text per varied key, as `modebank run` would be given it
+  std::vector<std::string> varied;  ///< one text per varied key, in the form that `modebank run` takes
   std::int64_t repeat = 0;
   std::uint64_t seed = 0;  ///< its job.seed
   TrialStatus status = TrialStatus::planned;
-  std::string message;         ///< why it failed or was dropped
-  std::string evidence;        ///< what its archive answers on modes of motion
-  std::vector<double> scores;  ///< one per score name; NaN: it has none
+  std::string message;         ///< reason of a failure, or of dropping
+  std::string evidence;        ///< its archive's finding on modes of motion
+  std::vector<double> scores;  ///< one per score name; NaN: no such score
 };
 
 /// A study's runs in plan order.

@@ -36,8 +36,8 @@ std::string plan_text(const StudyPlan& plan, const DistinctStages& distinct, std
   text += fmt::format(": {} fits of the windows, {} mixtures, {} banks\n", distinct.windows, distinct.mixtures,
                       distinct.banks);
   if (plan.repeated_points > 0)
-    text += fmt::format("          {} points say the same as an earlier one and were left out\n", plan.repeated_points);
-  if (dropped > 0) text += fmt::format("          {} points are no valid configuration and were dropped:\n", dropped);
+    text += fmt::format("          {} points are equal to an earlier one and were left out\n", plan.repeated_points);
+  if (dropped > 0) text += fmt::format("          {} points are not valid configurations and were dropped:\n", dropped);
   return text + list_of(plan.table, TrialStatus::dropped);
 }
 

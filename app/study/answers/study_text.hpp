@@ -7,7 +7,7 @@
 
 namespace modebank::app {
 
-/// Numbers of runs, what was dropped and why, what runs share.
+/// Numbers of runs, dropped points with the reasons, and stages that runs share.
 std::string plan_text(const StudyPlan& plan, const DistinctStages& distinct, std::int64_t repeats);
 /// Counts by status, then every failed and missing run.
 std::string table_text(const StudyTable& table, const TrialStore& store);

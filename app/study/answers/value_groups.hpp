@@ -14,10 +14,10 @@ struct ValueGroup {
   std::vector<std::size_t> rows;
 };
 
-/// Groups in the order of the plan; of a key with more than `value_group_limit` different numbers, or with fewer than
-/// two settings to a number while other keys vary (as sampled plans have), `value_range_count` ranges of about equally
-/// many trials, in rising order, labelled "lowest..highest". Trials to which the key does not apply have its configured
-/// value.
+/// Groups in the order of the plan. A key gets `value_range_count` ranges if it has more than `value_group_limit`
+/// different numbers, or fewer than two settings per number while other keys vary (as in sampled plans). Ranges hold
+/// about equally many trials, rise, and are labelled "lowest..highest". Trials to which the key does not apply have its
+/// configured value.
 inline constexpr std::size_t value_group_limit = 30, value_range_count = 5;
 std::vector<ValueGroup> value_groups(const StudyTable& table, std::size_t key);
 

@@ -20,29 +20,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is wrong with the archive of a planned trial; empty when nothing is.
+/// The fault of a planned trial's archive; empty if it has none.
 std::string trial_problem(const TrialStore& store, const Config& study, const StudyTable& table, const TrialRow& row) {
   try {
     const OpenArchive archive(store.archive(row.key));
     if (const auto problems = problems_of(archive); !problems.empty()) return problems.front();
     const TrialScores stored = read_trial_scores(archive);
     const Config trial = trial_config(study, table.varied_keys, row);
-    if (stored.config_hash != config_hash(trial)) return "its configuration is not that of its name";
+    if (stored.config_hash != config_hash(trial)) return "its configuration does not match its name";
     if (trial_key(trial, stored.data_hash, stored.modebank_version) != row.key)
-      return "its data or version are not those of its name";
+      return "its data or version do not match its name";
     return {};
   } catch (const std::exception& error) {
     return error.what();
   }
 }
 
-/// A link that leads nowhere is there, too.
+/// Whether a path exists; a link to nothing counts.
 bool is_there(const fs::path& path) {
   std::error_code error;
   return fs::symlink_status(path, error).type() != fs::file_type::not_found;
 }
 
-/// A file of the study that must be a whole one if it is there.
+/// Checks that a file of the study, if it exists, is complete.
 void check_whole_file(const fs::path& file, StudyVerification& result) {
   if (!is_there(file)) return;
   try {
@@ -87,7 +87,7 @@ void check_trials(const TrialStore& store, const StudyPlan& plan, StudyVerificat
   }
 }
 
-/// Half-written files, and archives of no planned trial, whose hash alone can be checked.
+/// Reports half-written files, and archives that no planned trial has; only the hash of these can be checked.
 void check_others(const TrialStore& store, const std::optional<StudyPlan>& plan, StudyVerification& result) {
   std::error_code error;
   if (!fs::is_directory(store.folder() / "trials", error)) return;
@@ -96,7 +96,7 @@ void check_others(const TrialStore& store, const std::optional<StudyPlan>& plan,
     for (const TrialRow& row : plan->table.rows) planned[row.key + ".h5"] = true;
   for (const fs::directory_entry& entry : fs::directory_iterator(store.folder() / "trials")) {
     const fs::path& file = entry.path();
-    if (is_leftover(file)) result.problems.push_back({file, "was left by a process that was killed", "", true});
+    if (is_leftover(file)) result.problems.push_back({file, "left by a process that was killed", "", true});
     const bool is_trial = file.extension() == ".h5" && is_sha256(file.stem().string());
     if (!is_trial || planned.count(file.filename().string())) continue;
     for (const std::string& problem : store.problems(file.stem().string()))
@@ -113,8 +113,7 @@ bool is_study_folder(const fs::path& path) {
 
 namespace {
 
-/// What repairing may take away: a file of the study's own folder trials/ or cache/, not one that a link or a name
-/// leads to elsewhere.
+/// Whether repair may remove a file: only inside the study's own folders trials/ and cache/, never through a link.
 bool lies_within(const fs::path& folder, const fs::path& file) {
   std::error_code error;
   for (const char* part : {"trials", "cache"})

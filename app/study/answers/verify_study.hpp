@@ -6,28 +6,28 @@
 
 namespace modebank::app {
 
-/// Something wrong in a study's folder.
+/// A fault in a study's folder.
 struct StudyProblem {
   std::filesystem::path file;
   std::string what;
-  std::string redo;        ///< the trial that it costs, in words; empty: none
-  bool removable = false;  ///< the file is broken or a leftover: without it the study goes on
+  std::string redo;        ///< description of the trial to run again; empty: none
+  bool removable = false;  ///< whether the file can be removed and made again, because it is broken or a leftover
 };
 
 struct StudyVerification {
-  std::size_t whole = 0;  ///< trials whose archives are right
+  std::size_t whole = 0;  ///< number of trials whose archives are right
   std::vector<StudyProblem> problems;
 };
 
-/// Whether a path is a study's folder: it holds plan.h5 or trials/.
+/// Whether a path is a study's folder: it contains plan.h5 or trials/.
 bool is_study_folder(const std::filesystem::path& path);
 
-/// Checks plan.h5, study.h5 and every planned trial: that its archive is there, its whole-file hash, format and schema,
-/// that it holds what a run leaves, and that its configuration and data are those of its name.
+/// Checks plan.h5, study.h5 and every planned trial. Its archive must exist, with the right hash, format, schema and
+/// parts of a run, and with the configuration and data of its name.
 StudyVerification verify_study(const std::filesystem::path& folder);
 
-/// Removes the files of removable problems, but for what a living process is writing. The next `modebank study` makes
-/// them again.
+/// Removes the files of removable problems, except files that a living process is writing. The next `modebank study`
+/// makes them again.
 void repair_study(const std::filesystem::path& folder, const StudyVerification& verification);
 
 }  // namespace modebank::app

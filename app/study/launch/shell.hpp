@@ -5,11 +5,11 @@
 
 namespace modebank::app {
 
-/// One word of a POSIX shell command, quoted only where it has to be.
+/// One word of a POSIX shell command, in quotes only where needed.
 std::string shell_word(const std::string& text);
 std::string shell_command(const std::vector<std::string>& words);
 
-/// Whether a program of that name can be found in $PATH.
+/// Whether $PATH has a program of that name.
 bool in_path(const std::string& program);
 
 struct ShellResult {

@@ -33,8 +33,8 @@ std::string study_command(const SlurmRequest& request, const std::string& stage)
   return shell_command(words);
 }
 
-/// What both scripts begin with; no path stands in a line for Slurm, whose quotes and patterns are its own. Logs are
-/// appended to, so that a task that was requeued keeps its first life's.
+/// The beginning of both scripts. Paths are not in #SBATCH lines, where Slurm has its own quotes and patterns. Logs are
+/// appended, so that a task that is queued again keeps its earlier log.
 std::string script_head() {
   return fmt::format(
       "#!/bin/bash\n"
@@ -45,7 +45,7 @@ std::string script_head() {
       shell_word(fs::current_path().string()));
 }
 
-/// "run-ice.study", of letters that no pattern, queue listing or shell takes for another thing.
+/// Such as "run-ice.study": only letters that patterns, queue listings and shells pass unchanged.
 std::string job_name(const SlurmRequest& request, const std::string& role) {
   std::string name = role + "-" + request.folder.filename().string();
   std::replace_if(
@@ -53,12 +53,12 @@ std::string job_name(const SlurmRequest& request, const std::string& role) {
   return name;
 }
 
-/// A log in the scripts' folder, as --output takes it: a pattern, in which a per cent sign of the path's own is two.
+/// A log in the scripts' folder, in the form of --output: a pattern, in which a per cent sign of the path is doubled.
 std::string log_pattern(const SlurmRequest& request, const std::string& log) {
   return boost::replace_all_copy(slurm_folder(request.folder).string(), "%", "%%") + "/" + log;
 }
 
-/// The sbatch of one script.
+/// The sbatch command of one script.
 std::vector<std::string> sbatch_words(const SlurmRequest& request, const std::string& role, const std::string& log,
                                       const std::string& when, const fs::path& script) {
   std::vector<std::string> words{"sbatch", "--parsable", "--job-name=" + job_name(request, role),
@@ -68,7 +68,8 @@ std::vector<std::string> sbatch_words(const SlurmRequest& request, const std::st
   return words;
 }
 
-/// A path as a message can hold it, control characters as \n and the like.
+/// A path for a message, with control characters as
+///  and the like.
 std::string quoted_path(const fs::path& path) {
   return nlohmann::json(path.string()).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
@@ -95,7 +96,7 @@ std::string sbatch(const SlurmRequest& request, const std::string& command) {
 }  // namespace
 
 std::string run_script(const SlurmRequest& request) {
-  // Without --cpus-per-task Slurm gives a task one processor, whatever the machine has.
+  // Without --cpus-per-task a task of Slurm has one processor.
   const std::string jobs = has_jobs_override(request) ? "" : " --study.jobs \"${SLURM_CPUS_PER_TASK:-1}\"";
   return script_head() + fmt::format("exec {}{} --study.shard \"$SLURM_ARRAY_TASK_ID/{}\"\n",
                                      study_command(request, "run"), jobs, request.shards);
@@ -119,21 +120,21 @@ std::string array_list(const std::vector<int>& tasks) {
 void check_request(const SlurmRequest& request) {
   if (!in_path("sbatch"))
     throw ConfigurationError(
-        "study.stage = submit: no sbatch in PATH, so there is no Slurm here; other schedulers can run "
-        "--study.stage run --study.shard i/n for i = 0..n-1, then --study.stage merge");
+        "study.stage = submit needs Slurm, but PATH has no sbatch; with another scheduler run --study.stage run "
+        "--study.shard i/n for i = 0..n-1, then --study.stage merge");
   for (const fs::path& path :
        {request.program, request.config, request.folder, request.data_root, fs::current_path()}) {
     const std::string text = path.string();
     if (std::any_of(text.begin(), text.end(), is_control))
       throw ConfigurationError(
-          fmt::format("study.stage = submit: the path {} holds a control character, which Slurm's lists and logs do "
-                      "not take: rename the folder",
+          fmt::format("study.stage = submit: the path {} contains a control character, which Slurm does not take; "
+                      "rename the folder",
                       quoted_path(path)));
   }
   if (request.folder.string().find('\\') != std::string::npos)
     throw ConfigurationError(
-        fmt::format("study.stage = submit: the path {} holds a backslash, which Slurm leaves out of the names of logs: "
-                    "take another study.output",
+        fmt::format("study.stage = submit: the path {} contains a backslash, which Slurm drops from the names of logs; "
+                    "set another study.output",
                     request.folder.string()));
 }
 

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-/// The ids of a study's Slurm jobs: one line "role id" each in its folder, in the order of submission.
+/// Ids of a study's Slurm jobs: a file in its folder with lines "role id", in the order of submission.
 namespace modebank::app {
 
 struct SlurmJob {
-  std::string role;  ///< run (an array) or merge
+  std::string role;  ///< run (the array) or merge
   std::string id;
 };
 

@@ -19,14 +19,15 @@ namespace {
 struct TaskState {
   std::string state, reason;
 };
-using TaskStates = std::map<std::string, TaskState>;  // by "12_3" or "12"
+using TaskStates = std::map<std::string, TaskState>;  // states by task, "12_3" or "12"
 
 std::vector<std::string> fields_of(const std::string& line) {
   std::vector<std::string> fields;
   return boost::split(fields, line, boost::is_any_of("|"));
 }
 
-/// Lines of "task|state|reason" as both programs print them; a state such as "CANCELLED by 0" is its first word.
+/// Parses lines of "task|state|reason", as both programs print them. A state such as "CANCELLED by 0" is its first
+/// word.
 TaskStates task_states(const std::string& command) {
   const ShellResult result = run_shell(command + " 2>/dev/null");
   TaskStates states;
@@ -40,21 +41,21 @@ TaskStates task_states(const std::string& command) {
   return states;
 }
 
-/// What waits for a person, not for a processor.
+/// A note if the task needs the user.
 std::string note_on(const std::string& task, const TaskState& state) {
   if (state.state == "PENDING" && boost::icontains(state.reason, "held"))
-    return fmt::format("task {} is held ({}): scontrol release {}", task, state.reason, task);
+    return fmt::format("task {} is held ({}); release it with scontrol release {}", task, state.reason, task);
   if (boost::icontains(state.reason, "DependencyNeverSatisfied"))
-    return fmt::format("job {} waits for a dependency that cannot be met any more: scancel {}", task, task);
+    return fmt::format("job {} waits for a dependency that can no longer be met; cancel it with scancel {}", task,
+                       task);
   for (const char* lost : {"FAILED", "CANCELLED", "TIMEOUT", "OUT_OF_MEMORY", "NODE_FAIL", "DEADLINE", "BOOT_FAIL"})
-    if (state.state == lost)
-      return fmt::format("task {}: {}; what it left undone is done by submitting again", task, state.state);
+    if (state.state == lost) return fmt::format("task {}: {}; submit again to run what is left", task, state.state);
   return "";
 }
 
 SlurmJobView view_of(const SlurmJob& job) {
   SlurmJobView view{job.id, job.role, "", {}, {}};
-  // The queue knows best what it still holds; accounting, where there is any, what has left it.
+  // squeue is authoritative for jobs that it lists; sacct, if installed, has those that have ended.
   TaskStates states = task_states(fmt::format("sacct -X -n -P -j {} -o JobID,State", shell_word(job.id)));
   if (!states.empty()) view.source = "sacct";
   const TaskStates queued = task_states(fmt::format("squeue -h -r -t all -j {} -o '%i|%T|%r'", shell_word(job.id)));
@@ -79,7 +80,7 @@ void remember_job(const std::filesystem::path& study, const SlurmJob& job) {
   try {
     append_to_file(file, job.role + ' ' + job.id + '\n');
   } catch (const std::exception& error) {
-    throw DataError(fmt::format("{}: cannot note Slurm job {}: {}", file.string(), job.id, error.what()));
+    throw DataError(fmt::format("{}: cannot store the id of Slurm job {}: {}", file.string(), job.id, error.what()));
   }
 }
 
@@ -102,7 +103,7 @@ std::string slurm_text(const std::vector<SlurmJobView>& jobs) {
   std::string text;
   for (const SlurmJobView& job : jobs) {
     text += fmt::format("slurm     {} job {}:", job.role, job.job);
-    if (job.states.empty()) text += " no longer known to Slurm";
+    if (job.states.empty()) text += " no longer listed by Slurm";
     for (const auto& [state, count] : job.states) text += fmt::format(" {} {}", count, boost::to_lower_copy(state));
     text += job.source.empty() ? "\n" : fmt::format(" ({})\n", job.source);
     for (std::size_t i = 0; i < std::min(job.notes.size(), notes_shown); ++i)

@@ -14,7 +14,7 @@ namespace {
 
 bool is_left(const TrialRow& row) { return row.status == TrialStatus::missing || row.status == TrialStatus::failed; }
 
-/// Many runs per task: one for every ten, at most a hundred, if not configured.
+/// The number of tasks: as configured, else one per ten runs, at most a hundred.
 int shard_count(const Config& config, const StudyTable& table) {
   constexpr std::int64_t runs_per_task = 10, most = 100;
   const std::int64_t left = std::count_if(table.rows.begin(), table.rows.end(), is_left);
@@ -40,7 +40,7 @@ std::vector<std::string> words_of_line(const std::string& line) {
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
-/// All but the tasks.
+/// The request without its tasks.
 SlurmRequest request_of(const StudyCall& call) {
   namespace fs = std::filesystem;
   const Config& config = call.config;
@@ -70,7 +70,8 @@ std::string submit_study(const StudyCall& call, const StudyPlan& plan, const Stu
   std::string text;
   for (const std::string& command : submission.commands) text += command + "\n";
   return text + fmt::format(
-                    "slurm     job {}: {} of {} shards; job {} merges when they have ended; see --study.stage status\n",
+                    "slurm     job {}: {} of {} shards; job {} merges when they have ended. --study.stage status shows "
+                    "their states\n",
                     submission.array_job, tasks.size(), count, submission.merge_job);
 }
 

@@ -34,7 +34,7 @@ double seconds_of(const timespec& time) {
   return static_cast<double>(time.tv_sec) + ns * static_cast<double>(time.tv_nsec);
 }
 
-/// A process as the kernel lists it.
+/// State of a process from /proc.
 struct ProcessState {
   char state = 0;
   pid_t parent = 0;
@@ -45,17 +45,17 @@ std::optional<ProcessState> process_state(pid_t process) {
   std::ifstream file(fmt::format("/proc/{}/stat", process));
   std::string text;
   if (!std::getline(file, text)) return std::nullopt;
-  std::istringstream fields(text.substr(text.rfind(')') + 1));  // a program's name may hold anything
+  std::istringstream fields(text.substr(text.rfind(')') + 1));  // a program's name may contain any character
   ProcessState found;
   fields >> found.state >> found.parent;
-  constexpr int skipped = 17;  // from the parent to the start time
+  constexpr int skipped = 17;  // fields from the parent to the start time
   long long number = 0;
   for (int i = 0; i < skipped; ++i) fields >> number;
   if (!(fields >> found.start)) return std::nullopt;
   return found;
 }
 
-/// The machine, and the space of process numbers on it: containers have their own.
+/// The machine and its namespace of process numbers, since each container has its own.
 std::string this_host() {
   std::array<char, 256> name{}, numbers{};
   ::gethostname(name.data(), name.size() - 1);
@@ -63,8 +63,7 @@ std::string this_host() {
   return fmt::format("{} {}", name.data(), numbers.data());
 }
 
-/// A sibling that has ended, and whose parent has not yet looked at why, is not gone: the parent decides about its
-/// work.
+/// A process that has ended but was not reaped is not gone: its parent still has to settle its work.
 bool is_gone(pid_t process, long long start) {
   const std::optional<ProcessState> found = process_state(process);
   if (!found || found->start != start) return true;
@@ -83,10 +82,10 @@ std::string own_text() {
 
 struct FoundClaim {
   std::string text;
-  double time_s = 0.0;  ///< by the folder's clock
+  double time_s = 0.0;  ///< time of the folder's clock
 };
 
-/// Opened and read, so that a network file system looks anew; nothing where there is none.
+/// Reads the file anew, so that a network file system does not answer from its cache. Nullopt without a claim.
 std::optional<FoundClaim> read_claim(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (file < 0) return std::nullopt;
@@ -106,7 +105,7 @@ struct Holder {
   long long start = 0;
 };
 
-/// Empty where the text is not that of a claim.
+/// Nullopt where the text is not that of a claim.
 std::optional<Holder> holder_of(const std::string& text) try {
   const auto claim = nlohmann::json::parse(text);
   return Holder{claim.at("host"), claim.at("process"), claim.at("start")};
@@ -115,13 +114,13 @@ std::optional<Holder> holder_of(const std::string& text) try {
 }
 
 bool is_over(const FoundClaim& claim, double now_s) {
-  // A time that lies ahead was written before the folder's clock was set back.
+  // A time in the future was written before the folder's clock was set back.
   if (std::abs(now_s - claim.time_s) > Claim::lasts_s) return true;
   const std::optional<Holder> holder = holder_of(claim.text);
   return holder && holder->host == this_host() && is_gone(holder->process, holder->start);
 }
 
-/// A claim under a name of its own, until it takes the real one.
+/// A claim file with a temporary name, until it gets the real one.
 class Proposal {
  public:
   Proposal(const fs::path& target, const std::string& text) : path_(temporary_path(target)), target_(target) {
@@ -145,14 +144,14 @@ class Proposal {
 
   double time_s() const { return time_s_; }
 
-  /// Takes the name where nothing has it, in one step.
+  /// Takes the name in one step, if it is free.
   bool enter() const {
     if (::link(path_.c_str(), target_.c_str()) == 0) return true;
     const int reason = errno;
     std::error_code error;
     if (reason == EEXIST)
-      return fs::hard_link_count(path_, error) > 1 && !error;  // a network may have asked for the link twice
-    // This file system has no hard links.
+      return fs::hard_link_count(path_, error) > 1 && !error;  // a network file system may have executed the link twice
+    // The file system has no hard links.
     if (fs::exists(fs::symlink_status(target_, error))) return false;
     replace();
     return true;
@@ -170,7 +169,7 @@ class Proposal {
 
 }  // namespace
 
-/// Renews the claim in a thread of its own.
+/// The file, and a thread that renews it.
 struct Claim::Held {
   Held(fs::path where, std::string what)
       : path(std::move(where)), text(std::move(what)), renewal([this] { renew(); }) {}
@@ -191,7 +190,7 @@ struct Claim::Held {
   void renew() {
     std::unique_lock lock(guard);
     while (!ended.wait_for(lock, std::chrono::duration<double>(renewed_after_s), [this] { return over; }))
-      ::utimensat(AT_FDCWD, path.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);  // by the file system's clock
+      ::utimensat(AT_FDCWD, path.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);  // sets the time of the file system's clock
   }
 
   fs::path path;
@@ -199,7 +198,7 @@ struct Claim::Held {
   std::mutex guard;
   std::condition_variable ended;
   bool over = false;
-  std::thread renewal;  // last: it uses the others
+  std::thread renewal;  // last member, because the thread uses the others
 };
 
 Claim::Claim(std::unique_ptr<Held> held) : held_(std::move(held)) {}
@@ -216,7 +215,8 @@ std::optional<Claim> Claim::take(const fs::path& path) {
     if (!other || !is_over(*other, proposal.time_s())) return std::nullopt;
     proposal.replace();
     const auto now = read_claim(path);
-    if (!now || now->text != text) return std::nullopt;  // two took it over at a time: the last one has it
+    if (!now || now->text != text)
+      return std::nullopt;  // two processes took it over at the same time: the later one has it
   }
   return Claim(std::make_unique<Held>(path, text));
 }

@@ -8,26 +8,26 @@
 
 namespace modebank::app {
 
-/// A small file that names the process at work: host, number and start time of the process, and time. The file is there
-/// while the work goes on; a thread renews its time every minute. A claim is over when its process is gone on this
-/// host, or when it was not renewed for ten minutes by the folder's own clock, which is the time of a file written
-/// there: clocks of machines that share a folder differ. So is one whose time lies ten minutes ahead of that clock,
-/// which was set back since. The next process takes it over by rename.
+/// A small file that marks work in progress. It contains host, number and start time of the process, and a time. A
+/// thread renews this time every minute while the work goes on. A claim ends when its process is gone on this host, or
+/// when it was not renewed for ten minutes. It also ends if its time lies ten minutes in the future, because the clock
+/// was set back. Times are those of files written in the folder, since the clocks of machines that share a folder
+/// differ. The next process takes the claim over by rename.
 ///
-/// Claims save work and nothing else. Two processes may both hold one after a long pause or on a file system without
-/// hard links; both then make the same result.
+/// Claims only avoid double work. After a long pause, or on a file system without hard links, two processes may hold
+/// the same claim; both then make the same result.
 class Claim {
  public:
   static constexpr double lasts_s = 600.0, renewed_after_s = 60.0;
 
-  /// Nothing while another living process holds it. Throws DataError when the file cannot be written.
+  /// Takes the claim. Nullopt while another living process holds it. Throws DataError when the file cannot be written.
   static std::optional<Claim> take(const std::filesystem::path& path);
-  /// The same, and waits for it.
+  /// The same, but waits until the claim is free.
   static Claim wait_for(const std::filesystem::path& path);
-  /// Removes the claim of a child process that is gone, if it is that process's.
+  /// Removes the claim of a child process that is gone. Claims of other processes stay.
   static void end_of(pid_t process, const std::filesystem::path& path);
 
-  /// Removes the file, if it is still this claim's.
+  /// Removes the file, unless another process has taken it over.
   ~Claim();
   Claim(Claim&&) noexcept;
   Claim& operator=(Claim&&) noexcept;

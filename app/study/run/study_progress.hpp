@@ -9,7 +9,7 @@
 
 namespace modebank::app {
 
-/// Tells how a study goes on: one line that is rewritten on a terminal, plain lines now and then elsewhere (stderr).
+/// Prints a study's progress to stderr: one line that is rewritten on a terminal, occasional lines elsewhere.
 class StudyProgress {
  public:
   explicit StudyProgress(std::vector<std::string> varied_keys);
@@ -33,7 +33,7 @@ class StudyProgress {
   std::string best_run_;
 };
 
-/// "mixture.components = 9, bank.stay = 0.95", for messages.
+/// The varied values for messages: "mixture.components = 9, bank.stay = 0.95".
 std::string describe_trial(const std::vector<std::string>& varied_keys, const TrialRow& row);
 
 }  // namespace modebank::app

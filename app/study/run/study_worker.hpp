@@ -12,43 +12,43 @@
 
 namespace modebank::app {
 
-/// State of a trial in a worker's report. begun: it has the claim and computes. broken: the machine's fault, not the
-/// trial's (a full disk, data that changed): the study must stop.
+/// State of a trial in a worker's report. begun: the worker has the claim and computes. broken: the machine fails, not
+/// the trial (a full disk, data that changed), so the study must stop.
 enum class TrialOutcome { begun, present, computed, failed, broken };
 
 struct TrialReport {
-  std::size_t row = 0;  ///< of the plan
+  std::size_t row = 0;  ///< index in the plan
   TrialOutcome outcome = TrialOutcome::begun;
-  std::string message = {};  ///< why it failed, or what was wrong with the archive that was there
+  std::string message = {};  ///< reason of a failure, or fault of the archive that was found
   double seconds = 0.0;
   std::array<double, stage_count> stage_seconds = {};
-  /// The bank's log score on the held-out runs, without these on the training runs; NaN: none.
+  /// The bank's log score on held-out runs, else on training runs; NaN without a score.
   double log_score = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The log score that progress is told by.
+/// The log score that the progress shows.
 double headline_score(const std::vector<std::pair<std::string, double>>& scores);
 
-/// The work of a process, as its parent gives it.
+/// Work that the parent gives to a process.
 struct WorkerTask {
   Config config;      ///< the study's
   std::string typed;  ///< the command line, for provenance
   std::string version;
   std::vector<std::string> varied_keys;
-  std::vector<TrialRow> rows;       ///< those left to do, in order
-  std::vector<std::size_t> places;  ///< of these rows in the plan
+  std::vector<TrialRow> rows;       ///< unfinished rows, in order
+  std::vector<std::size_t> places;  ///< index in the plan of each of these rows
   std::size_t threads = 1;
 };
 std::string pack_task(const WorkerTask& task);
 WorkerTask unpack_task(const std::string& bytes);
 
-/// One line of a worker's output.
+/// One line of a worker's output, with a report.
 std::string pack_report(const TrialReport& report);
 TrialReport unpack_report(const std::string& line);
 
-/// Tells the program that it is to be a worker: modebank WORD PARENT FIRST, with a packed task on standard input. The
-/// worker takes the rows from FIRST on and then those before, claims each, and leaves archives or records of failure.
-/// It reports on standard output, and ends with its parent, however that ends.
+/// The word that starts the program as a worker: modebank WORD PARENT FIRST, with a packed task on standard input. The
+/// worker claims the rows from FIRST on, then those before, and writes an archive or a record of failure for each. It
+/// reports on standard output, and ends when its parent ends.
 inline constexpr const char* worker_word = "--study-worker";
 int run_study_worker(int argc, char** argv);
 

@@ -6,13 +6,13 @@
 
 namespace modebank::app {
 
-/// Planned rows (positions in the table) that share a mixture, those with the same bank next to each other. Groups that
-/// share windows follow one another. The order follows from the plan alone.
+/// Groups of planned rows (indices in the table) that share a mixture. Rows with the same bank are neighbours, and so
+/// are groups that share windows. The order depends on the plan alone.
 using TrialGroups = std::vector<std::vector<std::size_t>>;
 
 TrialGroups group_trials(const Config& study, const StudyPlan& plan);
 
-/// The share of one shard: whole groups in turn, or when there are more shards than groups stretches of them.
+/// The groups of one shard: every n-th group; with more shards than groups, a part of a group.
 TrialGroups shard_of(const TrialGroups& groups, std::int64_t index, std::int64_t count);
 
 /// Numbers of different windows, mixtures and banks among trials.

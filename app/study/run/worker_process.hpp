@@ -10,10 +10,10 @@
 
 namespace modebank::app {
 
-/// A file in memory with a task for workers (pack_task), which they get as standard input.
+/// A file in memory with a task for workers (pack_task), which they read as standard input.
 class TaskFile {
  public:
-  /// Throws DataError.
+  /// Throws DataError when memory or the file system fails.
   explicit TaskFile(const std::string& bytes);
   ~TaskFile();
   TaskFile(const TaskFile&) = delete;
@@ -27,9 +27,9 @@ class TaskFile {
 /// A process of this program that works on trials (study_worker.hpp), and the pipe on which it reports.
 class WorkerProcess {
  public:
-  /// `first`: the row that it begins with. Throws DataError when it cannot be started.
+  /// `first`: index of its first row. Throws DataError when the process cannot be started.
   WorkerProcess(const TaskFile& task, std::size_t first);
-  /// Kills and reaps it.
+  /// Kills and reaps the process.
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
@@ -38,10 +38,10 @@ class WorkerProcess {
   int channel() const { return channel_; }
   void kill() const;
 
-  /// Whole lines that have arrived; nothing after the process has ended.
+  /// Complete lines received since the last call; nullopt after the process has ended.
   std::optional<std::vector<std::string>> read_lines();
-  /// How it ended, once read_lines() gives nothing: empty when well, else "its process was ended by signal 9
-  /// (Killed)". The process is not reaped yet, so that others see that somebody looks after its trial.
+  /// How the process ended, after read_lines() returned nullopt: empty for a normal end, else "its process was ended by
+  /// signal 9 (Killed)". It is not reaped yet, so that others leave its trial to this program.
   std::string end() const;
 
  private:

@@ -9,7 +9,8 @@
 namespace modebank::app {
 namespace {
 
-using Described = std::map<std::pair<std::string, std::vector<std::string>>, InputFile>;  // by path and tables
+using Described =
+    std::map<std::pair<std::string, std::vector<std::string>>, InputFile>;  // descriptions by path and tables
 
 std::string hash_of(const DataOptions& data, Described& described) {
   std::vector<InputFile> files;

@@ -20,19 +20,19 @@
 namespace modebank::app {
 namespace {
 
-/// Small enough for every reader of the table, JavaScript's doubles included.
+/// At most 2^53, so that JavaScript's doubles hold it exactly.
 std::uint64_t repeat_seed(std::uint64_t seed, std::int64_t repeat) {
   constexpr int bits = 32;
   return repeat == 0 ? seed : derive_seed(seed, "study.repeat", static_cast<std::uint64_t>(repeat)) >> (64 - bits);
 }
 
-/// A point and the seeds that it is run with.
+/// A point with the seeds of its runs.
 struct Setting {
   StudyPoint point;
   std::vector<std::uint64_t> seeds;
 };
 
-/// The settings of a space. Points that differ in job.seed alone are repeats of one setting, so that job.seed leaves
+/// The settings of a space. Points that differ only in job.seed are repeats of one setting, so job.seed is removed from
 /// the space's keys.
 std::vector<Setting> settings_of(const Config& config, StudySpace& space) {
   const auto varied = std::find(space.keys.begin(), space.keys.end(), "job.seed");
@@ -54,7 +54,7 @@ std::vector<Setting> settings_of(const Config& config, StudySpace& space) {
   return settings;
 }
 
-/// Why `modebank run` would not take it; empty when it would.
+/// The message with which `modebank run` would refuse the configuration; empty if it would run.
 std::string objection(const Config& config) {
   try {
     validate(config);
@@ -87,18 +87,18 @@ NamedColumn text_column(const std::string& name, const std::vector<TrialRow>& ro
   return {name, std::move(values)};
 }
 
-/// The values of a column that has that name and kind, which is how plans are told from other tables.
+/// The values of the column with this name and type. Throws if there is none: the file is then not a plan.
 template <class T>
 const std::vector<T>& values_of(const StudyFile& file, std::size_t column, const std::string& name) {
   const NamedColumn& found = file.columns.at(column);
   if (found.name != name)
-    throw DataError(fmt::format("not a plan: its column {} is {}, must be {}", column, found.name, name));
+    throw DataError(fmt::format("not a plan: its column {} is {}, expected {}", column, found.name, name));
   const auto* const values = std::get_if<std::vector<T>>(&found.values);
-  if (!values) throw DataError(fmt::format("not a plan: its column {} holds another kind of value", name));
+  if (!values) throw DataError(fmt::format("not a plan: its column {} has values of another type", name));
   return *values;
 }
 
-/// A plan from elsewhere may hold anything; its keys are names of files.
+/// Checks a row, since a plan may come from another program and its keys become file names.
 void check_row(const TrialRow& row, std::size_t r) {
   const bool dropped = row.status == TrialStatus::dropped;
   if (!is_sha256(row.key) && !(dropped && row.key.empty()))
@@ -108,12 +108,12 @@ void check_row(const TrialRow& row, std::size_t r) {
 
 StudyPlan plan_of(const StudyFile& file);
 
-/// Columns of plan.h5 that are not varied keys: key before them; repeat, seed, status and message after them.
+/// Numbers of columns in plan.h5 beside the varied keys: key before them; repeat, seed, status and message after them.
 constexpr std::size_t columns_before = 1, columns_after = 4;
 
 std::string quoted(const std::string& value) { return value.empty() ? "''" : "'" + value + "'"; }
 
-/// "mixture.restarts '5' -> '7'", one line per key that can change a run or the list of runs.
+/// "mixture.restarts '5' -> '7'", one line per changed key that affects a run or the list of runs.
 std::string key_differences(const std::string& before, const std::string& now) {
   const auto values_before = resolved_values(before), values_now = resolved_values(now);
   std::string text;
@@ -141,7 +141,7 @@ std::string file_differences(const std::vector<InputFile>& before, const std::ve
           fmt::format("\n  {} has SHA-256 {}, had {}", file.path, file.sha256.substr(0, 16), old->second.substr(0, 16));
     if (old != hashes.end()) hashes.erase(old);
   }
-  for (const auto& [path, hash] : hashes) text += fmt::format("\n  {} is not read any more", path);
+  for (const auto& [path, hash] : hashes) text += fmt::format("\n  {} is no longer read", path);
   return text;
 }
 
@@ -232,7 +232,7 @@ StudyPlan plan_of(const StudyFile& file) {
   plan.table.rows.resize(keys.size());
   for (std::size_t i = columns_before; i < after; ++i) {
     const std::string& name = file.columns[i].name;
-    if (!find_option(name)) throw DataError(fmt::format("not a plan: it varies \"{}\", which is no key", name));
+    if (!find_option(name)) throw DataError(fmt::format("not a plan: it varies \"{}\", which is not a key", name));
     plan.table.varied_keys.push_back(name);
     const auto& values = values_of<std::string>(file, i, name);
     for (std::size_t r = 0; r < keys.size(); ++r) plan.table.rows[r].varied.push_back(values[r]);
@@ -243,7 +243,7 @@ StudyPlan plan_of(const StudyFile& file) {
     row.repeat = repeats[r];
     row.seed = seeds[r];
     const auto known = parse_name<TrialStatus>(status[r]);
-    if (!known) throw DataError(fmt::format("row {}: the status \"{}\" is none", r, status[r]));
+    if (!known) throw DataError(fmt::format("row {}: unknown status \"{}\"", r, status[r]));
     row.status = *known;
     row.message = messages[r];
     check_row(row, r);
@@ -260,9 +260,9 @@ void check_plan_goes_on(const StudyPlan& before, const StudyPlan& now, const std
   for (const TrialRow& row : before.table.rows)
     lost += !row.key.empty() && row.status != TrialStatus::dropped && !keys.count(row.key);
   if (lost == 0) return;
-  const std::string head = fmt::format("{}: {} of its {} runs are not in the plan any more", folder.string(), lost,
-                                       before.table.rows.size());
-  const std::string advice = "\na study goes on with more values, not with others: take another study.output";
+  const std::string head =
+      fmt::format("{}: {} of its {} runs are no longer in the plan", folder.string(), lost, before.table.rows.size());
+  const std::string advice = "\na study may get more values, but must keep those that it has; set another study.output";
   if (before.provenance.modebank_version != now.provenance.modebank_version)
     throw ConfigurationError(fmt::format("{}: it was planned by modebank {}, this is {}{}", head,
                                          before.provenance.modebank_version, now.provenance.modebank_version, advice));
@@ -277,10 +277,9 @@ void check_plan_goes_on(const StudyPlan& before, const StudyPlan& now, const std
 void check_plan_is_of(const StudyPlan& plan, const Config& config, const std::filesystem::path& folder) {
   const std::string differences = key_differences(plan.config, resolved_text(config));
   if (!differences.empty())
-    throw ConfigurationError(
-        fmt::format("{} was planned with another configuration (planned -> now):{}\nplan it again "
-                    "first: --study.stage plan",
-                    folder.string(), differences));
+    throw ConfigurationError(fmt::format(
+        "{} was planned with another configuration (planned -> now):{}\nplan it again first with --study.stage plan",
+        folder.string(), differences));
 }
 
 }  // namespace modebank::app

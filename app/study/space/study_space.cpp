@@ -17,20 +17,20 @@
 namespace modebank::app {
 namespace {
 
-/// Keys that move together: one alone, or those of a `together` line.
+/// Keys whose values change together: a single key, or those of a `together` line.
 struct Axis {
-  std::vector<std::size_t> members;  ///< positions in the list of varied keys
+  std::vector<std::size_t> members;  ///< indices in the list of varied keys
   std::size_t levels = 0;            ///< 0: a range
 };
 
-/// Everything that the [study] section says about points.
+/// All of the [study] section that defines points.
 struct Definition {
   std::vector<VariedKey> varied;
   std::vector<Axis> axes;
   std::vector<VaryCondition> conditions;
 };
 
-/// Position of a varied key; their number when it is not among them.
+/// Index of a varied key; the number of varied keys when it is not one.
 std::size_t position_of(const std::vector<VariedKey>& varied, const std::string& key) {
   const auto found = std::find_if(varied.begin(), varied.end(), [&](const VariedKey& v) { return v.key == key; });
   return static_cast<std::size_t>(found - varied.begin());
@@ -43,8 +43,8 @@ std::vector<VariedKey> read_varied(const StudyConfig& study) {
     if (position_of(varied, varied.back().key) + 1 != varied.size())
       throw ConfigurationError(fmt::format("study.vary: {} is varied in two lines", varied.back().key));
     if (varied.back().is_range() && study.sample == 0)
-      throw ConfigurationError(fmt::format(
-          "study.vary = {}: a range has no values of its own: say how many (lin N, log N), or set study.sample", line));
+      throw ConfigurationError(
+          fmt::format("study.vary = {}: a range needs a number of values (lin N or log N), or study.sample", line));
   }
   return varied;
 }
@@ -61,8 +61,8 @@ std::vector<Axis> read_groups(const StudyConfig& study, const std::vector<Varied
         throw ConfigurationError(fmt::format("study.together = {}: {} {}", line, key, why));
       };
       if (member == varied.size()) refuse("is not varied");
-      if (!taken.insert(member).second) refuse("stands there twice");
-      if (varied[member].is_range()) refuse("is a range; keys in step need lists of values");
+      if (!taken.insert(member).second) refuse("is named twice");
+      if (varied[member].is_range()) refuse("is a range; keys in study.together need lists of values");
       if (axis.levels != 0 && axis.levels != varied[member].values.size())
         refuse(fmt::format("has {} values, {} has {}", varied[member].values.size(), varied[axis.members[0]].key,
                            axis.levels));
@@ -74,7 +74,7 @@ std::vector<Axis> read_groups(const StudyConfig& study, const std::vector<Varied
   return groups;
 }
 
-/// Axes in the order of study.vary; a group stands where its first key does.
+/// Axes in the order of study.vary; a group has the position of its first key.
 std::vector<Axis> make_axes(const std::vector<VariedKey>& varied, const std::vector<Axis>& groups) {
   std::vector<Axis> axes;
   for (std::size_t i = 0; i < varied.size(); ++i) {
@@ -102,7 +102,7 @@ Definition read_definition(const StudyConfig& study) {
   return definition;
 }
 
-/// The texts of one axis at u in [0, 1).
+/// Sets the texts of one axis at u in [0, 1).
 void place(const Definition& definition, const Axis& axis, double u, StudyPoint& point) {
   for (const std::size_t member : axis.members) {
     const VariedKey& varied = definition.varied[member];
@@ -123,8 +123,8 @@ std::vector<StudyPoint> grid(const Definition& definition) {
   for (const Axis& axis : definition.axes) {
     count *= axis.levels;
     if (count > most_points)
-      throw ConfigurationError(
-          fmt::format("study.vary: the grid has more than {} points; study.sample = N takes N of them", most_points));
+      throw ConfigurationError(fmt::format(
+          "study.vary: the grid has more than {} points; set study.sample = N to draw N points", most_points));
   }
   std::vector<StudyPoint> points(count, StudyPoint(definition.varied.size()));
   for (std::size_t i = 0; i < count; ++i) {
@@ -138,7 +138,7 @@ std::vector<StudyPoint> grid(const Definition& definition) {
   return points;
 }
 
-/// Coordinates in [0, 1), one row per point: on every axis each of the N strata holds one point.
+/// Coordinates in [0, 1), one row per point: on every axis each of the N strata contains one point.
 std::vector<std::vector<double>> latin_hypercube(std::size_t count, std::size_t axes, std::uint64_t seed) {
   std::vector<std::vector<double>> coordinates(count, std::vector<double>(axes));
   boost::random::uniform_01<double> uniform;
@@ -166,8 +166,8 @@ std::vector<StudyPoint> samples(const Definition& definition, const Config& conf
   return points;
 }
 
-/// Keys whose condition does not hold go back to the configuration's value. A condition may depend on a key that has
-/// one itself, so this goes on until nothing changes.
+/// Resets keys whose condition is false to the configuration's value. A condition may depend on such a key, so this
+/// repeats until nothing changes.
 void apply_conditions(const Definition& definition, const std::vector<std::string>& own, const Config& config,
                       StudyPoint& point) {
   const std::vector<VariedKey>& varied = definition.varied;
@@ -184,7 +184,8 @@ void apply_conditions(const Definition& definition, const std::vector<std::strin
 
 StudySpace lay_out(const Config& config) {
   const Definition definition = read_definition(config.study);
-  if (definition.varied.empty()) throw ConfigurationError("study.vary is empty: it names the keys to vary, one a line");
+  if (definition.varied.empty())
+    throw ConfigurationError("study.vary is empty; name the keys to vary, for example vary = bank.modes = 2 | 3");
   StudySpace space;
   std::vector<std::string> own;
   for (const VariedKey& varied : definition.varied) {

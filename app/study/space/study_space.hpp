@@ -13,14 +13,13 @@ using StudyPoint = std::vector<std::string>;
 
 struct StudySpace {
   std::vector<std::string> keys;   ///< varied keys, in the order of study.vary
-  std::vector<StudyPoint> points;  ///< distinct; grid: the last key changes fastest
-  std::size_t repeated = 0;        ///< points left out because they say the same as an earlier one
+  std::vector<StudyPoint> points;  ///< distinct points; in a grid the last key changes fastest
+  std::size_t repeated = 0;        ///< number of points left out because they equal an earlier one
 };
 
-/// Every point of the grid, or study.sample points: Latin hypercube (McKay, Beckman & Conover 1979) or Sobol's sequence
-/// (Joe & Kuo's directions, by Boost.Random) with a random digital shift; both seeded by job.seed. A key whose
-/// condition does not hold takes the configuration's own value. Throws ConfigurationError where lines contradict each
-/// other.
+/// Every point of the grid, or study.sample points of a Latin hypercube (McKay, Beckman & Conover 1979), seeded by
+/// job.seed. A key whose condition is false has the configuration's own value. Throws ConfigurationError where lines
+/// contradict each other.
 StudySpace lay_out(const Config& config);
 
 }  // namespace modebank::app

@@ -1,4 +1,4 @@
-// Patterns in a bank's errors, against what is known in closed form of errors that are drawn here.
+// Patterns in a bank's errors, compared with closed forms for simulated errors.
 #include "app/chain/error_pattern.hpp"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ struct Drawn {
   Archive archive;
   FilterEvaluation bank{"bank", {}};
 
-  /// `error(k, z, u, w)`: the next error of those before it, the inputs up to its own sample, and white noise.
+  /// `error(k, z, u, w)`: the next error, from the earlier ones, the inputs up to its own sample, and white noise.
   Drawn(int runs, Index samples, const std::function<double(Index, const VectorXd&, const VectorXd&, double)>& error) {
     std::mt19937_64 generator(7);
     boost::random::normal_distribution<double> normal;
@@ -40,11 +40,11 @@ struct Drawn {
         u(k) = normal(generator);
         z(k) = error(k, z, u, normal(generator));
       }
-      run.input = 300.0 * u.transpose();  // in whatever unit
+      run.input = 300.0 * u.transpose();  // the unit must not matter
       archive.recording->runs.push_back(run);
       RunEvaluation said;
       said.pit = z.unaryExpr(&normal_probability).transpose();
-      said.pit(0, 0) = not_a_number;  // the start
+      said.pit(0, 0) = not_a_number;  // start of the filter
       bank.runs.push_back(said);
     }
   }
@@ -60,7 +60,7 @@ TEST(ErrorPattern, WhiteErrorsHaveNone) {
   EXPECT_FALSE(pattern.told());
 }
 
-/// Errors of an autoregression of coefficient r lose 1 - r^2 of their variance: -ln(1 - r^2) / 2 nats per sample.
+/// Errors of an autoregression with coefficient r can lose 1 - r^2 of their variance: -ln(1 - r^2) / 2 nats per sample.
 TEST(ErrorPattern, OfAnAutoregressionGainsWhatItsCoefficientSays) {
   for (const int runs : {6, 2}) {
     const ErrorPattern pattern = Drawn(runs, 2400 / runs, [](Index k, const VectorXd& z, const VectorXd&, double w) {
@@ -72,7 +72,7 @@ TEST(ErrorPattern, OfAnAutoregressionGainsWhatItsCoefficientSays) {
   }
 }
 
-/// White errors, as those of a dead time under inputs that are redrawn, so that no autocorrelation shows them.
+/// White errors from an unmodelled dead time: inputs are redrawn at each sample, so no autocorrelation shows it.
 TEST(ErrorPattern, OfAnInputThatActsLateIsFound) {
   const ErrorPattern pattern = Drawn(6, 400, [](Index k, const VectorXd&, const VectorXd& u, double w) {
                                  return k < 5 ? w : 0.6 * u(k - 5) + 0.8 * w;
@@ -97,7 +97,7 @@ TEST(ErrorPattern, IsNotAskedForWhereLagsAreSettled) {
 
 using ErrorPatternOfRuns = test::CliTest;
 
-/// A second-order motion given one lag: y[k+1] = 1.1 y[k] - 0.4 y[k-1] + 0.2 u[k] + noise.
+/// A second-order motion, fitted with one lag: y[k+1] = 1.1 y[k] - 0.4 y[k-1] + 0.2 u[k] + noise.
 TEST_F(ErrorPatternOfRuns, OneLagTooFewEndsInTheKeyThatLooksForLags) {
   std::mt19937_64 generator(5);
   boost::random::normal_distribution<double> normal;

@@ -36,13 +36,12 @@ TEST(ExpectedTime, IsToldFromHalfAMinuteOn) {
   EXPECT_THAT(heard.lines, IsEmpty());
   tell_if_long(heard, "bank", 45.4, "--bank.refine none leaves this out");
   tell_if_long(heard, "bank", 600.0, "--bank.refine none leaves this out");
-  EXPECT_THAT(
-      heard.lines,
-      ElementsAre("bank: begins, expected to take 45 s of processor time; --bank.refine none leaves this out",
-                  "bank: begins, expected to take 10 min of processor time; --bank.refine none leaves this out"));
+  EXPECT_THAT(heard.lines,
+              ElementsAre("bank: expected to take 45 s of processor time; --bank.refine none leaves this out",
+                          "bank: expected to take 10 min of processor time; --bank.refine none leaves this out"));
 }
 
-/// Runs of the demo's size are not announced, a day at 10 Hz is.
+/// Runs of the demo's size are not announced, but a day at 10 Hz is.
 TEST(ExpectedTime, GrowsWithSamplesAndCoefficients) {
   const Recording few = one_run(1000), many = one_run(864'000);
   const LinearStructure structure{1, 2, false};

@@ -1,4 +1,4 @@
-// The values of the reference analysis of the Husky-on-ice runs (BorealTC): computed by an independent numpy script.
+// Values of the reference analysis of the Husky-on-ice runs (BorealTC), computed by an independent numpy script.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double theta_tolerance = 2e-4;      // the reference is printed to four decimals
 constexpr double variance_tolerance = 1e-3;   // relative; printed to four digits
-constexpr double log_score_tolerance = 0.01;  // both maximise a flat likelihood
+constexpr double log_score_tolerance = 0.01;  // both maximise the same flat likelihood
 constexpr double rmse_tolerance = 2e-4;
 constexpr double tail_tolerance = 1e-3;  // printed to three decimals
 
@@ -34,7 +34,7 @@ Config ice_config(bool odd_runs_train) {
   return config;
 }
 
-/// What the reference states for one fold.
+/// Reference values for one fold.
 struct Fold {
   bool odd_runs_train;
   Index transitions, windows;
@@ -60,7 +60,7 @@ const SummaryRow& pooled(const std::vector<SummaryRow>& rows, const std::string&
   });
 }
 
-/// The reference's residual variance is about the residuals' mean; ours is the mean square, as Q is.
+/// The reference's residual variance is about the mean of the residuals; Q is the mean square.
 double variance_about_mean(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
   const LinearModel model = unpack(structure, global.theta);
   double sum = 0.0;
@@ -115,8 +115,8 @@ TEST_P(IceReference, TwelveComponentsReachTheLevel) {
   const Fold& fold = GetParam();
   Config config = ice_config(fold.odd_runs_train);
   config.mixture.selection.components = {12};
-  config.bank.refine = Refine::none;           // the reference pools, it does not refine
-  config.mixture.windows = WindowChoice::all;  // as the reference analysis
+  config.bank.refine = Refine::none;           // the reference pools windows without refinement
+  config.mixture.windows = WindowChoice::all;  // as in the reference analysis
   constexpr int seeds = 10;
   double log_score = 0.0, rmse = 0.0;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -135,7 +135,7 @@ TEST_P(IceReference, TwelveComponentsReachTheLevel) {
   EXPECT_LE(rmse, fold.bank_rmse_at_most);
 }
 
-/// K is the data's, not a constant's: the same for covariance floors over four decades and for five seeds.
+/// K depends on the data: it is the same for covariance floors over four decades and for five seeds.
 TEST_P(IceReference, TheNumberOfComponentsDoesNotDependOnTheFloorOrTheSeed) {
   MODEBANK_NEEDS_SHARED_DATA();
   for (const bool varx : {false, true}) {

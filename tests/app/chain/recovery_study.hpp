@@ -11,12 +11,12 @@ namespace modebank::test {
 
 inline constexpr Index window_length = 25;
 
-/// A kind of simulated recording and a way to choose K on it; windows of window_length transitions, features
+/// A kind of simulated recording, and a way to choose K on it. Windows have window_length transitions and the features
 /// parameters+noise.
 struct RecoveryCase {
   std::string name;
-  Index hold_samples = 1;      ///< inputs are redrawn every so many samples
-  double dwell_windows = 0.0;  ///< mean stay in a mode in window lengths, 0: each run stays in one mode
+  Index hold_samples = 1;      ///< number of samples between two draws of the inputs
+  double dwell_windows = 0.0;  ///< mean stay in a mode, in window lengths; 0: each run stays in one mode
   Index step = 1;
   Criterion criterion = Criterion::bic;
   bool noise_component = false;
@@ -32,12 +32,12 @@ struct Simulated {
 };
 Simulated simulate_recording(const SimulationOptions& options, int seed);
 
-/// What the criteria chose on one seed, from 1 to true K + 3.
+/// Choices of the criteria for one seed, from 1 to true K + 3.
 struct RecoveredSize {
   Index truth = 0;
   Index chosen = 0;        ///< by the case's criterion
   Index naive = 0;         ///< by BIC as if windows were independent
-  double clustered = 0.0;  ///< share of the windows that were clustered
+  double clustered = 0.0;  ///< share of clustered windows
 };
 RecoveredSize recover_size(const RecoveryCase& recovery, int seed);
 

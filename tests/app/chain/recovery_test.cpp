@@ -1,4 +1,4 @@
-// Whole chains on simulated switching systems whose truth is known.
+// Whole chains on simulated switching systems with known truth.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -19,9 +19,9 @@ namespace modebank::test {
 namespace {
 
 constexpr int seeds = 50;
-constexpr Index window_step = 5;  // a fifth of the windows, so that the suite stays short; N_eff hardly changes
+constexpr Index window_step = 5;  // a fifth of the windows, to keep the suite short; N_eff hardly changes
 
-/// 2..4 well separated modes with R = Q / 25; the number of modes follows the seed.
+/// 2 to 4 well separated modes with R = Q / 25; the seed determines their number.
 SimulationOptions system_of(int seed) {
   static const std::vector<Eigen::Vector3d> modes{
       {-0.60, -0.72, 0.72}, {-0.25, -0.20, 0.20}, {-0.45, -0.10, 0.50}, {-0.80, -0.50, 0.15}};
@@ -70,7 +70,7 @@ bool is_permutation_of_modes(std::vector<Index> matched, std::size_t modes) {
   return matched == all;
 }
 
-/// What one seed shows when every run stays in one mode.
+/// Results of one seed when every run stays in one mode.
 struct Stationary {
   bool found_k = false;
   bool matched = false;
@@ -117,7 +117,7 @@ TEST(Recovery, RunsThatStayInOneMode) {
   EXPECT_GE(within, 0.97 * parameters);
 }
 
-/// What one seed shows when runs switch modes, with a mean dwell of 20 windows.
+/// Results of one seed when runs switch modes, with a mean stay of 20 windows.
 struct Switching {
   Index overshoot = 0;             // chosen K minus true K
   double worst_theta_error = 0.0;  // relative to the distance to the nearest other mode
@@ -143,7 +143,7 @@ double share_of_right_modes(const Bank& bank, const Simulated& simulated, const 
     for (Index k = 1; k < evaluation.mode_probability.cols(); ++k, ++all) {
       Index best = 0;
       evaluation.mode_probability.col(k).maxCoeff(&best);
-      // The mode in force over the transition into sample k.
+      // The true mode over the transition into sample k.
       right += truth[static_cast<std::size_t>(best)] == simulated.runs[r].mode(k - 1);
     }
   }
@@ -184,7 +184,7 @@ TEST(Recovery, SwitchesInsideRuns) {
              one_more, more, switching_seeds);
 }
 
-/// At least this share of a few seeds; measure_recovery does all 50 of docs/results/mixture.md.
+/// Requires this share of a few seeds; measure_recovery runs all 50 of docs/results/mixture.md.
 void expect_recovery(const RecoveryCase& recovery, int few_seeds, double share) {
   const std::vector<RecoveredSize> sizes = recover_sizes(recovery, few_seeds);
   fmt::print("{}: {} of {}, naive BIC {}\n", recovery.name, right(sizes, &RecoveredSize::chosen), few_seeds,

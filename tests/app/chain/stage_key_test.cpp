@@ -1,6 +1,6 @@
-// A stage whose output another value of a key changes has another key then: trials of a study that share stages by
-// their keys are what `run` writes. Every key of the option table is tried with other values of its range. The first
-// stage that changes is the one in the key's row.
+// If another value of a configuration key changes a stage's output, the stage's key must change, too. Otherwise trials
+// of a study that share stages by key would differ from `run`. This test tries other values of every key of the option
+// table. The first stage that changes must be the one in the key's row.
 #include "app/chain/stage_key.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ namespace {
 using test::TemporaryFolder;
 using test::write_file;
 
-/// A scalar system that switches between three ways to answer its inputs, in two blocks of time.
+/// A scalar system that switches between three responses to its inputs, in two blocks of time.
 std::string csv_run(unsigned seed) {
   std::mt19937_64 generator(seed);
   const auto uniform = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53 - 0.5; };
@@ -44,7 +44,7 @@ std::string csv_run(unsigned seed) {
   return text.str();
 }
 
-/// Computes every stage and remembers its key and the bytes of its part of the archive.
+/// Computes every stage, and stores its key and the bytes of its part of the archive.
 class Recorder : public StageSource {
  public:
   explicit Recorder(std::filesystem::path scratch) : scratch_(std::move(scratch)) {}
@@ -63,12 +63,12 @@ class Recorder : public StageSource {
 
  private:
   std::filesystem::path scratch_;
-  Provenance provenance_;  ///< empty but while a part is written
+  Provenance provenance_;  ///< empty, except while a part is written
 };
 
 class StageKey : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() { ::unsetenv("MODEBANK_DATA"); }  // whoever runs it: its files are its own
+  static void SetUpTestSuite() { ::unsetenv("MODEBANK_DATA"); }  // paths in this test's configuration are its own
   StageKey() {
     std::filesystem::create_directory(file("elsewhere"));
     for (unsigned run = 0; run < 3; ++run) {
@@ -84,7 +84,7 @@ class StageKey : public ::testing::Test {
 
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
   Config configured(const KeyValues& keys) const { return load_config(file("base.ini"), keys); }
-  /// Little of what takes long and has no key: as much as of the base, whatever the key that is tried.
+  /// Reduces work that takes long and has no key to the amount of `base`, for any key.
   static ChainOptions quick(const Config& config, const Config& base) {
     ChainOptions options = chain_options(config);
     options.bank.em.folds = 2;
@@ -112,7 +112,7 @@ const std::vector<KeyValues> bases{
     {{"window.scale", "run"}, {"bank.noise", "fixed"}, {"bank.transition", "stay"}},
 };
 
-/// Other values of keys whose range no rule can be read from.
+/// Other values for keys whose range no rule describes.
 const std::map<std::string, std::vector<std::string>> texts{
     {"data.root", {"elsewhere"}},
     {"data.inputs", {"run_0*.csv"}},
@@ -174,25 +174,25 @@ struct Case {
 
   std::size_t base;
   std::string key, value;
-  std::string refusal = {};             ///< what was thrown; empty: the chain ran
-  std::vector<std::string> stale = {};  ///< stages that changed while their keys did not
-  std::size_t first = stage_count;      ///< stage whose numbers changed
+  std::string refusal = {};             ///< message of an exception; empty if the chain ran
+  std::vector<std::string> stale = {};  ///< stages that changed although their keys did not
+  std::size_t first = stage_count;      ///< first stage whose numbers changed
 };
 
-/// Why a chain may refuse a value. Whatever else is thrown is a failure of this test, not a value it could not try.
+/// Valid reasons for a chain to refuse a value. Any other exception is a failure of the test.
 struct RuledOut {
   std::string key, reason;
 };
 const std::vector<RuledOut> ruled_out{
     {"data.rate_hz", "no training run has the 10 transitions of a window"},
-    {"data.time_unit", "time going backwards or repeated"},
+    {"data.time_unit", "time goes backwards or repeats"},
     {"data.separator", "has no column"},
     {"data.decimal", "is not a number with a decimal comma"},
     {"data.header", "has no column"},
     {"window.model", "it fits linear modes"},
-    {"window.state_lags", "are those of model = varx"},
-    {"window.input_lags", "are those of model = varx"},
-    {"window.input_delay", "are those of model = varx"},
+    {"window.state_lags", "need window.model = varx"},
+    {"window.input_lags", "need window.model = varx"},
+    {"window.input_delay", "need window.model = varx"},
     {"bank.transition", "bank.transition = logit"},
     {"bank.drift", "bank.drift = "},
     {"window.model", "bank.drift = auto needs"},
@@ -202,11 +202,11 @@ const std::vector<RuledOut> ruled_out{
     {"filter.variant", "bank.drift = auto needs"},
 };
 
-/// Keys that have no second value on these data.
+/// Keys without a second value on these data.
 const std::map<std::string, std::string> one_value{{"data.root", "it has one folder"},
                                                    {"data.time_format", "its times are seconds"}};
 
-/// Keys that change nothing on these data, so that this test says nothing about them.
+/// Keys without any effect on these data, which this test therefore does not cover.
 const std::map<std::string, std::string> without_effect{
     {"data.states", "the other value names the same files"},
     {"data.derive", "no base uses what is derived"},
@@ -234,7 +234,7 @@ bool may_be_refused(const Case& c) {
 
 bool is_tried(const Option& option) { return option.stage || option.key == "data.root"; }
 
-/// A thousand chains take minutes, so the keys are dealt out to parts that run side by side.
+/// A thousand chains take minutes, so the keys are split into parts that run in parallel.
 constexpr std::size_t parts = 12;
 
 std::vector<Option> keys_of(std::size_t part) {
@@ -265,7 +265,7 @@ TEST_P(StageKeyPart, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
   }
   const std::vector<Option> keys = keys_of(GetParam());
   std::vector<Case> cases = cases_of(keys, configs);
-  // One after another: HDF5 refuses a second archive in the making, whose image in memory has the name of the first.
+  // One after another, because HDF5 refuses a second in-memory image with the same name.
   for (Case& c : cases) try {
       Config config = configs[c.base];
       const std::string value = c.key == "data.root" ? file(c.value).string() : c.value;
@@ -282,7 +282,7 @@ TEST_P(StageKeyPart, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
       c.refusal = error.what();
     }
   std::set<std::string> tried;
-  std::map<std::string, std::size_t> effective;  // the first stage of each
+  std::map<std::string, std::size_t> effective;  // by key: the first stage that changes
   for (const Case& c : cases) {
     if (c.refusal.empty()) tried.insert(c.key);
     if (c.first < stage_count) {
@@ -303,7 +303,7 @@ TEST_P(StageKeyPart, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
     }
 }
 
-/// Each part of the test above holds every key to `without_effect`.
+/// Each part of the test above checks its keys against `without_effect`.
 TEST(StageKeys, OfMostKeysAreTested) {
   const auto& options = option_table();
   const auto effective = std::count_if(options.begin(), options.end(), [](const Option& option) {
@@ -312,7 +312,7 @@ TEST(StageKeys, OfMostKeysAreTested) {
   EXPECT_GE(effective, 56) << "too few change anything for the test to mean much (59 do)";
 }
 
-/// The stages that the merging scores of a study once came from: the defect that made these keys.
+/// Scores of the merging once came from wrong stages in a study; this defect led to stage keys.
 TEST_F(StageKey, OfABankWhoseModesAreMergedHoldsTheFilter) {
   const auto key = [&](KeyValues keys) {
     keys.emplace_back("bank.refine", "none");
@@ -329,7 +329,7 @@ TEST_F(StageKey, OfABankWhoseModesAreMergedHoldsTheFilter) {
   EXPECT_EQ(automatic("icr"), Refine::none) << "shares its bank with what says none";
 }
 
-/// Which lags are found depends on how one model is fitted, and on nothing of the bank.
+/// The choice of lags depends on the fit of one model, not on the bank.
 TEST_F(StageKey, OfAStructureThatIsFoundHoldsHowOneModelIsFitted) {
   const auto options = [&](KeyValues keys) {
     keys.emplace_back("window.model", "varx");

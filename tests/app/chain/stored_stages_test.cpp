@@ -1,4 +1,4 @@
-// Stages and banks taken from archives, and archives made again: the same numbers every time.
+// Stages and banks taken from archives, and archives made again, with the same numbers each time.
 #include <gmock/gmock.h>
 #include <tbb/global_control.h>
 
@@ -51,7 +51,7 @@ TEST_F(StoredStages, ALimitOfAllTransitionsChangesNothing) {
   EXPECT_EQ(all_stages(limit), all_stages(all));
 }
 
-/// As recordings of more samples are written than memory holds evaluations of.
+/// The way in which recordings are written whose evaluations exceed memory.
 TEST_F(StoredStages, EvaluationsWrittenAsTheyAreMadeAreTheSame) {
   ASSERT_EQ(run().status, 0);
   const std::string streamed = file("streamed.h5").string();
@@ -85,7 +85,7 @@ TEST_F(StoredStages, StoredBankGivesBitIdenticalScores) {
   EXPECT_EQ(numbers_of(again, "/bank"), numbers_of(archive(), "/bank"));
 }
 
-/// kf is one global model, whatever bank is stored.
+/// kf is the global model, for any stored bank.
 TEST_F(StoredStages, AStoredBankRunAsOneKalmanFilterIsTheBaseline) {
   ASSERT_EQ(run({"--mixture.components", "3"}).status, 0);
   const std::string again = file("again.h5").string();

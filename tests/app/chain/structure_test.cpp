@@ -1,4 +1,4 @@
-// window.model = auto in the program: what is found, stored and shown, and which keys stay as they are given.
+// window.model = auto in the program: its result, archive and texts, and which keys keep their values.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -64,7 +64,7 @@ TEST_F(StructureOfRuns, IsInTheArchiveWithItsScoresAndInWhatIsPrinted) {
   EXPECT_THAT(modebank({"show", archive()}).out, AllOf(HasSubstr("log score"), HasSubstr("state lags")));
   const ProgramResult verified = modebank({"verify", archive()});
   EXPECT_EQ(verified.status, 0) << verified.err;
-  // The bank is the one that the same numbers give when they are stated.
+  // Stating the same numbers gives the same bank.
   ASSERT_EQ(run_stated(found).status, 0);
   const Archive stated = read_archive(archive());
   EXPECT_FALSE(stated.structure.has_value());
@@ -87,14 +87,14 @@ TEST_F(StructureOfRuns, IsRefusedWhereThereAreNoLags) {
   for (const char* model : {"linear", "icr", "slip"}) {
     const ProgramResult result = run({"--window.model", model, "--window.state_lags", "auto"});
     EXPECT_EQ(result.status, 2);
-    EXPECT_THAT(result.err, HasSubstr(std::string("auto are those of model = varx or auto, not of ") + model));
+    EXPECT_THAT(result.err, HasSubstr(std::string("auto need window.model = varx or auto, not ") + model));
   }
   EXPECT_THAT(run_automatic({"--window.prior", "1, 2"}).err, HasSubstr("give one value for all"));
   EXPECT_THAT(run({"--window.model", "varx", "--window.state_lags", "automatic"}).err, HasSubstr("1 to 100 or auto"));
   EXPECT_EQ(run({"--window.model", "varx", "--window.input_lags", "0"}).status, 2);
 }
 
-/// On the command line the model takes the place of the file's, lags and all.
+/// On the command line the model replaces the file's, with its lags.
 TEST_F(StructureOfRuns, OfTheCommandLineForgetsTheLagsOfTheFile) {
   write_file(file("lags.ini"), "[window]\nmodel = varx\nstate_lags = 3\n");
   const auto text = [&](const app::KeyValues& keys) {
@@ -125,7 +125,7 @@ TEST(WindowLengthKey, FollowsTheModelUnlessItIsGiven) {
   EXPECT_TRUE(app::chain_options(config).automatic_windows.length);
 }
 
-/// Thirteen coefficients and more: windows are longer, the cloud is of one-lag fits, and both are told.
+/// From thirteen coefficients on, windows are longer and the cloud is of one-lag fits; the texts state both.
 TEST_F(StructureOfRuns, WindowsOfManyLagsAreLongerAndClusteredByOneLagFits) {
   ASSERT_EQ(
       run({"--window.model", "varx", "--window.state_lags", "6", "--window.input_lags", "6", "--window.length", "auto"})
@@ -147,8 +147,8 @@ TEST_F(StructureOfRuns, WindowsOfManyLagsAreLongerAndClusteredByOneLagFits) {
       2);
 }
 
-/// Two modes whose inputs act with opposite signs: one linear model of both may take a later sample of the input, and
-/// modes that kept that delay would not be found.
+/// Inputs act with opposite signs in two modes. A single linear model may therefore take a later sample of the input,
+/// and with that delay no modes would be found.
 TEST(StageStructures, ModesAreAskedForTheUsualDelayToo) {
   std::mt19937_64 generator(1);
   boost::random::normal_distribution<double> normal;
@@ -173,7 +173,7 @@ TEST(StageStructures, ModesAreAskedForTheUsualDelayToo) {
   EXPECT_EQ(kept->input_delay, 2);
 }
 
-/// Lags that are stated may need more samples than a free run has: they stay, and none is asked about beside them.
+/// Stated lags may need more samples than a free run has. They stay, and no other lags are tried beside them.
 TEST(StageStructures, StatedLagsBeyondAFreeRunStay) {
   Recording recording = empty_recording(1, 1);
   for (Index r = 0; r < 4; ++r) add_run(recording, Eigen::MatrixXd::Random(1, 100), Eigen::MatrixXd::Random(1, 100));

@@ -26,7 +26,7 @@ TEST_F(InitCommand, WritesAConfigurationThatRuns) {
   EXPECT_TRUE(std::filesystem::exists(archive));
 }
 
-/// On a terminal it asks; --yes never does.
+/// On a terminal `init` asks questions; with --yes it never does.
 TEST_F(InitCommand, AsksOnATerminal) {
   write("one.csv", csv_run(300, 1));
   const char* script =
@@ -50,8 +50,8 @@ TEST_F(InitCommand, AsksOnATerminal) {
   };
   const ProgramResult asked = on_terminal("wq\nleft\nwz, right\n", {});
   ASSERT_EQ(asked.status, 0) << asked.out;
-  EXPECT_THAT(asked.out, HasSubstr("state, which is measured [wz]"));
-  EXPECT_THAT(asked.out, HasSubstr("no channel that moves is called wq"));
+  EXPECT_THAT(asked.out, HasSubstr("state (measured) [wz]"));
+  EXPECT_THAT(asked.out, HasSubstr("no moving channel has the name wq"));
   EXPECT_THAT(read_file(ini), HasSubstr("state = left"));
   EXPECT_THAT(read_file(ini), HasSubstr("input = wz, right"));
   const ProgramResult quiet = on_terminal("", {"--yes"});
@@ -71,7 +71,7 @@ TEST_F(InitCommand, IsWhatOtherCommandsAskForWhenGivenALog) {
   EXPECT_EQ(modebank({"init"}).status, 2);
 }
 
-/// A name must not become a line of the configuration, nor more than a word of the commands that are proposed.
+/// A name must not add lines to the configuration, or words to the proposed commands.
 TEST_F(InitCommand, NamesOfFoldersAndFilesStayWhatTheyAre) {
   const std::filesystem::path folder = file("nl\nstate = oops # \x1b[31m");
   std::filesystem::create_directory(folder);
@@ -118,7 +118,7 @@ TEST_F(InitCommand, AFileThatNoConfigurationCanNameIsRefused) {
   }
 }
 
-/// Bags of C++ nodes have their topics in the connections' headers alone.
+/// Bags of C++ nodes have their topics only in the connections' headers.
 TEST_F(InitCommand, TellsTheTopicsOfARecordingApart) {
   const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
   ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);
@@ -131,7 +131,7 @@ TEST_F(InitCommand, TellsTheTopicsOfARecordingApart) {
   const ProgramResult frames = modebank({"init", file("tf.bag").string(), "-o", file("tf.ini").string(), "--yes"});
   EXPECT_NE(frames.status, 0);
   EXPECT_THAT(frames.out, HasSubstr("left out: topic /tf: its messages alternate between 2 frames (base, arm); "
-                                    "data.run = /tf.transforms[0].child_frame_id makes a run of each"));
+                                    "set data.run = /tf.transforms[0].child_frame_id for one run per frame"));
   EXPECT_FALSE(std::filesystem::exists(file("tf.ini")));
 }
 

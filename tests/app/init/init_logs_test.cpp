@@ -1,5 +1,5 @@
-// A list of logs with the state and the inputs that a person would take: those of ../shared/data, of the cases, of the
-// documentation and of users' own kinds. Where init writes a configuration, its data can be imported and cut.
+// Logs with the state and the inputs that a person would choose: those of ../shared/data, of the cases, of the
+// documentation and of users' kinds. If init writes a configuration, its data can be imported and cut.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -53,7 +53,7 @@ class InitLogs : public ::testing::Test {
     return {config.data.state, config.data.input, text};
   }
 
-  /// The first run holds, for each state, the rows of the column that has its name.
+  /// In the first run each state has the values of the column with its name.
   void expect_columns(const Names& header, const std::vector<std::vector<double>>& columns) const {
     Config config = load_config(folder.path() / "log.ini", {});
     validate(config);
@@ -95,7 +95,7 @@ class InitLogs : public ::testing::Test {
   }
 };
 
-/// A robot whose yaw rate follows its wheels, 20 rows a second; wheels are held for 40 rows.
+/// A robot whose yaw rate follows its wheels at 20 rows a second; wheel speeds are held for 40 rows.
 struct Drive {
   double t, left, right, rate, noise;
 };
@@ -202,7 +202,7 @@ TEST_F(InitLogs, FindsStateAndInputsOfNearlyAllOfAList) {
   EXPECT_LE(10 * wrong, static_cast<int>(list.size()));
 }
 
-/// Texts that name runs: each lasts from gap to gap.
+/// Texts that name runs: each lasts from one gap to the next.
 TEST_F(InitLogs, ATextThatChangesAtGapsNamesRuns) {
   std::string text = ",time,gyro_z,cmd_left,cmd_right,run,surface\n";
   int k = 0;
@@ -226,11 +226,12 @@ TEST_F(InitLogs, ListsWhatMovesAndWasNotTaken) {
                                        std::cos(d.t));
                   }))});
   EXPECT_THAT(written.text,
-              HasSubstr("# not taken, its name is that of a time, counter, pose, place or label: icp_x\n"));
-  EXPECT_THAT(written.text, HasSubstr("# not taken, measured beside the state, or no hint tells its part: pressure\n"));
+              HasSubstr("# not taken, the name indicates a time, counter, pose, place or label: icp_x\n"));
+  EXPECT_THAT(written.text,
+              HasSubstr("# not taken, measured beside the state, or without a hint of its role: pressure\n"));
 }
 
-/// Columns that are no numbers are channels that their user misses.
+/// Users expect columns of text to be channels, so `init` gives the reason why they are not.
 TEST_F(InitLogs, SaysWhyTextIsNotTaken) {
   int k = 0;
   const auto cell = [&k](double value, const char* word) {
@@ -264,11 +265,11 @@ TEST_F(InitLogs, NamesChannelsThatAConfigurationCannotName) {
   EXPECT_THAT(init({write("nameless.csv", log_of("time,wz,cmd,\n", 400, row))}).text,
               HasSubstr("# not taken, without a name: column 4\n"));
   EXPECT_THAT(init({write("lines.csv", log_of("time,wz,cmd,\"u\nV\"\n", 400, row))}).text,
-              HasSubstr("# not taken, its name has a line end or another control character: u\\x0aV\n"));
+              HasSubstr("# not taken, the name contains a line end or another control character: u\\x0aV\n"));
 }
 
-/// The names are a draw of what names may hold. Either the configuration names the columns as they are called, and the
-/// data that it imports are theirs, or the message says what to rename.
+/// Random names of all kinds. Either the configuration has these names and imports their data, or the message names the
+/// column to rename.
 TEST_F(InitLogs, NamesOfAnyLetters) {
   const Names pieces{"v",  "w z", " ", ",", "=", "#", ";",  "\"",   "'",          "[",      "]",     "(",   ")",
                      "\\", "ä",   "µ", "*", "+", "/", "\t", "\x01", "\u0085",     "\u202e", "speed", "cmd", "1",
@@ -308,7 +309,7 @@ TEST_F(InitLogs, NamesOfAnyLetters) {
   EXPECT_GT(written, 100);
 }
 
-/// Whatever a column is called, clocks in it are times; what cannot be read as times is said once.
+/// Columns with clock times are times under any name. A column that cannot be read as times is reported once.
 TEST_F(InitLogs, TimesOfAnyName) {
   const auto log = [](const std::string& name, auto stamp) {
     return log_of(name + ",wz,cmd\n", 400, [&](const Drive& d) {
@@ -331,7 +332,7 @@ TEST_F(InitLogs, TimesOfAnyName) {
   EXPECT_THAT(minutes, HasSubstr("# ! column time: 393 of 400 rows repeat the time of the row before"));
 }
 
-/// Dates of two files that allow two readings together: the form is written and doubted.
+/// Dates of two files that have two readings in common: the format is proposed with a doubt.
 TEST_F(InitLogs, DatesOfSeveralFiles) {
   const auto dated = [&](const std::string& name, const std::string& date) {
     return write(name, log_of("time,wz,cmd\n", 400, [&](const Drive& d) {
@@ -345,7 +346,7 @@ TEST_F(InitLogs, DatesOfSeveralFiles) {
         << first;
 }
 
-/// Notes of the table's reader are doubts, also where the name of the times has their unit.
+/// Notes of the table's reader become doubts, even where the time column's name has the unit.
 TEST_F(InitLogs, NotesOfTheTableAreDoubts) {
   std::string text = "Rig 3\n" + log_of("Time [ms];wz;cmd\n", 400, [](const Drive& d) {
                        return fmt::format("{:.0f};{:.5f};{}", 1e3 * d.t, d.rate, d.left);
@@ -355,7 +356,7 @@ TEST_F(InitLogs, NotesOfTheTableAreDoubts) {
   EXPECT_THAT(written.text, HasSubstr("# column Time [ms] counts milliseconds (data.time_unit = ms)\n"));
 }
 
-/// Readings of few levels repeat: no slower rate mends that.
+/// Values with few levels repeat; a lower rate would not change that.
 TEST_F(InitLogs, RoundedReadingsAreNoSlowSource) {
   const Written written = init({write("coarse.csv", log_of("time,y,u\n", 600, [](const Drive& d) {
                                         return fmt::format("{:.3f},{:.1f},{}", d.t, d.rate, d.left);
@@ -376,7 +377,7 @@ TEST_F(InitLogs, WritesNothingThatRunRefuses) {
   EXPECT_TRUE(fs::is_empty(folder.path()) || !fs::exists(folder.path() / "log.ini"));
   const std::string still = write("still.csv", "time,y\n0,1\n1,1\n2,1\n");
   EXPECT_THROW(init({still}), DataError);
-  // Runs too short for windows, but a log that is long enough as a whole.
+  // Runs shorter than a window, in a log that is long enough as a whole.
   std::string text = "time,y,u,run\n";
   int k = 0;
   for (const Drive& d : drive(600))
@@ -389,12 +390,12 @@ TEST_F(InitLogs, WritesNothingThatRunRefuses) {
   }
 }
 
-/// No script has to prepare their data.
+/// Their data need no preparation by a script.
 TEST(ShippedConfigurations, FindTheirData) {
   MODEBANK_NEEDS_SHARED_DATA();
   int imported = 0;
   for (const auto& entry : fs::directory_iterator(test::project_dir() / "configs")) {
-    if (!entry.is_regular_file()) continue;  // a folder of systems
+    if (!entry.is_regular_file()) continue;  // the folder of systems
     const std::string name = entry.path().stem().string();
     if (name == "minimal" || name == "reference" || name == "demo" || name.starts_with("simulate")) continue;
     Config config = load_config(entry.path(), {{"data.root", test::shared_data_dir().string()}});

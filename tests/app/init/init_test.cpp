@@ -1,4 +1,4 @@
-// What modebank init finds in logs of all kinds, and that its configurations can be read as they stand.
+// Results of modebank init for logs of all kinds; its configurations can be read unchanged.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST(CommonPattern, EndsWhereWordsEnd) {
   EXPECT_EQ(common_pattern({"log", "data"}), "");
 }
 
-/// A configuration as init writes it, and what it reads.
+/// Writes a configuration as init does, and imports its data.
 class Init : public ::testing::Test {
  protected:
   std::string write(const std::vector<std::string>& files) {
@@ -94,7 +94,7 @@ class Init : public ::testing::Test {
   std::string listing, asked;
 };
 
-/// 60 s at 50 Hz of a gyro on its side: its y axis points up or down.
+/// 60 s at 50 Hz of a gyro on its side, with its y axis up or down.
 std::string sideways(double gravity) {
   std::string text = "time,wx,wy,wz,ax,ay,az,cmd_left,cmd_right\n";
   for (int k = 0; k < 3000; ++k) {
@@ -110,7 +110,7 @@ TEST_F(Init, FindsAGyroMountedSideways) {
   write_file(folder.path() / "log.csv", sideways(9.8));
   const std::string text = write({path("log.csv")});
   EXPECT_THAT(text,
-              HasSubstr("gravity lies along +y of this instrument (9.80 m/s^2): it is mounted on its side, and the "
+              HasSubstr("gravity acts along +y of this instrument (9.80 m/s^2), so it is mounted on its side, and the "
                         "yaw rate is wy, not wz"));
   EXPECT_THAT(config.data.state, ElementsAre("wy"));
   EXPECT_THAT(config.data.input, ElementsAre("cmd_left", "cmd_right"));
@@ -303,7 +303,7 @@ TEST_F(Init, NamesAPlaceWhereNamesSayNothing) {
   EXPECT_NO_THROW(import_data(config.data));
 }
 
-/// 20 s at 20 Hz: time, wz, cmd and what else is named, which counts up in steps of 3.
+/// 20 s at 20 Hz: time, wz, cmd and the columns in `more`, which count up in steps of 3.
 std::string driven(const std::string& more, double input_scale = 1.0) {
   std::string text = "time,wz,cmd" + more + "\n";
   for (int k = 0; k < 400; ++k) {
@@ -329,14 +329,14 @@ TEST_F(Init, LooksAtAllFilesOfAKind) {
   const std::string text = write({path("a.csv"), path("b.csv")});
   EXPECT_THAT(config.data.input, ElementsAre("cmd")) << "it stands still in the first alone";
   EXPECT_THAT(listing, HasSubstr("and 1 more"));
-  EXPECT_THAT(listing, HasSubstr("not in all of the 2 files, so not taken: only_here"));
+  EXPECT_THAT(listing, HasSubstr("left out, because not in all of the 2 files: only_here"));
   EXPECT_EQ(import_data(config.data).recording.runs.size(), 2U);
 }
 
 TEST_F(Init, TakesAColumnThatRisesSteadilyForTheTimes) {
   const std::string text = driven("");
   write_file(folder.path() / "bare.csv", text.substr(text.find('\n') + 1));
-  EXPECT_THAT(write({path("bare.csv")}), HasSubstr("rises steadily, 20 times a second: it is taken for the times"));
+  EXPECT_THAT(write({path("bare.csv")}), HasSubstr("rises evenly, 20 times a second, and is taken for the times"));
   EXPECT_EQ(config.data.time.size(), 1U);
   const Trajectory run = import_data(config.data).recording.runs.front();
   EXPECT_NEAR(run.time_s(1) - run.time_s(0), 0.05, 1e-9);
@@ -376,9 +376,9 @@ TEST_F(Init, LeavesOutRowsFromBeforeTheClockWasSet) {
 TEST_F(Init, SaysWhatIsInDoubtOfDates) {
   for (const auto& [date, said] :
        {std::pair{"01/02/2024 10:00:{:06.3f}", "time_format = %d/%m/%Y %H:%M:%S.%f"},
-        {"01/02/2024 10:00:{:06.3f}", "# ! the times, as 01/02/2024 10:00:00.000, allow two readings"},
+        {"01/02/2024 10:00:{:06.3f}", "# ! times such as 01/02/2024 10:00:00.000 can be read in two ways"},
         {"01.02.2024 10:00:{:06.3f}", "# ! column time is read as %d.%m.%Y %H:%M:%S.%f"},
-        {"2024;032 10:00:{:06.3f}", "is not a time (seconds, or as 2024-05-01T10:00:00.25Z"}}) {
+        {"2024;032 10:00:{:06.3f}", "is not a time (expected seconds, or a form such as 2024-05-01T10:00:00.25Z"}}) {
     std::string text = "time|wz|cmd\n";
     for (int k = 0; k < 300; ++k)
       text +=
@@ -407,10 +407,10 @@ TEST_F(Init, TakesAnswersInPlaceOfItsGuesses) {
   const auto kept = answered("\n\n");
   EXPECT_THAT(kept.first, ElementsAre("wz"));
   EXPECT_THAT(kept.second, ElementsAre("cmd"));
-  EXPECT_THAT(asked, HasSubstr("state, which is measured [wz]"));
+  EXPECT_THAT(asked, HasSubstr("state (measured) [wz]"));
   EXPECT_EQ(answered(""), kept) << "nobody answers";
   const auto others = answered("wy\np , wz\nnone\n");
-  EXPECT_THAT(asked, HasSubstr("no channel that moves is called wy, did you mean wz?"));
+  EXPECT_THAT(asked, HasSubstr("no moving channel has the name wy, did you mean wz?"));
   EXPECT_THAT(others.first, ElementsAre("p", "wz"));
   EXPECT_TRUE(others.second.empty());
 }

@@ -58,7 +58,7 @@ TEST(StudyAnswers, MainEffectsAreMeansOverTheOtherKeys) {
   EXPECT_NEAR(effect(answers, "mixture.components", "3", "bank_test_too_far").mean, 0.03, 1e-12);
 }
 
-/// In a full grid the shares of the keys and what repeats leave add up to one.
+/// In a full grid the shares of the keys and the rest due to repeats sum to one.
 TEST(StudyAnswers, InfluenceIsTheShareOfVarianceExplained) {
   const Answers answers = answer(grid());
   double components = 0, covariance = 0;
@@ -72,8 +72,8 @@ TEST(StudyAnswers, InfluenceIsTheShareOfVarianceExplained) {
 
 TEST(StudyAnswers, BestIsJudgedByTheMeanOverRepeats) {
   StudyTable table = grid();
-  table.rows[0].scores[1] = 100.0;   // one lucky seed of K = 2 full ...
-  table.rows[1].scores[1] = -100.0;  // ... whose other seed is as bad
+  table.rows[0].scores[1] = 100.0;   // one very good seed of K = 2 full ...
+  table.rows[1].scores[1] = -100.0;  // ... and its other seed is as bad
   const Answers answers = answer(table);
   const auto best = std::find_if(answers.best.begin(), answers.best.end(),
                                  [](const BestSetting& b) { return b.score == "bank_test_log_score"; });
@@ -141,7 +141,7 @@ TEST(StudyAnswers, OnlyFinishedTrialsCount) {
 
 TEST(StudyAnswers, ASampledKeyDoesNotExplainAllByHavingAValuePerTrial) {
   StudyTable table{{"window.prior", "filter.variant"}, {"modes", "bank_test_log_score"}, {}};
-  for (int i = 0; i < 20; ++i)  // the score follows the variant alone
+  for (int i = 0; i < 20; ++i)  // the score depends on the variant alone
     for (const int repeat : {0, 1})
       table.rows.push_back(trial({std::to_string(0.01 * (i * 7 % 20 + 1)), i % 2 == 0 ? "imm" : "kf"},
                                  {2.0, i % 2 == 0 ? 1.0 : 0.0}, repeat));
@@ -154,7 +154,7 @@ TEST(StudyAnswers, ASampledKeyDoesNotExplainAllByHavingAValuePerTrial) {
       EXPECT_LT(influence.share, 0.3);
     }
   }
-  StudyTable sweep{{"window.prior"}, table.score_names, {}};  // nothing else varies: each value stays
+  StudyTable sweep{{"window.prior"}, table.score_names, {}};  // nothing else varies, so each value is kept
   for (int i = 0; i < 20; ++i) sweep.rows.push_back(trial({std::to_string(i)}, {2.0, 1.0 * i}));
   EXPECT_EQ(value_groups(sweep, 0).size(), 20u);
 }
@@ -167,7 +167,7 @@ TEST(StudyAnswers, ManyNumbersAreGroupedIntoRanges) {
   EXPECT_EQ(groups.front().label, "0..19");
   EXPECT_EQ(groups.back().label, "80..99");
   for (const ValueGroup& group : groups) EXPECT_EQ(group.rows.size(), 20U);
-  table.rows[0].varied[0] = "word";  // not all are numbers any more
+  table.rows[0].varied[0] = "word";  // not all values are numbers now
   EXPECT_EQ(value_groups(table, 0).size(), 100U);
 }
 

@@ -11,35 +11,36 @@
 
 namespace modebank::test {
 
-/// A study of 24 runs of some hundredths of a second each on the two small runs of CliTest, in one or several folders.
+/// A study of 24 runs, each of some hundredths of a second, on the two small runs of CliTest; in one or several
+/// folders.
 class StudyTest : public CliTest {
  protected:
   StudyTest();
 
   std::vector<std::string> study_line(const std::string& folder, const std::vector<std::string>& options = {}) const;
   ProgramResult study(const std::string& folder, const std::vector<std::string>& options = {}) const;
-  /// Every number of the table of a study's folder, and every answer, as text that round-trips.
+  /// All numbers of a study's table, and all answers, as text that round-trips.
   std::string numbers(const std::string& folder) const;
-  /// Archives of a study under their final names, in byte order.
+  /// Archives of a study with final names, in byte order.
   std::vector<std::filesystem::path> archives(const std::string& folder) const;
-  /// Kills a worker that is at a trial, as its claim names it; false where none is.
+  /// Kills a worker that holds a claim on a trial; false if there is none.
   bool kill_a_worker(const std::string& folder, std::mt19937_64& generator) const;
 
-  /// The study done without any trouble, in a folder of its own.
+  /// The study without any disturbance, in a folder of its own.
   static constexpr const char* undisturbed = "undisturbed";
   void run_undisturbed() const;
 
   static constexpr std::size_t trials = 24;
 };
 
-/// A program in a process group of its own, its output thrown away.
+/// A program in its own process group; its output is discarded.
 class Process {
  public:
   explicit Process(const std::vector<std::string>& arguments);
   ~Process();  ///< kills the group
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
-  void kill_alone() const;  ///< SIGKILL to the program itself, not to its children
+  void kill_alone() const;  ///< sends SIGKILL to the program, not to its children
   void kill_with_children() const;
   int wait();  ///< exit status; 128 + signal when killed
 

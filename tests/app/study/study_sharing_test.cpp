@@ -28,12 +28,12 @@ std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Trials that share with `modebank run`'s own archives beside them.
+/// Trials that share stages, compared with `modebank run`'s own archives.
 class StudySharing : public CliTest {
  protected:
   StudySharing() { spdlog::set_level(spdlog::level::off); }
   ~StudySharing() override { spdlog::set_level(spdlog::level::info); }
-  /// An archive's bytes without what says who made it and where it went: they depend on its content alone.
+  /// An archive's bytes without provenance and path; they depend on its content alone.
   std::string content(Archive archive) const {
     archive.provenance = {};
     archive.config.clear();
@@ -57,7 +57,7 @@ class StudySharing : public CliTest {
   }
 };
 
-/// Neighbours differ in a key of each stage in turn, and come back to what was before.
+/// Neighbours differ in a key of each stage in turn, and then return to earlier values.
 const std::vector<KeyValues> trials{
     {},
     {{"filter.variant", "salvi2025"}},
@@ -70,7 +70,7 @@ const std::vector<KeyValues> trials{
     {{"bank.measurement_variance", "0.01"}},
     {{"mixture.components", "2"}},
     {{"mixture.components", "2"}, {"mixture.features", "parameters"}},
-    // What merging modes cost is found by running the filter.
+    // The cost of merging modes is computed by a run of the filter.
     {{"mixture.components", "3"}, {"bank.modes", "2"}},
     {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.variant", "salvi2025"}},
     {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.noise", "adaptive"}},
@@ -94,7 +94,7 @@ TEST_F(StudySharing, TrialsAreWhatRunWritesToTheBit) {
     EXPECT_TRUE(content(other.run(configured(trials[i]), "")) == alone[i]) << "trial " << i << " from the store";
 }
 
-/// The store of `run` and of studies keeps each stage but the data, up to the last one that it is told.
+/// The store of `run` and of studies stores each stage except the data, up to a given last one.
 TEST_F(StudySharing, TheStoreKeepsTheStagesThatAreLaterUsed) {
   const Config trial = configured({{"bank.refine", "em"}});
   TrialRunner(file("cache"), 100.0, 0.0).run(trial, "");
@@ -103,7 +103,7 @@ TEST_F(StudySharing, TheStoreKeepsTheStagesThatAreLaterUsed) {
     const std::string name = entry.path().filename();
     stages.insert(name.substr(0, name.find('-')));
   }
-  // The lags are stated, so that no structure is looked for. The scores of the bank are those of one trial alone.
+  // Lags are stated, so no structure is searched for. Scores of the bank belong to one trial alone.
   EXPECT_EQ(stages, (std::set<std::string>{"windows", "mixture", "competitors", "bank", "competitor_scores"}));
 }
 
@@ -121,7 +121,7 @@ TEST_F(StudySharing, TheStoreIsBounded) {
   EXPECT_GT(bytes_in(file("cache")), 0.0);
 }
 
-/// The folder may be on another disk that holds more; nothing of it is the store's but files of stages.
+/// The folder may be on another disk, with other files; the store touches only files of stages.
 TEST_F(StudySharing, TheStoreRemovesAndFollowsNothingOfOthers) {
   std::filesystem::create_directories(file("elsewhere/cache"));
   std::filesystem::create_directory_symlink("elsewhere/cache", file("cache"));
@@ -139,7 +139,7 @@ TEST_F(StudySharing, TheStoreRemovesAndFollowsNothingOfOthers) {
     return part;
   };
   const auto take = [](Archive&& part) {
-    ASSERT_TRUE(part.structure);  // what was given, nothing of the link
+    ASSERT_TRUE(part.structure);  // the given stage, not the link's target
     EXPECT_EQ(part.structure->state_lags, 7);
   };
   store.provide(Stage::bank, key, {[] {}, give, take});
@@ -161,7 +161,7 @@ TEST_F(StudySharing, AFailedTrialLeavesNothingForTheNext) {
 /// Claims on one file, by this process and by others.
 class Claims : public StudySharing {
  protected:
-  /// A process that takes the claim and ends when it is killed.
+  /// Starts a process that takes the claim and holds it until it is killed.
   pid_t holder() const {
     int ready[2];
     EXPECT_EQ(::pipe(ready), 0);
@@ -181,7 +181,7 @@ class Claims : public StudySharing {
     ::kill(process, SIGKILL);
     ::waitpid(process, nullptr, 0);
   }
-  /// As if it had not been renewed for so long, by the clock of its folder.
+  /// Makes the claim this much older by the clock of its folder.
   void age(double seconds) const {
     namespace chrono = std::chrono;
     write_file(file("now"), "");
@@ -189,7 +189,7 @@ class Claims : public StudySharing {
         chrono::duration_cast<std::filesystem::file_time_type::duration>(chrono::duration<double>(seconds));
     std::filesystem::last_write_time(path(), std::filesystem::last_write_time(file("now")) - back);
   }
-  /// The claim there, in other words.
+  /// Changes a value in the existing claim.
   void rewrite(const std::string& key, const nlohmann::json& value) const {
     auto claim = nlohmann::json::parse(bytes_of(path()));
     claim[key] = value;
@@ -219,7 +219,7 @@ TEST_F(Claims, StateHostProcessAndTime) {
   EXPECT_EQ(text.at("time").get<std::string>().size(), std::string("2026-01-01T00:00:00Z").size());
 }
 
-/// The same number, started at another time: the process that had the claim is gone.
+/// The same process number with another start time: the process with the claim is gone.
 TEST_F(Claims, AReusedProcessNumberIsNotTakenForTheHolder) {
   const pid_t other = holder();
   rewrite("start", 1);
@@ -227,7 +227,7 @@ TEST_F(Claims, AReusedProcessNumberIsNotTakenForTheHolder) {
   end(other);
 }
 
-/// Only renewals show whether a process of another machine is alive.
+/// Only renewals show whether a process on another machine is alive.
 TEST_F(Claims, OfOtherMachinesLastTenMinutesByTheFoldersClock) {
   end(holder());
   rewrite("host", "another machine");
@@ -237,7 +237,7 @@ TEST_F(Claims, OfOtherMachinesLastTenMinutesByTheFoldersClock) {
   EXPECT_TRUE(Claim::take(path()));
 }
 
-/// The folder's clock was an hour ahead when the other machine wrote its claim, and was set right since.
+/// The folder's clock was an hour ahead when the other machine wrote its claim, and was then corrected.
 TEST_F(Claims, FromAClockThatWasSetBackEndToo) {
   end(holder());
   rewrite("host", "another machine");
@@ -259,7 +259,7 @@ TEST_F(Claims, OfALivingProcessThatDoesNotRenewEndToo) {
   end(other);
 }
 
-/// A process whose claim was taken over leaves the new claim alone.
+/// A process whose claim was taken over must not remove the new claim.
 TEST_F(Claims, AreRemovedByTheirHolderAlone) {
   {
     const auto mine = Claim::take(path());
@@ -273,7 +273,7 @@ TEST_F(Claims, AreRemovedByTheirHolderAlone) {
   EXPECT_FALSE(std::filesystem::exists(path()));
 }
 
-/// A file without a claim of this version counts by its time, and the target of a link stays.
+/// A file without a valid claim counts by its time; the target of a link stays.
 TEST_F(Claims, OtherFilesOfTheNameDoNotStopAStudyForGood) {
   for (const char* text : {"", "half a li", "[1, 2]", R"({"host": 1, "process": "x", "start": []})"}) {
     write_file(path(), text);

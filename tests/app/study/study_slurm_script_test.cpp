@@ -49,7 +49,7 @@ TEST(StudySlurmScript, ArrayListsNameRanges) {
   EXPECT_EQ(array_list({1, 4, 5, 9}), "1,4-5,9");
 }
 
-/// What the shell makes of a quoted word is the word.
+/// The shell turns a quoted word back into the word.
 TEST(StudySlurmScript, ShellWordsComeBackAsTheyWere) {
   for (const std::string word : {"plain", "two words", "it's", "$HOME", "a\"b", "back\\slash", "", "{1..3} | *"})
     EXPECT_EQ(run_shell("printf %s " + shell_word(word)).out, word);
@@ -71,7 +71,7 @@ TEST(StudySlurmScript, AbsentSbatchIsSaid) {
   setenv("PATH", path.c_str(), 1);
 }
 
-/// sbatch, squeue and sacct that say what a test wants.
+/// Fakes of sbatch, squeue and sacct with given output.
 class FakeSlurm : public ::testing::Test {
  protected:
   FakeSlurm() : before_(std::getenv("PATH")) { setenv("PATH", (folder_.path().string() + ":" + before_).c_str(), 1); }
@@ -102,7 +102,7 @@ TEST_F(FakeSlurm, ArrayThenMergeWhateverBecomesOfIt) {
   EXPECT_NE(submission.commands[0].find("--time=60"), std::string::npos);
 }
 
-/// D10 of the review: a path became lines of the script, or patterns, or several words.
+/// D10 of the review: a path became lines of the script, patterns, or several words.
 TEST_F(FakeSlurm, NoPathStandsWhereSlurmReadsIt) {
   program("sbatch", "for word; do printf '<%s>' \"$word\"; done >> \"$0.words\"; echo 41");
   SlurmRequest wanted = request();
@@ -164,7 +164,7 @@ TEST_F(FakeSlurm, StatusJoinsQueueAndAccounting) {
   EXPECT_TRUE(jobs[1].states.empty());
   const std::string text = slurm_text(jobs);
   EXPECT_NE(text.find("run job 41: 1 completed 1 pending 1 running (squeue and sacct)"), std::string::npos) << text;
-  EXPECT_NE(text.find("merge job 42: no longer known to Slurm"), std::string::npos) << text;
+  EXPECT_NE(text.find("merge job 42: no longer listed by Slurm"), std::string::npos) << text;
 }
 
 TEST_F(FakeSlurm, NoSubmissionNoView) { EXPECT_TRUE(slurm_view(study()).empty()); }

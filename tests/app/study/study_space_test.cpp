@@ -28,7 +28,7 @@ std::vector<double> column(const StudySpace& space, std::size_t key) {
   return values;
 }
 
-/// How many of N values in [0, 1) each of the N strata holds.
+/// For each of the N strata, the number of the N values in [0, 1) in it.
 std::multiset<int> strata(const std::vector<double>& values) {
   std::vector<int> counts(values.size(), 0);
   for (const double value : values) ++counts.at(static_cast<std::size_t>(value * static_cast<double>(values.size())));
@@ -43,7 +43,7 @@ TEST(VaryText, ExpandsValuesAndBraces) {
   EXPECT_EQ(parse_vary("data.lag_s = {0..1 step 0.1}").values.size(), 11u);
   EXPECT_EQ(parse_vary("filter.variant = imm|kf").values, (Texts{"imm", "kf"}));
   EXPECT_EQ(parse_vary("mixture.components = 1..{5..7}").values, (Texts{"1..5", "1..6", "1..7"}));
-  EXPECT_EQ(parse_vary("bank.measurement_variance =  | 0.010").values, (Texts{"", "0.01"}));  // as resolved
+  EXPECT_EQ(parse_vary("bank.measurement_variance =  | 0.010").values, (Texts{"", "0.01"}));  // in resolved form
 }
 
 TEST(VaryText, RangesAreForSampling) {
@@ -72,7 +72,7 @@ TEST(VaryText, ErrorsSayWhatIsWrong) {
                                                  {"bank.stay = {0..1 lin 1}", "2 to"},
                                                  {"bank.stay = {0..1 cubic 3}", "it must be"},
                                                  {"bank.stay = {0.5", "one pair of braces"},
-                                                 {"bank.stay = {0.1..0.5} | 0.9", "a range stands alone"},
+                                                 {"bank.stay = {0.1..0.5} | 0.9", "add a number of values"},
                                                  {"mixture.restarts = {1.5..3}", "whole number"},
                                                  {"job.threads = 1 | 2", "decides no number"},
                                                  {"study.repeats = 1 | 2", "decides no number"}};

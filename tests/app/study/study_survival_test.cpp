@@ -23,14 +23,14 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// A part of a test that repeats one thing: parts run side by side.
+/// A part of a test that repeats one thing; parts run in parallel.
 class StudySurvivalPart : public StudySurvival, public ::testing::WithParamInterface<unsigned> {};
 
 constexpr unsigned parts = 5;
 INSTANTIATE_TEST_SUITE_P(Of5, StudySurvivalPart, ::testing::Range(0U, parts));
 
-/// Ten studies in all, each killed three times at moments drawn over its whole duration, by turns with and without its
-/// children, who then meet the next process. What was finished before a kill is not done again.
+/// Ten studies in all, each killed three times at random moments, alternately with and without its children. Children
+/// that survive meet the next process. Runs finished before a kill are not made again.
 TEST_P(StudySurvivalPart, ThirtyKillsChangeNoNumber) {
   const Clock::time_point start = Clock::now();
   run_undisturbed();
@@ -58,14 +58,14 @@ TEST_P(StudySurvivalPart, ThirtyKillsChangeNoNumber) {
   }
 }
 
-/// How often each of the 24 settings is run: 42 of `make nightly` are 1,008 trials.
+/// Number of repeats of the 24 settings: 42 in `make nightly`, 1,008 trials.
 std::string repeats() {
   const char* asked = std::getenv("MODEBANK_STUDY_REPEATS");
   return asked ? asked : "4";
 }
 
-/// Workers of a study that goes on are killed twenty times, whenever it is. What they were at is on record as failed or
-/// done by another worker, and the next study completes it. In the middle the study moves to another folder.
+/// Workers of a running study are killed twenty times. Their trials are recorded as failed or done by another worker,
+/// and the next study completes them. Halfway the study moves to another folder.
 TEST_F(StudySurvival, TwentyKilledWorkersAndAMoveChangeNoNumber) {
   const std::vector<std::string> many{"--study.repeats", repeats(), "--study.jobs", "2"};
   const Clock::time_point start = Clock::now();
@@ -88,7 +88,7 @@ TEST_F(StudySurvival, TwentyKilledWorkersAndAMoveChangeNoNumber) {
     if (!over) process.kill_alone();
     waiter.join();
   };
-  // Where all trials are done one goes, so that there is one more to be killed at.
+  // If all trials are done, one is removed, so that another worker can be killed.
   while (killed < kills / 2) {
     kill_some("killed", kills / 2);
     if (killed < kills / 2) std::filesystem::remove(archives("killed").front());
@@ -109,7 +109,7 @@ TEST_F(StudySurvival, TwentyKilledWorkersAndAMoveChangeNoNumber) {
     EXPECT_NE(entry.path().extension(), ".claim") << entry.path();
 }
 
-/// A worker that is killed takes one trial along; the study goes on and has it on record.
+/// A killed worker loses one trial; the study continues and records it.
 TEST_F(StudySurvival, AKilledWorkerEndsItsTrialOnly) {
   const std::vector<std::string> slow{"--mixture.restarts", "60", "--study.jobs", "2"};
   std::mt19937_64 generator(1);
@@ -140,8 +140,8 @@ void flip_a_bit(const std::filesystem::path& path, std::mt19937_64& generator) {
   stream.put(static_cast<char>(byte ^ static_cast<char>(1U << (generator() % 8))));
 }
 
-/// 200 flips in all, one in each archive of a round but two: verify names every one of them and no other, resuming
-/// redoes those alone, and the table is the same again.
+/// 200 flipped bits in all, one in each archive of a round except two. verify names exactly these, resuming repeats
+/// only them, and the table is the same again.
 TEST_P(StudySurvivalPart, TwoHundredFlippedBitsAreFoundAndRedone) {
   constexpr int flips_of_part = 200 / parts;
   run_undisturbed();
@@ -170,7 +170,7 @@ TEST_P(StudySurvivalPart, TwoHundredFlippedBitsAreFoundAndRedone) {
   }
 }
 
-/// small_disk.c preloaded: the disk takes so many bytes, then no more.
+/// With small_disk.c preloaded the disk takes a limited number of bytes.
 TEST_F(StudySurvival, FullDiskIsSaidAndWorkGoesOnWhenThereIsSpace) {
   run_undisturbed();
   std::uintmax_t bytes = 0;
@@ -220,7 +220,7 @@ TEST_F(StudySurvival, ThreadsJobsAndShardsChangeNoNumber) {
   }
 }
 
-/// Every archive appears once and is never replaced.
+/// Every archive is created once and never replaced.
 TEST_F(StudySurvival, TwoProcessesShareOneStudy) {
   run_undisturbed();
   Process first(study_line("shared", {"--study.jobs", "1"})), second(study_line("shared", {"--study.jobs", "1"}));
@@ -245,7 +245,7 @@ TEST_F(StudySurvival, TwoProcessesShareOneStudy) {
   EXPECT_EQ(numbers("shared"), numbers(undisturbed));
 }
 
-/// study.best.ini is a configuration as it stands: run gives the score that the study names.
+/// study.best.ini can be run unchanged, and gives the score that the study states.
 TEST_F(StudySurvival, BestConfigurationGivesItsScoreAgain) {
   run_undisturbed();
   nlohmann::json best;
