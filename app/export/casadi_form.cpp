@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// What is not known is nan, which the module names.
+/// Unknown numbers are `nan`, which the module defines.
 std::string python_number(double value) {
   return std::isnan(value) ? "nan" : std::isinf(value) ? (value > 0 ? "inf" : "-inf") : fmt::format("{:.17g}", value);
 }
@@ -88,7 +88,7 @@ std::string python_bank(const ExportedBank& exported) {
   text += python_per_mode("B", "Units of x[i] per u[j].", K, [&](std::size_t k) { return mode(k).model.B; });
   text += python_per_mode("c", "Units of x[i].", K, [&](std::size_t k) { return MatrixXd(mode(k).model.c); });
   text += python_per_mode("Q", "Per step, units of x[i] x[j].", K, [&](std::size_t k) { return mode(k).Q; });
-  text += python_per_mode("A_STANDARD_ERROR", "Of A, B, c and Q; nan: not known.", K,
+  text += python_per_mode("A_STANDARD_ERROR", "Standard errors of A, B, c and Q; nan: unknown.", K,
                           [&](std::size_t k) { return exported.errors[k].A; });
   text += python_per_mode("B_STANDARD_ERROR", "", K, [&](std::size_t k) { return exported.errors[k].B; });
   text +=
@@ -102,8 +102,8 @@ std::string python_bank(const ExportedBank& exported) {
   text += fmt::format("INITIAL_PROBABILITY = {}\n", python_matrix(bank.initial_probability));
   if (bank.transition_logit.empty()) return text;
   return text + fmt::format(
-                    "# How z = (x, u) moves the switches: T[i][j] is multiplied by exp(W[j] (z - Z_REFERENCE)), "
-                    "rows normalised.\nW = {}\nZ_REFERENCE = {}\n",
+                    "# Effect of z = (x, u) on switches: T[i][j] is multiplied by exp(W[j] (z - Z_REFERENCE)), then "
+                    "rows are normalised.\nW = {}\nZ_REFERENCE = {}\n",
                     python_matrix(bank.transition_logit.weights), python_matrix(bank.transition_logit.reference));
 }
 
@@ -145,12 +145,12 @@ def mode_step(mode, x, u):
 
 
 def probabilities(x, u, mu):
-    """Of the modes that rule the step from x under u, where mu are those of the step before."""
+    """Probabilities of the modes in the step from x under u; mu: those of the previous step."""
     return ca.mtimes(transition(x, u).T, mu)
 
 
 def step(x, u, mu):
-    """What is expected of the bank: (x[k+1], mu[k+1])."""
+    """The bank's expected value: (x[k+1], mu[k+1])."""
     nu = probabilities(x, u, mu)
     x_next = sum(nu[j] * mode_step(j, x, u) for j in range(len(MODES)))
     return x_next, nu

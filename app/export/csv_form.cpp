@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Numbers so that they read back as they were; what is not known is empty.
+/// A number with all digits; empty if unknown.
 std::string field(const json& value) {
   if (value.is_null()) return "";
   if (value.is_string()) return csv_field(value.get<std::string>());
@@ -19,7 +19,7 @@ std::string field(const json& value) {
   return value.dump();
 }
 
-/// A value's fields, lists of lists one number after the other, and the names that they have.
+/// Appends a value's fields and their names; nested lists become one number after the other.
 void append(const std::string& name, const json& value, std::vector<std::string>* names,
             std::vector<std::string>& fields) {
   if (!value.is_array()) {
@@ -39,7 +39,8 @@ std::string line_of(const std::vector<std::string>& fields) {
 [[noreturn]] void refuse_group(const json& group, const std::string& path) {
   std::string members;
   for (const auto& [name, member] : group.at("members").items()) members += (members.empty() ? "" : ", ") + name;
-  throw ConfigurationError(fmt::format("--table {}: a group, not a table or an array; it holds: {}", path, members));
+  throw ConfigurationError(
+      fmt::format("--table {} is a group, not a table or an array; its members are: {}", path, members));
 }
 
 }  // namespace

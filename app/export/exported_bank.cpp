@@ -23,7 +23,7 @@ std::vector<Channel> with_units(const std::vector<std::string>& names, const Uni
   return channels;
 }
 
-/// As pack orders theta; companion rows shift samples and are no estimates.
+/// Errors in the order of theta by pack. Companion rows only shift samples, so they are not estimates.
 ModeErrors errors_of(const Bank& bank, const Mode& mode) {
   const LinearStructure& s = bank.structure;
   const Eigen::Index n = s.dimension(), m = s.acting_inputs(), r = s.regressors();
@@ -59,7 +59,7 @@ void add_channels(const Recording& recording, ExportedBank& exported) {
   exported.measurements = recording.states;
   exported.parameter_names = parameter_labels(bank.structure, bank.state_names, bank.input_names);
   exported.parameter_units = parameter_units(bank.structure, units.states(), units.inputs());
-  // A bank from elsewhere may have other channels than the archive's runs.
+  // A bank from another archive may have more channels than this archive's runs.
   for (Index i = std::ssize(exported.measurements); i < bank.C.rows(); ++i)
     exported.measurements.push_back({fmt::format("y{}", i + 1), ""});
   exported.measurements.resize(static_cast<std::size_t>(bank.C.rows()));

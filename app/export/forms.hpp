@@ -19,20 +19,20 @@ std::string to_json(const ExportedBank& bank);
 /// Version of the regimes' page, counted like export_schema_version.
 inline constexpr const char* regimes_schema_version = "1.0";
 
-/// Q and R of the measured states, transitions and gates: what a filter with a motion model of its own can use.
+/// Q and R of the measured states, transitions and gates, for a filter with its own motion model.
 std::string to_regimes(const ExportedBank& bank);
 
 /// MATLAB's MAT-file of version 5, written under this name as replace_file does.
 void write_mat(const ExportedBank& bank, const std::filesystem::path& file);
 
-/// C99: what a header declares, the source defines. `stem`: of the files' names; identifiers begin with it.
+/// C99 header and source. `stem`: stem of the file names, with which identifiers begin.
 struct CFiles {
   std::string header, source;
 };
-/// Throws DataError naming what of the filter C does not have.
+/// Throws DataError, naming the part, for a filter that the C code lacks a part of.
 CFiles to_c(const ExportedBank& bank, const std::string& stem);
 
-/// A module of Python that needs casadi alone.
+/// A Python module that imports casadi alone.
 std::string to_casadi(const ExportedBank& bank);
 
 /// What of a robot the archive does not hold; 0: not known.
@@ -42,7 +42,7 @@ struct RobotSizes {
 /// Parameter files of ROS 2, one per mode: name and text.
 std::vector<std::pair<std::string, std::string>> to_ros2(const ExportedBank& bank, const RobotSizes& sizes);
 
-/// A table or array of an archive, as inspect gives it. Throws ConfigurationError for what is neither. `path`: for
+/// A table or array of an archive, from the JSON of inspect. Throws ConfigurationError for other objects. `path`: for
 /// messages.
 std::string to_csv(const nlohmann::json& object, const std::string& path);
 

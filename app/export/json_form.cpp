@@ -9,7 +9,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// `remark_of`: of a position; empty where the value may be taken as it stands.
+/// `remark_of`: remark on the value at an index; empty for a reliable value.
 template <class RemarkOf>
 OrderedJson parameters_json(const VectorXd& values, const VectorXd& errors, const std::vector<std::string>& names,
                             const std::vector<std::string>& units, RemarkOf remark_of) {

@@ -7,10 +7,10 @@
 #include "app/export/exported_bank.hpp"
 #include "io/archive/bank/units.hpp"
 
-/// Members that the exported JSON pages share.
+/// Members that the exported JSON pages have in common.
 namespace modebank::app {
 
-/// Members stay in the order in which they are written.
+/// Keeps the order in which members are written.
 using OrderedJson = nlohmann::ordered_json;
 
 /// An unknown number (NaN) becomes null.
@@ -20,7 +20,7 @@ OrderedJson matrix_json(const Eigen::MatrixXd& M);
 Unit units_of(const std::vector<Channel>& channels);
 OrderedJson channels_json(const std::vector<Channel>& channels);
 
-/// A matrix, its standard errors (null without any), and the units of its entries (empty where nobody stated them).
+/// A matrix with its standard errors (null without any) and the units of its entries (empty where unknown).
 OrderedJson quantity(const Eigen::MatrixXd& value, const Eigen::MatrixXd& error, const Unit& units);
 
 OrderedJson verdict_json(const ExportedBank& bank);

@@ -49,8 +49,8 @@ class MatFile {
   [[noreturn]] void fail(const std::string& what) const {
     throw DataError(fmt::format("{}: {}", file_.string(), what));
   }
-  /// An extent counts characters. SciPy decodes UTF-16 to one character per unit, and Octave takes as many bytes of
-  /// UTF-8 as the extent says, so only UTF-16 without surrogates gives both the same text.
+  /// An extent counts characters. SciPy decodes UTF-16 to one character per unit. Octave reads as many bytes of UTF-8
+  /// as the extent. Only UTF-16 without surrogates gives both the same text.
   static matvar_t* text_variable(const char* name, const std::string& value) {
     std::u16string text = basic_utf16(value);
     std::array<std::size_t, 2> shape{text.empty() ? 0u : 1u, text.size()};

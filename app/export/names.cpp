@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// Of C up to C23 and of C++: a header may be included from either.
+/// Keywords of C up to C23 and of C++: a header may be included from either.
 constexpr const char* c_words =
     "alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto bitand bitor bool break case "
     "catch "
@@ -33,14 +33,14 @@ std::set<std::string> words_of(Language language) {
   return words;
 }
 
-/// Names that begin with '_' are the compiler's.
+/// Names that begin with '_' are reserved for the compiler.
 std::string identifier(const std::string& name) {
   const std::string result = letters_and_digits(name);
   if (result.empty()) return "unnamed";
   return is_digit(result.front()) ? "n" + result : result;
 }
 
-/// As JSON replaces what is not UTF-8, and with everything else than ASCII as \uXXXX.
+/// JSON text in ASCII: invalid UTF-8 is replaced, and all other characters become \uXXXX.
 std::string ascii_json(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
@@ -63,18 +63,18 @@ std::string comment_text(std::string_view text) {
   std::string result = nlohmann::json::parse(ascii_json(text)).get<std::string>();
   for (char& c : result)
     if (is_control(c) || c == '\\') c = ' ';
-  // Line breaks that are none of ASCII: NEL, LINE SEPARATOR and PARAGRAPH SEPARATOR, which YAML and others honour.
+  // Line breaks beyond ASCII: NEL, LINE SEPARATOR and PARAGRAPH SEPARATOR, which YAML and other formats accept.
   for (const char* breaks : {"\xc2\x85", "\xe2\x80\xa8", "\xe2\x80\xa9"})
     boost::algorithm::replace_all(result, breaks, " ");
   boost::algorithm::replace_all(result, "*/", "* /");
   boost::algorithm::replace_all(result, "/*", "/ *");
-  boost::algorithm::replace_all(result, "?\?/", "? ?/");  // a trigraph is a backslash
+  boost::algorithm::replace_all(result, "?\?/", "? ?/");  // ??/ is the trigraph of a backslash
   return result;
 }
 
 std::string quoted_scalar(std::string_view text) {
   std::string result = ascii_json(text);
-  boost::algorithm::replace_all(result, "\x7f", "\\u007f");  // YAML's readers refuse it
+  boost::algorithm::replace_all(result, "\x7f", "\\u007f");  // YAML readers reject it
   return result;
 }
 

@@ -4,20 +4,20 @@
 #include <string_view>
 #include <vector>
 
-/// Names come from the user's files, and may hold anything; text that programs read gets them through here alone.
+/// Names from users' files may contain any character. These functions make them safe for files that programs read.
 namespace modebank::app {
 
 enum class Language { c, python };
 
-/// One identifier [A-Za-z_][A-Za-z0-9_]* per name, in order: all different, and none a word of the language (for C
-/// those of C++, too). What else a name holds becomes '_'.
+/// One unique identifier [A-Za-z_][A-Za-z0-9_]* per name, in order. None is a keyword of the language (for C also of
+/// C++). Other characters become '_'.
 std::vector<std::string> identifiers(const std::vector<std::string>& names, Language language);
 
-/// For a comment of one line: no line break, no control character, nothing that ends or begins a comment, no backslash
-/// (which would join lines), and UTF-8.
+/// Text for a comment of one line, in UTF-8: without line breaks, control characters, comment marks and backslashes
+/// (which would join lines).
 std::string comment_text(std::string_view text);
 
-/// A double-quoted scalar of YAML, which is one of JSON, too, and a string of Python: ASCII.
+/// A double-quoted ASCII scalar that YAML, JSON and Python all read.
 std::string quoted_scalar(std::string_view text);
 
 /// A file's name without folder and extension: letters, digits, '_' and '-'.

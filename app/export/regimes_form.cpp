@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 
 constexpr std::array gate_shares{0.95, 0.99, 0.999};
 
-/// Standard errors of the measured states' block; empty where there are none.
+/// Standard errors of the block of measured states; empty if there are none.
 MatrixXd measured_error(const ExportedBank& exported, const Mode& mode) {
   const Eigen::Index signals = exported.bank.C.rows();
   if (mode.Q_standard_error.rows() < signals || mode.Q_standard_error.cols() < signals) return {};
@@ -39,7 +39,7 @@ OrderedJson regime_json(const ExportedBank& exported, Eigen::Index k) {
   return regime;
 }
 
-/// Thresholds of the normalised innovation squared, by the number of signals that a sample has.
+/// Thresholds of the normalised innovation squared, by the number of signals in a sample.
 OrderedJson gates_json(Eigen::Index signals) {
   OrderedJson gates = OrderedJson::array();
   for (Eigen::Index n = 1; n <= signals; ++n)

@@ -13,11 +13,11 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double negligible_R = 1e-6;  // of the process noise: what diagnostics takes for none, too
+constexpr double negligible_R = 1e-6;  // share of the process noise below which diagnostics, too, count R as zero
 
 std::string value_text(double value, double error) { return fmt::format("{:.3g} +- {:.2g}", value, error); }
 
-/// "name (0.1 +- 0.3)" of those values whose standard errors exceed them.
+/// "name (0.1 +- 0.3)" for each value whose standard error exceeds it.
 template <class Values, class Errors>
 void add_vague(const std::string& prefix, const std::vector<std::string>& names, const Values& values,
                const Errors& errors, std::vector<std::string>& vague) {
@@ -43,7 +43,7 @@ void add_vague_of_mode(const ExportedBank& exported, Index k, std::vector<std::s
   const Eigen::VectorXd Q = mode.Q.diagonal(), error = mode.Q_standard_error.diagonal();
   add_vague("Q of ", names_of_channels(exported.states), Q, error, vague);
   if (!vague.empty())
-    list.push_back(fmt::format("{}: standard errors exceed the values, so that not even their signs are known: {}",
+    list.push_back(fmt::format("{}: standard errors exceed the values, so even their signs are unknown: {}",
                                exported.mode_names[static_cast<std::size_t>(k)], fmt::join(vague, ", ")));
 }
 
@@ -52,12 +52,11 @@ void add_open_parameters(const ExportedBank& exported, std::vector<std::string>&
   for (std::size_t i = 0; i < exported.open.size() && i < exported.parameter_names.size(); ++i)
     if (exported.open[i]) open.push_back(exported.parameter_names[i]);
   if (!open.empty())
-    list.push_back(
-        fmt::format("not identifiable from the training runs, so that other values describe them as well: {}",
-                    fmt::join(open, ", ")));
+    list.push_back(fmt::format("not identifiable from the training runs (other values describe these as well): {}",
+                               fmt::join(open, ", ")));
 }
 
-/// Modes of which some parameter has no error for another reason: learning that looks ahead states none.
+/// Adds modes in which a parameter has no error for another reason: learning that looks ahead gives none.
 void add_unknown_errors(const ExportedBank& exported, std::vector<std::string>& list) {
   std::vector<std::string> modes;
   for (Index k = 0; k < exported.bank.mode_count(); ++k)
@@ -66,7 +65,7 @@ void add_unknown_errors(const ExportedBank& exported, std::vector<std::string>& 
         modes.push_back(exported.mode_names[static_cast<std::size_t>(k)]);
         break;
       }
-  if (!modes.empty()) list.push_back(fmt::format("standard errors are not known: {}", fmt::join(modes, ", ")));
+  if (!modes.empty()) list.push_back(fmt::format("standard errors are unknown: {}", fmt::join(modes, ", ")));
 }
 
 void add_measurement_noise(const ExportedBank& exported, std::vector<std::string>& list) {
@@ -93,14 +92,13 @@ void add_switches(const Bank& bank, std::vector<std::string>& list) {
         fmt::format("standard errors exceed {} of the {} entries of T", (T.array() < error.array()).count(), T.size()));
   if (!bank.transition_logit.empty() && !bank.transition_weight_error.allFinite())
     list.emplace_back(
-        "the data do not determine how hard some borders of the switches are: their weights have no "
-        "standard error");
+        "the data do not determine some weights of the state-dependent switches; these weights have no standard error");
 }
 
 }  // namespace
 
 std::string doubt_about(double value, double standard_error) {
-  if (std::isnan(standard_error)) return "its standard error is not known";
+  if (std::isnan(standard_error)) return "its standard error is unknown";
   return std::abs(value) < standard_error ? "its standard error exceeds it" : "";
 }
 
@@ -114,17 +112,16 @@ std::string doubt_about_parameter(const ExportedBank& bank, Index mode, Index pa
 std::vector<std::string> ExportedBank::remarks() const {
   std::vector<std::string> list;
   if (!bank.drift.empty())
-    list.emplace_back(
-        "the filter lets the modes' coefficients drift within a run: A, B and c are where each run starts");
+    list.emplace_back("the modes' coefficients drift within a run; A, B and c are their values at the start of a run");
   if (!bank.noise_factor.empty())
     list.emplace_back(
-        "the filter multiplies every Q by a factor between a fifth and five that follows state and input: Q is that of "
-        "factor 1");
+        "the filter multiplies every Q by a factor of 0.2 to 5 that depends on state and input; Q here is for factor "
+        "1");
   if (!bank.motion_parameters.empty())
     list.push_back(
         fmt::format("A, B and c linearise the motion model {} at each mode's mean state and input", bank.model));
   if (bank.is_quantised())
-    list.emplace_back("measurements are rounded (data.quantum): the filter takes them for intervals");
+    list.emplace_back("measurements are rounded (data.quantum), so the filter treats them as intervals");
   add_open_parameters(*this, list);
   add_unknown_errors(*this, list);
   for (Index k = 0; k < bank.mode_count(); ++k) add_vague_of_mode(*this, k, list);

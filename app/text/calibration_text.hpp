@@ -4,10 +4,10 @@
 
 #include "filter/judge/decide/diagnostics.hpp"
 
-/// Sentences about a filter's stated uncertainty, each made here from one row of /evaluation/diagnostics.
+/// Sentences on a filter's stated uncertainty, each made from one row of /evaluation/diagnostics.
 namespace modebank::app {
 
-/// The verdict with what it rests on: "calibrated, you can rely on this band (92.5 to 97.5 % passes)".
+/// The verdict with its reason: "calibrated, you can rely on this band (92.5 to 97.5 % passes)".
 std::string verdict_text(const DiagnosticsRow& row);
 /// "96.6 % [95.6, 97.4] of the held-out samples lie in the 95 % band: calibrated, ...; 57.5 % in the 50 % (too wide),
 /// ..."

@@ -22,7 +22,7 @@ constexpr int least_columns = 40;
 
 int line_count(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
-/// Lines no wider than the screen, however long a name in them is; a tab in one counts as a space.
+/// Lines as wide as the screen at most, even with long names; a tab in a name counts as a space.
 std::string narrowed(std::string text, int columns) {
   std::replace(text.begin(), text.end(), '\t', ' ');
   std::vector<std::string> lines = lines_of(text);
@@ -31,7 +31,7 @@ std::string narrowed(std::string text, int columns) {
   return boost::algorithm::join(lines, "\n");
 }
 
-/// A labelled paragraph of at most `most` lines; what does not fit ends in "..." (show has all of it).
+/// A labelled paragraph of at most `most` lines; longer text ends in "..." (`show` prints all of it).
 std::string section(const char* label, const std::string& text, int most, int columns) {
   if (text.empty()) return "";
   std::vector<std::string> lines = lines_of(wrapped(fmt::format("{:<10}{}", label, text), columns));

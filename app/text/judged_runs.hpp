@@ -7,19 +7,19 @@
 
 namespace modebank {
 
-/// The summary's row of a filter over all runs of a role; null without.
+/// The summary's row of a filter over all runs of a role; null if there is none.
 const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role);
 
-/// The row of a filter's mode over all runs of a role; null without. mode -1: the whole filter.
+/// The row of a filter's mode over all runs of a role; null if there is none. mode -1: the whole filter.
 const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role, Eigen::Index mode = -1);
 
-/// The evaluation of a filter over all runs; null without.
+/// The evaluation of a filter over all runs; null if there is none.
 const FilterEvaluation* evaluation_of(const Archive& archive, const std::string& filter);
 
-/// The runs that filters are judged on: those held out, or, where nothing was, those they learned from.
+/// The role of the runs that filters are judged on: held-out runs, or training runs if none is held out.
 Role judged_role(const Archive& archive);
 
-/// Positions of the runs that have the role.
+/// Indices of the runs with this role.
 std::vector<std::size_t> positions_of(const Recording& recording, Role role);
 
 /// "held-out" or "training".

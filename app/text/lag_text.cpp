@@ -58,7 +58,7 @@ std::string lag_estimate_text(double lag_s, double standard_error_s, LagStatus s
 std::string lag_text(const LagReport& report, bool done) {
   std::string text = "lag       ";
   if (report.lag.count == 0)
-    text += "no training run is excited enough to show one";
+    text += "no training run has enough excitation to estimate one";
   else
     text += fmt::format(
         "inputs act {:+.3f} +- {:.3f} s later ({} training runs, which differ by {})", report.lag.mean,

@@ -48,7 +48,7 @@ std::vector<Reached> reached_in_training(const Archive& archive, Index steps) {
   return reached;
 }
 
-/// The largest share by which an error of a state exceeds the least of all filters.
+/// The largest ratio by which the error of a state exceeds the smallest of all filters, minus one.
 double excess_error(const Reached& one, const std::vector<const Reached*>& all) {
   Eigen::VectorXd least = one.rmse;
   for (const Reached* other : all)
@@ -63,7 +63,7 @@ constexpr double about_equal = 0.002;
 
 bool is_single(const std::string& filter) { return filter != combined_name; }
 
-/// The highest log score of filters that `may` be taken; minus infinity without any.
+/// The highest log score among filters for which `may` is true; minus infinity if there are none.
 template <class May>
 double highest_score(const std::vector<Reached>& all, May may) {
   double best = -std::numeric_limits<double>::infinity();
@@ -72,8 +72,8 @@ double highest_score(const std::vector<Reached>& all, May may) {
   return best;
 }
 
-/// The filter of least error among single ones that `may` be taken and lose less than 0.02 nats to the best of these;
-/// of about equals the first. Null without any.
+/// Among single filters for which `may` is true and that lose less than 0.02 nats to the best of these, the one with
+/// the smallest error; the first of nearly equal ones. Null if there are none.
 template <class May>
 const Reached* best_single(const std::vector<Reached>& all, May may) {
   const auto counts = [&](const std::string& filter) { return is_single(filter) && may(filter); };
@@ -87,8 +87,8 @@ const Reached* best_single(const std::vector<Reached>& all, May may) {
   return chosen;
 }
 
-/// The combination where it gains anything over every single filter: its weights follow the run, which a choice made
-/// before it cannot. Null without any filter.
+/// The combination if it gains over every single filter: its weights adapt to the run, while a single filter is chosen
+/// before it. Null without any filter.
 const Reached* best_of(const std::vector<Reached>& all) {
   const double best = highest_score(all, is_single);
   for (const Reached& one : all)
@@ -96,9 +96,9 @@ const Reached* best_of(const std::vector<Reached>& all) {
   return best_single(all, is_single);
 }
 
-constexpr double worth_a_name = 0.02;  // of an error
+constexpr double worth_a_name = 0.02;  // share of an error
 
-/// Names the filter of least error where it saves that much of the chosen one's.
+/// Names the filter with the smallest error, if this is smaller by that share than the chosen filter's.
 void name_point(const std::vector<Reached>& all, const Reached& chosen, NamedForecast& forecast) {
   forecast.point_filter = chosen.filter;
   std::vector<const Reached*> every;
@@ -151,7 +151,7 @@ Gain gain_over(const Archive& archive, const std::string& better, const std::str
   return {sums.sum() / samples.sum(), sums.size() > 1 ? clustered_error(sums, samples) : not_a_number};
 }
 
-/// Whether `export --to c` takes the filter.
+/// Whether `export --to c` supports the filter.
 bool runs_in_c(const Archive& archive, const std::string& filter) {
   if (filter == combined_name) return false;
   const std::optional<Bank> bank = archive.bank_of(filter);
@@ -204,7 +204,7 @@ std::string steps_words(Index steps) { return fmt::format("{} step{}", steps, st
 
 /// "; least error 10 steps: baseline (-4 %)"
 std::string least_errors(const std::vector<NamedForecast>& forecasts) {
-  constexpr double worth_a_line = 0.05;  // of an error: a line on the screen takes the place of a mode
+  constexpr double worth_a_line = 0.05;  // share of an error; a line on the screen replaces one of a mode
   std::string text;
   for (const NamedForecast& forecast : forecasts)
     if (forecast.point_gain > worth_a_line)

@@ -22,7 +22,7 @@ struct Situation {
   const Archive& archive;
   const Settings& settings;
   const Finding& finding;
-  const DiagnosticsRow& bank;  ///< the whole filter on the judged runs
+  const DiagnosticsRow& bank;  ///< the whole filter, on the judged runs
   std::vector<Warning> warnings;
 
   std::string setting(const std::string& key) const {
@@ -43,7 +43,7 @@ bool warns(const Situation& s, WarningKind kind) {
 
 int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_lags").c_str()); }
 
-/// What is dropped between blocks of a run.
+/// Samples dropped between blocks of a run.
 Index window_and_lags(const Situation& s) {
   const Index lags = s.setting("window.state_lags") == "auto" ? usual_lags : state_lags(s);
   const std::string length = s.setting("window.length");
@@ -54,7 +54,7 @@ bool is_uncertain_wrongly(const Situation& s) {
   return s.bank.verdict == Calibration::overconfident || s.bank.verdict == Calibration::underconfident;
 }
 
-/// Whether a bank that is the mixture's own has few; refinement has starts of its own.
+/// Whether few restarts agree, for a bank taken from the mixture. Refinement has its own starts.
 bool has_few_agreeing_restarts(const Situation& s) {
   if (!s.archive.mixture_makes_bank() || std::atoi(s.setting("mixture.restarts").c_str()) >= many_restarts)
     return false;
@@ -98,7 +98,7 @@ std::string advice_on_doubt(const Situation& s) {
          "them";
 }
 
-/// Where lags were looked for already.
+/// A pattern that remains although lags were searched for.
 std::string left_pattern(const Situation& s) {
   const std::vector<NamedForecast> named = named_forecasts(s.archive);
   return fmt::format(
@@ -107,7 +107,7 @@ std::string left_pattern(const Situation& s) {
       named.empty() ? "bank" : named.front().filter);
 }
 
-/// From what spoils every number to what only could be better. docs/howto/troubleshooting.md has the same list.
+/// Sorted from faults that spoil all numbers to possible improvements. docs/howto/troubleshooting.md has the same list.
 const Rule rules[] = {
     {[](const Situation& s) { return warns(s, WarningKind::failed_windows); },
      [](const Situation&) -> std::string {

@@ -7,14 +7,14 @@
 
 namespace modebank::app {
 
-/// Restarts that are advised, or tried, once: what does not help then never does.
+/// Number of restarts to advise or try, once only: if these do not help, more do not either.
 inline constexpr int many_restarts = 20;
 
-/// Resolved keys and their values, as the archive's configuration has them.
+/// Resolved keys with their values, from the archive's configuration.
 using Settings = std::map<std::string, std::string>;
 
-/// What to do about a run, in one sentence with the option or the command: the first rule that applies of the table in
-/// next_step.cpp. Empty without a scored bank.
+/// Advice on a run, in one sentence with the option or command: that of the first rule in next_step.cpp that applies.
+/// Empty without a scored bank.
 std::string next_step(const Archive& archive, const Settings& settings);
 
 }  // namespace modebank::app

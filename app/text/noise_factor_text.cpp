@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// A direction of a noise factor in words: "u", "change of u", or "what the inputs add to a forecast".
+/// A direction of a noise factor in words: "u", "change of u", or "the inputs' share in a forecast".
 std::string noise_feature(const Bank& bank, Index direction) {
   const std::vector<std::string> labels = regressor_labels(bank.structure, bank.state_names, bank.input_names);
   const auto row = bank.noise_factor.directions.row(direction);
@@ -22,7 +22,7 @@ std::string noise_feature(const Bank& bank, Index direction) {
     if (row(i) != 0.0) used.push_back(static_cast<std::size_t>(i));
   if (used.size() == 1) return labels[used.front()];
   const bool change = used.size() == 2 && row(static_cast<Index>(used[0])) == -row(static_cast<Index>(used[1]));
-  return change ? "change of " + labels[used.front()] : "what the inputs add to a forecast";
+  return change ? "change of " + labels[used.front()] : "the inputs' share in a forecast";
 }
 
 }  // namespace
@@ -45,11 +45,10 @@ std::string noise_factor_text(const Archive& archive, int width) {
     least = sample_quantile(factors, 0.05);
     largest = sample_quantile(factors, 0.95);
   }
-  return wrapped(
-      fmt::format("noise: every Q times {:.2g} to {:.2g}; this factor follows states and inputs, and {} most "
-                  "with the size of {}\n",
-                  least, largest, factor.weights(most) > 0.0 ? "grows" : "falls", noise_feature(bank, most)),
-      width);
+  return wrapped(fmt::format("noise: every Q is multiplied by {:.2g} to {:.2g}; this factor depends on states and "
+                             "inputs, and {} most with the size of {}\n",
+                             least, largest, factor.weights(most) > 0.0 ? "grows" : "falls", noise_feature(bank, most)),
+                 width);
 }
 
 }  // namespace modebank::app

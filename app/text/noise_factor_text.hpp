@@ -6,8 +6,8 @@
 
 namespace modebank::app {
 
-/// How the bank's noise follows state and input, over the training samples where these are at hand; empty where it does
-/// not.
+/// The range of the noise factor over the training samples, if the archive has them, and the signals that move it.
+/// Empty for a bank without a noise factor.
 std::string noise_factor_text(const Archive& archive, int width);
 
 }  // namespace modebank::app

@@ -8,14 +8,14 @@ namespace modebank::app {
 
 std::string fixed_or_short(double value, int decimals) {
   constexpr double largest_fixed = 1e5;
-  constexpr int many = 4;  // decimals: fewer are meant to round small numbers away
+  constexpr int many = 4;  // a value that is rounded to fewer decimals may print as 0
   const bool vanishes = decimals >= many && value != 0.0 && std::abs(value) < 0.5 * std::pow(10.0, -decimals);
   const bool fixed = (std::abs(value) < largest_fixed && !vanishes) || std::isnan(value);
   return fixed ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.4g}", value);
 }
 
 std::string size_text(double value, int decimals) {
-  constexpr double least = 10.0;  // as its digits: two
+  constexpr double least = 10.0;  // a significand of two digits
   const bool tiny = value > 0.0 && value * std::pow(10.0, decimals) < least;
   return tiny ? fmt::format("{:.3g}", value) : fixed_or_short(value, decimals);
 }

@@ -4,16 +4,16 @@
 
 namespace modebank::app {
 
-/// `value` with so many decimals where that fits a column, else with four significant digits: 0.03480, 1.235e+15.
+/// `value` with this many decimals if that fits a column, else with four significant digits: 0.03480, 1.235e+15.
 std::string fixed_or_short(double value, int decimals);
 
-/// Digits down to the second of the standard error: "-0.597 +- 0.031"; four digits and no error where none is known.
+/// A value to the second digit of its standard error: "-0.597 +- 0.031"; four digits if the error is unknown.
 std::string estimate_text(double value, double standard_error, const char* plus_minus = "+-");
 
-/// Of a size, as an RMSE is: the same, but three significant digits where so many decimals hold fewer.
+/// The same for sizes such as an RMSE, but with three significant digits where `decimals` show fewer.
 std::string size_text(double value, int decimals);
 
-/// The same for several, separated by spaces.
+/// The same for several values, separated by spaces.
 template <class Values>
 std::string size_list(const Values& values, int decimals) {
   std::string text;

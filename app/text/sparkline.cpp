@@ -12,12 +12,12 @@
 namespace modebank::app {
 namespace {
 
-constexpr int width_of_files = 100;  // where nothing limits the width
-constexpr int shortest_run = 4;      // characters
+constexpr int width_of_files = 100;  // width of files, which have no limit
+constexpr int shortest_run = 4;      // in characters
 
 struct StripRun {
   const Trajectory* run;
-  std::size_t position;  ///< in the recording
+  std::size_t position;  ///< index in the recording
   Index characters = 0;
 };
 
@@ -36,8 +36,8 @@ std::vector<StripRun> runs_of(const Archive& archive, Role role) {
   return runs;
 }
 
-/// Gives each run its characters, `width` in all with a separator between runs; drops runs at the end until the others
-/// have at least shortest_run each.
+/// Sets each run's number of characters, `width` in all with a separator between runs. Drops runs at the end until the
+/// others have at least shortest_run each.
 void share_width(std::vector<StripRun>& runs, Index width) {
   const auto most = static_cast<std::size_t>(std::max<Index>(1, (width + 1) / (shortest_run + 1)));
   if (runs.size() > most) runs.resize(most);

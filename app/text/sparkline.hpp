@@ -12,8 +12,8 @@ namespace modebank::app {
 /// A value that is not finite is "?".
 std::string sparkline(const Eigen::VectorXd& values, bool utf8);
 
-/// The bank's mode probabilities over the judged runs (judged_role), a line per mode; all runs side by side, the length
-/// of each in proportion to its samples, as many as fit. Empty without an evaluation of the bank.
+/// The bank's mode probabilities over the judged runs (judged_role), one line per mode. Runs are side by side, each as
+/// long as its share of samples, as many as fit. Empty without an evaluation of the bank.
 std::string mode_strip_text(const Archive& archive, const Terminal& terminal);
 
 }  // namespace modebank::app

@@ -28,7 +28,7 @@ std::string unit_suffix(const Archive& archive) {
   return unit.empty() ? "" : " [" + unit + "]";
 }
 
-/// Of a column of modes: numbers, or numbers with names.
+/// Alignment of a column of modes: numbers, or numbers with names.
 TextTable::Align align_of(const std::vector<std::string>& mode_names) {
   return mode_names.empty() ? TextTable::Align::right : TextTable::Align::left;
 }
@@ -38,7 +38,7 @@ std::string share(double value) { return fmt::format("{:.2f} %", 100 * value); }
 std::string tails(double above, double below) { return fmt::format("{:.2f} % {:>5.2f} %", 100 * above, 100 * below); }
 
 std::string estimate(double value, double standard_error) {
-  // Four decimals say nothing of a value that is known far better, or that is far larger.
+  // Four decimals do not suit a value with a much smaller error, or a much larger value.
   constexpr double smallest = 5e-5, largest = 1e5;
   if (std::abs(value) >= largest || standard_error >= largest || standard_error < smallest)
     return fmt::format("{:.6g} +- {:.2g}", value, standard_error);
@@ -99,7 +99,7 @@ std::string candidates_text(const MixtureResult& mixture, int width) {
                fmt::format("{:.3f}", c.icl), fmt::format("{:.3f}", c.bic_naive), fixed_or_short(c.heldout, 4),
                std::to_string(c.iterations), c.converged ? "yes" : "no",
                fmt::format("{}/{}", c.agreeing_restarts, c.restarts)},
-              fmt::format("{}{}", c.selected ? "  <- selected" : "", c.floor_active ? "  rests on the floor" : ""));
+              fmt::format("{}{}", c.selected ? "  <- selected" : "", c.floor_active ? "  is at the floor" : ""));
   }
   return table.text(width);
 }
@@ -150,7 +150,7 @@ std::string mode_diagnostics_text(const Archive& archive, int width) {
 
 namespace {
 
-/// The modes in a motion model's own parameters; empty for linear models, whose table says all.
+/// The modes in a motion model's own parameters; empty for linear models, whose table has all.
 std::string motion_parameters_text(const Bank& bank, const std::vector<std::string>& names, int width) {
   if (bank.motion_parameters.empty()) return "";
   std::vector<TextTable::Column> columns{{"mode", 4, align_of(names)}};
@@ -168,7 +168,7 @@ std::string motion_parameters_text(const Bank& bank, const std::vector<std::stri
 
 }  // namespace
 
-/// The weights of switches that see state and input.
+/// Weights of switches that depend on state and input.
 std::string switches_text(const Bank& bank, const std::vector<std::string>& names, int width) {
   const TransitionLogit& logit = bank.transition_logit;
   if (logit.empty()) return "";
@@ -206,8 +206,9 @@ std::string equations_text(const Archive& archive, int width) {
     transitions += count;
   }
   if (transitions > 0.0)
-    text += fmt::format("{:.1f} % of the {} samples lie outside of these ranges, where terms stay as at the edge\n",
-                        100.0 * outside / transitions, words_for(role));
+    text += fmt::format(
+        "{:.1f} % of the {} samples lie outside of these ranges, where terms keep their value at the edge\n",
+        100.0 * outside / transitions, words_for(role));
   return text;
 }
 

@@ -20,7 +20,7 @@
 namespace modebank::app {
 namespace {
 
-/// Windows with memberships, whether they were clustered or assigned; those labelled -1 as noise among them.
+/// Number of windows with memberships, clustered or assigned, including those with label -1 (noise).
 Index member_windows(const MixtureResult& result) {
   if (!result.mixture.noise.present()) return (result.labels.array() >= 0).count();
   constexpr Index at_once = 16384;
@@ -55,7 +55,7 @@ std::string mixture_text(const Archive& archive) {
   return text;
 }
 
-/// What a limit on the number of modes cost, on held-out runs if there are any.
+/// Cost of a limit on the number of modes, on held-out runs if there are any.
 std::string merging_text(const Archive& archive) {
   const Role role = judged_role(archive);
   for (const MergingCost& cost : archive.merging)
@@ -82,7 +82,7 @@ std::string bank_text(const Bank& bank) {
   return text + "\n";
 }
 
-/// Of the training and of the held-out runs, as far as there are any.
+/// Residual tests of training and held-out runs, if the archive has them.
 std::string residuals_text(const Archive& archive) {
   if (!archive.recording) return "";
   std::string text;
@@ -107,7 +107,7 @@ std::string residuals_text(const Archive& archive) {
   return text;
 }
 
-/// Whether the filter of a row has several modes, which then have rows of their own.
+/// Whether the filter of a row has several modes, each with a row of its own.
 bool has_modes(const Archive& archive, const DiagnosticsRow& row) {
   return std::any_of(archive.diagnostics.begin(), archive.diagnostics.end(), [&row](const DiagnosticsRow& other) {
     return other.filter == row.filter && other.role == row.role && other.mode >= 0;
@@ -125,7 +125,7 @@ std::string coverage_words(const DiagnosticsRow& row) {
                      words(99, row.coverage_99, row.coverage_99_lower, row.coverage_99_upper));
 }
 
-/// Whether each filter's stated uncertainty is true, with the numbers that say so, and what else stands out.
+/// Verdict on each filter's stated uncertainty, with its numbers and unusual findings.
 std::string verdicts_text(const Archive& archive) {
   std::string text;
   const Role role = judged_role(archive);

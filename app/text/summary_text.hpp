@@ -10,11 +10,11 @@ namespace modebank::app {
 
 std::string data_text(const Recording& recording);
 
-/// The summary of an archive as people read it: data, windows, mixture, bank, scores and what the bank gains. Lines
-/// longer than `width` columns are broken; 0: none.
+/// The summary of an archive for people: data, windows, mixture, bank, scores and the bank's gains. Lines longer than
+/// `width` columns are broken; 0: never.
 std::string summary_text(const Archive& archive, int width = 0);
 
-/// Where the archive comes from.
+/// Origin of the archive.
 std::string provenance_text(const Archive& archive);
 
 }  // namespace modebank::app

@@ -10,11 +10,11 @@
 namespace modebank::app {
 namespace {
 
-constexpr int label_width = 10;  // of "windows   ", as the summary's lines begin
+constexpr int label_width = 10;  // width of "windows   ", the start of the summary's lines
 
 int stated_width() {
   const char* columns = std::getenv("COLUMNS");
-  constexpr int widest = 10'000;  // no screen is; a text of it would be padded without end
+  constexpr int widest = 10'000;  // no screen is wider, and text would be padded without limit
   return columns ? std::clamp(std::atoi(columns), 0, widest) : 0;
 }
 
@@ -32,8 +32,8 @@ bool locale_is_utf8() {
   return false;
 }
 
-/// Spaces that continuation lines begin with: as far as the label reaches ("windows   ", or a word and two spaces or
-/// more), or as the line itself does.
+/// Indentation of continuation lines: the width of the label ("windows   ", or a word and two or more spaces), else
+/// that of the line itself.
 std::string indentation_of(const std::string& line, int width) {
   std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
   if (indent == 0 && line.size() > label_width) {

@@ -5,23 +5,23 @@
 
 namespace modebank::app {
 
-/// A table of text that fits a terminal: what is too wide goes on below, its key columns repeated.
+/// A table of text that fits a terminal: columns that are too many continue below, with the key columns repeated.
 class TextTable {
  public:
   enum class Align { left, right };
   struct Column {
     std::string title;
-    int width;  ///< at least, where nothing limits the table; wider cells widen it
+    int width;  ///< smallest width without a limit; wider cells widen it
     Align align = Align::right;
   };
 
-  /// The first `keys` columns are repeated in every part.
+  /// Every part repeats the first `keys` columns.
   TextTable(std::vector<Column> columns, std::size_t keys = 1) : columns_(std::move(columns)), keys_(keys) {}
 
-  /// One cell per column, or fewer: a row that ends early. `remark` follows the row.
+  /// One cell per column, or fewer for a row that ends early. `remark` follows the row.
   void add(std::vector<std::string> cells, std::string remark = {});
 
-  /// width 0: no limit; else a cell that leaves its neighbours no room is shortened to its end.
+  /// width 0: no limit. Otherwise a cell that is too wide is shortened to its end.
   std::string text(int width) const;
 
  private:

@@ -2,7 +2,7 @@
 
 namespace modebank::app {
 
-/// Factors from shares to what is printed.
+/// Factors for printing shares.
 inline constexpr double percent = 1e2;
 inline constexpr double per_mille = 1e3;
 

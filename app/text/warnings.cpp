@@ -27,17 +27,16 @@ std::vector<Warning> window_warnings(const WindowFits& fits, const WindowCounts&
                      fits.audit.ceres_method)});
   if (const Index failed = counts.of(FitStatus::failed); failed > 0)
     warnings.push_back(
-        {WarningKind::failed_windows,
-         fmt::format("{} of {} windows have no finite fit and are left out: their samples may hold values too large to "
-                     "square; see `modebank check`",
-                     failed, counts.total())});
+        {WarningKind::failed_windows, fmt::format("{} of {} windows have no finite fit and are left out; their samples "
+                                                  "may have values too large to square; see `modebank check`",
+                                                  failed, counts.total())});
   return warnings;
 }
 
 std::string refinement_warning(MeasuredFit fit) {
   if (fit == MeasuredFit::iteration_limit)
-    return "the fit with measurement noise was stopped after 100 iterations before it had converged";
-  if (fit == MeasuredFit::stalled) return "the fit with measurement noise stalled before it had converged";
+    return "the fit with measurement noise stopped after 100 iterations without convergence";
+  if (fit == MeasuredFit::stalled) return "the fit with measurement noise stalled without convergence";
   return "";
 }
 
@@ -46,9 +45,8 @@ std::string stability_warning(const Bank& bank) {
   for (const Mode& mode : bank.modes) least = std::min(least, spectral_radius(mode.model));
   if (bank.modes.empty() || least <= 1.0 + spectral_radius_slack) return "";
   return fmt::format(
-      "no mode of the bank is stable (spectral radius {:.4g}): predictions many samples ahead grow; a state that "
-      "drifts "
-      "or stays where it is (a position, a held speed) makes modes so, and is better left out",
+      "no mode of the bank is stable (spectral radius {:.4g}), so predictions many samples ahead grow; leave out of "
+      "data.state what drifts or stays (a position, a held speed)",
       least);
 }
 
@@ -71,12 +69,12 @@ std::string unscored_warning(const Archive& archive, double least_share) {
   }
   if (lost == 0 || static_cast<double>(lost) < least_share * static_cast<double>(all)) return "";
   return fmt::format(
-      "{} of {} measured samples have no score, most of them in run {}: the filter starts, and starts anew after a "
-      "long gap, where {} whole samples follow each other",
+      "{} of {} measured samples have no score, most of them in run {}; the filter needs {} complete samples in a row "
+      "at its start and after a long gap",
       lost, all, worst, archive.bank->structure.state_lags);
 }
 
-constexpr double many_unscored = 0.05;  // fewer are no reason to look at the warning before the result
+constexpr double many_unscored = 0.05;  // a smaller share is not worth a warning
 
 std::vector<Warning> archive_warnings(const Archive& archive) {
   std::vector<Warning> warnings;

@@ -9,17 +9,17 @@
 
 namespace modebank::app {
 
-/// Windows by how their fits ended, for those that are not in memory.
+/// Numbers of windows by the result of their fits, for windows that are not in memory.
 struct WindowCounts {
-  std::array<Index, 4> status{};  ///< by FitStatus
+  std::array<Index, 4> status{};  ///< index: FitStatus
   void add(const WindowFits& fits);
   Index of(FitStatus which) const { return status[static_cast<std::size_t>(which)]; }
   Index total() const { return std::accumulate(status.begin(), status.end(), Index{0}); }
 };
 
-/// Subject of a warning: replaced_windows and failed_windows by the batch solver's audit and by fits that are not
-/// finite; mixture: its choice, where the bank is made of it; iteration_limit and stalled: the fit with measurement
-/// noise; no_stable_mode; unscored: samples that were measured.
+/// Subject of a warning. replaced_windows and failed_windows: the batch solver's audit and fits that are not finite.
+/// mixture: the choice of a mixture that makes the bank. iteration_limit and stalled: the fit with measurement noise.
+/// no_stable_mode: stability. unscored: measured samples without a score.
 enum class WarningKind {
   replaced_windows,
   failed_windows,
@@ -35,21 +35,21 @@ struct Warning {
   std::string text;
 };
 
-/// What of the windows needs a look: solutions that the audit replaced, windows without a finite fit.
+/// Warnings on windows: solutions that the audit replaced, and windows without a finite fit.
 std::vector<Warning> window_warnings(const WindowFits& fits, const WindowCounts& counts);
 
-/// What of the bank's refinement needs a look; empty where nothing does.
+/// Warning on the bank's refinement; empty if it converged.
 std::string refinement_warning(MeasuredFit fit);
 
-/// That no mode of the bank is stable; empty where one is.
+/// Warning that no mode of the bank is stable; empty if one is.
 std::string stability_warning(const Bank& bank);
 
-/// That the bank's filter said nothing of samples that were measured, for it starts where the samples that its lags
-/// need are whole; empty where it did, or for a smaller share of them. Those that every run starts with are not meant.
+/// Warning that measured samples have no score, because the bank's filter starts only where its lags are complete.
+/// Empty for a share up to `least_share`. The first samples of each run do not count.
 std::string unscored_warning(const Archive& archive, double least_share = 0.0);
 
-/// Every warning of an archive about what its result rests on: a mixture that refinement replaced is not that. `show`
-/// prints each where it belongs.
+/// All warnings of an archive on the basis of its result, so without those on a mixture that refinement replaced.
+/// `show` prints each in its section.
 std::vector<Warning> archive_warnings(const Archive& archive);
 
 }  // namespace modebank::app

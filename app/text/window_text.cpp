@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// The solvers of the windows, and the audit of the batch solver; empty for archives without them in words.
+/// The windows' solvers and the batch solver's audit; empty for archives without them.
 std::string audit_text(const WindowAudit& audit) {
   if (audit.ceres_method.empty()) return "";
   std::string text = "solved    ";
@@ -28,7 +28,7 @@ std::string audit_text(const WindowAudit& audit) {
                   audit.checked, audit.cost_difference);
   text += fmt::format("gradient {:.1e} (Ceres {:.1e}); parameters by {:.1e} standard errors", audit.gradient,
                       audit.ceres_gradient, audit.parameter_difference);
-  if (audit.lower > 0) text += fmt::format("; {} in a lower minimum than Ceres'", audit.lower);
+  if (audit.lower > 0) text += fmt::format("; {} in a lower minimum than that of Ceres", audit.lower);
   return text + "\n";
 }
 

@@ -6,18 +6,18 @@
 #include "app/text/warnings.hpp"
 #include "io/archive/archive.hpp"
 
-/// Windows and the features that are clustered, in words.
+/// Texts on windows and on the clustered features.
 namespace modebank::app {
 
-/// The summary's lines on windows: how many, how they ended, the global model, and the batch solver's audit.
-/// `labels`: of the parameters.
+/// The summary's lines on windows: their number and status, the global model, and the batch solver's audit. `labels`:
+/// of the parameters.
 std::string windows_text(const WindowFits& common, const WindowCounts& counts, const std::vector<std::string>& labels);
 
-/// parameter_labels of the archive's windows; empty without windows.
+/// parameter_labels of the archive's windows; empty if it has none.
 std::vector<std::string> window_labels(const Archive& archive);
-/// The features' names with labels in place of parameter names, those of one-lag fits included.
+/// The features' names with labels in place of parameter names, also for one-lag fits.
 std::vector<std::string> feature_labels(const Archive& archive, std::vector<std::string> names);
-/// " of one-lag fits of the same windows" where the mixture is over these, else nothing.
+/// " of one-lag fits of the same windows" if the mixture clusters these, else empty.
 std::string features_origin(const Archive& archive);
 
 }  // namespace modebank::app

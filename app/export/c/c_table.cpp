@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// One enumerator per name, with its place and a remark.
+/// One enumerator per name, with its index and a remark.
 std::string enumeration(const std::string& comment, const std::string& prefix, const std::vector<std::string>& names,
                         const std::vector<std::string>& remarks) {
   if (names.empty()) return "";
@@ -37,7 +37,7 @@ std::string places(const std::string& comment, const std::string& prefix, const 
   return enumeration(comment, prefix, identifiers(names, Language::c), remarks);
 }
 
-/// Modes by name. A mode without one has its number.
+/// Modes by name. A mode without a name has its number.
 std::string modes(const ExportedBank& exported, const std::string& prefix) {
   std::vector<std::string> names = identifiers(exported.mode_names, Language::c);
   for (std::size_t k = 0; k < names.size(); ++k)
@@ -45,14 +45,14 @@ std::string modes(const ExportedBank& exported, const std::string& prefix) {
   return enumeration("Places in mode_probability", prefix, names, exported.mode_names);
 }
 
-/// All digits of a double. A whole number keeps its point.
+/// A double with all digits. A whole number keeps its point.
 std::string number(double value) {
   std::string text = fmt::format("{:.17g}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;
 }
 
-/// {1.0, 2.0}; one zero stands for nothing.
+/// {1.0, 2.0}; a single zero for an empty vector.
 std::string row(const Eigen::VectorXd& values) {
   std::string text;
   for (const double value : values) text += (text.empty() ? "" : ", ") + number(value);
@@ -70,7 +70,7 @@ std::string constant(const std::string& name, const std::string& value, const st
   return fmt::format("/* {} */\nstatic const double {} = {};\n\n", comment, name, value);
 }
 
-/// For a comment; what is not known is said.
+/// Text for a comment; unknown errors are named as such.
 std::string errors_text(const MatrixXd& errors) {
   if (errors.size() == 0 || errors.array().isNaN().all()) return "not known";
   std::string text;
@@ -80,7 +80,7 @@ std::string errors_text(const MatrixXd& errors) {
   return text;
 }
 
-/// One value per mode (its text), below a comment with the standard errors of its entries.
+/// One value per mode (as text), below a comment with the standard errors of its entries.
 template <class Value, class Errors>
 std::string per_mode(const ExportedBank& bank, const std::string& name, const std::string& comment, Value value,
                      Errors errors) {

@@ -1,6 +1,6 @@
-/* The functions of filter.h: filter/step/equations in C, name by name. tests/app/export/c_filter_test.cpp compares the
- * two. Global names, which begin with "modebank", get the prefix of NAME.c; what a static name may not end in follows
- * from that: _MODES, _STATES, _INPUTS, _MEASUREMENTS, _filter, _estimate, _step. */
+/* The functions of filter.h: filter/step/equations in C, function by function. tests/app/export/c_filter_test.cpp
+ * compares the two. Global names begin with "modebank", which the prefix of NAME.c replaces. So static names must not
+ * end in _MODES, _STATES, _INPUTS, _MEASUREMENTS, _filter, _estimate or _step. */
 #include "filter.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@ enum {
 
 #include "bank_numbers.h"
 
-/* Bounds that keep the arithmetic sound. */
+/* Bounds that keep the arithmetic valid. */
 #define LARGEST_VARIANCE 1e60       /* a diverging prediction stops growing here */
 #define LARGEST_MEAN 1e30           /* and here */
 #define LEAST_VARIANCE 1e-40        /* of a measurement */
@@ -33,7 +33,7 @@ enum {
 
 /* ---- Samples ---- */
 
-/* Model steps from one time to the next. Without a clock (bank_dt_s = 0) every sample is one step. */
+/* Number of model steps between two times. Without a clock (bank_dt_s = 0) every sample is one step. */
 static int steps_between(double from_s, double to_s) {
   const double periods = (to_s - from_s) / bank_dt_s;
   if (!(bank_dt_s > 0) || !(to_s - from_s >= 1.25 * bank_dt_s) || isnan(periods)) return 1;
@@ -43,7 +43,7 @@ static int steps_between(double from_s, double to_s) {
 
 static int is_missing(double y) { return !(fabs(y) < LARGEST_MEASUREMENT); }
 
-/* Takes a sample in; `measurement` null: nothing of it was measured. Returns the model steps from the one before. */
+/* Stores a sample; `measurement` null: nothing was measured. Returns the model steps since the last sample. */
 static int push(modebank_filter* filter, double time_s, const double* input, const double* measurement) {
   const int steps = filter->samples == 0 ? 1 : steps_between(filter->time_s, time_s);
   int whole = 1;
@@ -74,7 +74,7 @@ static void acting_inputs(const modebank_filter* filter, double* v) {
 
 /* ---- Small matrices ---- */
 
-/* S = L D L', L with ones on its diagonal. A pivot that is rounding is raised. */
+/* S = L D L', L with ones on its diagonal. Raises pivots that are only rounding errors. */
 static void factorise(modebank_step_of_mode* m) {
   for (int j = 0; j < MEASUREMENTS; ++j) {
     double pivot = m->S[j][j];
@@ -128,7 +128,7 @@ typedef struct {
   int missing;
 } sensor_t;
 
-/* `y` null: the sensor with no signal missing. */
+/* `y` null: a sensor without missing signals. */
 static void make_sensor(const double* y, sensor_t* sensor) {
   sensor->missing = 0;
   for (int i = 0; i < MEASUREMENTS; ++i) {
@@ -146,7 +146,7 @@ static void make_sensor(const double* y, sensor_t* sensor) {
   }
 }
 
-/* Keeps a prediction usable: a diverging one is scaled down, one that rounding made indefinite loses its correlations.
+/* Keeps a prediction usable. A diverging one is scaled down; one that is indefinite by rounding loses its correlations.
  */
 static void make_usable(modebank_gaussian* g) {
   double largest = g->covariance[0][0], least = largest, mean = 0;
@@ -204,7 +204,7 @@ static void expect(const sensor_t* sensor, modebank_step_of_mode* m) {
   factorise(m);
 }
 
-/* The innovation and its log density, of the signals that were measured. */
+/* The innovation and its log density, for the measured signals. */
 static void observe(const sensor_t* sensor, modebank_step_of_mode* m) {
   const double log_two_pi = 1.8378770664093454836;
   double sum = (MEASUREMENTS - sensor->missing) * log_two_pi;
@@ -218,7 +218,7 @@ static void observe(const sensor_t* sensor, modebank_step_of_mode* m) {
   m->log_likelihood = -0.5 * sum > LOWEST_LOG_DENSITY ? -0.5 * sum : LOWEST_LOG_DENSITY;
 }
 
-/* An overflowing correction is no information; a measurement never enlarges a variance. */
+/* An overflowing correction is skipped, and a measurement never enlarges a variance. */
 static void keep_sound(const modebank_gaussian* predicted, modebank_gaussian* posterior) {
   double sum = 0;
   int sound = 1;
@@ -263,7 +263,7 @@ static void correct(const sensor_t* sensor, modebank_step_of_mode* m, modebank_g
 
 /* ---- Modes ---- */
 
-/* The transition probabilities of a step from the mean state under v; T itself where these are not known. */
+/* The transition probabilities of a step from the mean state with inputs v; T itself where these are unknown. */
 static void transition_at(const modebank_filter* filter, const double* v, double T[MODES][MODES]) {
   double x[STATES], factor[MODES], largest = -LARGEST_SQUARE;
   int known = 1;
@@ -287,8 +287,8 @@ static void transition_at(const modebank_filter* filter, const double* v, double
   }
 }
 
-/* Each mode's probability after the step, and the share of mode i in its start: weight[j][i]. A mode that cannot be
- * entered keeps its own state. */
+/* Each mode's probability after the step, and the share of mode i in its start: weight[j][i]. A mode that no other mode
+ * can enter keeps its own state. */
 static void mixing_weights(modebank_filter* filter, const double* v, double weight[MODES][MODES]) {
   double T[MODES][MODES];
   if (TRANSITION_BY_STATE) transition_at(filter, v, T);
@@ -325,7 +325,7 @@ static void floor_probabilities(double* mu) {
   for (int j = 0; j < MODES; ++j) mu[j] /= sum;
 }
 
-/* Bayes' rule without its denominator, every likelihood divided by the largest one, whose logarithm is returned. */
+/* Bayes' rule without its denominator. Likelihoods are divided by the largest one, whose logarithm is returned. */
 static double likelihood_weights(const modebank_filter* filter, double* weight) {
   double largest = LOWEST_LOG_DENSITY;
   int found = 0;
@@ -351,9 +351,9 @@ static double bayes(modebank_filter* filter) {
   return largest + log(sum);
 }
 
-/* ---- The scale of the noise, which follows the run ---- */
+/* ---- The adaptive scale of the noise ---- */
 
-/* tr(S^-1 C Q C') and e' S^-1 C Q C' S^-1 e of mode j, the latter with e' S^-1 e cut. */
+/* tr(S^-1 C Q C') and e' S^-1 C Q C' S^-1 e of mode j, where e' S^-1 e is bounded. */
 static void explained(const sensor_t* sensor, const modebank_step_of_mode* m, int j, double* share, double* square) {
   double CQC[MEASUREMENTS][MEASUREMENTS], column[MEASUREMENTS], nis = 0;
   const double most = LARGEST_STANDARDISED * LARGEST_STANDARDISED * (MEASUREMENTS - sensor->missing);
@@ -378,7 +378,7 @@ static void explained(const sensor_t* sensor, const modebank_step_of_mode* m, in
   if (nis > most) *square *= most / nis;
 }
 
-/* Discounted sums, pulled to one as the memory of the run fades (West and Harrison 1997, section 10.8). */
+/* Discounted sums, shrunk towards one as the run's memory fades (West and Harrison 1997, section 10.8). */
 static void adapt_noise(modebank_filter* filter, const sensor_t* sensor) {
   const double n_y = MEASUREMENTS - sensor->missing, scale = filter->noise_scale;
   const double f = bank_noise_forgetting, n_0 = bank_noise_prior_samples;
@@ -412,7 +412,7 @@ static void predict(modebank_filter* filter, const double* v) {
   }
 }
 
-/* Nothing was measured: the prediction becomes the estimate. */
+/* Without a measurement the prediction becomes the estimate. */
 static void skip(modebank_filter* filter) {
   for (int j = 0; j < MODES; ++j) {
     filter->mode[j] = filter->step[j].predicted;
@@ -421,7 +421,7 @@ static void skip(modebank_filter* filter) {
   floor_probabilities(filter->mode_probability);
 }
 
-/* Takes in a measurement with at least one signal. Returns its log density. */
+/* Updates the filter by a measurement with at least one signal. Returns its log density. */
 static double take_in(modebank_filter* filter, const sensor_t* sensor) {
   for (int j = 0; j < MODES; ++j) {
     modebank_step_of_mode* m = &filter->step[j];
@@ -433,7 +433,7 @@ static double take_in(modebank_filter* filter, const sensor_t* sensor) {
   return bayes(filter);
 }
 
-/* Mean C x and covariance S of the predicted mixture's measurement. */
+/* Mean C x and covariance S of the measurement that the mixture predicts. */
 static void expected_measurement(const modebank_filter* filter, double* mean, double* S) {
   for (int i = 0; i < MEASUREMENTS; ++i) {
     mean[i] = 0;
@@ -472,7 +472,7 @@ static void record_nothing(modebank_estimate* estimate) {
   estimate->steps = 0;
 }
 
-/* The estimate before the measurement `y`, and its innovation. */
+/* The estimate before the measurement `y`, and the innovation. */
 static void record_prediction(const modebank_filter* filter, const double* y, int steps, modebank_estimate* estimate) {
   expected_measurement(filter, estimate->innovation, &estimate->innovation_covariance[0][0]);
   for (int i = 0; i < MEASUREMENTS; ++i)
@@ -496,7 +496,7 @@ static void record_state(const modebank_filter* filter, modebank_estimate* estim
   for (int j = 0; j < MODES; ++j) estimate->mode_probability[j] = filter->mode_probability[j];
 }
 
-/* Starts from the newest measurements, all of them whole. */
+/* Starts from the newest measurements, all of which are complete. */
 static void start(modebank_filter* filter) {
   for (int j = 0; j < MODES; ++j) {
     for (int a = 0; a < STATES; ++a) {
@@ -522,7 +522,7 @@ void modebank_restart(modebank_filter* filter) {
     for (int a = 0; a < MEASUREMENTS; ++a) filter->measured[i][a] = 0;
 }
 
-/* A step of a started filter to the sample that was pushed last. */
+/* A step of a started filter to the newest stored sample. */
 static void advance(modebank_filter* filter, const double* measurement, int steps, modebank_estimate* estimate) {
   sensor_t sensor;
   double v[ACTING_ROOM], log_density = NAN;

@@ -1,6 +1,6 @@
-/* The filter of a bank of modes in C99. `modebank export --to c` makes NAME.h of this file and NAME.c of filter.c: the
- * bank's own numbers take the place of bank_sizes.h and bank_numbers.h, and NAME that of "modebank" in identifiers.
- * tests/app/export/small_bank holds a table with which the two compile as they stand. */
+/* The filter of a bank of modes in C99. `modebank export --to c` makes NAME.h of this file and NAME.c of filter.c. The
+ * bank's numbers replace bank_sizes.h and bank_numbers.h, and NAME replaces "modebank" in identifiers. With the tables
+ * in tests/app/export/small_bank both files compile unchanged. */
 #ifndef MODEBANK_H
 #define MODEBANK_H
 
@@ -12,7 +12,7 @@ extern "C" {
 
 typedef double modebank_real;
 
-/* The estimate at one sample. A member is NaN where it is not known: before a start, or where nothing was measured. */
+/* The estimate at one sample. A member is NaN where it is unknown: before a start, or where nothing was measured. */
 typedef struct {
   double prediction[MODEBANK_STATES];                                         /* x before the measurement */
   double innovation[MODEBANK_MEASUREMENTS];                                   /* measurement minus prediction */
@@ -40,7 +40,7 @@ typedef struct {
   double log_likelihood;
 } modebank_step_of_mode;
 
-/* The filter's memory and workspace. A copy of it is an independent filter. */
+/* The filter's state and workspace. A copy is an independent filter. */
 typedef struct {
   int started;
   modebank_gaussian mode[MODEBANK_MODES];
@@ -55,20 +55,19 @@ typedef struct {
   double predicted_probability[MODEBANK_MODES];
 } modebank_filter;
 
-/* Forgets everything. Call it before the first sample. */
+/* Resets the filter. Call it before the first sample. */
 void modebank_restart(modebank_filter* filter);
 
-/* Takes the next sample: its time [s] (NaN: one period after the last), the inputs recorded at it (not finite: the last
- * known one still acts) and the measurements (NaN: missing). A time that is k periods after the last is k steps under
- * the inputs that acted; after more than 50 the filter starts anew from the next whole measurement. Times must
- * increase. `estimate` may be null. */
+/* Steps to the next sample: its time [s] (NaN: one period after the last), its inputs (not finite: the last finite
+ * value continues) and its measurements (NaN: missing). k periods between two times are k steps with the held inputs.
+ * After more than 50 periods the filter starts anew from the next complete measurement. Times must increase. `estimate`
+ * may be null. */
 void modebank_step(modebank_filter* filter, double time_s, const double* input, const double* measurement,
                    modebank_estimate* estimate);
 
-/* Predicts the measurements of the next `steps` samples, one period apart, and their covariances.
- * `input`: steps x MODEBANK_INPUTS, those recorded at these samples; `mean`: steps x MODEBANK_MEASUREMENTS;
- * `covariance`: steps x MODEBANK_MEASUREMENTS x MODEBANK_MEASUREMENTS. `filter` stays as it is; `ahead` is room for a
- * copy of it. */
+/* Predicts the measurements of the next `steps` samples, one period apart, and their covariances. `input`: steps x
+ * MODEBANK_INPUTS, inputs of these samples. `mean`: steps x MODEBANK_MEASUREMENTS. `covariance`: steps x
+ * MODEBANK_MEASUREMENTS x MODEBANK_MEASUREMENTS. `filter` is unchanged; `ahead` is workspace for a copy of it. */
 void modebank_predict(const modebank_filter* filter, modebank_filter* ahead, int steps, const double* input,
                       double* mean, double* covariance);
 

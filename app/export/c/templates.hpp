@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// filter.h and filter.c as they stand in this folder.
+/// Contents of filter.h and filter.c in this folder.
 namespace modebank::app::assets {
 
 std::string_view filter_h();

@@ -11,14 +11,14 @@
 namespace modebank::app {
 namespace {
 
-/// ROS takes 1 for an integer, and refuses it where a double is declared.
+/// ROS reads 1 as an integer, and rejects it for a parameter that is declared as double.
 std::string yaml_number(double value) {
   const std::string text = fmt::format("{}", value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
 std::string error_text(const Estimate& estimate) {
-  if (!std::isfinite(estimate.error)) return "standard error not known";
+  if (!std::isfinite(estimate.error)) return "standard error unknown";
   const std::string doubt = doubt_about(estimate.value, estimate.error);
   return fmt::format("+- {:.2g}{}", estimate.error, doubt.empty() ? "" : ": " + doubt);
 }
@@ -29,7 +29,7 @@ bool is_vague(const Estimate& estimate) { return std::abs(estimate.value) < esti
 /// Whether a robot may be given the value.
 bool is_told(const Estimate& estimate) { return estimate.known() && !is_vague(estimate); }
 
-/// A key where the bank determines its value, else a comment with the reason.
+/// A key where the bank determines its value; otherwise a comment with the reason.
 std::string key_line(const char* key, const Estimate& estimate, const std::string& unit, const std::string& reason) {
   if (!estimate.known()) return fmt::format("    # {}: not determined: {}\n", key, comment_text(reason));
   if (is_vague(estimate))
@@ -43,14 +43,14 @@ std::string missing_text(const RobotChannels& channels) {
   return text.empty() ? "this mode does not settle, or turns against its wheels" : text;
 }
 
-/// A list of six, what the bank does not determine at the release's default of 0.
+/// A list of six numbers; those that the bank does not determine keep ROS' default of 0.
 std::string twist_covariance(const RobotNumbers& numbers) {
   const Estimate &forward = numbers.forward_variance, &yaw = numbers.yaw_variance;
   if (!forward.known() && !yaw.known())
     return "    # twist_covariance_diagonal: not determined: neither speed is a state that settles\n";
   if (!is_told(forward) && !is_told(yaw))
     return key_line("twist_covariance_diagonal", yaw.known() ? yaw : forward, yaw.known() ? " of wz" : " of vx", "");
-  std::string text = "    # Of vx, vy, vz, wx, wy, wz about their steady values, P = A P A' + Q:";
+  std::string text = "    # Variances of vx, vy, vz, wx, wy, wz about their stationary values, P = A P A' + Q:";
   if (forward.known()) text += fmt::format(" vx [(m/s)^2] {};", error_text(forward));
   if (yaw.known()) text += fmt::format(" wz [(rad/s)^2] {};", error_text(yaw));
   text += "\n    # the others stay at the default, 0";
@@ -96,7 +96,7 @@ std::string diff_drive(const RobotNumbers& numbers, const RobotChannels& channel
 }
 
 constexpr Index filter_states = 15;
-/// robot_localization's own, of x y z roll pitch yaw, their velocities and ax ay az.
+/// Defaults of robot_localization, in the order x y z roll pitch yaw, their velocities, ax ay az.
 constexpr std::array<double, filter_states> default_noise{0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025,
                                                           0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015};
 constexpr Index filter_vx = 6, filter_vyaw = 11;
@@ -127,7 +127,7 @@ std::string process_noise(const ExportedBank& exported, Index mode, const RobotC
       "    # process_noise_covariance = Q / dt_s. Q is what the bank's model leaves unexplained, wheel speeds known; a "
       "filter\n    # that takes velocities for constant needs more where they change. All else is the project's "
       "default.\n";
-  /// Whether the entry is set: a vague one stays at the default.
+  /// Sets an entry, unless it is vague: then the default stays.
   const auto set = [&](Index a, Index b, Index of_a, Index of_b, const char* name) {
     if (of_a < 0 || of_b < 0) return false;
     const Estimate entry{Q(of_a, of_b) / exported.bank.dt_s,
@@ -158,7 +158,7 @@ std::string model_delays(const RobotNumbers& numbers, const RobotChannels& chann
          line("model_delay_vx", numbers.forward_delay_s) + line("model_delay_wz", numbers.yaw_delay_s);
 }
 
-/// A mapping of comments alone would be null, which ROS refuses: its key goes to the comments, too.
+/// A mapping with comments alone would be null, which ROS rejects. So its key becomes a comment, too.
 std::string without_empty_mappings(const std::string& block) {
   std::string text;
   bool any = false;

@@ -19,7 +19,7 @@ bool holds_any(const std::string& name, std::initializer_list<const char*> words
                      [&](const char* word) { return boost::algorithm::icontains(name, word); });
 }
 
-/// The only channel of that unit; of several the only one of such a name. -1: none, or nobody can tell which.
+/// The only channel of a unit; among several the only one with such a name. -1: none, or an ambiguous choice.
 Index find_channel(const std::vector<Channel>& channels, const char* unit, std::initializer_list<const char*> words) {
   std::vector<Index> by_unit, by_name;
   for (Index i = 0; i < std::ssize(channels); ++i) {
@@ -32,7 +32,7 @@ Index find_channel(const std::vector<Channel>& channels, const char* unit, std::
   return found.size() == 1 ? found.front() : -1;
 }
 
-/// "left", "wheel_left", "velL", "vel_l".
+/// Whether a name contains a side: "left", "wheel_left", "velL", "vel_l".
 bool is_side(const std::string& name, const char* word, char letter) {
   return holds_any(name, {word}) || boost::algorithm::ends_with(name, std::string("_") + letter) ||
          boost::algorithm::ends_with(name, std::string(1, static_cast<char>(letter - 'a' + 'A')));
@@ -57,7 +57,8 @@ void find_wheels(const std::vector<Channel>& inputs, RobotChannels& channels) {
   channels.left = channels.right = -1;
 }
 
-/// Steady gains per recorded input, and minus the derivative at z = 1 of the transfer function: C x samples later.
+/// Steady gains per recorded input, and minus the derivative at z = 1 of the transfer function: the sum over samples of
+/// lag times impulse response.
 struct Response {
   MatrixXd gain, delay_gain;  ///< n_y x inputs
 };
@@ -77,13 +78,13 @@ Response response_of(const Bank& bank, const LinearModel& model) {
   return {bank.C * once, bank.C * (lu.solve(once) + lu.solve(late))};
 }
 
-/// The mean delay of a response [s]: first moment of the impulse response over its sum, counted from the middle of the
-/// sample that an input is held for.
+/// The mean delay of a response [s]: first moment of the impulse response over its sum, from the middle of the sample
+/// in which an input is held.
 double mean_delay_s(double gain, double delay_gain, double dt_s, double input_lag_s) {
   return dt_s * (delay_gain / gain - 0.5) + input_lag_s;
 }
 
-/// separation, left and right multiplier, delay of the yaw rate and of the forward speed.
+/// Wheel separation, left and right multiplier, delay of the yaw rate and of the forward speed.
 VectorXd wheel_numbers(const ExportedBank& exported, const LinearModel& model, const RobotChannels& at,
                        const RobotSizes& sizes) {
   VectorXd numbers = VectorXd::Constant(5, not_a_number);
@@ -130,7 +131,8 @@ VectorXd stationary_variances(const ExportedBank& exported, const LinearModel& m
   return (C * P * C.transpose()).diagonal();
 }
 
-/// The same with standard errors: of theta by the delta method, of Q, which is linear in it, entry by entry.
+/// The same with standard errors: those from theta by the delta method, those from Q entry by entry, since it enters
+/// linearly.
 DerivedNumbers variances_of(const ExportedBank& exported, Index mode) {
   const Mode& of = exported.bank.modes[static_cast<std::size_t>(mode)];
   DerivedNumbers result = derived_numbers(
@@ -157,9 +159,9 @@ RobotChannels robot_channels(const ExportedBank& exported) {
   channels.yaw_rate = find_channel(exported.measurements, "rad/s", {"wz", "yaw", "gyro_z", "angular.z", "omega_z"});
   channels.forward_speed = find_channel(exported.measurements, "m/s", {"vx", "forward", "linear.x", "speed", "surge"});
   if (channels.yaw_rate < 0)
-    channels.missing.push_back("no state is known to be the yaw rate (data.state_unit = rad/s)");
+    channels.missing.push_back("no state is the yaw rate (state its unit, data.state_unit = rad/s)");
   if (channels.forward_speed < 0)
-    channels.missing.push_back("no state is known to be the forward speed (data.state_unit = m/s)");
+    channels.missing.push_back("no state is the forward speed (state its unit, data.state_unit = m/s)");
   find_wheels(exported.recorded_inputs, channels);
   return channels;
 }
@@ -176,7 +178,7 @@ RobotNumbers robot_numbers(const ExportedBank& exported, Index mode, const Robot
   const auto at = [&](Index i) { return Estimate{derived.values(i), derived.errors(i)}; };
   RobotNumbers numbers{
       at(0), at(1), at(2), at(3), at(4), variance(channels.yaw_rate), variance(channels.forward_speed)};
-  // Of a mode that does not settle no gain means anything; of one that turns the other way no separation.
+  // For an unstable mode gains have no meaning; for one that turns the other way the separation has none.
   const bool settles = variances.values.allFinite();
   for (Estimate* estimate : {&numbers.separation_m, &numbers.left_multiplier, &numbers.right_multiplier})
     if (!settles || !(numbers.left_multiplier.value > 0.0 && numbers.right_multiplier.value > 0.0))

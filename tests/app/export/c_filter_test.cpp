@@ -1,4 +1,4 @@
-// The exported C against the filter itself, on banks and runs that reach every part of it.
+// The exported C compared with the filter itself, on banks and runs that reach every part of it.
 #include <gmock/gmock.h>
 
 #include "app/export/forms.hpp"
@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 constexpr Index samples = 400;
 constexpr double dt_s = 0.1;
 
-/// A run whatever the bank: its own numbers do not matter, only that both filters get the same.
+/// A run for any bank. Its numbers do not matter, because both filters get the same.
 Trajectory run_for(const Bank& bank, std::uint64_t seed) {
   Bank source = example_bank(bank.C.rows(), bank.structure.inputs, 2, 1e-3);
   return disturbed(modebank::test::simulate_bank(source, samples, seed), dt_s);
@@ -37,7 +37,7 @@ Bank with_clock(Bank bank) {
   return bank;
 }
 
-/// z and v of two states, three lags of the state, two of the inputs.
+/// z and v with two states, three lags of the state and two of the inputs.
 Bank lagged_bank(Index input_delay) {
   Bank bank = example_bank(2, 2, 2, 1e-4);
   bank.structure = {2, 2, true, 3, 2, input_delay};

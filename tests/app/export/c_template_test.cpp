@@ -1,4 +1,4 @@
-// filter.h and filter.c as they stand, compiled with the table in small_bank, and what export makes of the two.
+// filter.h and filter.c unchanged, compiled with the table in small_bank, and the files that export makes of them.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Every number has few binary digits, so that its text is short. It has all that a bank in C can have.
+/// Every number has few binary digits, so that its text is short. The bank has every feature that C supports.
 ExportedBank small_bank() {
   Bank bank = modebank::test::example_bank(1, 1, 2, 0.0);
   bank.structure = {1, 1, true, 2, 1, 1};
@@ -101,7 +101,7 @@ TEST(CTemplate, StepsAsBankFilterDoes) {
   }
 }
 
-/// The bounds stand in C++ and in C.
+/// The bounds in C++ and in C are equal.
 TEST(CTemplate, HasTheBoundsOfTheEquations) {
   const std::string text(assets::filter_c());
   const auto value = [&](const std::string& name) {
@@ -131,7 +131,7 @@ TEST(CTemplate, ModesHaveEnumerators) {
                                 "  ROBOT_MODE_grip = 2, /* grip */\n  ROBOT_MODE_grip_2 = 3 /* grip */\n"));
 }
 
-/// A signal or a file whose name meets one of the program's own.
+/// Names of signals or files that equal names of the program.
 TEST(CTemplate, CompilesUnderAnyName) {
   ExportedBank exported = as_exported(modebank::test::example_bank(1, 3, 3));
   exported.mode_names = {"S", "mode 0", "2"};

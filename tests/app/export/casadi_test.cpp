@@ -1,4 +1,4 @@
-// The CasADi module, evaluated by CasADi or by a stub that stands in for it, against the bank's own numbers.
+// The CasADi module, evaluated by CasADi or by a stub in its place, compared with the bank's own numbers.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -46,7 +46,7 @@ MatrixXd matrix_of(const json& rows, Index cols) {
   return M;
 }
 
-/// What the bank expects: state, then probabilities.
+/// The bank's expected state, then probabilities.
 std::pair<VectorXd, VectorXd> expected_step(const Bank& bank, const Point& at) {
   TransitionWorkspace workspace(bank.mode_count(), bank.transition_logit);
   const VectorXd nu =
@@ -68,7 +68,7 @@ void expect_same(const Bank& bank) {
   const MatrixXd A = matrix_of(said["linearised"][0], n), B = matrix_of(said["linearised"][1], m),
                  c = matrix_of(said["linearised"][2], 1);
   EXPECT_LE((A * at.x + B * at.u + c - next).cwiseAbs().maxCoeff(), 1e-9);
-  // Exact without a logit; with one central differences are as good as this.
+  // Exact without a logit; with one, central differences have this error.
   const double step = 1e-5, tolerance = bank.transition_logit.empty() ? 1e-9 : 1e-7;
   for (Index j = 0; j < n + m; ++j) {
     Point up = at, down = at;

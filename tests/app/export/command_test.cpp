@@ -1,4 +1,4 @@
-// modebank export from outside.
+// The command modebank export.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ class Export : public CliTest {
     words.insert(words.end(), options.begin(), options.end());
     return modebank(words);
   }
-  /// As if the bank had been judged so.
+  /// Gives the bank this verdict.
   void judge(Calibration verdict) const {
     Archive stored = read_archive(archive());
     for (DiagnosticsRow& row : stored.diagnostics) row.verdict = verdict;
@@ -65,7 +65,8 @@ TEST_F(Export, JsonIsTheArchivesBank) {
   EXPECT_EQ(page.at("filter").at("noise"), "gaussian");
 }
 
-/// A value that its standard error exceeds, a parameter that the runs leave open, R at its bound: never a bare number.
+/// A value below its standard error, an unidentifiable parameter and R at its bound are never exported without a
+/// remark.
 TEST_F(Export, DoubtfulNumbersAreRemarkedInEveryForm) {
   judge(Calibration::calibrated);
   Archive stored = read_archive(archive());
@@ -88,7 +89,7 @@ TEST_F(Export, DoubtfulNumbersAreRemarkedInEveryForm) {
                                  text_of(file("bank.mat"))};
   for (const auto& entry : std::filesystem::directory_iterator(file("ros"))) texts.push_back(text_of(entry.path()));
   for (std::string& text : texts) {
-    std::erase(text, '\0');  // MATLAB's characters have 16 bits
+    std::erase(text, '\0');  // MATLAB characters have 16 bits
     EXPECT_THAT(
         text, testing::AllOf(HasSubstr("standard errors exceed the values"),
                              HasSubstr("not identifiable from the training runs"), HasSubstr("is at its lower bound")));

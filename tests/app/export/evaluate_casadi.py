@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Works out an exported module's functions: evaluate_casadi.py MODULE X U MU (lists of JSON); prints JSON. By CasADi
-where that is installed, else by casadi_stub, which is said."""
+"""Evaluates an exported module's functions: evaluate_casadi.py MODULE X U MU (lists of JSON); prints JSON. Uses CasADi
+if it is installed, else casadi_stub, and prints which."""
 import importlib.util
 import json
 import pathlib
@@ -27,7 +27,7 @@ def lists(values):
     return [np.asarray(value, float).tolist() for value in values]
 
 
-if by == "casadi":  # its own derivatives
+if by == "casadi":  # CasADi's derivatives
     x, u, mu = bank._symbols()
     slopes = [casadi.jacobian(bank.step(x, u, mu)[0], variable) for variable in (x, u)]
     exact = casadi.Function("exact", [x, u, mu], slopes)(*point)

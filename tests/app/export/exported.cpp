@@ -19,7 +19,7 @@ using modebank::test::write_file;
 
 constexpr int look_ahead = 5, look_every = 37;
 
-/// Reads samples, prints what the filter says of each with 17 digits; every 37th time what it expects 5 steps ahead.
+/// Reads samples and prints the filter's estimates with 17 digits; every 37th time also its forecast 5 steps ahead.
 constexpr const char* driver = R"(#include "robot.h"
 
 #include <math.h>
@@ -65,7 +65,7 @@ int main(void) {
 }
 )";
 
-/// Reads numbers one after the other.
+/// Reads numbers one by one.
 struct Numbers {
   std::istringstream text;
   explicit Numbers(const std::string& line) : text(line) {}
@@ -82,7 +82,7 @@ struct Numbers {
   }
 };
 
-/// Two that are both not known are the same; one alone is as far off as can be.
+/// Two unknown numbers are equal; a single unknown one is infinitely far off.
 double distance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   double largest = 0.0;
   for (Index i = 0; i < a.size(); ++i) {
@@ -100,7 +100,7 @@ double relative(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return distance(a, b) / scale;
 }
 
-/// Standard deviations of what is predicted, a signal that is not measured counting as the least certain of the others.
+/// Standard deviations of predictions; a missing signal counts as the least certain of the others.
 double in_deviations(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const Eigen::MatrixXd& S) {
   const double variance = S.array().isNaN().any() ? 1.0 : S.diagonal().minCoeff();
   return distance(a, b) / std::sqrt(std::max(variance, 1e-30));
@@ -118,7 +118,7 @@ std::string input_of(const Trajectory& run) {
   return fmt::to_string(text);
 }
 
-/// What the filter expects of the next samples, without measurements.
+/// Difference of the forecasts of the next samples, without measurements.
 double distance_ahead(BankFilter& filter, const Bank& bank, const Trajectory& run, Index k, Numbers& numbers) {
   const Index n_y = bank.C.rows();
   const FilterSnapshot snapshot = filter.snapshot();

@@ -12,19 +12,19 @@
 
 namespace modebank::app::test {
 
-/// A bank as if it came from an archive; channels without names get some.
+/// A bank in the form of an archive's; channels without names get names.
 ExportedBank as_exported(Bank bank, const FilterOptions& options = {});
 
-/// A run with what a filter must live with: signals missing singly and together, an input that is not known, short gaps
-/// in time and one that is too long.
+/// A run with typical faults: signals missing singly and together, an unknown input, short gaps in time and one that is
+/// too long.
 Trajectory disturbed(Trajectory run, double dt_s);
 
-/// What BankFilter::step says of a run, sample by sample.
+/// Results of BankFilter::step for a run, sample by sample.
 std::vector<FilterEstimate> stepped(const Bank& bank, const FilterOptions& options, const Trajectory& run);
 
-/// The largest differences of the exported C, compiled by gcc and by clang as strictly as C99 can be, from BankFilter
-/// over a run: of means in predicted standard deviations, of probabilities, of covariances relative to the larger, of
-/// log densities.
+/// The largest differences of the exported C from BankFilter over a run: of means in predicted standard deviations, of
+/// probabilities, of covariances relative to the larger one, of log densities. The C is compiled by gcc and clang with
+/// the strictest options of C99.
 struct Differences {
   double mean = 0.0, probability = 0.0, covariance = 0.0, log_density = 0.0, ahead = 0.0;
   Index compared = 0;

@@ -5,7 +5,7 @@
 
 namespace modebank::app::test {
 
-/// What a column of somebody's file may be called.
+/// Possible column names in users' files.
 inline const std::vector<std::string>& hostile_names() {
   static const std::vector<std::string> names{"*/ int x; /*",
                                               "*$F/ int x; /$f*",

@@ -1,4 +1,4 @@
-// The MAT-file as other programs read it.
+// The MAT-file, read by other programs.
 #include <gmock/gmock.h>
 #include <matio.h>
 

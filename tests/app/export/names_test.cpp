@@ -1,4 +1,4 @@
-// Names come from files; whatever they hold, what is generated stays what it is.
+// Generated text stays valid for any names in users' files.
 #include "app/export/names.hpp"
 
 #include <gmock/gmock.h>
@@ -42,7 +42,7 @@ TEST(Names, StayWithinCommentsQuotesAndFields) {
   }
 }
 
-/// A table whose columns and texts are hostile, read by Python's reader of CSV: no cell is a formula.
+/// A table with hostile columns and texts, read by Python's CSV reader: no cell is a formula.
 TEST(Names, AreNoFormulasInTables) {
   nlohmann::json table = {{"columns", nlohmann::json::array()}, {"value", {nlohmann::json::object()}}};
   for (const std::string& name : hostile_names()) {
@@ -71,7 +71,7 @@ TEST(Names, AreNoFormulasInTables) {
   }
 }
 
-/// Of bytes that are not UTF-8, too, JSON stays JSON.
+/// JSON stays valid, even for bytes that are not UTF-8.
 TEST(Names, StayWithinJson) {
   ExportedBank exported = as_exported(modebank::test::example_bank(1, 1, 1));
   for (const std::string& name : hostile_names()) {

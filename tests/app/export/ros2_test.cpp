@@ -1,4 +1,4 @@
-// Parameter files of ROS 2: what a robot of known width, wheels, delay and noise must give, read back as YAML.
+// Parameter files of ROS 2 for robots with known width, wheels, delay and noise, read back as YAML.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -21,7 +21,7 @@ using ::testing::Not;
 #define MODEBANK_NEEDS_YAML() \
   MODEBANK_NEEDS(modebank::test::has_python_modules("yaml"), "PyYAML is absent: apt-get install python3-yaml")
 
-/// As a reader of YAML sees a text.
+/// Parses a text as YAML.
 json read_yaml(const std::string& text) {
   const modebank::test::TemporaryFolder folder;
   modebank::test::write_file(folder.path() / "file.yaml", text);
@@ -33,14 +33,14 @@ json read_yaml(const std::string& text) {
   return result.status == 0 ? json::parse(result.out) : json();
 }
 
-/// A robot whose speeds follow those of its wheels with one time constant each.
+/// A robot whose speeds follow the wheels' speeds with one time constant each.
 struct Robot {
   double separation_m = 0.55, left = 1.02, right = 0.97;  ///< multipliers of the radius
   double yaw_time_s = 0.3, forward_time_s = 0.2, dt_s = 0.05;
   double yaw_noise = 4e-4, forward_noise = 9e-4, shared_noise = 1e-4;
 };
 
-/// [yaw rate, forward speed] or the yaw rate alone from [left, right] speeds; `radius_m` turns rad/s into m/s.
+/// [yaw rate, forward speed], or the yaw rate alone, from [left, right] speeds. `radius_m` converts rad/s to m/s.
 ExportedBank bank_of(const Robot& robot, bool forward, double radius_m = 1.0) {
   const Index n = forward ? 2 : 1;
   Bank bank = modebank::test::example_bank(n, 2, 1, 0.0);
@@ -91,7 +91,7 @@ TEST(ExportedRos2, GivesTheRobotBack) {
     EXPECT_NEAR(noise[6 * 15 + 11], robot.shared_noise / robot.dt_s, 1e-12);
     EXPECT_EQ(noise[11 * 15 + 6], noise[6 * 15 + 11]);
     const json plan = parameters(exported, sizes, "controller_server").at("FollowPath");
-    // A first-order lag sampled with its input held: dt / 2 coth(dt / 2 tau), tau but for the hold.
+    // A first-order lag sampled with held input: dt / 2 coth(dt / 2 tau), about tau.
     const double half = 0.5 * robot.dt_s;
     EXPECT_NEAR(plan.at("model_delay_wz"), half / std::tanh(half / robot.yaw_time_s), 1e-9);
     EXPECT_NEAR(plan.at("model_delay_vx"), half / std::tanh(half / robot.forward_time_s), 1e-9);
@@ -109,7 +109,7 @@ TEST(ExportedRos2, CountsDeadTimeAndLags) {
   EXPECT_NEAR(later - without, 0.12 + 2.0 * Robot().dt_s, 1e-9);
 }
 
-/// Without a forward speed the wheels' mean is taken as one; what is missing is said.
+/// Without a forward speed the wheels' mean multiplier is taken as one, and a comment names what is missing.
 TEST(ExportedRos2, SaysWhatIsMissing) {
   MODEBANK_NEEDS_YAML();
   Robot robot;
@@ -117,7 +117,7 @@ TEST(ExportedRos2, SaysWhatIsMissing) {
   const std::string text = to_ros2(exported, {}).at(0).second;
   EXPECT_THAT(text, HasSubstr("# wheel_separation_multiplier: "));
   EXPECT_THAT(text, HasSubstr("--wheel_separation_m"));
-  EXPECT_THAT(text, HasSubstr("model_delay_vx: not determined: no state is known to be the forward speed"));
+  EXPECT_THAT(text, HasSubstr("model_delay_vx: not determined: no state is the forward speed"));
   EXPECT_EQ(text.rfind("# Calibration: calibrated", 0), 0u);
   const json drive = read_yaml(text).at("diff_drive_controller").at("ros__parameters");
   EXPECT_FALSE(drive.contains("wheel_separation_multiplier"));
@@ -136,13 +136,13 @@ TEST(ExportedRos2, SaysWhatIsMissing) {
   EXPECT_THAT(spinning, HasSubstr("give --wheel_radius_m"));
 }
 
-/// A value whose standard error exceeds it is a comment with both numbers, and lists keep the release's default there.
+/// A value below its standard error is a comment with both numbers; lists keep ROS' default there.
 TEST(ExportedRos2, LeavesOutWhatItsErrorExceeds) {
   MODEBANK_NEEDS_YAML();
   const Robot robot;
   ExportedBank vague = bank_of(robot, true);
   Mode& mode = vague.bank.modes[0];
-  mode.standard_error.setConstant(10.0);  // gains are of order one
+  mode.standard_error.setConstant(10.0);  // large against gains of order one
   mode.Q_standard_error = Eigen::Matrix2d{{1e-6, 0.0}, {0.0, 2.0 * robot.forward_noise}};
   const std::string text = to_ros2(vague, {1.0, 0.0}).at(0).second;
   for (const std::string key : {"wheel_separation_multiplier", "left_wheel_radius_multiplier", "model_delay_wz"})

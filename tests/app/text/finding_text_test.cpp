@@ -1,4 +1,4 @@
-// The sentences of findings: each says what its answer means, and no more.
+// Sentences of findings: each states exactly what its answer means.
 #include "app/text/finding_text.hpp"
 
 #include <gmock/gmock.h>
@@ -79,7 +79,7 @@ TEST(FindingText, OneMotionThatDriftsIsCalledSo) {
 
 TEST(FindingText, WhatCannotBeToldSaysWhy) {
   Finding finding = finding_of(Answer::cannot_tell);
-  // 7.6 errors over the best competitor, while another one is not beaten beyond chance: that one is named.
+  // 7.6 standard errors over the best competitor, but within chance against another one: the sentence names that one.
   finding.gain = 0.717;
   finding.standard_error = 0.094;
   finding.gains = {{"one_motion", 700, 0.849, 0.388, 4.0, 1.077, false},

@@ -1,4 +1,4 @@
-// The screen that a run ends with: it always fits, says what it must, and every rule of what to do next has its case.
+// The screen at the end of a run: its size, its content, and a case for every rule on the next step.
 #include "app/text/first_screen.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ TEST(FirstScreen, SaysThatInputsAreNeededAhead) {
   EXPECT_THAT(first_screen(archive, settings, "demo.h5"), HasSubstr("needs inputs 0.250 s ahead of the states"));
 }
 
-/// With the longest finding and a warning of many.
+/// Adds the longest finding and the longest warning.
 Archive talkative(Archive archive) {
   for (int i = 0; i < 200; ++i) archive.finding->text += " And another word.";
   MixtureResult mixture;
@@ -130,7 +130,7 @@ TEST(FirstScreen, SaysWhatTheFiltersPredictTogether) {
                                         HasSubstr("(drifting: 0.08 rad/s, combined: 0.05 rad/s)")));
 }
 
-/// Training runs that were left out choose; judged runs state what that is worth.
+/// Training runs that were left out decide; judged runs give the gain.
 TEST(FirstScreen, EndsInWhatToUnderstandAndWhatToPredictWith) {
   Archive archive = screen_archive(1, 2, 3);
   const Eigen::VectorXd rmse = Eigen::VectorXd::Constant(1, 0.03);
@@ -153,11 +153,11 @@ TEST(FirstScreen, EndsInWhatToUnderstandAndWhatToPredictWith) {
   EXPECT_EQ(named[0].filter, "combined");
   EXPECT_EQ(named[0].other, "bank");
   EXPECT_NEAR(named[0].gain, 0.2, 1e-12);
-  EXPECT_NEAR(named[0].error, 0.1, 1e-12);  // of 0.1 and 0.3 in runs of the same length
+  EXPECT_NEAR(named[0].error, 0.1, 1e-12);  // from 0.1 and 0.3 in runs of equal length
   EXPECT_EQ(named[0].c_filter, "bank");
   EXPECT_NEAR(named[0].c_loss, 0.2, 1e-12);
   EXPECT_EQ(named[1].steps, 10);
-  EXPECT_EQ(named[1].filter, "drifting");  // as good as combined, and one filter
+  EXPECT_EQ(named[1].filter, "drifting");  // as good as combined, and a single filter
   EXPECT_THAT(app::use_words(archive),
               testing::StartsWith("to understand: the bank of 3 modes; to predict 1 step: `--track.filter combined`, "
                                   "+0.200 +- 0.100 nats over bank, in C bank (-0.200); 10 steps: "
@@ -168,19 +168,19 @@ TEST(FirstScreen, EndsInWhatToUnderstandAndWhatToPredictWith) {
   EXPECT_EQ(app::named_forecasts(archive)[0].filter, "combined");
   archive.left_out[0].log_score = 1.049;
   EXPECT_EQ(app::named_forecasts(archive)[0].filter, "bank");
-  archive.left_out[2].log_score = 1.04;  // drifting's at one step stands behind bank's
+  archive.left_out[2].log_score = 1.04;  // drifting's score one step ahead is below bank's
   archive.left_out[1].log_score = 1.035;
   archive.left_out[0].rmse *= 1.1;
   EXPECT_EQ(app::named_forecasts(archive)[0].filter, "drifting");
 }
 
-/// A density may be the best while another filter's mean errs less: 0.024 where it errs 0.03 saves a fifth.
+/// The filter with the best density may have a larger error than another one: 0.024 in place of 0.03 saves a fifth.
 TEST(FirstScreen, NamesTheFilterOfLeastErrorWhereItIsAnother) {
   Archive archive = screen_archive(1, 2, 3);
   const Eigen::VectorXd rmse = Eigen::VectorXd::Constant(1, 0.03);
   archive.left_out.push_back({"bank", 1, 100, 1.0, rmse, 0.5});
   archive.left_out.push_back({"nonlinear", 1, 100, 0.5, 0.99 * rmse, 0.5});
-  EXPECT_EQ(app::named_forecasts(archive)[0].point_filter, "bank");  // 1 % is less than runs differ
+  EXPECT_EQ(app::named_forecasts(archive)[0].point_filter, "bank");  // 1 % is below the differences between runs
   EXPECT_EQ(app::named_forecasts(archive)[0].point_gain, 0.0);
   archive.left_out.back().rmse = 0.8 * rmse;
   const app::NamedForecast named = app::named_forecasts(archive)[0];
@@ -190,8 +190,8 @@ TEST(FirstScreen, NamesTheFilterOfLeastErrorWhereItIsAnother) {
   EXPECT_THAT(app::use_words(archive), testing::EndsWith("; least error 1 step: nonlinear (-20 %)"));
 }
 
-/// Halves and less: 0.5, 0.3, 0.18, ... falls below a hundredth after the eighth.
-/// What the page shows is what the terminal says: both come from here.
+/// 0.5, 0.3, 0.18, ... falls below a hundredth after the eighth. Page and terminal both take their text from this
+/// struct.
 TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {
   Archive archive = screen_archive(1, 2, 3);
   archive.finding->gain = 0.187;
@@ -259,7 +259,7 @@ TEST(FirstScreen, WarningsAreCountedAndTheFirstIsTold) {
   EXPECT_THAT(screen, AllOf(HasSubstr("warning "), HasSubstr("the first: "), HasSubstr("0 of 5 restarts")));
 }
 
-/// What the glossary of `help` and of the page must know.
+/// Terms that the glossary of `help` and of the page must contain.
 TEST(FirstScreen, ItsTermsHaveAMeaning) {
   for (const char* term :
        {"evidence", "mode",      "bank",       "drifting",      "competitor",    "nats",   "held-out",
@@ -323,7 +323,7 @@ TEST_F(NextStep, APatternInErrorsAsksForMemory) {
   EXPECT_THAT(advice(), HasSubstr("--window.model auto")) << "one linear model lacks lags, too";
 }
 
-/// Where lags were searched for, or held-out errors alone are coloured, no lag is what the model lacks.
+/// After a search for lags, or with coloured errors on held-out runs only, lags are not the cause.
 TEST_F(NextStep, ColouredErrorsWithoutAPatternAskForACheck) {
   row().whiteness_p = 1e-6;
   row().autocorrelation = -0.92;
@@ -346,7 +346,7 @@ TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
   EXPECT_THAT(advice(), HasSubstr("record more: held-out samples"));
 }
 
-/// A flag's words decide nothing: what it is made of does.
+/// The numbers behind a flag decide, not its words.
 TEST_F(NextStep, GoesByNumbersAndNotByWords) {
   row().flags = "innovations not white: autocorrelation 0.45 at lag 1";
   EXPECT_THAT(advice(), HasSubstr("ready: `modebank track"));
@@ -360,7 +360,7 @@ TEST_F(NextStep, UnknownErrorsAskForThem) {
   EXPECT_THAT(advice(), HasSubstr("--bank.look_ahead 1"));
 }
 
-/// Twice the gain's error asks for four times the runs: margins are taken to fall as 1 / sqrt(runs).
+/// A gain of half its required size needs four times the runs: margins fall as 1 / sqrt(runs).
 TEST_F(NextStep, ADoubtfulGainAsksForSoManyRuns) {
   archive.finding->answer = Answer::cannot_tell;
   archive.finding->modes_differ = true;
@@ -400,7 +400,7 @@ TEST_F(NextStep, ABankWithoutAStableModeWarns) {
   EXPECT_THAT(app::archive_warnings(archive), IsEmpty());
 }
 
-/// A warning comes before any use.
+/// A warning takes precedence over advice on use.
 TEST_F(NextStep, WarningsComeBeforeUse) {
   archive.mixture.emplace();
   archive.mixture->candidates.resize(1);

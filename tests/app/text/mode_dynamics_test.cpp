@@ -38,7 +38,7 @@ TEST(ModeDynamics, FirstOrderLag) {
   EXPECT_NEAR(dynamics.gain(0, 0), gain, dynamics_rounding);
 }
 
-/// y[k+1] = 1.02 y[k] + 0.1 u[k]: (-A)^-1 B = -5 is where nothing ever settles.
+/// y[k+1] = 1.02 y[k] + 0.1 u[k] grows, so (-A)^-1 B = -5 is not a gain.
 TEST(ModeDynamics, WhatGrowsOrIntegratesHasNoSteadyGain) {
   for (const double a : {0.02, 0.0, -2.1}) {
     Bank bank = bank_of({1, 1}, vector({a, 0.1}), 0.1);
@@ -48,7 +48,7 @@ TEST(ModeDynamics, WhatGrowsOrIntegratesHasNoSteadyGain) {
   }
 }
 
-/// A rotation by w dt shrinking with tau: one conjugate pair.
+/// A rotation by w dt that shrinks with tau: one conjugate pair.
 TEST(ModeDynamics, DampedOscillation) {
   const double dt = 0.05, tau = 2.0, hertz = 1.5, angle = 2 * std::numbers::pi * hertz * dt, size = std::exp(-dt / tau);
   const double c = size * std::cos(angle), s = size * std::sin(angle);
@@ -63,7 +63,7 @@ TEST(ModeDynamics, DampedOscillation) {
   EXPECT_NEAR((dynamics.gain - fixed).norm(), 0.0, dynamics_rounding);
 }
 
-/// With lags an input held over all of them acts by the sum of its coefficients, and the state's lags sum likewise.
+/// An input held over all lags acts with the sum of its coefficients; the state's lags are summed likewise.
 TEST(ModeDynamics, LaggedModelsGainIsThatOfTheirSums) {
   const LinearStructure structure{1, 2, false, 2, 2, 1};  // A_lag1 A_lag2 B1_lag1 B2_lag1 B1_lag2 B2_lag2
   const ModeDynamics dynamics = mode_dynamics(bank_of(structure, vector({-0.5, 0.1, 0.3, -0.2, 0.1, -0.4}), 0.1), 0);
@@ -93,7 +93,7 @@ TEST(ModeDynamics, StandardErrorsAreTheDeltaMethods) {
   const double dt = 0.2, A = -0.4, B = 0.3;
   Bank bank = bank_of({1, 1}, vector({A, B}), dt);
   Mode& mode = bank.modes[0];
-  EXPECT_TRUE(std::isnan(mode_dynamics(bank, 0).gain_error(0, 0)));  // nothing is known of theta
+  EXPECT_TRUE(std::isnan(mode_dynamics(bank, 0).gain_error(0, 0)));  // theta has no covariance
   Eigen::Matrix2d covariance;
   covariance << 4e-4, -2.4e-4, -2.4e-4, 9e-4;
   mode.standard_error = covariance.diagonal().cwiseSqrt();
@@ -107,11 +107,11 @@ TEST(ModeDynamics, StandardErrorsAreTheDeltaMethods) {
   EXPECT_NEAR(apart.decays[0].per_sample, 0.6, dynamics_rounding);
   EXPECT_NEAR(apart.decays[0].time_constant_error_s, 0.02 * of_tau, rounding);
   EXPECT_NEAR(apart.gain_error(0, 0), error_of_gain(covariance.diagonal().asDiagonal()), rounding);
-  mode.spread = 25.0 * covariance;  // of windows, which spread wider than their mean errs
+  mode.spread = 25.0 * covariance;  // of windows, which is larger than that of their mean
   EXPECT_NEAR(mode_dynamics(bank, 0).gain_error(0, 0), error_of_gain(covariance), rounding);
 }
 
-/// A rotation's size is sqrt(det(I + A)) whatever its angle: only c counts where s is free of error and c alone varies.
+/// A rotation has size sqrt(det(I + A)) for any angle. s has no error here, so only c matters.
 TEST(ModeDynamics, OscillationsErrorsFollowTheEigenvaluesSize) {
   const double dt = 0.1, c = 0.6, s = 0.5, size = std::hypot(c, s), error = 1e-3;
   Bank bank = bank_of({2, 0}, vector({c - 1, -s, s, c - 1}), dt);
@@ -129,7 +129,7 @@ TEST(WindowModes, TheMostProbableOverTheTransitions) {
   evaluation.mode_probability << 0.9, 0.2, 0.3, std::nan(""), 0.9,  //
       0.1, 0.8, 0.7, std::nan(""), 0.1;
   const Eigen::VectorXi modes = window_modes({{0, 0}, {0, 2}, {0, 1}}, 2, {"bank", {evaluation}});
-  EXPECT_EQ(modes(0), 1);  // samples 1 and 2; the window's first sample is no transition's end
+  EXPECT_EQ(modes(0), 1);  // samples 1 and 2; the window's first sample does not end a transition
   EXPECT_EQ(modes(1), 0);  // sample 4, because 3 is unknown
   EXPECT_EQ(modes(2), 1);
   EXPECT_EQ(window_modes({{0, 2}}, 1, {"bank", {evaluation}})(0), -1);

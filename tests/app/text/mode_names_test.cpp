@@ -1,4 +1,4 @@
-// What modes are called: by the user, by the label that holds enough of their samples, or not at all.
+// Names of modes: from the user, from the label of enough of their samples, or none.
 #include "app/text/mode_names.hpp"
 
 #include <gmock/gmock.h>

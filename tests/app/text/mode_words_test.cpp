@@ -1,4 +1,4 @@
-// Modes in words: what is said is what the numbers mean.
+// Modes in words agree with their numbers.
 #include "app/text/mode_words.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ TEST(ModeWords, ModesComeByUse) {
   EXPECT_EQ(modes[0].mode, 1);
   EXPECT_EQ(modes[2].mode, 0);
   EXPECT_NEAR(modes[0].stay_s, 1.2, 1e-12);
-  archive.diagnostics.clear();  // nothing scored: T says 1 / (1 - 0.9) samples
+  archive.diagnostics.clear();  // without scores: T gives 1 / (1 - 0.9) samples
   modes = app::used_modes(archive);
   EXPECT_NEAR(modes[0].stay_s, 1.0, 1e-12);
   EXPECT_EQ(modes[0].mode, 0);

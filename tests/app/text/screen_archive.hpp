@@ -7,8 +7,8 @@
 
 namespace modebank::test {
 
-/// What the first screen reads of an archive: runs of 5 samples, 0.1 s apart, a bank of equally different modes that
-/// are used less and less, its scores and a finding.
+/// The parts of an archive that the first screen reads: runs of 5 samples, 0.1 s apart, its scores and a finding. The
+/// bank's modes differ equally and have decreasing use.
 inline Archive screen_archive(Index states, Index inputs, Index modes, Role judged = Role::test) {
   Archive archive;
   Recording recording;
