@@ -1,10 +1,10 @@
-"""What of a page hinders people who see, hear or move differently, as axe-core (.ci/packages) finds it."""
+"""Accessibility faults of pages, found by axe-core (.ci/packages)."""
 import os
 
 import session
 
 PHONE = (390, 844)
-# Each offending element once, with what is wrong with it.
+# Each offending element once, with its fault.
 CHECK = """
     const [options, done] = arguments;
     axe.run({resultTypes: ['violations'], ...options}).then(({violations}) =>
@@ -16,7 +16,7 @@ def script():
 
 
 def offences(colours_only=False):
-    """Of the page that is open, its folded parts too."""
+    """Faults of the open page, folded parts included."""
     browser = session.browser
     if not script().exists():
         print("SKIPPED: axe-core is absent: npm installs it into build/npm")
@@ -29,7 +29,7 @@ def offences(colours_only=False):
 
 
 def assert_accessible(test):
-    """In light, in dark, where colours alone are others, and on a phone, which it fits."""
+    """Checks a page in light, in dark (colours only) and on a phone, whose width it must fit."""
     browser = session.browser
     test.assertEqual(offences(), [])
     browser.scheme("dark")

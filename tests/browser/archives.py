@@ -1,4 +1,4 @@
-"""What the pages are made from, and modebank's command line."""
+"""Archives from which pages are made, and modebank's command line."""
 import os
 import pathlib
 import random
@@ -6,7 +6,7 @@ import subprocess
 
 import numpy
 
-# What takes long and adds no kind of number to a page.
+# Without refinement, which takes long and adds no kind of number to a page.
 QUICK = ("--bank.refine", "none")
 HOSTILE_STATE = "<script>window.hostile=1</script>"
 HOSTILE_MODE = "<img src=x onerror='window.hostile=5'> %{y} &lt;"
@@ -68,7 +68,7 @@ def rows(file, run):
 
 
 def held_out(file):
-    """Names of the runs of an open archive that were held out."""
+    """Names of the held-out runs of an open archive."""
     return [row["run"].decode() for row in file["evaluation/summary"][:] if row["filter"] == b"bank" and row["role"] == b"test" and row["run"] != b"*"]
 
 
@@ -78,11 +78,11 @@ def drive(modebank):
                         "--mixture.components", "4", "--mixture.restarts", "1")
 
 
-GUARD_BORDER = 0.4  # of the input: no input lies within 0.1 of it
+GUARD_BORDER = 0.4  # in units of the input; no input is within 0.1 of it
 
 
 def guard(modebank):
-    """A hybrid system of two modes, the second where u > GUARD_BORDER; switches learn to see that."""
+    """A hybrid system of two modes, the second where u > GUARD_BORDER. Transitions learn this dependence."""
     folder = modebank.work / "guard"
     folder.mkdir(exist_ok=True)
     generator = numpy.random.default_rng(1)
@@ -100,7 +100,7 @@ def guard(modebank):
 
 
 def hostile(modebank):
-    """Two runs in one file whose names, channels and units are made to break out of a page."""
+    """Two runs in one file with names, channels and units that attack a page."""
     folder = modebank.work / "hostile"
     folder.mkdir(exist_ok=True)
     quote = lambda text: '"' + text.replace('"', '""') + '"'
@@ -130,7 +130,7 @@ def study(modebank, data):
 
 
 def large_study(modebank):
-    """Of 200 runs over short data: 50 settings with four seeds each."""
+    """A study of 200 runs over short data: 50 settings with four seeds each."""
     data, folder, config = modebank.work / "short", modebank.work / "large_study", modebank.work / "large_study.ini"
     modebank("simulate", modebank.source / "configs/simulate_ice.ini", "--simulate.output", data, "--simulate.runs", "4", "--simulate.samples", "200")
     text = (modebank.source / "configs/demo.ini").read_text().replace("components = 1..8", "restarts = 1")

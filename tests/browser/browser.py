@@ -1,4 +1,4 @@
-"""Headless Chromium as the report's tests use it: every page it opens is checked for console errors and requests."""
+"""Headless Chromium for the report's tests. Every page is checked for console errors and requests."""
 import base64
 import json
 import pathlib
@@ -10,7 +10,7 @@ from selenium.webdriver.chrome.service import Service
 
 CHROMIUM = "/usr/bin/chromium"
 DRIVER = "/usr/bin/chromedriver"
-PATIENCE_S = 600  # a page that is waited for longer is broken, however slow the machine is
+PATIENCE_S = 600  # a page that takes longer is broken, even on a slow machine
 
 
 class Browser:
@@ -25,7 +25,7 @@ class Browser:
         options.set_capability("goog:loggingPrefs", {"performance": "ALL", "browser": "ALL"})
         self.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
         self.driver.set_script_timeout(PATIENCE_S)
-        # A page draws what is out of sight when it has nothing else to do; here it would do so while the next test waits.
+        # A page draws figures out of sight when it is idle; in these tests that would happen during the next test.
         self.cdp("Page.addScriptToEvaluateOnNewDocument", source="window.requestIdleCallback = () => 0;")
         self.size(width, height)
 
@@ -33,7 +33,7 @@ class Browser:
         self.driver.quit()
 
     def size(self, width, height):
-        """Of the window's inside, as a phone has it, too."""
+        """Sets the size of the window's inside, for example that of a phone."""
         self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
 
     def cdp(self, command, **parameters):
@@ -46,7 +46,7 @@ class Browser:
         return self.driver.execute_script(script, *arguments)
 
     def wait(self, script, *arguments, seconds=PATIENCE_S, what=None):
-        """Until the script's value is true; returns it."""
+        """Waits until the script's value is true and returns it."""
         end = time.monotonic() + seconds
         while True:
             value = self.run(script, *arguments)
@@ -57,7 +57,7 @@ class Browser:
             time.sleep(0.05)
 
     def wait_still(self, expression):
-        """Until the expression's value is the same for ten frames."""
+        """Waits until the expression's value is the same for ten frames."""
         self.driver.execute_async_script(f"""
             const done = arguments[0], value = () => {expression};
             let last = value(), same = 0;
@@ -70,7 +70,7 @@ class Browser:
             requestAnimationFrame(look);""")
 
     def open(self, page, seconds=PATIENCE_S):
-        """Opens a file and waits until the page says it has drawn itself; returns the seconds that took."""
+        """Opens a file and waits until the page is drawn; returns the seconds that this took."""
         self.messages()
         start = time.monotonic()
         self.driver.get(pathlib.Path(page).resolve().as_uri())
@@ -79,7 +79,7 @@ class Browser:
         return time.monotonic() - start
 
     def draw_all(self, within="main", seconds=PATIENCE_S):
-        """Scrolls through the page, or one part of it, until every plot is drawn; plots draw when they come near the window. Returns how many."""
+        """Scrolls through the page, or one part of it, until every plot is drawn; plots are drawn near the window. Returns their number."""
         end = time.monotonic() + seconds
         while True:
             pending = self.run("""
@@ -95,7 +95,7 @@ class Browser:
         return self.run("return [...document.querySelectorAll('div.plot')].filter((p) => p.dataset.drawn).length")
 
     def messages(self):
-        """Console errors and requests to anywhere but this file since the last call."""
+        """Console errors, and requests to anything except this file, since the last call."""
         errors = [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
         requests = []
         for entry in self.driver.get_log("performance"):
@@ -107,7 +107,7 @@ class Browser:
         return errors, requests
 
     def files_requested(self):
-        """Files other than the page that it refers to."""
+        """Other files to which the page refers."""
         return self.run("return performance.getEntriesByType('resource').map((e) => e.name).filter((n) => !/^(data|blob):/.test(n))")
 
     def screenshot(self, name, whole=True):
@@ -120,7 +120,7 @@ class Browser:
         path.write_bytes(base64.b64decode(shot["data"]))
         return path
 
-    # Mouse events go through the protocol, as a user's would.
+    # Mouse events go through the protocol, like a user's.
     def mouse(self, kind, x, y, **more):
         self.cdp("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
@@ -145,7 +145,7 @@ class Browser:
                      **({"text": "\r"} if key == "Enter" and kind == "keyDown" else {}))
 
     def box(self, selector):
-        """Of the first element that fits, in the window, scrolled into it."""
+        """The box in the window of the first matching element, which is scrolled into view."""
         return self.run("""
             const element = document.querySelector(arguments[0]);
             element.scrollIntoView({block: 'center'});

@@ -1,4 +1,4 @@
-"""The page of two runs, and files that no page is made of."""
+"""The page of two runs, and files from which no page can be made."""
 import shutil
 import unittest
 
@@ -39,7 +39,7 @@ class ComparePage(PageTest):
         drawn = session.browser.run(f"return Object.fromEntries({MARKS}.filter((mark) => mark.name).map((mark) => [mark.name, mark.x]))")
         for letter, name in (("A", "demo"), ("B", "one_mode")):
             with h5py.File(session.made[name]) as file:
-                theta = file["bank/A"][:, 0, 0]  # of the newest sample
+                theta = file["bank/A"][:, 0, 0]  # coefficient of the newest sample
             self.assertEqual(len(drawn[f"modes of {letter}"]), len(theta))
             for shown, stored in zip(drawn[f"modes of {letter}"], theta):
                 self.assertAlmostEqual(shown, stored, places=12)
@@ -52,8 +52,8 @@ class ComparePage(PageTest):
         self.open(session.modebank.page("compare", session.made["demo"], session.made["one_mode"]))
         first, second = (pooled(session.made[name])["bank", "test"]["log_score"] for name in ("demo", "one_mode"))
         text = session.browser.run("return document.getElementById('verdict').textContent")
-        self.assertRegex(text, rf"On 6 held-out runs that both hold, .*by {abs(second - first):.3f} ± 0\.\d+ nats per sample")
-        self.assertIn("scores are equal", text)  # folded: the competitors of both are the same
+        self.assertRegex(text, rf"On 6 held-out runs that both have, .*by {abs(second - first):.3f} ± 0\.\d+ nats per sample")
+        self.assertIn("scores are equal", text)  # folded, because both have the same competitors
 
     def test_three_runs(self):
         self.assert_whole(session.modebank.page("compare_three", session.made["demo"], session.made["one_mode"], session.made["no_truth"]), COMPARE_SECTIONS)
@@ -67,7 +67,7 @@ class ComparePage(PageTest):
 
 
 class Refusals(unittest.TestCase):
-    """A broken, foreign or partial archive: what is wrong is said and nothing is written."""
+    """A broken, foreign or partial archive: the fault is reported and nothing is written."""
 
     def refuse(self, path, status, *words):
         page = session.work / "refused.html"

@@ -1,4 +1,4 @@
-"""What the page of a run shows before any scrolling, and that its words are explained."""
+"""The page of a run before any scrolling, and the explanations of its words."""
 import colorsys
 import subprocess
 
@@ -8,7 +8,7 @@ from session import PageTest, pooled
 
 MAY_BE_USED = {"calibrated": "use it", "overconfident": "do not rely on it", "underconfident": "usable, wider than need be", "undecided": "cannot tell yet"}
 DESKTOP, PHONE = (1440, 900), (390, 844)
-# Headings that say what they are.
+# Headings that need no definition.
 PLAIN = {"", "Runs", "Run", "Filter", "Samples", "Shape", "Iterations", "Converged", "Status", "Setting", "Value", "Default", "File", "Bytes", "SHA-256",
          "from \\ to", "to", "others"}
 
@@ -45,7 +45,7 @@ class FirstScreen(PageTest):
                 self.assert_quiet()
 
     def commands_are_not_torn(self, name):
-        """No line ends behind the hyphens of an option."""
+        """No line breaks after the hyphens of an option."""
         tops = session.browser.run("""
             return [...document.querySelectorAll('#next code')].flatMap((code) => [...code.textContent.matchAll(/--[\\w.]+/g)].map(({0: word}) => {
               const walk = document.createTreeWalker(code, NodeFilter.SHOW_TEXT), range = document.createRange();
@@ -54,7 +54,7 @@ class FirstScreen(PageTest):
               range.setEnd(walk.currentNode, walk.currentNode.data.indexOf(word) + word.length);
               return [word, new Set([...range.getClientRects()].map((box) => box.top)).size];
             }));""")
-        if name == "demo":  # others may end without an option
+        if name == "demo":  # the others may end without an option
             self.assertTrue(tops)
         for word, lines in tops:
             self.assertEqual(lines, 1, word)
@@ -79,7 +79,7 @@ class FirstScreen(PageTest):
         self.assertIn(f"{competitor}: {best['rmse'].ravel()[0]:.4g} rad/s", shown["RMSE one step ahead"][1])
         screen = session.modebank("show", session.made["demo"]).stdout
         told = session.browser.run("return document.querySelector('#next').textContent").removeprefix("Next: ")
-        # A page may be opened elsewhere than where the archive and the program are.
+        # A page may be opened in another folder than those of the archive and the program.
         here = screen.replace(str(session.made["demo"]), "ARCHIVE").replace(str(session.modebank.program), "modebank")
         self.assertIn("".join(told.split()), "".join(here.replace("`", "").split()))
 

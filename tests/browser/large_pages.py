@@ -1,4 +1,4 @@
-"""Pages of much: a study of 200 runs, a run of a million samples (`make pages-large`)."""
+"""Large pages: a study of 200 runs, a run of a million samples (`make pages-large`)."""
 import os
 import pathlib
 import sys
@@ -15,7 +15,7 @@ from study_page import STUDY_SECTIONS
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
 import page_drag  # noqa: E402
 
-# Lowest and highest of the measurements that are drawn of a stretch of time.
+# Smallest and largest of the measurements drawn in a part of the time.
 EXTREMES = """
     const [span, done] = arguments, it = document.querySelector('#data div.plot').timePlot;
     it.state.zoom(span).then(() => it.contents(it.rows(), it.plot.clientWidth)).then(([{content}]) => {
@@ -38,7 +38,7 @@ class LargePages(PageTest):
             settings.setdefault(tuple(row[key].item() for key in ("window.length", "mixture.components", "mixture.covariance")), []).append(row)
         means = {setting: numpy.mean([row["bank_test_log_score"] for row in rows]) for setting, rows in settings.items()}
         ranked = sorted(means, key=means.get, reverse=True)
-        # What the verdict calls the best stands first in the table, and no rival is ahead of it.
+        # The verdict's best run is first in the table, and no rival is ahead of it.
         first = session.browser.run("return [...document.querySelectorAll('#study-table tbody tr:first-child td')].slice(0, 3).map((td) => td.textContent)")
         self.assertEqual(first, [f"{ranked[0][0]:g}", f"{ranked[0][1]:g}", ranked[0][2].decode()])
         rivals = self.table("The next best settings")
@@ -54,7 +54,7 @@ class LargePages(PageTest):
 
     def test_a_million_samples(self):
         with unittest.mock.patch.dict(os.environ):
-            os.environ.pop("MODEBANK_DATA", None)  # the log is its own
+            os.environ.pop("MODEBANK_DATA", None)  # for its own log
             page = page_drag.make_page(session.modebank.program, session.work / "million")
         self.assert_whole(page, RUN_SECTIONS)
         session.browser.screenshot("million", whole=False)
@@ -69,6 +69,6 @@ class LargePages(PageTest):
         first = 2 * page_drag.SAMPLES // 3
         last = first + 99
         low, high, points = session.browser.driver.execute_async_script(EXTREMES, [float(times[first]), float(times[last])])
-        seen = numpy.float32(state[first - 2:last + 3])  # a line goes on to the edge
+        seen = numpy.float32(state[first - 2:last + 3])  # lines continue to the edge
         self.assertEqual((low, high, points), (seen.min(), seen.max(), len(seen)))
         self.assert_quiet()

@@ -1,4 +1,4 @@
-"""Looking around in time: the plot of a run, what leads it, its link and the files it gives."""
+"""Navigation in time: the plot of a run, its controls, its link and its downloads."""
 import base64
 import csv
 import io
@@ -18,7 +18,7 @@ READOUT = """
       head.querySelector('.panel-title').textContent,
       Object.fromEntries([...head.querySelectorAll('li')].map((li) => [
         li.childNodes[1].textContent, JSON.parse(li.querySelector('.number')?.dataset.value ?? 'null')]))]));"""
-# Keeps what a page gives to be saved instead of saving it.
+# Intercepts the files that a page would save.
 CATCH = """
     window.caught = {};
     URL.createObjectURL = (blob) => { window.last = blob; return '#'; };
@@ -35,13 +35,13 @@ class LookingAround(PageTest):
         session.browser.draw_all("#data")
 
     def stored(self, *names):
-        """Of the run that is shown."""
+        """The data of the visible run."""
         with h5py.File(session.made["demo"]) as file:
             run = session.browser.run(f"return {PLOT}.timePlot.state.current.name")
             return [file[name][archives.rows(file, run)] for name in names]
 
     def wait_range(self, what, test):
-        """Until the range that is shown passes; returns it."""
+        """Waits until the visible range passes the test, and returns it."""
         end = time.monotonic() + PATIENCE_S
         while not test(shown := self.plot_range("data")):
             self.assertLess(time.monotonic(), end, f"waited for {what}: {shown}")
@@ -90,7 +90,7 @@ class LookingAround(PageTest):
         nis, innovation, prediction, probability, spread = self.stored(
             *(f"evaluation/bank/{name}" for name in ("nis", "innovation", "prediction", "mode_probability", "innovation_covariance")))
         area = self.plot_area("data")
-        k = 148  # onto it: an event's place is a whole pixel, less than half a sample
+        k = 148  # an event has whole pixels, which are less than half a sample
         session.browser.move(area["left"] + (times[k] - times[0]) / (times[-1] - times[0]) * area["width"] + 0.5, area["top"] + 20)
         session.browser.wait(f"return {PLOT}.timePlot.state.at !== null")
         self.assertAlmostEqual(self.crosshair(), times[k], places=6)
@@ -107,7 +107,7 @@ class LookingAround(PageTest):
         self.assertEqual(shown["innovation of wz [rad/s]"]["innovation"], single(innovation[k, 0]))
         self.assertEqual(shown["normalised innovation squared (NIS)"]["NIS"], single(nis[k]))
         likeliest = max(shown["probability of the modes"].values())  # the driver sorts by name
-        self.assertAlmostEqual(likeliest, probability[k].max(), delta=2e-5)  # a share in sixteen bits
+        self.assertAlmostEqual(likeliest, probability[k].max(), delta=2e-5)  # shares have sixteen bits
         self.assertIn("rad/s", session.browser.run("return document.querySelector('#data .readout').textContent"))
 
     def test_keys_choose_a_window_and_lead_the_crosshair(self):

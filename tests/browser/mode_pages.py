@@ -1,4 +1,4 @@
-"""Modes on a run's page against what is known of them: labels, and the border that a hybrid system switches at."""
+"""Modes on a run's page compared with known labels, and with the border at which a hybrid system switches."""
 import re
 
 import archives
@@ -10,7 +10,7 @@ from session import PageTest
 
 class ModePages(PageTest):
     def test_confusion_counts_the_samples_of_each_label(self):
-        """Counted here from what the archive holds of every sample, not from its own table."""
+        """Counted from the archive's samples, not from its own table."""
         self.open(session.modebank.page("demo", session.made["demo"]))
         counts = {}
         with h5py.File(session.made["demo"]) as file:
@@ -31,10 +31,10 @@ class ModePages(PageTest):
                 self.assertAlmostEqual(share, expected[mode] / sum(expected), places=12)
 
     def test_the_guard_is_drawn_where_it_is(self):
-        """The mode of every input is known: the second where u is above the border, no input near it."""
+        """The mode of every input is known: the second above the border, which no input is near to."""
         self.assert_whole(session.modebank.page("guard", session.made["guard"]), RUN_SECTIONS)
         with h5py.File(session.made["guard"]) as file:
-            second = int(file["bank/B"][:].ravel().argmin())  # the one of gain -0.3
+            second = int(file["bank/B"][:].ravel().argmin())  # the mode with gain -0.3
         guard, traces = session.browser.run("""
             const plot = [...document.querySelectorAll('#bank div.plot')].find((p) => p.ariaLabel.startsWith('Which states and inputs'));
             const [{x: axis, marks}] = plot.drawing.panels;

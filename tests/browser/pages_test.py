@@ -14,7 +14,7 @@ import unittest
 
 
 def leave(reason):
-    """Skips the test, or fails in the nightly run, where every tool is installed."""
+    """Skips the test; in the nightly run, where every tool is installed, it fails."""
     print(f"SKIPPED: {reason}")
     sys.exit(1 if os.environ.get("MODEBANK_NIGHTLY") == "1" else 77)
 

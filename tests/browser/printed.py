@@ -1,4 +1,4 @@
-"""What `chromium --print-to-pdf` puts on paper: every figure as the screen shows it, and no empty sheet."""
+"""Pages printed by `chromium --print-to-pdf`: every figure as on the screen, and no empty sheet."""
 import base64
 import hashlib
 import shutil
@@ -11,8 +11,8 @@ from session import PageTest
 
 DPI = 96
 ROWS, COLUMNS = 12, 24  # cells of a figure whose ink is compared
-SCREEN = (800, 600)     # of the window that Chromium prints from
-# In two corners of every figure that is seen a mark in a colour of its own: 255, number of the figure, 1 or 2.
+SCREEN = (800, 600)     # size of the window from which Chromium prints
+# Marks two corners of every visible figure with a unique colour: 255, number of the figure, 1 or 2.
 FIGURES = "[...document.querySelectorAll('div.plot, canvas.picture, svg.graph')].filter((it) => it.checkVisibility())"
 MARKS = """addEventListener('beforeprint', () => FIGURES.forEach((it, i) => {
   const end = 'right:0;bottom:0';
@@ -44,7 +44,7 @@ PIXELS = """
 
 
 def ink(pixels):
-    """Share of each cell that is not the white of paper."""
+    """Share of each cell that is not white."""
     dark = (pixels.min(2) < 215).astype(float)
     rows = numpy.array_split(dark, ROWS)
     return numpy.array([[cell.mean() for cell in numpy.array_split(row, COLUMNS, 1)] for row in rows])
@@ -67,9 +67,9 @@ def sheets_of(pdf):
 
 class Printed(PageTest):
     def print_page(self, made):
-        """Sheets of the page as headless Chromium prints it by itself, and the page that it printed."""
+        """Sheets that headless Chromium prints of the page, and the printed page."""
         page, text = session.work / f"printed_{made.name}", made.read_text(encoding="utf-8")
-        allowed = base64.b64encode(hashlib.sha256(MARKS.encode()).digest()).decode()  # by the page's policy
+        allowed = base64.b64encode(hashlib.sha256(MARKS.encode()).digest()).decode()  # allowed by the page's policy
         for old, new in (("script-src ", f"script-src 'sha256-{allowed}' "), ("</body>", f"<script>{MARKS}</script></body>")):
             self.assertIn(old, text)
             text = text.replace(old, new, 1) if old != "</body>" else new.join(text.rsplit(old, 1))
@@ -80,7 +80,7 @@ class Printed(PageTest):
         return sheets_of(pdf), page
 
     def printed_figure(self, sheets, i):
-        """What lies between the figure's two marks."""
+        """The pixels between the figure's two marks."""
         for sheet in sheets:
             corners = [numpy.argwhere((sheet == (255, i, corner)).all(2)) for corner in (1, 2)]
             if all(len(places) for places in corners):
@@ -108,7 +108,7 @@ class Printed(PageTest):
         try:
             self.open(page)
             session.browser.draw_all()
-            session.browser.run("document.getElementById('contents').remove()")  # not on paper
+            session.browser.run("document.getElementById('contents').remove()")  # not printed
             figures = session.browser.run(f"""return {FIGURES}.map((it) => {{
                 const box = it.getBoundingClientRect();
                 return [it.getAttribute('aria-label') || it.getAttribute('class'), {{x: box.x + scrollX, y: box.y + scrollY, width: box.width, height: box.height}}];}})""")

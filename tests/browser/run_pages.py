@@ -13,7 +13,7 @@ RUN_SECTIONS = ["verdict", "data", "bank", "filter", "windows", "selection", "or
 
 class RunPages(PageTest):
     def test_every_section_of_every_page_draws(self):
-        """Those of the demo and of hostile names, too: in tests below."""
+        """Pages of the demo and of hostile names are in tests below."""
         for name in ("one_mode", "no_truth", "none_held_out", "ice", "drive"):
             if name not in session.made:
                 continue
@@ -114,7 +114,7 @@ class RunPages(PageTest):
                 self.same(line[heading][1], row[key])
 
     def window_point(self):
-        """Where some window of the flat cloud is drawn, in the window's pixels, and which one it is."""
+        """The place of a window in the flat cloud, in pixels of the browser's window, and its number."""
         return session.browser.run("""
             const plot = document.querySelector('#windows div.plot');
             plot.scrollIntoView({block: 'center'});
@@ -176,7 +176,7 @@ class RunPages(PageTest):
             session.browser.size(1200, 900)
 
     def check_print(self):
-        """It prints, and a figure that was drawn for the window is made as narrow as a sheet is, before anything draws it anew."""
+        """When a page is printed, a figure drawn for the window is reduced to the sheet's width before it is drawn anew."""
         pdf = session.browser.cdp("Page.printToPDF", printBackground=True)["data"]
         self.assertGreater(len(pdf), 100_000)
         sheet = 700
@@ -190,7 +190,7 @@ class RunPages(PageTest):
         self.assertLessEqual(max(shown for shown, _ in widths), sheet)
 
     def test_a_lines_colour_is_its_legends(self):
-        """In light and in dark, of SVG and of canvas."""
+        """In light and in dark, for SVG and canvas."""
         page = session.modebank.page("demo", session.made["demo"])
         for scheme in ("light", "dark"):
             session.browser.scheme(scheme)
@@ -209,7 +209,7 @@ class RunPages(PageTest):
             self.assertEqual(lines, keys)
             told = {tuple(colour) for colour in modes}
             same = sum(tuple(pixel) in told for pixel in strip)
-            self.assertGreater(same, 0.8 * len(strip))  # the rest are edges between modes, and the names beside
+            self.assertGreater(same, 0.8 * len(strip))  # the rest are edges between modes, and the names beside them
         session.browser.scheme("light")
 
     def test_keyboard_and_names_for_screen_readers(self):
@@ -247,7 +247,7 @@ class RunPages(PageTest):
         self.assert_quiet()
 
     def test_scripts_of_others_do_not_run(self):
-        """Nor may a page that somebody has written one into."""
+        """A page to which somebody has added a script must not run it."""
         page = session.work / "written_into.html"
         text = session.modebank.page("demo", session.made["demo"]).read_text(encoding="utf-8")
         page.write_text(text.replace("</body>", "<script>window.hostile = 7</script><img src='data:,' onerror='window.hostile = 8'></body>"), encoding="utf-8")

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs tests of the pages' scripts, bundled as the pages are: scripts_test.sh TEST.js... Without node it skips them, or
-# fails in the nightly run, where every tool is installed.
+# Runs tests of the pages' scripts, bundled like the pages: scripts_test.sh TEST.js... Without node it skips them; in
+# the nightly run, where every tool is installed, it fails instead.
 set -eu
 if ! command -v node >/dev/null; then
   echo "SKIPPED: node is absent: apt-get install nodejs"

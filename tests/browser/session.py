@@ -1,4 +1,4 @@
-"""What all tests of the pages share: the program, the archives, the browser, and how a page is read."""
+"""Common parts of all page tests: the program, the archives, the browser, and functions that read a page."""
 import json
 import math
 import os
@@ -10,19 +10,19 @@ import h5py
 from browser import Browser
 
 modebank = browser = data = work = None
-# Pairs of texts of a figure that lie over each other; tilted ones have boxes that are larger than they are.
+# Pairs of texts in a figure that overlap. Tilted texts are left out, because their boxes are too large.
 OVERLAPS = """
     const over = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 2;
     return [...document.querySelectorAll('.chart svg')].flatMap((svg) => {
       const texts = [...svg.querySelectorAll('text:not([transform^="rotate(-45"])')].map((it) => [it.textContent, it.getBoundingClientRect()]);
       return texts.flatMap(([a, p], i) => texts.slice(i + 1).filter(([, q]) => over(p, q)).map(([b]) => [a, b]));
     });"""
-# A colour as the browser computes it, in bytes.
+# A computed colour in bytes.
 BYTES = "const bytes = (colour) => { const v = colour.match(/[\\d.]+/g).slice(0, 3).map(Number); return v.map((x) => Math.round(colour.startsWith('color') ? 255 * x : x)); };"
 
 
 class Made(dict):
-    """Archives by name, each made when it is first asked for."""
+    """Archives by name, each made on first use."""
 
     recipes = {
         "demo": lambda name: archives.demo(modebank, data, name, "--mixture.components", "1..4"),
@@ -72,7 +72,7 @@ def stop():
 
 class PageTest(unittest.TestCase):
     def needs(self, present, absence):
-        """Skips the test where a tool is absent, or fails in the nightly run, where every tool is installed."""
+        """Skips the test if a tool is missing; in the nightly run, where every tool is installed, it fails."""
         if not present:
             (self.fail if os.environ.get("MODEBANK_NIGHTLY") == "1" else self.skipTest)(absence)
 
@@ -96,7 +96,7 @@ class PageTest(unittest.TestCase):
         return plots
 
     def assert_legible(self, *widths):
-        """No label of a figure lies over another, on pages so wide."""
+        """Labels of figures do not overlap on pages of these widths."""
         for width in widths:
             browser.size(width, 900)
             browser.wait("return [...document.querySelectorAll('.chart')].every((plot) => !plot.layout || plot.layout.width === plot.clientWidth)", what="figures to fit")
@@ -114,11 +114,11 @@ class PageTest(unittest.TestCase):
         return [{name: (text, json.loads(value) if value is not None else None) for name, text, value in row} for row in found]
 
     def plot_range(self, section):
-        """Of a plot over time: what it shows, from and to."""
+        """The visible range of a time plot: from and to."""
         return browser.run("return [...document.querySelector(arguments[0] + ' div.plot').timePlot.range]", f"#{section}")
 
     def plot_area(self, section):
-        """The inside of its first panel, in the window."""
+        """The inside of its first panel, in pixels of the window."""
         return browser.run("""
             const plot = document.querySelector(arguments[0] + ' div.plot'), canvas = plot.querySelector('canvas');
             canvas.scrollIntoView({block: 'center'});
@@ -126,7 +126,7 @@ class PageTest(unittest.TestCase):
             return {left: box.x + from, top: box.y, width: to - from, height: box.height};""", f"#{section}")
 
     def same(self, shown, stored):
-        """A page's exact value and the archive's; what is not finite is null there."""
+        """Compares a page's exact value with the archive's; values that are not finite are null on the page."""
         if shown is None:
             self.assertFalse(math.isfinite(stored))
         else:

@@ -19,7 +19,7 @@ class StudyPage(PageTest):
         return [row[name][1] for row in self.rows()]
 
     def rows(self):
-        """By the columns' names in the study, which the headings say in words."""
+        """A column by its name in the study; the headings have it in words."""
         names = session.browser.run("return [...document.querySelectorAll('#study-table thead tr:first-child th')].map((th) => th.dataset.column)")
         table = self.table("Every run")
         return [dict(zip(names, row.values())) for row in table]
@@ -68,14 +68,14 @@ class StudyPage(PageTest):
         self.assertEqual(len(rivals), 8)
         for rival, row in zip(rivals, stored[order[1:9]]):
             gain = rival["Best is ahead by [nats/sample]"]
-            # The mean difference over the same samples is that of the scores.
+            # The mean difference over the same samples equals the difference of scores.
             self.assertAlmostEqual(gain[1], float(best["bank_test_log_score"] - row["bank_test_log_score"]), places=9)
             self.assertIn("±", gain[0])
             self.assertEqual(rival["error from"][0], "6 runs")
 
     def test_sorting(self):
         self.open(self.page())
-        self.assertEqual(self.column("bank_test_log_score"), sorted(self.stored()["bank_test_log_score"], reverse=True))  # as it opens
+        self.assertEqual(self.column("bank_test_log_score"), sorted(self.stored()["bank_test_log_score"], reverse=True))  # the initial order
         self.sort_by("bank_test_log_score")
         self.assertEqual(self.column("bank_test_log_score"), sorted(self.stored()["bank_test_log_score"]))
         self.sort_by("bank_test_log_score")
@@ -141,5 +141,5 @@ class StudyPage(PageTest):
         self.assertEqual([row["Log score [nats]"][1] for row in rows], [best["bank_test_log_score"]])
         self.open(self.page())
         session.browser.run("document.querySelector('#study-table tbody tr').click()")
-        self.assertIn(best["key"].decode(), session.browser.run("return document.getElementById('run-detail').textContent"))  # the best stands first
+        self.assertIn(best["key"].decode(), session.browser.run("return document.getElementById('run-detail').textContent"))  # the best run is first
         self.assert_quiet()

@@ -27,7 +27,7 @@ BucketExtremes bucket_extremes(const Eigen::Ref<const Eigen::VectorXd>& values, 
   visit_buckets(values.size(), bucket, [&](Eigen::Index i, Eigen::Index first, Eigen::Index count) {
     double &low = result.low(i), &high = result.high(i);
     for (const double value : values.segment(first, count)) {
-      low = std::fmin(low, value);  // NaN loses against any number
+      low = std::fmin(low, value);  // fmin and fmax ignore NaN
       high = std::fmax(high, value);
     }
   });

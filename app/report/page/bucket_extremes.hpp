@@ -4,8 +4,8 @@
 
 namespace modebank {
 
-/// Smallest and largest value of every `bucket` consecutive ones (the last bucket may have fewer): a drawing of them
-/// shows every extreme of the series. NaN entries are left out; a bucket of nothing else is NaN.
+/// Smallest and largest of every `bucket` consecutive values (the last bucket may have fewer), so that a drawing shows
+/// every extreme of the series. NaN is ignored; a bucket with nothing else is NaN.
 struct BucketExtremes {
   Eigen::VectorXd low, high;  ///< ceil(N / bucket)
 };
@@ -13,7 +13,7 @@ struct BucketExtremes {
 /// Throws std::invalid_argument unless bucket >= 1.
 BucketExtremes bucket_extremes(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index bucket);
 
-/// Their means instead, for shares that shall go on adding up to one.
+/// Means of the buckets, for shares, which must continue to sum to one.
 Eigen::VectorXd bucket_means(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index bucket);
 
 }  // namespace modebank

@@ -22,7 +22,7 @@ namespace {
 using nlohmann::json;
 using Runs = std::vector<ComparedRun>;
 
-/// Keys whose values differ, in the table's order; a key that one of them does not know has an empty value there.
+/// Keys whose values differ, in the table's order; the value of a key that a run's version lacks is empty.
 json configuration_differences(const Runs& runs) {
   std::vector<std::map<std::string, std::string>> resolved;
   for (const ComparedRun& run : runs) resolved.push_back(resolved_values(run.archive.config));
@@ -40,7 +40,7 @@ json configuration_differences(const Runs& runs) {
   return differences;
 }
 
-/// A score of the summary; `column` says which of two is better (goal_of).
+/// A score of the summary; `column` determines which of two values is better (goal_of).
 struct ComparedScore {
   const char *name, *column;
   double (*of)(const SummaryRow&);
@@ -89,7 +89,7 @@ json scores_of(const Runs& runs) {
   return list;
 }
 
-/// What the gain of one over another says, in a sentence.
+/// A sentence on the gain of one run over another.
 std::string gain_sentence(const PairedGain& gain, const std::string& first, const std::string& other) {
   if (gain.gain == 0.0) return fmt::format("the banks of {} and {} predict equally well.", first, other);
   const std::string &ahead = gain.gain > 0 ? other : first, &behind = gain.gain > 0 ? first : other;
@@ -101,12 +101,12 @@ std::string gain_sentence(const PairedGain& gain, const std::string& first, cons
   if (gain.exceeds() || gain.falls_short())
     return fmt::format("the bank of {} predicts better than that of {},{}.", ahead, behind, size);
   return fmt::format(
-      "it cannot be told whether {} or {} predicts better: {} is ahead{}, which does not exceed what chance "
-      "makes ({:.3f}).",
+      "it cannot be told whether {} or {} predicts better: {} is ahead{}, which does not exceed the {:.3f} that chance "
+      "can explain.",
       first, other, ahead, size, gain.margin);
 }
 
-/// Whether the bank of run k predicts better than the first's, with what it is known by.
+/// Whether the bank of run k predicts better than the first's, with the reason.
 json calibration_of(const Runs& runs, std::size_t k) {
   const std::string letter(1, static_cast<char>('A' + k));
   const ArchiveGain found = gain_between(runs[k].archive, runs[0].archive);
@@ -115,10 +115,10 @@ json calibration_of(const Runs& runs, std::size_t k) {
                   {"margin", number(found.gain.margin)},
                   {"told", found.gain.exceeds() || found.gain.falls_short()}};
   if (found.runs == 0)
-    verdict["text"] = fmt::format("A and {} do not compare: {}.", letter, found.difference);
+    verdict["text"] = fmt::format("A and {} cannot be compared: {}.", letter, found.difference);
   else
     verdict["text"] =
-        fmt::format("On {} {} run{} that both hold, {}", found.runs, words_for(judged_role(runs[0].archive)),
+        fmt::format("On {} {} run{} that both have, {}", found.runs, words_for(judged_role(runs[0].archive)),
                     found.runs == 1 ? "" : "s", gain_sentence(found.gain, "A", letter));
   return verdict;
 }
@@ -169,7 +169,8 @@ json run_json(const ComparedRun& run, PageArrays& arrays, std::size_t room) {
 }  // namespace
 
 Page compare_page(const std::vector<ComparedRun>& runs, const ReportConfig& options) {
-  constexpr double bytes_per_MB = 1e6, share_of_signals = 0.8;  // of the page, for all together
+  constexpr double bytes_per_MB = 1e6,
+                   share_of_signals = 0.8;  // share of the page for the signals of all runs together
   const auto room =
       static_cast<std::size_t>(share_of_signals / static_cast<double>(runs.size()) * options.size_mb * bytes_per_MB);
   Page page;

@@ -9,16 +9,16 @@
 
 namespace modebank::app::report {
 
-/// One of the runs that are compared.
+/// One of the compared runs.
 struct ComparedRun {
   const Archive& archive;
   std::string name;
 };
 
-inline constexpr std::size_t most_compared = 6;  ///< more have no letters and colours of their own
+inline constexpr std::size_t most_compared = 6;  ///< the number of letters and colours for runs
 
-/// The page that shows two or more archives together: which predicts better, how their configurations differ, their
-/// modes matched with those of the first, their scores side by side, their plots one over the other.
+/// The page that compares two or more archives: the better predictor, different settings, modes matched with those of
+/// the first, scores side by side, plots in one figure.
 Page compare_page(const std::vector<ComparedRun>& runs, const ReportConfig& options);
 
 }  // namespace modebank::app::report

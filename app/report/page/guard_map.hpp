@@ -8,12 +8,12 @@
 
 namespace modebank::app::report {
 
-/// Which share of the time a bank whose switches see state and input is in each mode, if these stay at `z`: what is
-/// stationary under T there. K.
+/// Share of the time in each mode (K) while states and inputs stay at `z`, for state-dependent transitions: the
+/// stationary distribution of T at z.
 Eigen::VectorXd settled_shares(const Bank& bank, const Eigen::VectorXd& z);
 
-/// Which states and inputs belong to which mode, over the one or two features that move the switches most, others at
-/// their training mean; with the samples that the bank was run on. Null for a bank of constant T.
+/// Map of the modes over the one or two features with the largest effect on the transitions; other features are at
+/// their training mean. With the samples on which the bank ran. Null for a constant T.
 nlohmann::json guard_of(const Archive& archive);
 
 }  // namespace modebank::app::report

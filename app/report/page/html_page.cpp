@@ -19,7 +19,8 @@ std::string escaped_html(std::string text) {
 
 namespace {
 
-/// JSON within a script element: no "<" in it can end or comment out the element. Bytes that are no UTF-8 are replaced.
+/// JSON within a script element: no "<" in it can end or comment out the element. Bytes that are not UTF-8 are
+/// replaced.
 std::string json_in_script(const nlohmann::json& data) {
   std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   boost::replace_all(text, "<", "\\u003c");
@@ -34,7 +35,7 @@ void append_arrays(const PageArrays& arrays, std::string& html) {
   }
 }
 
-/// As a policy names an element's text by its hash, whose digits are hexadecimal here.
+/// Hash source of a policy: the element's hash in base64, converted from hexadecimal digits.
 std::string hash_source(std::string_view hex) {
   std::string bytes;
   for (std::size_t i = 0; i < hex.size(); i += 2)
@@ -64,7 +65,7 @@ void append_part(std::string_view name, const Page& page, std::string& html) {
 std::string page_policy(const std::vector<std::string_view>& scripts) {
   std::string runs;
   for (const std::string_view script : scripts) runs += hash_source(sha256_hex(script));
-  // Elements that are made by a script have attributes of style.
+  // Scripts set style attributes on elements that they create, so the policy allows these.
   return fmt::format(
       "default-src 'none'; script-src{}; style-src{}; style-src-attr 'unsafe-inline'; img-src data: blob:", runs,
       hash_source(sha256_hex(assets::page_css())));

@@ -9,22 +9,22 @@
 
 namespace modebank::app::report {
 
-/// One page, but for the parts that all have (web/page.html, page.css).
+/// One page, without the parts common to all (web/page.html, page.css).
 struct Page {
   std::string title;
-  nlohmann::json data;      ///< what the script draws; texts in it are shown as text, whatever they hold
-  PageArrays arrays;        ///< the large part of it
-  std::string_view script;  ///< one of assets.hpp
+  nlohmann::json data;      ///< input of the script; its texts are always displayed as text
+  PageArrays arrays;        ///< the large arrays of the data
+  std::string_view script;  ///< an asset of assets.hpp
 };
 
-/// As text between tags.
+/// Escapes text for use between tags.
 std::string escaped_html(std::string text);
 
-/// What browsers let a page with one of these scripts do (Content Security Policy): run its own scripts and use its own
-/// style, which it names by their hashes, and fetch or send nothing.
+/// Permissions of a page with one of these scripts (Content Security Policy): its own scripts and style, identified by
+/// hashes. It must neither fetch nor send anything.
 std::string page_policy(const std::vector<std::string_view>& scripts);
 
-/// The self-contained HTML file: nothing in it refers to anything outside.
+/// The self-contained HTML file, which refers to nothing outside.
 std::string html_of(const Page& page);
 
 }  // namespace modebank::app::report

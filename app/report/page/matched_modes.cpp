@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-/// A mode's parameters as the page shows them, with their errors; 0: not known.
+/// A mode's parameters as on the page, with their errors; an error of 0 is unknown.
 struct Estimates {
   Eigen::VectorXd values, errors;
 };
@@ -24,7 +24,8 @@ Estimates estimates_of(const Bank& bank, Index k) {
   Estimates estimates{motion ? mode.motion_theta : bank.theta(k), {}};
   const Eigen::VectorXd& stated = motion ? mode.motion_standard_error : mode.standard_error;
   estimates.errors = Eigen::VectorXd::Zero(estimates.values.size());
-  const bool some = std::any_of(stated.begin(), stated.end(), usable);  // the others are not identifiable then
+  const bool some =
+      std::any_of(stated.begin(), stated.end(), usable);  // parameters without an error are then unidentifiable
   for (Index i = 0; i < estimates.errors.size(); ++i) {
     if (i < stated.size() && usable(stated(i)))
       estimates.errors(i) = stated(i);
@@ -48,7 +49,7 @@ MatchedMode pair_of(const Bank& first, Index a, const Bank& second, Index b) {
   return pair;
 }
 
-/// Why parameters of the two cannot be set against each other.
+/// Reason why the parameters of two banks cannot be compared; empty if they can.
 std::string obstacle(const Bank& first, const Bank& second) {
   if (first.model != second.model) return "their models differ: " + first.model + " and " + second.model;
   if (first.theta(0).size() != second.theta(0).size() || first.state_names != second.state_names ||
@@ -57,7 +58,7 @@ std::string obstacle(const Bank& first, const Bank& second) {
   return "";
 }
 
-/// How near the modes of both banks are by their parameters: larger is nearer.
+/// Similarity of the modes of both banks by their parameters; larger is nearer.
 Eigen::MatrixXd nearness(const Bank& first, const Bank& second) {
   Eigen::MatrixXd near(first.mode_count(), second.mode_count());
   for (Index a = 0; a < near.rows(); ++a)
@@ -68,7 +69,7 @@ Eigen::MatrixXd nearness(const Bank& first, const Bank& second) {
   return near;
 }
 
-/// Whether one of two modes has more time in common with the other than with any further mode.
+/// Whether neither of two modes shares more time with a third mode of the other bank.
 bool go_together(const Eigen::MatrixXd& shared, Index a, Index b) {
   const double time = shared(a, b);
   return time > 0.0 && (time == shared.row(a).maxCoeff() || time == shared.col(b).maxCoeff());
@@ -89,7 +90,7 @@ ModeMatch match_modes(const Bank& first, const Bank& second, const Eigen::Matrix
   const bool comparable = match.difference.empty();
   if (!comparable && !match.by_time) return match;
   const Index K = first.mode_count(), L = second.mode_count(), most = std::max(K, L);
-  // Rows and columns that only fill up are worth the same with every mode.
+  // Padding rows and columns have the same merit for every mode.
   Eigen::MatrixXd merit = Eigen::MatrixXd::Zero(most, most);
   merit.topLeftCorner(K, L) = match.by_time ? shared : nearness(first, second);
   const std::vector<Index> column = best_assignment(merit);

@@ -9,30 +9,31 @@
 
 namespace modebank::app::report {
 
-/// A mode of one bank and the one of another that it is matched with.
+/// A mode of one bank and its match in another.
 struct MatchedMode {
   Eigen::Index first = -1, second = -1;  ///< -1: none
   Eigen::VectorXd
-      z;  ///< per parameter: difference over the root of both squared standard errors; empty: not comparable
+      z;  ///< per parameter: difference over the root of the sum of squared standard errors; empty: not comparable
   double distance = 0.0;                                     ///< root mean square of z
-  double shared = std::numeric_limits<double>::quiet_NaN();  ///< their time in common, 0 to 1
+  double shared = std::numeric_limits<double>::quiet_NaN();  ///< share of their time in common, 0 to 1
 
-  /// All parameters agree at 95 % together (Bonferroni).
+  /// Whether all parameters agree jointly at 95 % (Bonferroni).
   bool agree() const;
 };
 
 struct ModeMatch {
-  std::vector<MatchedMode> modes;  ///< the first bank's in order, then those that only the second has
-  bool by_time = false;            ///< matched by the time that they share, else by their parameters
-  std::string difference;          ///< why parameters cannot be compared, in words; empty: they can
+  std::vector<MatchedMode> modes;  ///< modes of the first bank in order, then the unmatched ones of the second
+  bool by_time = false;            ///< matched by common time, otherwise by parameters
+  std::string difference;          ///< reason why parameters cannot be compared; empty if they can
 };
 
-/// One to one. `shared`: K x L, the time in common of mode a of the first and mode b of the second (time_in_common).
-/// The sum over the pairs is largest. Two modes are no pair where each has more time in common with another one.
+/// Matches modes one to one such that the sum of `shared` over the pairs is largest. `shared`: K x L, the time in
+/// common of mode a of the first and mode b of the second bank (time_in_common). Two modes are not paired if each has
+/// more time in common with another one.
 ///
-/// Where `shared` is empty the parameters decide: the sum of log(1 + distance^2) is least, so that near pairs decide,
-/// whatever the far ones are. Where a standard error is not stated the spread over the mode's windows stands for it,
-/// else the parameter does not count.
+/// If `shared` is empty, the parameters are used: the sum of log(1 + distance^2) is smallest, so that near pairs count
+/// more than far ones. A missing standard error is replaced by the standard deviation over the mode's windows; without
+/// that the parameter is ignored.
 ModeMatch match_modes(const Bank& first, const Bank& second, const Eigen::MatrixXd& shared = {});
 
 }  // namespace modebank::app::report

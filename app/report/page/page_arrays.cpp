@@ -32,7 +32,7 @@ std::string deflated(const std::string& bytes) {
 
 std::size_t base64_size(std::size_t bytes) { return 4 * ((bytes + 2) / 3); }
 
-constexpr std::size_t bytes_around = 100;  // an array in the page: of the element that holds it, and of its mention
+constexpr std::size_t bytes_around = 100;  // per array: its element in the page, and the reference to it
 
 }  // namespace
 

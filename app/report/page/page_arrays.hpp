@@ -8,25 +8,25 @@
 
 namespace modebank::app::report {
 
-/// RFC 4648, section 4.
+/// Base64 by RFC 4648, section 4.
 std::string base64(const std::string& bytes);
 
-/// The arrays a page draws. Each is stored by byte planes (all first bytes, all second bytes, ...; neighbours are alike
-/// there), deflated and in base64; the page unpacks one when it first needs it.
+/// Arrays that a page draws. Each is split into byte planes (all first bytes, all second bytes, ..., since neighbours
+/// there are alike), deflated and stored in base64. The page unpacks an array when it first needs it.
 class PageArrays {
  public:
-  /// Each returns what the page finds the array by: {"id", "type": "f4" | "f8" | "i4" | "share", "size"}.
-  nlohmann::json add(const Eigen::Ref<const Eigen::VectorXd>& values);        ///< as float32: for drawing
-  nlohmann::json add_exact(const Eigen::Ref<const Eigen::VectorXd>& values);  ///< as float64: times
-  /// Shares from 0 to 1 to 1.5e-5, in half the room: for drawing probabilities.
+  /// Each returns a reference for the page: {"id", "type": "f4" | "f8" | "i4" | "share", "size"}.
+  nlohmann::json add(const Eigen::Ref<const Eigen::VectorXd>& values);        ///< as float32, for drawing
+  nlohmann::json add_exact(const Eigen::Ref<const Eigen::VectorXd>& values);  ///< as float64, for times
+  /// Shares from 0 to 1 with an error of 1.5e-5 in two bytes, to draw probabilities.
   nlohmann::json add_shares(const Eigen::Ref<const Eigen::VectorXd>& values);
   nlohmann::json add(const std::vector<std::int32_t>& values);
 
   /// The stored arrays in order; array i has the id "a<i>".
   const std::vector<std::string>& stored() const { return stored_; }
-  /// Bytes that all of them take in the page.
+  /// Size in the page of all arrays together [bytes].
   std::size_t bytes() const { return bytes_; }
-  /// Those that an array of so many values of this width takes at most.
+  /// Largest possible size of an array with this many values of this width [bytes].
   static std::size_t most_bytes(Eigen::Index values, std::size_t width);
 
  private:

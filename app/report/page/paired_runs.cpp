@@ -29,8 +29,8 @@ bool same_samples(const Trajectory& a, const Trajectory& b) {
   return a.run == b.run && a.role == b.role && a.time_s == b.time_s && a.state == b.state;
 }
 
-/// Positions of the judged runs of one archive, each with that of the same run in the other. Empty where not both hold
-/// runs and a bank that was scored.
+/// Indices of the judged runs of one archive, each with that of the same run in the other. Empty unless both have runs
+/// and a scored bank.
 std::vector<std::pair<std::size_t, std::size_t>> common_runs(const Archive& one, const Archive& other) {
   std::vector<std::pair<std::size_t, std::size_t>> common;
   if (!one.recording || !other.recording || !bank_of(one) || !bank_of(other)) return common;
@@ -57,7 +57,7 @@ ArchiveGain gain_between(const Archive& better, const Archive& other) {
   ArchiveGain result;
   result.gain.gain = result.gain.standard_error = result.gain.margin = std::numeric_limits<double>::quiet_NaN();
   if (!better.recording || !other.recording || !bank_of(better) || !bank_of(other)) {
-    result.difference = "not both were scored";
+    result.difference = "they were not both scored";
     return result;
   }
   std::vector<Eigen::VectorXd> of_better, of_other;
@@ -67,7 +67,7 @@ ArchiveGain gain_between(const Archive& better, const Archive& other) {
   }
   result.runs = std::ssize(of_better);
   if (result.runs == 0)
-    result.difference = "no judged run is in both with the same samples";
+    result.difference = "they have no judged run with the same samples in common";
   else
     result.gain = paired_gain("", of_better, of_other);
   return result;

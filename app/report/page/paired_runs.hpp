@@ -8,14 +8,14 @@
 
 namespace modebank::app::report {
 
-/// What the bank of one archive gains over another's on the same samples.
+/// Gain of one archive's bank over another's on the same samples.
 struct ArchiveGain {
-  PairedGain gain;         ///< of `better` over `other`; NaN where nothing is in common
-  Index runs = 0;          ///< judged runs that both hold with the same samples
-  std::string difference;  ///< why there are none, in words
+  PairedGain gain;         ///< of `better` over `other`; NaN without common runs
+  Index runs = 0;          ///< number of judged runs with equal samples in both
+  std::string difference;  ///< reason why there are none
 };
 
-/// Over the judged runs of the same name, times and measurements: only there do densities compare.
+/// The gain over judged runs with equal names, times and measurements, since only their densities are comparable.
 ArchiveGain gain_between(const Archive& better, const Archive& other);
 
 /// K x L: of mode a of `first` and mode b of `second`, the sum over samples of the smaller of their two probabilities,
@@ -23,7 +23,7 @@ ArchiveGain gain_between(const Archive& better, const Archive& other);
 /// judged run is in both.
 Eigen::MatrixXd time_in_common(const Archive& first, const Archive& second);
 
-/// " by 0.134 +- 0.040 nats per sample", without the error where it is not known.
+/// " by 0.134 +- 0.040 nats per sample"; without the error if it is unknown.
 std::string gain_words(const PairedGain& gain);
 
 }  // namespace modebank::app::report

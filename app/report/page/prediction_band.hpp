@@ -8,8 +8,8 @@
 
 namespace modebank {
 
-/// Where a filter expected each measurement of a run: center +- half_width holds it with `level`, by the first two
-/// moments of the predicted mixture. NaN where the filter predicted nothing.
+/// Band of a filter's predictions in a run: center +- half_width contains a measurement with probability `level`, by
+/// the first two moments of the predicted mixture. NaN without a prediction.
 struct PredictionBand {
   Eigen::MatrixXd center;      ///< n_y x N [state unit]
   Eigen::MatrixXd half_width;  ///< n_y x N [state unit]
@@ -18,8 +18,8 @@ struct PredictionBand {
 /// Throws std::invalid_argument when sizes disagree or level is not inside (0, 1).
 PredictionBand prediction_band(const Bank& bank, const RunEvaluation& evaluation, double level);
 
-/// Samples of which some signal lies further out than a share `level` of a true filter's measurements would, by the
-/// probability transform: those outliers are not judged by a Gaussian.
+/// Samples with a signal further out than a share `level` of a true filter's measurements. They are found by the
+/// probability integral transform, not by a Gaussian.
 std::vector<Eigen::Index> outlying_samples(const RunEvaluation& evaluation, double level);
 
 }  // namespace modebank

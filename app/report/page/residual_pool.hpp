@@ -6,9 +6,9 @@
 
 namespace modebank {
 
-/// Autocorrelations of several runs as one: the mean by samples at every lag, over the runs that have it, and the band
-/// of white residuals for as many samples together. Cross-correlations and Ljung-Box values are left empty. Runs whose
-/// autocorrelation is not defined are left out; without any left the result has no lags.
+/// Pools the autocorrelations of several runs. At every lag it is the mean over the runs that have it, weighted by
+/// samples. The band is that of white residuals for all these samples. Cross-correlations and Ljung-Box values stay
+/// empty. Runs without a defined autocorrelation are left out; if none remains, the result has no lags.
 ResidualTests pool_autocorrelations(const std::vector<ResidualTests>& runs);
 
 }  // namespace modebank

@@ -18,14 +18,14 @@ namespace {
 
 using nlohmann::json;
 
-/// All time constants in one cell, slowest first; it sorts by the slowest.
+/// All time constants in one cell, the slowest first, by which the table sorts.
 json decays_cell(const std::vector<Decay>& decays) {
   std::string text;
   for (const Decay& decay : decays) text += (text.empty() ? "" : "; ") + decay_words(decay, "±");
   return number(decays.empty() ? 0.0 : decays.front().time_constant_s, text);
 }
 
-/// `open`: which of them the training runs say nothing of; empty: none.
+/// `open`: marks values that the training runs leave unidentifiable; empty: none.
 json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors, const std::vector<bool>& open = {}) {
   json cells = json::array();
   for (Index i = 0; i < values.size(); ++i) {
@@ -54,7 +54,7 @@ json label_section(const Archive& archive, const std::vector<Index>& told) {
   return {{"role", name_of(archive.confusion.front().role)}, {"rows", rows}};
 }
 
-/// What is left of the slowest after a sample, and all time constants.
+/// Adds the decay per sample of the slowest mode of motion, and all time constants.
 void add_decays(json& row, const std::vector<Decay>& decays, bool open) {
   const double slowest = decays.empty() || open ? NAN : decays.front().per_sample;
   row["per_sample"] = number(slowest, open ? "-" : per_sample_words(decays));
@@ -136,7 +136,7 @@ json transition_of(const Bank& bank) {
   return rows;
 }
 
-/// The weights of switches that see state and input; null where they do not.
+/// The weights of state-dependent transitions; null without them.
 json switch_weights_of(const Bank& bank) {
   const TransitionLogit& logit = bank.transition_logit;
   if (logit.empty()) return nullptr;
@@ -164,7 +164,7 @@ json screened_of(const Bank& bank) {
   return list;
 }
 
-/// What a limit on the number of modes cost on the runs of a role; null without one.
+/// Cost of a limit on the number of modes, on the runs of a role; null without a limit.
 json merging_of(const Archive& archive, Role role) {
   for (const MergingCost& cost : archive.merging)
     if (cost.role == role)
@@ -197,7 +197,7 @@ nlohmann::json bank_section(const Archive& archive) {
   for (const UsedMode& mode : used) {
     json& row = modes[static_cast<std::size_t>(mode.mode)];
     row["use"] = number(mode.use, fmt::format("{:.1f} %", 100 * mode.use));
-    row["stay"] = number(mode.stay_s, stay_words(mode));  // as on the first screen
+    row["stay"] = number(mode.stay_s, stay_words(mode));  // the same words as on the first screen
   }
   return {{"modes", modes},
           {"baseline", archive.baseline ? mode_row(archive, *archive.baseline, 0) : json()},

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The page writes what a terminal cannot: "0.3 ± 0.1".
+/// Replaces "+-" by the sign of the page: "0.3 ± 0.1".
 std::string with_signs(const std::string& text) { return boost::replace_all_copy(text, " +- ", " ± "); }
 
 json card(const std::string& key, const std::string& name, const json& big, const std::string& unit,
@@ -28,13 +28,13 @@ json gain_card(const FirstScreen& screen) {
   if (std::isnan(screen.gain)) return nullptr;
   const std::string known =
       std::isfinite(screen.gain_error) ? "above 0 the bank predicts better" : "its error is not known";
-  // In the sentence's digits (finding_text): one number is not written in two ways on one screen.
+  // Uses the digits of the finding's sentence, so that one screen never has a number in two forms.
   const std::string error = std::isfinite(screen.gain_error) ? fmt::format(" ± {:.3f}", screen.gain_error) : "";
   const json gain = number(screen.gain, fmt::format("{:+.3f}{}", screen.gain, error));
   return card("gain", "Gain over " + screen.competitor, gain, "nats per sample", known);
 }
 
-/// Whether one may go by the band, which is what is asked first; of training runs nobody can tell.
+/// Whether to rely on the band, the first question of a reader. Training runs do not answer it.
 std::string use_words(const FirstScreen& screen) {
   const bool held_out = screen.role == Role::test;
   switch (screen.verdict) {
@@ -50,7 +50,7 @@ std::string use_words(const FirstScreen& screen) {
   return "cannot tell yet";
 }
 
-/// "use it: calibrated, ..."
+/// Such as "use it: calibrated, ...".
 std::string band_advice(const FirstScreen& screen) {
   return fmt::format("{}: {}", use_words(screen), screen.verdict_words);
 }
@@ -106,7 +106,7 @@ json modes_of(const FirstScreen& screen) {
           {"gain_unit", modes.gain_unit}};
 }
 
-/// Good: evidence, and a band that is not found false. Neither good nor bad: what cannot be told.
+/// true: evidence and a reliable band; null: undecided.
 json goodness(const FirstScreen& screen) {
   if (!screen.answer || *screen.answer == Answer::cannot_tell || *screen.answer == Answer::not_comparable ||
       *screen.answer == Answer::not_yet)
@@ -118,7 +118,7 @@ json goodness(const FirstScreen& screen) {
 std::string headline(const FirstScreen& screen) {
   if (!screen.answer) return "nothing was judged";
   if (*screen.answer == Answer::one_mode) return answer_words(*screen.answer);
-  // Without evidence their number is the bank's affair.
+  // Without evidence the number of modes is a property of the bank alone.
   return fmt::format("{} ({}{} modes)", answer_words(*screen.answer),
                      *screen.answer == Answer::evidence ? "" : "the bank has ", screen.mode_count);
 }

@@ -19,12 +19,12 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index line_points = 201, map_points = 61;  // along an axis
-constexpr Index most_samples = 3000;                 // that are drawn
-/// Of the first feature's effect on the log odds: below it one feature is all there is to draw.
+constexpr Index line_points = 201, map_points = 61;  // number of points along an axis
+constexpr Index most_samples = 3000;                 // number of samples that are drawn
+/// share of the first feature's effect on the log odds; a smaller second effect is not drawn
 constexpr double least_second_effect = 0.05;
 
-/// The states and inputs that steps started from, and the most probable mode after each.
+/// States and inputs at the start of steps, and the most probable mode after each.
 struct SeenSamples {
   std::vector<Eigen::VectorXd> z;
   std::vector<Index> mode;
@@ -32,7 +32,7 @@ struct SeenSamples {
 
 using Visit = std::function<void(const Eigen::VectorXd& z, Index mode)>;
 
-/// The lagged state at a sample, from the states of the samples; those before the filter's start are the measured ones.
+/// The lagged state at a sample from the filter's states; before the filter's start from the measured ones.
 Eigen::VectorXd lagged_state(const LinearStructure& structure, const Trajectory& run, const RunEvaluation& said,
                              Index sample) {
   Eigen::VectorXd state(structure.dimension());
@@ -46,7 +46,7 @@ Eigen::VectorXd lagged_state(const LinearStructure& structure, const Trajectory&
 
 void visit_run(const Bank& bank, const Trajectory& run, const RunEvaluation& said, const Visit& visit) {
   Eigen::VectorXd z(bank.transition_logit.weights.cols());
-  Index known = 0;  // samples before this one that are one step apart
+  Index known = 0;  // number of earlier samples in steps of one period
   RunSamples(bank, run).for_each([&](const SampleFeed& feed, Index k, bool starts) {
     if (starts) {
       known = bank.structure.state_lags;
@@ -69,7 +69,7 @@ void visit_all(const Archive& archive, const FilterEvaluation& evaluation, const
     });
 }
 
-/// Of all runs, evenly thinned.
+/// The samples of all runs, thinned evenly.
 SeenSamples seen_samples(const Archive& archive) {
   SeenSamples thin;
   const FilterEvaluation* const evaluation = evaluation_of(archive, "bank");
@@ -91,7 +91,7 @@ Eigen::VectorXd values_of(const SeenSamples& seen, Index feature) {
   return values;
 }
 
-/// By how much a standard deviation of each feature moves the log odds of two modes at most.
+/// For each feature the largest change of the log odds of two modes over one standard deviation.
 Eigen::VectorXd effects(const TransitionLogit& logit, const SeenSamples& seen) {
   Eigen::VectorXd effect(logit.weights.cols());
   for (Index a = 0; a < effect.size(); ++a) {
@@ -102,7 +102,7 @@ Eigen::VectorXd effects(const TransitionLogit& logit, const SeenSamples& seen) {
   return effect;
 }
 
-/// One or two features, the one of most effect first.
+/// One or two features, the one with the larger effect first.
 std::vector<Index> drawn_features(const Eigen::VectorXd& effect) {
   std::vector<Index> order(static_cast<std::size_t>(effect.size()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -112,7 +112,7 @@ std::vector<Index> drawn_features(const Eigen::VectorXd& effect) {
   return order;
 }
 
-/// The name as tables of the page have it, with the unit of its channel.
+/// Name of a feature as in the page's tables, with its channel's unit.
 std::string feature_name(const Bank& bank, const Recording& recording, Index feature) {
   const Index n = bank.structure.dimension();
   const auto label = regressor_labels(bank.structure, bank.state_names, bank.input_names);
@@ -131,7 +131,7 @@ Eigen::VectorXd axis_values(const Eigen::VectorXd& seen, Index points) {
 
 json numbers(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
 
-/// Every mode's share along one feature.
+/// Share of every mode along one feature.
 json lines(const Bank& bank, Index feature, const Eigen::VectorXd& along) {
   Eigen::MatrixXd shares(bank.mode_count(), along.size());
   Eigen::VectorXd z = bank.transition_logit.reference;
@@ -144,7 +144,7 @@ json lines(const Bank& bank, Index feature, const Eigen::VectorXd& along) {
   return rows;
 }
 
-/// The mode of most share over two features, row by row upwards, and its share.
+/// The mode with the largest share over two features, row by row upwards, and this share.
 void add_map(const Bank& bank, const std::vector<Index>& feature, const Eigen::VectorXd& x, const Eigen::VectorXd& y,
              json& to) {
   json modes = json::array(), shares = json::array();
@@ -173,7 +173,7 @@ Eigen::VectorXd settled_shares(const Bank& bank, const Eigen::VectorXd& z) {
   TransitionWorkspace at(K, bank.transition_logit);
   const Eigen::MatrixXd& T =
       transition_at(bank.transition.matrix(), bank.transition_logit, z.head(n), z.tail(z.size() - n), at);
-  // p' (I - T + 1 1') = 1' has what is stationary as its solution.
+  // The stationary distribution p solves p' (I - T + 1 1') = 1'.
   const Eigen::MatrixXd system = Eigen::MatrixXd::Identity(K, K) - T + Eigen::MatrixXd::Ones(K, K);
   const Eigen::VectorXd p = system.transpose().partialPivLu().solve(Eigen::VectorXd::Ones(K)).cwiseMax(0.0);
   return p / p.sum();

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Keys whose value is not the default, in the table's order: what makes this run different from any other.
+/// Keys with other values than their defaults, in the table's order.
 json changed_settings(const std::string& config) {
   const Config defaults{};
   const std::map<std::string, std::string> values = resolved_values(config);

@@ -9,8 +9,7 @@ namespace modebank::app::report {
 
 namespace {
 
-/// What the page's fixed parts and windows take beside the runs' signals is taken off; whatever remains, this much of
-/// the signals is drawn.
+/// The budget of signals is the page's limit without its fixed parts and windows, but at least this.
 constexpr std::size_t least_signal_bytes = 1'000'000;
 
 std::size_t room_for_signals(const Page& page, const ReportConfig& options) {

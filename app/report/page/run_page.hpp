@@ -8,8 +8,8 @@
 
 namespace modebank::app::report {
 
-/// The page of one archive: what was run, verdict, data, local models, selection, bank, filter. `file`: its name, for
-/// the title. Parts that the archive lacks are said to be missing.
+/// The page of one archive: configuration, verdict, data, local models, selection, bank, filter. `file`: its name, for
+/// the title. The page names parts that the archive lacks.
 Page run_page(const Archive& archive, const std::string& file, const ReportConfig& options);
 
 }  // namespace modebank::app::report

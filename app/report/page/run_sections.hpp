@@ -7,31 +7,30 @@
 #include "app/report/page/page_arrays.hpp"
 #include "io/archive/archive.hpp"
 
-/// The parts of a run's page, each null where the archive does not hold what it shows.
+/// Sections of a run's page; each is null if the archive lacks its data.
 namespace modebank::app::report {
 
-/// Of the bands, regions and bounds that the page draws.
+/// Level of bands, regions and bounds in drawings.
 inline constexpr double drawn_level = 0.95;
 
 nlohmann::json origin_section(const Archive& archive);
-/// What the first screen says, with the same words and numbers (screen_facts.hpp), and its picture.
+/// Content of the first screen, in the same words and numbers (screen_facts.hpp), and its picture.
 nlohmann::json verdict_section(const Archive& archive);
-/// The judged runs in little: the first state by the mode that is most probable, and what is known of the ground. Small
-/// enough to be drawn before anything else is read.
+/// A small picture of the judged runs: the first state in the colour of the most probable mode, and known labels. It is
+/// drawn before anything else is read.
 nlohmann::json picture_of(const Archive& archive);
 
-/// How many samples the finest drawing of a run's signals takes together: those of the data and the bank, and those of
-/// the other filters.
+/// Number of samples per bucket in the finest drawing of a run's signals: for data and bank, and for the other filters.
 struct Detail {
   Index finest = 1, finest_others = 1;
 };
-/// Positions of the runs that the page draws and lists one by one: of each role the first hundred.
+/// Indices of the runs that the page draws and lists one by one: the first hundred of each role.
 std::vector<std::size_t> drawn_runs(const Recording& recording);
-/// Those runs' signals over time, and what each filter said of them.
+/// Signals of these runs over time, with each filter's evaluation.
 nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const Detail& detail);
-/// Bytes that these take in the page at most, but for outliers.
+/// Largest possible size of these in the page, without outliers [bytes].
 std::size_t most_signal_bytes(const Archive& archive, const Detail& detail);
-/// The same in as fine a detail as at most so many bytes allow.
+/// The same in the finest detail that fits into `most` bytes.
 nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes);
 
 nlohmann::json windows_section(const Archive& archive, PageArrays& arrays);

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What counts as an outlier: a true filter has one sample in a thousand so far out.
+/// Level of an outlier: a true filter has one sample in a thousand as far out.
 constexpr double outlier_level = 0.999;
 
 json rows_of(PageArrays& arrays, const Eigen::MatrixXd& rows, Index finest, Bucket kind = Bucket::extremes) {
@@ -25,7 +25,7 @@ json rows_of(PageArrays& arrays, const Eigen::MatrixXd& rows, Index finest, Buck
   return list;
 }
 
-/// Times of the outliers and the values measured then; of very many the first.
+/// Times and values of the outliers; if there are very many, only the first.
 json outliers_of(PageArrays& arrays, const RunEvaluation& evaluation, const Trajectory& run) {
   constexpr std::size_t most = 20000;
   std::vector<Index> samples = outlying_samples(evaluation, outlier_level);
@@ -43,7 +43,7 @@ json outliers_of(PageArrays& arrays, const RunEvaluation& evaluation, const Traj
 json filter_signals(PageArrays& arrays, const Bank& bank, const FilterEvaluation& evaluation, std::size_t i,
                     const Trajectory& run, Index finest) {
   json signals;
-  // One after the other: of a long run they may be in a file, and all together are much.
+  // One filter after the other, because evaluations of long runs may be in a file and do not fit into memory together.
   evaluation.with_run(i, {"prediction", "innovation_covariance"}, [&](const RunEvaluation& said) {
     const PredictionBand band = prediction_band(bank, said, drawn_level);
     signals["prediction"] = rows_of(arrays, band.center, finest);
@@ -65,7 +65,7 @@ json filter_signals(PageArrays& arrays, const Bank& bank, const FilterEvaluation
   return signals;
 }
 
-/// Of filter_signals, but for the outliers.
+/// Size of filter_signals without outliers [bytes].
 std::size_t most_filter_bytes(const Bank& bank, Index samples, Index finest) {
   const auto n_y = static_cast<std::size_t>(bank.C.rows()), K = static_cast<std::size_t>(bank.mode_count());
   return (3 * n_y + 1) * most_series_bytes(samples, finest) +
@@ -92,7 +92,7 @@ json channels_of(const std::vector<Channel>& channels) {
   return list;
 }
 
-/// Calls visit(evaluation, bank, finest) for every filter that is drawn over run i.
+/// Calls visit(evaluation, bank, finest) for every filter in the drawing of run i.
 template <class Visit>
 void for_each_filter(const Archive& archive, std::size_t i, const Detail& detail, Visit visit) {
   for (const FilterEvaluation& evaluation : archive.evaluations) {
@@ -136,13 +136,12 @@ std::size_t most_run_bytes(const Archive& archive, std::size_t i, const Detail& 
   return bytes;
 }
 
-/// What the page says of runs and samples that it does not draw one by one; empty where it draws all.
+/// A note on runs and samples that are not drawn one by one; empty if all are.
 std::string detail_note(const Detail& detail, std::size_t drawn, std::size_t runs) {
   std::string text;
   if (drawn < runs)
     text = fmt::format(
-        "Of {} runs {} are drawn and listed, the first of each kind; all are in the tables of all runs "
-        "together. ",
+        "{1} of {0} runs are drawn and listed, the first of each kind. The tables over all runs include all of them. ",
         runs, drawn);
   if (detail.finest > 1)
     text += fmt::format("To keep the page small, signals are drawn by the extremes of every {} samples at the finest",
@@ -160,7 +159,7 @@ std::string detail_note(const Detail& detail, std::size_t drawn, std::size_t run
 }  // namespace
 
 std::vector<std::size_t> drawn_runs(const Recording& recording) {
-  constexpr std::size_t most_of_a_role = 100;  // beyond, nobody looks for a run in a page, and it takes minutes to make
+  constexpr std::size_t most_of_a_role = 100;  // a page with more runs would take minutes to make
   std::map<Role, std::size_t> taken;
   std::vector<std::size_t> drawn;
   for (std::size_t i = 0; i < recording.runs.size(); ++i)
@@ -170,7 +169,7 @@ std::vector<std::size_t> drawn_runs(const Recording& recording) {
 
 namespace {
 
-/// Nothing where the arrays take more than so many bytes then.
+/// Nullopt if the arrays exceed this size.
 std::optional<json> runs_within(const Archive& archive, PageArrays& arrays, const Detail& detail, std::size_t most) {
   json runs = json::array(), names = json::array();
   const std::vector<std::size_t> drawn = drawn_runs(*archive.recording);
@@ -206,7 +205,7 @@ nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const De
 
 nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes) {
   constexpr Index coarser_others = 16, coarsest = Index{1} << 40;
-  // Signals of noise compress to no less than this share: below it only trying tells whether they fit.
+  // Even noise does not compress below this share, so a smaller budget need not be tried.
   constexpr double least_share = 0.5;
   if (!archive.recording) return nullptr;
   for (Detail detail;; detail = {detail.finest * (detail.finest_others > 1 ? 2 : 1),

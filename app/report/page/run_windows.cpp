@@ -15,12 +15,12 @@ namespace {
 
 using nlohmann::json;
 
-/// More points than this hide each other: every second, third, ... window is drawn then.
+/// More points would hide each other; then only every second, third, ... window is drawn.
 constexpr Index most_windows = 100'000;
-/// And no more numbers of covariances than this: beyond, windows have no ellipses.
+/// With more numbers of covariances windows are drawn without ellipses.
 constexpr Index most_covariances = 2'000'000;
 
-/// As people read them: parameters by their labels, noise in words, what is of one-lag fits with a note.
+/// Names for people: parameters by their labels, noise in words, one-lag features with a note.
 std::vector<std::string> with_labels(std::vector<std::string> features, const Archive& archive) {
   const std::string noise = "log_noise_variance_";
   for (std::string& feature : features)
@@ -33,7 +33,7 @@ std::vector<std::string> with_labels(std::vector<std::string> features, const Ar
   return features;
 }
 
-/// The cloud's axes: parameters and the logarithm of the noise variance.
+/// Axes of the cloud: parameters and the logarithm of the noise variance.
 json axes_of(const std::vector<std::string>& names, const Unit& units) {
   json axes = json::array();
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -41,7 +41,7 @@ json axes_of(const std::vector<std::string>& names, const Unit& units) {
   return axes;
 }
 
-/// The axes to begin with: the paper's A, B1, B2, which with lags are the first of each.
+/// The first axes: the paper's A, B1, B2; with lags the first of each.
 std::vector<Index> default_axes(const WindowFits& fits, bool of_parameters, Index axes) {
   const Index inputs = fits.structure.dimension();
   std::vector<Index> chosen{0, 1, 2};
@@ -50,7 +50,7 @@ std::vector<Index> default_axes(const WindowFits& fits, bool of_parameters, Inde
   return chosen;
 }
 
-/// The lower triangle of each drawn window's covariance, entry by entry, rows first.
+/// The lower triangle of each drawn window's covariance, entry by entry, row by row.
 json covariances_of(PageArrays& arrays, const WindowFits& fits, const std::vector<Index>& drawn) {
   const Index p = fits.parameter_count(), count = static_cast<Index>(drawn.size());
   if (count * p * (p + 1) / 2 > most_covariances) return nullptr;
@@ -83,7 +83,7 @@ json components_of(const Archive& archive) {
   return {{"features", with_labels(result.feature_names, archive)}, {"list", components}};
 }
 
-/// The bank's modes in the cloud's coordinates; their spread over the windows where the model is linear.
+/// The bank's modes in the cloud's coordinates; for linear models with their covariance over the windows.
 json modes_of(const Bank& bank) {
   json modes = json::array();
   for (const Mode& mode : bank.modes) {
@@ -108,7 +108,7 @@ json modes_of_windows(PageArrays& arrays, const WindowFits& fits, const FilterEv
   return arrays.add(std::vector<std::int32_t>(modes.begin(), modes.end()));
 }
 
-/// The windows that are drawn, and which point of the cloud each is.
+/// The windows that are drawn, with the index of each one's point.
 struct Drawn {
   Index step = 1;
   std::vector<Index> points, windows;
@@ -124,7 +124,7 @@ Drawn choose(const FeatureCloud& cloud) {
   return drawn;
 }
 
-/// The points of all windows: the features that were clustered where these are not the windows' own parameters.
+/// Points of all windows: the clustered features, if these are not the windows' own parameters.
 FeatureCloud cloud_of(const Archive& archive) {
   FeatureCloud cloud =
       make_features(*archive.windows, FeatureSet::parameters_and_noise, WindowChoice::all, archive.recording->states);
@@ -137,7 +137,7 @@ FeatureCloud cloud_of(const Archive& archive) {
   return cloud;
 }
 
-/// Run, first and last time of each drawn window.
+/// Adds run, first and last time of each drawn window.
 void add_places(json& section, PageArrays& arrays, const Archive& archive, const std::vector<Index>& drawn) {
   const WindowFits& fits = *archive.windows;
   std::vector<std::int32_t> run;

@@ -12,7 +12,7 @@ using Eigen::Index;
 using nlohmann::json;
 
 constexpr Index level_factor = 16;
-/// Fewer buckets than this are not worth a level: the page makes them of the level below.
+/// Smaller levels are not stored: the page computes them from the level below.
 constexpr Index least_buckets = 500;
 
 /// Bucket sizes of the levels above the samples themselves.
@@ -37,13 +37,13 @@ json level(PageArrays& arrays, const Eigen::Ref<const Eigen::VectorXd>& values, 
 
 Index buckets_of(Index samples, Index size) { return (samples + size - 1) / size; }
 
-/// Of a regular clock.
+/// The mean period of the times.
 double period_of(const Eigen::VectorXd& time_s) {
   const Index N = time_s.size();
   return N > 1 ? (time_s(N - 1) - time_s(0)) / static_cast<double>(N - 1) : 1.0;
 }
 
-/// Whether every time is where a clock of this period would have it, to a ten-thousandth of a period.
+/// Whether all times are those of a clock with this period, up to a ten-thousandth of a period.
 bool regular(const Eigen::VectorXd& time_s, double period) {
   constexpr double slack = 1e-4;
   for (Index k = 0; k < time_s.size(); ++k)

@@ -22,7 +22,7 @@ const NamedColumn& varied_column(const StudyFile& file, const std::string& key) 
   return *std::find_if(file.columns.begin(), file.columns.end(), [&](const NamedColumn& c) { return c.name == key; });
 }
 
-/// Scores that the table shows at first; the others are a click away.
+/// Scores that the table shows at first; the others need a click.
 bool shown_at_first(const std::string& score) {
   for (const char* part : {"_test_log_score", "_test_rmse"})
     if (score.find(part) != std::string::npos) return true;
@@ -38,7 +38,7 @@ json goal_json(const std::string& score, int states) {
   return {{"kind", kind}, {"nominal", goal->nominal}, {"text", goal->text()}};
 }
 
-/// Each measured state has an RMSE.
+/// Number of measured states, since each has an RMSE.
 int measured_states(const StudyTable& table) {
   const auto count = std::count_if(table.score_names.begin(), table.score_names.end(),
                                    [](const std::string& name) { return name.rfind("bank_train_rmse_", 0) == 0; });
@@ -65,7 +65,7 @@ json columns_of(const StudyTable& table) {
   return columns;
 }
 
-/// In the order of columns_of.
+/// Cells in the order of columns_of.
 json cells_of(const StudyFile& file, const StudyTable& table, std::size_t i) {
   const TrialRow& row = table.rows[i];
   json cells = json::array();
@@ -126,7 +126,7 @@ json counts_of(const StudyTable& table) {
   return list;
 }
 
-/// What the study found, in a sentence, and the row it is about.
+/// The study's result in a sentence, and its row.
 json best_of(const StudyTable& table, const Answers& answers) {
   for (const BestSetting& best : answers.best) {
     if (best.score != answers.headline) continue;
@@ -138,7 +138,7 @@ json best_of(const StudyTable& table, const Answers& answers) {
                                    words_for(best.score == "bank_test_log_score" ? Role::test : Role::train),
                                    number_text(best.value), setting);
     if (best.repeats > 1) text += fmt::format(" (mean of {} repeats)", best.repeats);
-    if (!row.evidence.empty()) text += fmt::format("; on modes of motion it answers: {}", row.evidence);
+    if (!row.evidence.empty()) text += fmt::format(". Its finding on modes of motion: {}", row.evidence);
     return {{"text", text + "."}, {"row", best.row}};
   }
   return {{"text", "No run has finished with a score, so there is nothing to judge yet."}, {"row", nullptr}};

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Finished runs, the best by the headline score first; none without that score.
+/// Finished runs with the headline score, the best first.
 std::vector<std::size_t> ranked_rows(const StudyTable& table) {
   const std::string headline = answer(table).headline;
   const auto found = std::find(table.score_names.begin(), table.score_names.end(), headline);
@@ -37,7 +37,7 @@ std::vector<std::size_t> ranked_rows(const StudyTable& table) {
   return rows;
 }
 
-/// Archives that are there, for all rows.
+/// Paths of existing archives, for all rows.
 std::vector<TrialPlace> archives_of(const StudyTable& table, const fs::path& folder) {
   std::vector<TrialPlace> places(table.rows.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -48,7 +48,7 @@ std::vector<TrialPlace> archives_of(const StudyTable& table, const fs::path& fol
   return places;
 }
 
-/// Pages of the best runs, in a folder named after the study's page.
+/// Writes pages of the best runs into a folder named after the study's page.
 void write_run_pages(const StudyTable& table, const fs::path& page, const ReportConfig& options,
                      std::vector<TrialPlace>& places, Written& written) {
   const fs::path folder = page.parent_path() / (page.stem().string() + "_runs");
@@ -65,7 +65,7 @@ void write_run_pages(const StudyTable& table, const fs::path& page, const Report
   }
 }
 
-/// Whether study.h5 holds what became of every run of the plan.
+/// Whether study.h5 has the results of all planned runs.
 bool is_merged(const StudyFile& merged, const StudyPlan& plan) {
   const StudyTable table = study_table_of(merged);
   std::set<std::string> settled;
@@ -101,7 +101,7 @@ FoundStudy find_study(const fs::path& folder, Written& written) {
   const bool has_plan = fs::exists(plan_file(folder));
   if (!fs::exists(file) && !has_plan)
     throw ConfigurationError(
-        fmt::format("{}: no study's folder: it holds neither study.h5 nor plan.h5", folder.string()));
+        fmt::format("{}: not a study's folder, because it has neither study.h5 nor plan.h5", folder.string()));
   std::optional<FoundStudy> merged;
   if (fs::exists(file)) merged = find_study(OpenArchive(file));
   if (merged) merged->name = folder;

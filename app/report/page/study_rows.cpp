@@ -14,7 +14,7 @@ namespace {
 const NamedColumn& column(const StudyFile& file, const std::string& name) {
   for (const NamedColumn& candidate : file.columns)
     if (candidate.name == name) return candidate;
-  throw DataError(fmt::format("the table of runs has no column {}: it is no study's", name));
+  throw DataError(fmt::format("the table of runs has no column {}, so it is not a study's", name));
 }
 
 template <class T>
@@ -58,7 +58,7 @@ StudyTable study_table_of(const StudyFile& file) {
     if (!status) throw DataError(fmt::format("run {} has the unknown status {}", i, statuses[i]));
     row.status = *status;
   }
-  bool varied = true;  // up to the column "repeat"
+  bool varied = true;  // true before the column "repeat"
   for (const NamedColumn& candidate : file.columns) {
     varied = varied && candidate.name != "repeat";
     if (varied) {

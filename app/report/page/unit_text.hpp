@@ -8,19 +8,19 @@
 
 namespace modebank::app::report {
 
-/// "wz [rad/s]"; the name alone where nobody stated a unit.
+/// "wz [rad/s]"; only the name if the unit is unknown.
 inline std::string with_unit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : name + " [" + unit + "]";
 }
 
-/// "effective track" for effective_track_m: a model's parameter in words, without the unit that its name ends with.
+/// "effective track" for effective_track_m: a model's parameter in words, without the unit at its end.
 inline std::string parameter_words(std::string name, const std::string& unit) {
   if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
 
-/// The channels' unit where they share one, else all of them by commas; empty when one is not known.
+/// The common unit of the channels, else all units separated by commas; empty when one is unknown.
 inline std::string common_unit(const std::vector<Channel>& channels) {
   std::string all;
   bool same = true;

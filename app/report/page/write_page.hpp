@@ -13,29 +13,29 @@
 
 namespace modebank::app::report {
 
-/// Throws ConfigurationError when the page cannot be written to `path`, or `path` is one of the files it is made from.
+/// Throws ConfigurationError when `path` cannot be written, or is one of the files from which the page is made.
 void check_page_path(const std::filesystem::path& path, const std::vector<std::filesystem::path>& sources);
 
-/// What was written, said as soon as it is there.
+/// Reports written files, each as soon as it exists.
 struct Written {
   std::function<void(const std::string& text)> say;
   std::vector<std::string> files;
 };
 
-/// Writes the page under a temporary name and renames it; says how large it is.
+/// Writes the page under a temporary name, renames it and reports its size.
 void write_page(const std::filesystem::path& path, const Page& page, Written& written);
 
-/// A study, and where its archives lie.
+/// A study and the location of its archives.
 struct FoundStudy {
-  std::filesystem::path name;  ///< as the command line has it: its folder, or study.h5
-  std::filesystem::path file;  ///< study.h5, which need not be there
+  std::filesystem::path name;  ///< as on the command line: its folder, or study.h5
+  std::filesystem::path file;  ///< study.h5; it may not exist yet
   StudyFile content;
   std::size_t runs = 0, done = 0;
-  std::string digest = {};  ///< of study.h5; empty where it does not hold every run of the plan
+  std::string digest = {};  ///< of study.h5; empty unless it has all runs of the plan
 };
 
-/// The study of a folder: what study.h5 holds, or, where the study still runs or was not merged since, the runs that
-/// are done; then their number is printed.
+/// The study in a folder: from study.h5, or from the finished runs if the study still runs or was not merged since. In
+/// the latter case prints their number.
 FoundStudy find_study(const std::filesystem::path& folder, Written& written);
 /// The study of an open study.h5.
 FoundStudy find_study(const OpenArchive& file);

@@ -7,12 +7,12 @@
 
 namespace modebank::app::report {
 
-/// One archive in a line of the index, read from its small parts alone:
+/// The index's row for an archive, read from its small parts alone:
 ///   kind           run or study
 ///   created        UTC, ISO 8601
-///   data           name of the file that was read, or of the folder and the number of files
-///   answer, text   the verdict in a word and in its sentence; null without one, as all below. Of a study the text
-///                  states how many of its runs are done
+///   data           name of the data file, or folder and number of files
+///   answer, text   the verdict as a word and as a sentence; null without one, as all members below. For a study the
+///                  text has the number of finished runs
 ///   modes, gain, standard_error [nats/sample]
 ///   samples, log_score [nats/sample], coverage_95   of the bank on held-out runs
 nlohmann::json index_row(const OpenArchive& archive);

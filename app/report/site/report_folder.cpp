@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Program and settings, on which pages depend beside their archive.
+/// Identifies program and settings, on which pages depend beside their archive.
 std::string site_maker(const ReportConfig& options) {
   return fmt::format("modebank {} {}, report.size_mb {}, report.runs {}", build_info::version, build_info::git_revision,
                      options.size_mb, options.runs);
 }
 
-/// The pages of a folder while they are made.
+/// The pages of a folder during one run of `report`.
 class Site {
  public:
   Site(fs::path folder, fs::path site, const ReportConfig& options, Written& written)
@@ -57,7 +57,7 @@ class Site {
   }
 
  private:
-  /// The line of the index, after the archive's pages are made where they must be.
+  /// The index's row, after the archive's pages are made if needed.
   json row_of(const fs::path& name) {
     json row = {{"name", name.string()}};
     try {
@@ -84,7 +84,7 @@ class Site {
     });
   }
 
-  /// A study's folder and an archive beside it may have one name.
+  /// A study's folder and an archive beside it may have the same name.
   void add_study(const fs::path& name, const FoundStudy& study, json& row) {
     row.update(index_row(study));
     const fs::path file = fs::is_directory(folder_ / name) ? name / "study.h5" : name;
@@ -92,7 +92,7 @@ class Site {
                           [&](const fs::path& page, Written& pages) { report_study(study, page, options_, pages); });
   }
 
-  /// Never that of a study that goes on.
+  /// False for the page of an unfinished study.
   bool is_current(const std::string& name, const std::string& digest) const {
     const auto found = before_.find(name);
     if (digest.empty() || found == before_.end()) return false;
@@ -101,12 +101,12 @@ class Site {
     return std::all_of(files.begin(), files.end(), [&](const std::string& file) { return fs::exists(site_ / file); });
   }
 
-  /// Where the page of an archive is, relative to the site. `write` makes it and the pages below it.
+  /// Address of an archive's page in the site. `write` makes it and the pages below it.
   template <class Write>
   std::string page_of(const fs::path& name, const fs::path& file, const std::string& digest, Write write) {
     const fs::path page = ("pages" / file).replace_extension(".html");
     if (is_current(name.string(), digest)) return page.string();
-    // Known before it is there, so that a page of a run that was killed is removed when its archive went.
+    // Recorded before the page exists, so that pages of a killed run can be removed later.
     SitePages& made = now_[name.string()];
     made.archive.clear();
     if (made.files.empty()) made.files = {page.string()};
@@ -133,7 +133,7 @@ class Site {
     write_page(site_ / "index.html", page, written_);
   }
 
-  /// Pages that the last run made and this one does not want.
+  /// Removes pages of the last run that are no longer needed.
   void remove_others() {
     std::set<std::string> wanted;
     for (const auto& [name, made] : now_) wanted.insert(made.files.begin(), made.files.end());
@@ -141,7 +141,7 @@ class Site {
       for (const std::string& file : made.files)
         if (std::error_code error; !wanted.count(file) && fs::remove(site_ / file, error)) {
           result_.removed.push_back((site_ / file).string());
-          // Folders that are empty now; a folder that holds anything stays.
+          // Removes empty folders; `remove` fails for others.
           for (fs::path above = (site_ / file).parent_path(); above != site_ && fs::remove(above, error);)
             above = above.parent_path();
         }
@@ -153,7 +153,7 @@ class Site {
   Written silent_{[](const std::string&) {}, {}};
   const std::string maker_ = site_maker(options_);
   SiteRecord before_, now_;
-  std::set<std::string> whole_;  ///< names of archives whose pages are there
+  std::set<std::string> whole_;  ///< names of archives whose pages exist
   SiteResult result_;
 };
 
@@ -182,7 +182,7 @@ std::vector<fs::path> archives_below(const fs::path& folder) {
 SiteResult report_folder(const fs::path& folder, const fs::path& site, const ReportConfig& options, Written& written) {
   Site made(folder, site, options, written);
   if (made.is_new() && archives_below(folder).empty())
-    throw ConfigurationError(fmt::format("{}: holds no archive (*.h5) and no study", folder.string()));
+    throw ConfigurationError(fmt::format("{}: the folder has no archive (*.h5) and no study", folder.string()));
   return made.write();
 }
 

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 const char* const record_name = "pages.json";
 
-/// Pages lie below pages/ and nowhere else: a record that was changed by hand must not make `report` remove other
+/// Pages are only below pages/. This check stops a record that was edited by hand from making `report` remove other
 /// files.
 bool is_below_pages(const std::string& file) {
   const fs::path path = file;
@@ -36,11 +36,11 @@ SitePages pages_in(const json& entry) {
 SiteRecord read_site_record(const fs::path& site) {
   const fs::path file = site / record_name;
   if (!fs::exists(site)) return {};
-  if (!fs::is_directory(site)) throw ConfigurationError(fmt::format("-o {}: is not a folder", site.string()));
+  if (!fs::is_directory(site)) throw ConfigurationError(fmt::format("-o {}: this is not a folder", site.string()));
   if (!fs::exists(file)) {
     if (fs::is_empty(site)) return {};
     throw ConfigurationError(
-        fmt::format("-o {}: holds files that report did not write; name a new folder", site.string()));
+        fmt::format("-o {}: the folder has files that report did not write; name a new folder", site.string()));
   }
   try {
     const json stored = json::parse(read_file(file));

@@ -7,20 +7,20 @@
 
 namespace modebank::app::report {
 
-/// The pages of one archive in a site, and what they were made from.
+/// The pages of one archive in a site, and their origin.
 struct SitePages {
-  std::string archive;             ///< SHA-256 of the archive's content; empty: being made
+  std::string archive;             ///< SHA-256 of the archive's content; empty while pages are being made
   std::string maker;               ///< program and settings, see site_maker
-  std::vector<std::string> files;  ///< relative to the site, the archive's own page first
+  std::vector<std::string> files;  ///< relative to the site; the archive's own page first
 };
 
-/// The pages of a site, by the archive's name relative to its folder. The record stands in pages.json beside
-/// index.html, so that a page is made again only where its archive, the program or a setting changed, and a page whose
-/// archive went is removed only where `report` made it.
+/// The pages of a site, by the archive's name relative to its folder. The record is pages.json beside index.html. With
+/// it `report` makes a page again only after a change of archive, program or setting, and removes only pages that it
+/// made itself.
 using SiteRecord = std::map<std::string, SitePages>;
 
-/// Empty for a new site. Throws ConfigurationError if the path leads to a file or to a folder of other files, and
-/// DataError where the record cannot be read.
+/// Reads the record; empty for a new site. Throws ConfigurationError if the path is a file or a folder with other
+/// files, and DataError if the record is unreadable.
 SiteRecord read_site_record(const std::filesystem::path& site);
 void write_site_record(const std::filesystem::path& site, const SiteRecord& record);
 

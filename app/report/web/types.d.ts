@@ -1,4 +1,4 @@
-// What the checker of types cannot know: Debian's modules, which have no types.
+// Types of Debian's modules, which have none themselves.
 interface Uint8ArrayConstructor { fromBase64?(text: string): Uint8Array; }
 declare class DecompressionStream implements GenericTransformStream {
   constructor(format: string);

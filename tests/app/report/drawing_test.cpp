@@ -1,4 +1,4 @@
-// What drawings of long series and of many runs are made of.
+// Data of drawings of long series and of many runs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ TEST(BucketExtremes, KeepEveryExtremeAndLeaveOutWhatIsMissing) {
   EXPECT_EQ(extremes.low(0), -3);
   EXPECT_EQ(extremes.high(0), 5);
   EXPECT_TRUE(std::isnan(extremes.low(1)) && std::isnan(extremes.high(1)));
-  EXPECT_EQ(extremes.low(2), 2);  // the last bucket holds two
+  EXPECT_EQ(extremes.low(2), 2);  // the last bucket has two values
   EXPECT_EQ(extremes.high(2), 2);
   const Eigen::VectorXd means = bucket_means(values, 3);
   EXPECT_EQ(means(0), 1);
@@ -31,7 +31,7 @@ TEST(BucketExtremes, KeepEveryExtremeAndLeaveOutWhatIsMissing) {
   EXPECT_THROW(bucket_extremes(values, 0), std::invalid_argument);
 }
 
-/// Buckets of buckets are buckets: a coarse level never shows less than a fine one.
+/// Buckets of buckets equal larger buckets: a coarse level never shows less than a fine one.
 TEST(BucketExtremes, LevelsAgree) {
   std::mt19937_64 generator(7);
   boost::random::normal_distribution<double> normal;

@@ -1,4 +1,4 @@
-// Pairing: modes of two banks with each other, samples of two archives, repeats of two settings.
+// Pairing: of modes of two banks, of samples of two archives, of repeats of two settings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using app::report::match_modes;
 using app::report::MatchedMode;
 using Eigen::Index;
 
-/// One state, one input, no offset: theta = (A, B), each with the standard error `error`.
+/// One state, one input, no constant term: theta = (A, B), each with the standard error `error`.
 Bank bank_of(const std::vector<Eigen::Vector2d>& thetas, double error) {
   Bank bank;
   bank.structure.inputs = 1;
@@ -98,12 +98,12 @@ TEST(MatchedModes, LeaveOverWhatOneHasMore) {
   EXPECT_NE(match_modes(first, other).difference, "");
 }
 
-/// Modes are numbered by chance: those that are probable at the same samples are one, whatever their parameters say.
+/// Numbers of modes are arbitrary. Modes that are probable at the same samples match, whatever their parameters are.
 TEST(MatchedModes, HaveTimeInCommon) {
   const Bank first = bank_of({{-0.5, 1.0}, {0.0, 0.0}, {-0.9, 2.0}}, 0.1),
              second = bank_of({{-0.5, 1.0}, {0.0, 0.0}}, 0.1);
   Eigen::MatrixXd shared(3, 2);
-  shared << 0.01, 0.9,  // by parameters the first mode of both were a pair
+  shared << 0.01, 0.9,  // by parameters the first modes of both would match
       0.6, 0.02, 0.05, 0.02;
   const auto match = match_modes(first, second, shared);
   ASSERT_EQ(match.modes.size(), 3u);
@@ -116,7 +116,7 @@ TEST(MatchedModes, HaveTimeInCommon) {
   EXPECT_TRUE(std::isnan(match.modes[2].shared));
 }
 
-/// Modes that rule at different times are no pair, however near their parameters are.
+/// Modes at different times do not match, however similar their parameters are.
 TEST(MatchedModes, ThatNeverRuleTogetherStayAlone) {
   const Bank bank = bank_of({{-0.5, 1.0}, {0.0, 0.0}}, 0.1);
   Eigen::MatrixXd shared(2, 2);
@@ -156,7 +156,7 @@ TEST(MatchedModes, OfOtherModelsAreMatchedByTimeAlone) {
   EXPECT_FALSE(match.modes[0].agree());
 }
 
-/// Six held-out runs of one sample rate; every sample of run r is predicted better by `gains[r]`.
+/// Six held-out runs with the same rate; every sample of run r is predicted better by `gains[r]`.
 Archive archive_with(const std::vector<double>& gains) {
   Archive archive;
   archive.recording.emplace();
@@ -183,7 +183,7 @@ Archive archive_with(const std::vector<double>& gains) {
   return archive;
 }
 
-/// Runs of one length: the error is that of the mean of six numbers.
+/// Runs of equal length: the error is that of a mean of six numbers.
 TEST(PairedRuns, TheErrorIsThatOfTheRunsMeans) {
   const std::vector<double> gains{0.1, 0.3, 0.2, -0.1, 0.4, 0.15};
   const auto result = gain_between(archive_with(gains), archive_with(std::vector<double>(6, 0.0)));

@@ -15,7 +15,7 @@ using app::StudyTable;
 using app::TrialRow;
 using app::TrialStatus;
 
-/// Six runs over two keys, one a word; the fifth failed.
+/// Six runs over two keys, one of them with words; the fifth run failed.
 StudyTable example_table() {
   StudyTable table;
   table.varied_keys = {"mixture.components", "mixture.covariance"};
@@ -58,7 +58,7 @@ TEST(StudyPage, TheTableComesBackFromItsColumns) {
 
 TEST(StudyPage, ATableThatIsNoStudysSaysWhatIsMissing) {
   StudyFile file = file_of(example_table());
-  file.columns.erase(file.columns.begin() + 4);  // status
+  file.columns.erase(file.columns.begin() + 4);  // removes the status
   try {
     app::report::study_table_of(file);
     FAIL() << "no error";

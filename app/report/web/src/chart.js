@@ -1,5 +1,5 @@
-// A figure of panels with axes, drawn as SVG: points, lines, bars, cells. Colours are CSS, so that the theme and paper
-// need no new drawing. chart_layout.js has where things stand, chart_marks.js what they look like.
+// A figure of panels with axes as SVG: points, lines, bars, cells. Colours are CSS, so that a change of theme, or
+// printing, needs no new drawing. chart_layout.js places the parts, chart_marks.js draws them.
 import {layoutOf} from './chart_layout.js';
 import {drawChart} from './chart_panel.js';
 import {readPoints} from './chart_tip.js';
@@ -8,10 +8,9 @@ import {beforePrint} from './page.js';
 import {inTurn, whenNear} from './turns.js';
 
 /**
- * x and y of equal length, null or NaN where there is nothing; `tip(i)` and `pick(i)`: what point i tells, and what a
- * click on it does. 'points': symbols; 'line': through the points; 'bars': from zero to y about x; 'cells': a grid,
- * `colours[i][j]` at y[i] and x[j]; 'band': grey between two heights; 'rule': a line across at a height y or from top
- * to bottom at x.
+ * x and y have equal length; null or NaN leaves a gap. `tip(i)`: the tip of point i; `pick(i)`: called after a click on
+ * it. 'points': symbols; 'line': through the points; 'bars': from zero to y at x; 'cells': a grid with `colours[i][j]`
+ * at y[i] and x[j]; 'band': grey between two heights; 'rule': a horizontal line at y or a vertical one at x.
  * @typedef {{kind: string, x?: any, y?: any, colour?: string, size?: number,
  *   symbol?: string, open?: boolean, opacity?: number, edge?: boolean, width?: number, dash?: string, step?: boolean,
  *   name?: string, low?: number, high?: number, colours?: string[][], tip?: (i: number) => string|string[],
@@ -19,7 +18,7 @@ import {inTurn, whenNear} from './turns.js';
  * `levels`: names at 0, 1, 2, ...; `whole`: ticks at whole numbers; `zero`: from zero on.
  * @typedef {{title?: string, range?: number[]|null, levels?: string[], whole?: boolean, zero?: boolean}} Axis
  * @typedef {{title?: string, x: Axis, y: Axis, marks: Mark[]}} Panel
- * `wide`: pixels that a panel is wide at least, which says how many stand beside each other; `height`: of its inside.
+ * `wide`: smallest width of a panel in pixels, which decides how many are side by side; `height`: of its inside.
  * @typedef {{panels: Panel[], height?: number, wide?: number, legend?: any[]}} Drawing
  */
 
@@ -36,7 +35,7 @@ function oncePerFrame(work) {
 }
 
 /**
- * A figure: `make` returns a Drawing and is called again by redraw(). `label` is what a screen reader says.
+ * A figure: `make` returns a Drawing; redraw() calls it again. `label`: text for screen readers.
  * @param {string} label
  * @param {() => Drawing|Promise<Drawing>} make
  * @param {string} [caption]
@@ -63,7 +62,7 @@ export function figure(label, make, caption) {
     keys.replaceChildren(...(plot.drawing.legend ? [legend(plot.drawing.legend)] : []));
     show();
   };
-  // Anew where it was drawn at all; what was not will be as things are then.
+  // Draws a visible figure again; a hidden one will be drawn in the present state.
   element.update = () => (plot.drawing ? element.redraw() : Promise.resolve());
   element.ready = new Promise((resolve, reject) => {
     element.begin = () => {

@@ -1,4 +1,4 @@
-// Where the panels of a chart stand, their scales and ticks.
+// Positions of a chart's panels, with their scales and ticks.
 import {extent, linearScale} from './time_axes.js';
 
 export const text_px = 12, line_px = 15;
@@ -6,7 +6,7 @@ const gap_px = 14, right_px = 10, top_px = 8, tick_px = 6;
 const tilted = Math.sin(Math.PI / 4);
 
 let pen = null;
-/** How wide a text is on the page. */
+/** The width of a text on the page. */
 export function textWidth(text) {
   if (typeof document === 'undefined') return 6.5 * text.length;
   if (!pen) {
@@ -16,7 +16,7 @@ export function textWidth(text) {
   return pen.measureText(text).width;
 }
 
-/** A text's end behind dots, where all of it is wider than `most` pixels: names differ at their ends. */
+/** The end of a text wider than `most` pixels, after dots. Names differ at their ends. */
 export function endOf(text, most, measure = textWidth) {
   if (measure(text) <= most) return text;
   let kept = text.slice(1);
@@ -24,7 +24,7 @@ export function endOf(text, most, measure = textWidth) {
   return `…${kept}`;
 }
 
-/** A text in lines of at most so many pixels, broken between words. */
+/** The lines of a text, of at most `most` pixels, broken between words. */
 export function wrapped(text, most, measure = textWidth) {
   const lines = [];
   for (const word of text.split(' ')) {
@@ -38,7 +38,7 @@ export function wrapped(text, most, measure = textWidth) {
   return lines.map((line) => endOf(line, most, measure));
 }
 
-// The range of a panel's marks on one of its axes.
+// The range of a panel's marks along one of its axes.
 function reachOf(panel, key) {
   const axis = panel[key];
   if (axis.range) return axis.range;
@@ -57,8 +57,7 @@ function reachOf(panel, key) {
 const wholeTick = ({at}) => ({at, text: String(at)});
 
 /**
- * An axis from pixel `first` to `last`: its scale with as many ticks as have `room` pixels each, and what their texts
- * need.
+ * An axis from pixel `first` to `last`: its scale, one tick for each `room` pixels, and the size of the texts.
  * @param {import('./chart.js').Axis} axis
  */
 function scaleOf(axis, range, first, last, room, need) {
@@ -77,7 +76,7 @@ function scaleOf(axis, range, first, last, room, need) {
 
 const widest = (texts) => Math.max(0, ...texts.map((text) => textWidth(text)));
 
-// Names of levels that have no room beside each other are tilted, and cut where they are long.
+// Names of levels that do not fit side by side are tilted, and cut if they are long.
 function acrossTicks(axis, scale) {
   const texts = scale.ticks.map(({text}) => text);
   if (!axis.levels || widest(texts) + 8 <= scale.slot) return {ticks: scale.ticks, tilt: false, deep: line_px};
@@ -88,7 +87,7 @@ function acrossTicks(axis, scale) {
 
 /**
  * @param {import('./chart.js').Drawing} drawing
- * @param {number} width of the page's place for it
+ * width of its place on the page
  */
 export function layoutOf(drawing, width) {
   const {panels, height = 250, wide = width} = drawing;

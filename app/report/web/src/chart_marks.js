@@ -1,4 +1,4 @@
-// The marks of a chart as SVG shapes: a path for all points of a mark, however many they are.
+// The marks of a chart as SVG shapes. All points of a mark are one path.
 import {path as d3Path} from 'd3-path';
 
 import {shade} from './colour.js';
@@ -14,7 +14,7 @@ const dashes = {
   longdashdot: '12 4 2 4',
 };
 
-// Corners of a symbol of half width one.
+// Corners of a symbol with half width 1.
 const corners = {
   square: [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]],
   diamond: [[0, -1.2], [1.2, 0], [0, 1.2], [-1.2, 0]],
@@ -34,7 +34,7 @@ const corners = {
 
 const short = (v) => Math.round(10 * v) / 10;
 
-// Points that fall upon the same half pixel are drawn once.
+// Points in the same half pixel are drawn once.
 function eachPlace({x, y}, to, visit) {
   const seen = new Set();
   for (let i = 0; i < x.length; ++i) {
@@ -55,7 +55,7 @@ function points(mark, to) {
     } else if (open || edge) {
       list.push(`M${short(px - r)} ${py}a${r} ${r} 0 1 0 ${size} 0a${r} ${r} 0 1 0 ${- size} 0Z`);
     } else {
-      list.push(`M${px} ${py}h0`);  // a round cap and no line: a dot
+      list.push(`M${px} ${py}h0`);  // a line of length 0 with a round cap is a dot
     }
   });
   const dot = !shape && !open && !edge;
@@ -123,5 +123,5 @@ const kinds = {
   rule,
 };
 
-/** A mark's shapes; `to`: pixels of values, `at`: the panel's inside. */
+/** A mark's shapes; `to`: converts values to pixels, `at`: the panel's inside. */
 export const markShapes = (mark, to, at) => kinds[mark.kind](mark, to, at);

@@ -41,7 +41,7 @@ function panelShapes(placed) {
       s('g', {'clip-path': `url(#${id})`}, panel.marks.map((mark) => markShapes(mark, to, at))));
 }
 
-/** The SVG of what layoutOf() placed. */
+/** The SVG of the parts that layoutOf() placed. */
 export function drawChart({width, height, panels}) {
   return s('svg', {viewBox: `0 0 ${width} ${height}`, 'aria-hidden': 'true'}, panels.map(panelShapes));
 }

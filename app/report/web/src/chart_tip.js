@@ -1,4 +1,4 @@
-// Tips of the point next to the pointer, and clicks on it.
+// Tips for the point next to the pointer, and clicks on it.
 import {h} from './elements.js';
 
 const near_px = 14;
@@ -20,21 +20,21 @@ function show(event, said) {
   label.style.top = `${Math.min(event.clientY + 14, innerHeight - label.offsetHeight - 8)}px`;
 }
 
-// How far a mark's point is from a pixel: none within a bar or a cell.
+// Distance of a mark's point from a pixel; 0 inside a bar or a cell.
 function distance({kind, x, y, width}, i, px, py, to) {
   if (y[i] === null) return Infinity;
   if (kind === 'bars') return Math.abs(to.x(x[i]) - px) <= Math.abs(to.x(width) - to.x(0)) / 2 ? 0 : Infinity;
   return Math.hypot(to.x(x[i]) - px, to.y(y[i]) - py);
 }
 
-// {mark, i}: a cell, as number of all cells row by row.
+// The cell at a pixel as {mark, i}; i counts cells row by row.
 function cellAt(mark, px, py, to) {
   const next = (list, toPixel, at) =>
       list.reduce((best, v, k) => (Math.abs(toPixel(v) - at) < Math.abs(toPixel(list[best]) - at) ? k : best), 0);
   return {mark, i: next(mark.y, to.y, py) * mark.x.length + next(mark.x, to.x, px)};
 }
 
-/** The point next to a pixel of a chart, of those that tell something: {mark, i} or null. */
+/** The point with a tip that is nearest to a pixel: {mark, i} or null. */
 export function pointAt(panels, px, py) {
   const inside = ({at}) => px >= at.x - 4 && px <= at.x + at.width + 4 && py >= at.y && py <= at.y + at.height;
   const placed = panels.find(inside);

@@ -1,4 +1,4 @@
-// The figure of a WindowCloud: its chosen parameters two at a time.
+// The figure of a WindowCloud: one panel for each pair of chosen parameters.
 import {figure} from './chart.js';
 import {ellipseLine} from './ellipse.js';
 import {componentColour, INK, modeColour, palette} from './look.js';
@@ -7,15 +7,15 @@ import {usualRange} from './statistics.js';
 import {titleOf} from './time_rows.js';
 import {digits} from './window_cloud.js';
 
-const many = 20000;  // windows that are drawn smaller and fainter
+const many = 20000;  // from this number on windows are small and faint
 
-// A bank that was not refined has the components for its modes.
+// The modes of an unrefined bank are the components.
 const colourIn = (cloud, k) => (cloud.by === 'mode' || !cloud.windows.refined ? modeColour(k) : componentColour(k));
 export const groupColour = (cloud, key) => (key < 0 ? palette.unclustered : colourIn(cloud, key));
 
 const rangeOf = (cloud, a) => (cloud.showAll ? null : usualRange(cloud.values[a]));
 
-// The tip of a window: where it is, and its values on the axes that are shown.
+// The tip of a window: its run and time, and its values on the visible axes.
 const told =
     (cloud,
      i) => [cloud.place(i), ...cloud.axes.map((a) => `${cloud.windows.axes[a].name} = ${digits(cloud.values[a][i])}`)];
@@ -86,12 +86,12 @@ function panelOf(cloud, pair, pick) {
   };
 }
 
-/** `pick(i)`: window i was clicked. Null where there is nothing to draw in two dimensions. */
+/** `pick(i)`: called after a click on window i. Null with fewer than two dimensions. */
 export function cloudFigure(cloud, pick) {
   if (cloud.windows.axes.length < 2) return null;
   return figure(
       'The local models in two parameters at a time, with the ellipses of the mixture components',
       () => ({panels: pairsOf(cloud.axes).map((pair) => panelOf(cloud, pair, pick)), height: 290, wide: 300}),
-      `Ellipses hold ${100 * cloud.windows.level} % of a mixture component, or of the spread of a mode’s windows. ` +
-          'Diamonds are the modes of the bank. The numbers stand in the tables of modes.');
+      `Ellipses hold ${100 * cloud.windows.level} % of a mixture component, or of the covariance of a mode’s windows. ` +
+          'Diamonds are the modes of the bank. The tables of modes have the numbers.');
 }

@@ -1,8 +1,8 @@
-// Colours as '#rrggbb'.
+// Functions on colours written as '#rrggbb'.
 
 const hex = (byte) => Math.round(byte).toString(16).padStart(2, '0');
 
-// `share` of the way from one colour to the other.
+// Mixture of two colours; `share`: of the second.
 export function mixed(colour, other, share) {
   const at = (text, i) => parseInt(text.slice(1 + 2 * i, 3 + 2 * i), 16);
   return '#' + [0, 1, 2].map((i) => hex((1 - share) * at(colour, i) + share * at(other, i))).join('');
@@ -10,7 +10,7 @@ export function mixed(colour, other, share) {
 
 export const translucent = (colour, alpha) => colour + hex(255 * alpha);
 
-// The k-th colour; where the palette ends it comes again, darker, then lighter.
+// The k-th colour. After the end of the palette colours repeat, first darker, then lighter.
 export function paletteColour(palette, k) {
   if (k < 0) return palette.unclustered;
   const base = palette.modes[k % palette.modes.length];
@@ -19,8 +19,9 @@ export function paletteColour(palette, k) {
   return mixed(base, round === 1 ? '#000000' : '#ffffff', 0.45);
 }
 
-// Of the mode with `rank` more used ones before it: more colours than the palette's cannot be told apart. C++ says the
-// ranks and which modes are others (used_modes, told_modes of app/text/mode_words.hpp), here and for figures in papers.
+// The colour of the mode with `rank` more used modes before it; more colours than the palette's look alike. C++ decides
+// on ranks and on modes that count as others (used_modes, told_modes of app/text/mode_words.hpp), for pages and for
+// figures in papers.
 export const usedColour = (palette, rank) => paletteColour(palette, rank < palette.modes.length ? rank : -1);
 
 // How the modes of one label differ: towards black or white, and how far.
@@ -37,12 +38,12 @@ export function hueColour(palette, hue, turn) {
   return towards ? mixed(base, towards, share) : base;
 }
 
-/** A colour as a script draws it: lighter on a dark ground. */
+/** A colour for canvas: lighter on a dark background. */
 export function onGround(colour, dark) {
   if (!dark || !/^#[0-9a-f]{6}/i.test(colour)) return colour;
   return mixed(colour.slice(0, 7), '#ffffff', 0.35) + colour.slice(7);
 }
 
-/** The same as CSS has it, whatever the ground: --own is the share that a colour keeps of itself (page.css). */
+/** The same in CSS, for any background: --own is the share of the colour itself (page.css). */
 export const shade = (colour) =>
     (/^#[0-9a-f]{6}$/i.test(colour) ? `color-mix(in srgb, ${colour} var(--own), #fff)` : colour);

@@ -1,4 +1,4 @@
-// How true the uncertainty of all banks is.
+// Calibration of all banks.
 import {figure} from './chart.js';
 import {choiceIfAny, controls, h, note} from './elements.js';
 import {autocorrelationPanel, pitSteps} from './filter_drawings.js';
@@ -6,7 +6,7 @@ import {roleNames} from './filters.js';
 import {section} from './page.js';
 import {colours, dashes, letters, pairLegend, symbols} from './pair.js';
 
-// `rows`: of A, B, ...
+// `rows`: those of A, B, ...
 function pitDrawing(rows) {
   const [{band, expected}] = rows;
   const marks = rows.map(
@@ -32,7 +32,7 @@ export function drawFilter(data) {
   const holds = (one, name) => one.histograms.some((row) => row.role === name);
   const roles = ['test', 'train'].filter((name) => both.every((one) => holds(one, name)));
   if (!roles.length) {
-    section('filter', title, note('They have no kind of runs in common.'));
+    section('filter', title, note('They have no held-out or training runs in common.'));
     return;
   }
   let [role] = roles;
@@ -40,7 +40,7 @@ export function drawFilter(data) {
   const figures = [
     figure(
         'Histogram of probability integral transforms of all banks', () => pitDrawing(banks('histograms', 'filter')),
-        'Grey: where 95 % of a true filter’s bars lie (for A’s number of samples).'),
+        'Grey: contains 95 % of a true filter’s bars (for A’s number of samples).'),
     figure('Residual autocorrelation of all banks', () => correlationDrawing(banks('autocorrelations', 'model'))),
   ];
   const pick = choiceIfAny('Runs', roles.map((name) => roleNames[name]), 0, (i) => {

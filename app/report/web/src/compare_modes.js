@@ -5,7 +5,7 @@ import {section} from './page.js';
 import {letters, modeColours} from './pair.js';
 import {table} from './table.js';
 
-// A mode's parameters as its bank's page shows them.
+// A mode's parameters as on its bank's page.
 const parametersOf = (bank, k) =>
     (k < 0                        ? null :
          bank.motion_names.length ? bank.modes[k].motion :
@@ -13,7 +13,7 @@ const parametersOf = (bank, k) =>
 const namesOf = (bank) => (bank.motion_names.length ? bank.motion_names : bank.parameter_names);
 const modeText = (k) => (k < 0 ? '–' : String(k));
 
-/** `ofModes`: the colours of A's modes and of the other's. */
+/** `ofModes`: colours of A's modes and of the other bank's. */
 function pairColumns(a, b, letter, ofModes, {by_time: byTime, difference}) {
   const names = difference ? [] : namesOf(a);
   const colourOf = (i, mode) => (mode < 0 ? null : ofModes[i](mode));
@@ -61,8 +61,8 @@ export function drawModes(data) {
   const how = data.matches.some(({by_time: byTime}) => byTime) ?
       'Matched one to one by their time in common: over the samples of common runs, the sum of the smaller of both ' +
           'probabilities over the sum of the larger.' :
-      'No run is in both: matched one to one by the parameters.';
-  const rest = ' Apart: the root mean square difference of the parameters in standard errors, both errors together. ' +
+      'They have no common run, so they are matched one to one by the parameters.';
+  const rest = ' Apart: root mean square difference of the parameters over their joint standard errors. ' +
       'Modes that agree do so in all parameters together at 95 %. Matched modes have one colour.';
   const ofModes = modeColours(data);
   section(

@@ -30,12 +30,12 @@ function originOf(run, letter) {
 function drawDifferences(data) {
   const rows = data.differences, deciding = rows.filter((row) => row.decides),
         others = rows.filter((row) => !row.decides);
-  const caption = 'Settings that differ and decide the numbers', columns = settingColumns(data.runs);
+  const caption = 'Different settings that change results', columns = settingColumns(data.runs);
   section(
       'differences', 'What differs',
-      deciding.length ? table(columns, deciding, {caption}) : note('No setting that decides a number differs.'),
+      deciding.length ? table(columns, deciding, {caption}) : note('All settings that change results are equal.'),
       others.length ? details(
-                          `${others.length} differing settings that decide no number`,
+                          `${others.length} different settings that change no result`,
                           table(columns, others, {caption: 'Other settings'})) :
                       null,
       data.same_data ? null : note('The data differ: their hashes are not the same.', true));
@@ -54,14 +54,14 @@ const scoreColumns = (runs) =>
      {name: 'Better', text: true, of: (row) => (row.better === null ? 'equal' : letters[row.better])},
 ];
 
-// Rows that differ first; those that are equal are a click away.
+// Rows that differ come first; equal rows need a click.
 function scoreTables(data) {
   const columns = scoreColumns(data.runs);
   const differing = data.scores.filter((row) => row.better !== null),
         equal = data.scores.filter((row) => row.better === null);
   if (data.verdicts.some(({runs}) => runs === 0)) {
     const all = table(columns.slice(0, -1), data.scores, {caption: 'Scores of different data', sortable: true});
-    return [details('Scores of each, which do not compare', all)];
+    return [details('Scores of each, which cannot be compared', all)];
   }
   return [
     differing.length ?
@@ -95,13 +95,13 @@ function bankTable(bank, letter) {
       columns, bank.order.map((k) => bank.modes[k]), {caption: `Modes of ${letter}, most used first`, sortable: true});
 }
 
-// Every bank by itself: what stands side by side above leaves gains and time constants out.
+// Each bank by itself, since the matched tables lack gains and time constants.
 function drawBanks(data) {
   section(
       'bank', 'Each bank',
       data.runs.map(
           (run, k) => run.bank ? details(`Modes of ${letters[k]}: ${run.name}`, bankTable(run.bank, letters[k])) :
-                                 note(`${letters[k]} holds no bank.`)));
+                                 note(`${letters[k]} has no bank.`)));
 }
 
 draw(() => {

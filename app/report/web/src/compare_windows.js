@@ -1,4 +1,4 @@
-// Local models and modes of the runs in two parameters.
+// Local models and modes of the runs over two parameters.
 import {figure} from './chart.js';
 import {choice, controls, note} from './elements.js';
 import {INK, palette} from './look.js';
@@ -17,7 +17,7 @@ function windowPoints(k, x, y, look = {}) {
 
 const place = (mode, at) => at.map((a) => mode.mean[a]);
 
-// The first's full, the others' open around them: modes that agree are both seen.
+// The first bank's symbols are filled, the others' hollow and larger, so that equal modes are both visible.
 function bankPoints(k, bank, at) {
   const places = bank.map((mode) => place(mode, at[k]));
   return {
@@ -33,7 +33,7 @@ function bankPoints(k, bank, at) {
   };
 }
 
-// A line from each mode of A to the one of another that is matched with it.
+// A line from each mode of A to its match in another bank.
 function links(match, banks, at, k) {
   const x = [], y = [];
   for (const {first, second} of match.modes) {
@@ -49,7 +49,7 @@ const axisOf = (windows, name) => windows.axes.findIndex((axis) => axis.name ===
 const alike = (lists) =>
     lists.every((list) => list.length === lists[0].length && list.every((v, i) => v === lists[0][i]));
 
-// The modes of the banks with parameters on both axes, and which are matched.
+// Modes of the banks that have both parameters, and the matches among them.
 function modeMarks(data, chosen) {
   const list = data.runs.map((run) => run.windows);
   const at = list.map((windows) => [axisOf(windows, chosen.x), axisOf(windows, chosen.y)]);
@@ -60,12 +60,12 @@ function modeMarks(data, chosen) {
   return [...matched, ...banks.flatMap((bank, k) => (bank && bank.length ? [bankPoints(k, bank, at)] : []))];
 }
 
-// `chosen`: names of the parameters across (x) and up (y).
+// `chosen`: names of the parameters on the x and y axis.
 async function windowsDrawing(data, chosen) {
   const all = data.runs.map((run) => run.windows);
   const values = (name) => Promise.all(all.map((windows) => array(windows.values[axisOf(windows, name)])));
   const xs = await values(chosen.x), ys = await values(chosen.y);
-  // The same windows in all would hide each other.
+  // Equal windows would hide each other, so they are drawn once.
   const points = alike(xs) && alike(ys) ? [windowPoints(0, xs[0], ys[0], {colour: palette.unclustered})] :
                                           all.map((_, k) => windowPoints(k, xs[k], ys[k]));
   const axis = (name, lists) => ({title: titleOf(all[0].axes[axisOf(all[0], name)]), range: usualRange(...lists)});
@@ -73,7 +73,7 @@ async function windowsDrawing(data, chosen) {
   return {panels: [panel], height: 380};
 }
 
-// The parameters that are shown first: the page of A's, where B has them, too.
+// The first parameters to show: those of A's page, if B has them.
 function firstAxes(windows, shared) {
   const begin = windows.default_axes.map((a) => windows.axes[a].name).filter((name) => shared.includes(name));
   const x = begin[0] || shared[0];
@@ -96,7 +96,7 @@ export function drawWindows(data) {
   const element = figure(
       'Local models and modes of all runs in two parameters', () => windowsDrawing(data, chosen),
       'Small: windows, grey where they are the same in all. ' +
-          'Large, where both axes are parameters of modes: those of the banks, A’s full, the others’ open; lines ' +
+          'Large, where both axes are parameters of modes: those of the banks, A’s filled, the others’ hollow; lines ' +
           'join those that are matched.');
   const pick = (label, key) => choice(label, shared, shared.indexOf(chosen[key]), (i) => {
     chosen[key] = shared[i];

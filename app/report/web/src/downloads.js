@@ -1,14 +1,14 @@
-// Files that a page gives: figures as SVG and PNG, tables as CSV.
+// Downloads of a page: figures as SVG and PNG, tables as CSV.
 import {h} from './elements.js';
 
-/** A file's name of what a figure or table is called. */
+/** A file name from the label of a figure or table. */
 export function fileName(label, kind) {
   const words =
       label.normalize('NFKD').replace(/\p{M}/gu, '').toLowerCase().replace(/[^a-z0-9]+/g, '_').replace(/^_+|_+$/g, '');
   return `${words.slice(0, 60) || 'file'}.${kind}`;
 }
 
-/** What a data: address holds. */
+/** The content of a data: address. */
 export function blobOf(address) {
   const comma = address.indexOf(','), head = address.slice('data:'.length, comma), body = address.slice(comma + 1);
   if (!head.endsWith(';base64')) return new Blob([decodeURIComponent(body)], {type: head});
@@ -16,7 +16,7 @@ export function blobOf(address) {
       [Uint8Array.from(atob(body), (letter) => letter.charCodeAt(0))], {type: head.slice(0, -';base64'.length)});
 }
 
-/** Lets the browser keep a file. */
+/** Makes the browser save a file. */
 export function save(name, blob) {
   const link = h('a', {href: URL.createObjectURL(blob), download: name, hidden: true});
   document.body.append(link);
@@ -26,9 +26,8 @@ export function save(name, blob) {
 }
 
 /**
- * Buttons that keep what is called `label`, one per kind of file.
- * @param {string} label
- * @param {Record<string, () => Promise<Blob>|Blob>} kinds what makes a file, by its ending
+ * Buttons that save a figure or table with this label, one per kind of file.\n@param {string} label\n@param
+ * {Record<string, () => Promise<Blob>|Blob>} kinds by ending: a function that makes the file
  */
 export function downloads(label, kinds) {
   const button = ([kind, make]) =>
@@ -44,7 +43,7 @@ export function downloads(label, kinds) {
 
 const quoted = (text) => (/[",\n\r]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
 
-// A cell's exact value where it has one, else its text.
+// A cell's exact value if it has one, else its text.
 function cellText(cell) {
   const exact = cell.dataset.value || (cell.querySelector(':scope > [data-value]') || {dataset: {}}).dataset.value;
   const value = exact === undefined ? cell.textContent.trim() : JSON.parse(exact);
@@ -54,7 +53,7 @@ function cellText(cell) {
 /** Rows of texts as CSV. */
 export const csvOf = (rows) => rows.map((row) => row.map(quoted).join(',') + '\n').join('');
 
-/** A table as the page shows it, in its order, numbers as exact as the archive's. */
+/** A table in the order of the page, with numbers as exact as the archive's. */
 export function tableFile(table) {
   const rows = [...table.rows].filter((row) => !row.querySelector('input, select'));
   return new Blob([csvOf(rows.map((row) => [...row.cells].map(cellText)))], {type: 'text/csv;charset=utf-8'});

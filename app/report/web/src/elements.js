@@ -1,4 +1,4 @@
-// Elements of the pages. Whatever comes from an archive enters them as text (textContent), never as markup.
+// Elements of the pages. Data from archives enter them as text (textContent), never as markup.
 import {shade} from './colour.js';
 
 function fill(element, attributes, children) {
@@ -16,7 +16,7 @@ function fill(element, attributes, children) {
   return element;
 }
 
-// h('p', {class: 'soft'}, 'text', child, ...): an element. Strings become text; null and undefined are left out.
+// h('p', {class: 'soft'}, 'text', child, ...): an HTML element. Strings become text; null and undefined are skipped.
 export function h(tag, attributes = {}, ...children) {
   return fill(document.createElement(tag), attributes, children);
 }
@@ -26,7 +26,7 @@ export function s(tag, attributes = {}, ...children) {
   return fill(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, children);
 }
 
-// A value as C++ formatted it (numbers.hpp), with the exact one in data-value.
+// A value with the text from C++ (numbers.hpp) and the exact value in data-value.
 export function value(cell, tag = 'span') {
   if (cell === null || cell === undefined) return h(tag, {}, '–');
   if (cell instanceof Node || typeof cell !== 'object') return h(tag, {}, cell instanceof Node ? cell : String(cell));
@@ -48,7 +48,7 @@ export function note(text, bad = false) {
   return h('p', {class: bad ? 'note bad' : 'note'}, text);
 }
 
-/** In a colour as look.js has it; `opacity`: that of what is drawn. */
+/** A swatch in a colour of look.js; `opacity`: that of the drawing. */
 export const swatch = (colour, opacity = 1) =>
     h('span', {class: 'swatch', style: `background:${shade(colour)};opacity:${opacity}`});
 
@@ -59,7 +59,7 @@ export function legend(entries, label = 'Colours') {
       entries.map(([colour, text, opacity]) => h('li', {}, swatch(colour, opacity), text)));
 }
 
-// Pages opened from a file may be refused the clipboard.
+// A page opened from a file may have no access to the clipboard.
 function copyByHand(text) {
   const area = h('textarea', {style: 'position:fixed;opacity:0'});
   area.value = text;
@@ -70,7 +70,7 @@ function copyByHand(text) {
   return copied;
 }
 
-// `given`: the text, or what makes it when it is asked for.
+// `given`: the text, or a function that makes it on demand.
 export function copyButton(label, given) {
   const button = h('button', {type: 'button', class: 'copy'}, label);
   const done = (word) => {
@@ -90,14 +90,14 @@ export function copyButton(label, given) {
 
 export const controls = (...children) => h('div', {class: 'controls'}, children);
 
-// A drop-down; `choices` are texts, onchange gets the chosen position.
+// A drop-down. `choices`: texts; onchange receives the chosen index.
 export function choice(label, choices, chosen, onchange) {
   const options = choices.map((text, i) => h('option', {value: i, selected: i === chosen}, text));
   const select = h('select', {onchange: () => onchange(select.selectedIndex)}, options);
   return h('label', {}, label, select);
 }
 
-// The same where there is something to choose, else nothing.
+// The same if there are at least two choices, else nothing.
 export function choiceIfAny(label, choices, chosen, onchange) {
   return choices.length > 1 ? choice(label, choices, chosen, onchange) : null;
 }

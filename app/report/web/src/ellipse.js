@@ -1,6 +1,6 @@
-// Ellipses (x - mean)' C^-1 (x - mean) = limit as points.
+// Points of ellipses (x - mean)' C^-1 (x - mean) = limit.
 
-// Lower Cholesky factor of a small covariance; null when it is not one (a window that data do not determine).
+// Lower Cholesky factor of a small covariance; null for a singular one (a window that data do not determine).
 export function factor(matrix) {
   const n = matrix.length, L = matrix.map((row) => row.map(() => 0));
   for (let i = 0; i < n; ++i) {
@@ -16,7 +16,7 @@ export function factor(matrix) {
 
 export const part = (matrix, axes) => axes.map((i) => axes.map((j) => matrix[i][j]));
 
-// Where a point of the unit circle goes.
+// The image of a point of the unit circle.
 function image(center, L, scale, unit) {
   return center.map((c, i) => c + scale * L[i].reduce((sum, l, j) => sum + l * unit[j], 0));
 }
@@ -25,7 +25,7 @@ const turnOf = (i, steps) => (2 * Math.PI * i) / steps;
 const circle = (steps) =>
     Array.from({length: steps + 1}, (_, i) => [Math.cos(turnOf(i, steps)), Math.sin(turnOf(i, steps))]);
 
-// An ellipse as a closed line; null where there is none.
+// An ellipse as a closed line; null for a singular covariance.
 export function ellipseLine(mean, matrix, limit) {
   const L = factor(matrix);
   if (!L) return null;

@@ -1,4 +1,4 @@
-// Panels of how true a filter's uncertainty is, for the pages of one run and of several.
+// Panels on a filter's calibration, for pages of one run and of several.
 
 /** Residual autocorrelation by lag, from one sample on: a panel with a line and points for each of `rows`. */
 export function autocorrelationPanel(rows, band) {
@@ -11,7 +11,7 @@ export function autocorrelationPanel(rows, band) {
   return {x: {title: 'lag [samples]', whole: true}, y: {title: 'autocorrelation'}, marks: [...grey, ...marks]};
 }
 
-/** A histogram of probability integral transforms (PIT) as bars, with what a true filter's are. */
+/** A histogram of probability integral transforms (PIT) as bars, with the interval for a true filter. */
 export function pitPanel({counts, band, expected}, colour, title) {
   const bins = counts.length, x = counts.map((_, b) => (b + 0.5) / bins);
   const tip = (b) => `${b / bins} to ${(b + 1) / bins}: ${counts[b]} samples`;
@@ -27,7 +27,7 @@ export function pitPanel({counts, band, expected}, colour, title) {
   };
 }
 
-/** The same histogram as a density: edges of steps. */
+/** The same histogram as a density: corners of steps. */
 export function pitSteps({counts, expected}) {
   const bins = counts.length;
   return {

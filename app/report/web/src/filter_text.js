@@ -1,4 +1,4 @@
-// What people type under a heading of the table of runs.
+// Filters that a user types under a heading of the table of runs.
 import {plainValue} from './ordering.js';
 
 const comparisons = {
@@ -9,7 +9,7 @@ const comparisons = {
   '=': (v, limit) => v === limit,
 };
 
-// NaN where the text is no number.
+// NaN for text that is not a number.
 const numberIn = (text) => (text === null || text === undefined || String(text).trim() === '' ? NaN : Number(text));
 
 const shownText = (cell) => {
@@ -44,7 +44,7 @@ function choicesIn(word) {
   return (cell) => choices.includes(shownText(cell)) || choices.includes(String(plainValue(cell)));
 }
 
-// "> 2", "<= 0.1", "3..5" and "a | b" (any of); anything else is a part of the text. Returns cell => bool.
+// Accepts "> 2", "<= 0.1", "3..5" and "a | b" (any of them); other text matches as a part. Returns cell => bool.
 export function filterOf(text) {
   const word = text.trim();
   if (!word) return () => true;

@@ -1,4 +1,4 @@
-// Names of the archive's filters and runs as people read them.
+// Names of an archive's filters and runs for people.
 export const filterNames = {
   bank: 'Bank',
   baseline: 'Baseline (one Kalman filter)',
@@ -19,7 +19,7 @@ export const shortNames = {
   combined: 'combined',
   global: 'global model'
 };
-// The scores that count samples on either side of what a true filter has, by kind.
+// By kind: the scores that count samples on either side of a true filter's interval.
 export const sidesOf = {
   z: {above: 'too_far', below: 'too_close'},
   nis: {above: 'nis_above', below: 'nis_below'}

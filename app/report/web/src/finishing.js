@@ -1,7 +1,7 @@
-// Figures are drawn when they come near the window; those that are still out of sight are drawn when the browser has
-// nothing else to do, so that it can print the whole page at any time: it does not wait for drawing.
+// Figures are drawn when they come near the window. The others are drawn when the browser is idle, because printing
+// does not wait for drawing and must find the whole page drawn.
 
-const soon_ms = 2000;  // at the latest, also in a busy browser
+const soon_ms = 2000;  // latest time, even in a busy browser
 
 const whenIdle = () => new Promise((resolve) => {
   if (window.requestIdleCallback) {
@@ -12,21 +12,21 @@ const whenIdle = () => new Promise((resolve) => {
 });
 
 /**
- * `tasks`: {finish, place}: what begins a drawing and waits for it, and the element it is in; what nobody can open the
- * page and see, e.g. inside folded parts, is left.
+ * `tasks`: {finish, place}: `finish` draws and waits for the end, `place` is the element. Elements that a reader cannot
+ * see, for example inside folded parts, are skipped.
  */
 export async function finishWhenIdle(tasks) {
   for (const {finish, place} of tasks) {
     await whenIdle();
     if (place && !place.offsetParent) continue;
-    await Promise.resolve(finish()).catch(() => null);  // who drew it has said so
+    await Promise.resolve(finish()).catch(() => null);  // the drawing code has reported the error
   }
   document.documentElement.dataset.finished = 'true';
 }
 
 /**
- * A browser that is only to print (chromium --headless --print-to-pdf) does so when the page has loaded. An open
- * document in a frame keeps it loading until the function that comes back is called.
+ * A browser that only prints (chromium --headless --print-to-pdf) prints when the page has loaded. An open document in
+ * a frame delays this until the returned function is called.
  */
 export function holdPrinting() {
   const prints = navigator.userAgent.includes('Headless') && !navigator.webdriver;

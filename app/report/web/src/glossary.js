@@ -1,9 +1,9 @@
-// Terms as headings and sentences hold them.
+// Search for terms in headings and sentences.
 
 const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\/-]/g, '\\$&');
 
-// Any of the names as a word of its own, or its plural; longer ones first: "95 % band" before "band". A sentence that
-// says "one motion" need not mean the competitor one_motion.
+// A pattern for any of the names as a whole word, or its plural. Longer names come first: "95 % band" before "band". In
+// a sentence "one motion" need not be the competitor one_motion.
 function anyOf(names) {
   const isOther = (name) => name.includes(' ') && names.includes(name.replace(/ /g, '_'));
   const meant = (name) => name.length > 2 && /^\w/.test(name) && !isOther(name);
@@ -19,14 +19,14 @@ export class Glossary {
     this.anyTerm = anyOf([...this.meanings.keys()]);
   }
 
-  /** The meaning of a heading, whatever unit it has and whatever it is of; null for words that need none. */
+  /** The meaning of a heading, apart from its unit and its object; null for words without a definition. */
   meaningOf(heading) {
     const name = String(heading).toLowerCase(), bare = name.replace(/ \[[^\]]*\]$/, '');
     const general = bare.replace(/^(steady gain|rmse|log noise variance) .*/, '$1');
     return [name, bare, general].map((text) => this.meanings.get(text)).find(Boolean) || null;
   }
 
-  /** A sentence in parts {part, meaning}: meaning where a part is the first mention of a term, else null. */
+  /** The parts of a sentence as {part, meaning}; meaning is null except at the first mention of a term. */
   termsIn(sentence) {
     const parts = [], told = new Set();
     let from = 0;

@@ -2,8 +2,8 @@
 import {shade} from './colour.js';
 import {s} from './elements.js';
 
-const bend = 0.14;    // of an arrow's length
-const least = 0.005;  // rarer transitions are left to the matrix
+const bend = 0.14;    // sagitta as a share of an arrow's length
+const least = 0.005;  // rarer transitions appear only in the matrix
 
 const minus = (a, b) => ({x: a.x - b.x, y: a.y - b.y});
 const along = (a, v, length) => ({x: a.x + length * v.x, y: a.y + length * v.y});
@@ -11,7 +11,7 @@ const unit = (v) => ({x: v.x / Math.hypot(v.x, v.y), y: v.y / Math.hypot(v.x, v.
 const left = (v) => ({x: v.y, y: -v.x});
 const put = ({x, y}) => `${x},${y}`;
 
-// A bent arrow between two nodes {x, y, r}, and where its label goes.
+// A bent arrow between two nodes {x, y, r}, and the place of its label.
 function arrow(from, to, width, colour, title) {
   const way = minus(to, from), straight = unit(way);
   const start = along(from, straight, from.r), end = along(to, straight, -(to.r + 7));
@@ -27,7 +27,7 @@ function arrow(from, to, width, colour, title) {
           'stroke-opacity': 0.75,
         }),
         s('path', {d: `M${corners.map(put).join('L')}Z`, fill: shade(colour)}));
-  // Nearer to where it comes from: in the middle the labels of all would meet.
+  // Labels are nearer to the arrow's start, since in the middle all would overlap.
   const t = 0.3, share = [(1 - t) ** 2, 2 * t * (1 - t), t ** 2];
   const on = (axis) => share[0] * start[axis] + share[1] * middle[axis] + share[2] * end[axis];
   return {element, at: {x: on('x'), y: on('y')}};
@@ -45,7 +45,7 @@ function edgesOf(transition, nodes, places) {
   return {pictures, labels};
 }
 
-// `transition[i][j]`: C++'s number cells; `nodes`: {title, short, colour, use}, the larger the more used.
+// `transition[i][j]`: number cells from C++; `nodes`: {title, short, colour, use}, drawn larger with more use.
 export function transitionGraph(transition, nodes) {
   const K = nodes.length, size = 420, centre = size / 2, ring = K === 1 ? 0 : size / 2 - 52;
   const angle = (k) => (2 * Math.PI * k) / K;

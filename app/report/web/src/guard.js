@@ -1,4 +1,4 @@
-// Which states and inputs belong to which mode, where switches see them.
+// Maps of modes over states and inputs, for state-dependent transitions.
 import {figure} from './chart.js';
 import {modeColour, palette} from './look.js';
 import {modeTitle} from './mode_names.js';
@@ -7,7 +7,7 @@ import {titleOf} from './time_rows.js';
 
 const percent = (share) => `${(100 * share).toFixed(0)} %`;
 
-// The modes told one by one, and all others as one: {name, colour, holds: mode => bool}.
+// Modes listed one by one, and all others as one: {name, colour, holds: mode => bool}.
 function groupsOf(bank) {
   const {told, others} = byUse(bank);
   const own = ({mode}) => ({name: modeTitle(mode), colour: modeColour(mode), holds: (k) => k === mode});
@@ -17,7 +17,7 @@ function groupsOf(bank) {
                      list;
 }
 
-// The data's samples in their modes' colours: `y(i, row)` is how high sample i of group `row` is drawn.
+// The data's samples in the colours of their modes. `y(i, row)`: the height of sample i in group `row`.
 function sampleMarks(bank, x, y) {
   const {samples} = bank.guard;
   return groupsOf(bank).map(({name, colour, holds}, row) => {
@@ -26,7 +26,7 @@ function sampleMarks(bank, x, y) {
   });
 }
 
-// The mode that would rule, as the ground's colour.
+// The mode with the largest share, as background colour.
 function groundMark({axes, modes, shares}) {
   const [x, y] = axes.map(({values}) => values);
   const tip = (n) => {
@@ -45,7 +45,7 @@ function map(bank) {
   };
 }
 
-// Samples stand below the lines, a row per mode; the most used modes last, or the others would hide them.
+// Samples are below the lines, one row per mode. The most used modes come last, or the others would hide them.
 function lines(bank) {
   const {guard} = bank, {values} = guard.axes[0];
   const rows = sampleMarks(bank, (i) => guard.samples.at[0][i], (i, row) => -0.05 - 0.05 * row);
@@ -54,15 +54,15 @@ function lines(bank) {
   return {x: {title: titleOf(guard.axes[0])}, y: {title: 'share of the time'}, marks: [...curves, ...rows]};
 }
 
-/** Of a bank whose switches see states and inputs. */
+/** `bank`: with state-dependent transitions. */
 export function guardFigure(bank) {
   const {guard} = bank;
   const rest = guard.others ? ' Other states and inputs are at their training mean.' : '';
-  const points = 'Points: samples of all runs, by the state and the input that the step into them started from, in ' +
-      'the colour of the mode that the filter finds them in.';
+  const points = 'Points: samples of all runs, at the state and input before their step, in ' +
+      'the colour of their most probable mode.';
   const means = guard.one ?
-      'Lines: which share of the time each mode would have if state and input stayed there.' :
-      'Ground: the mode that would have the largest share of the time if state and input stayed there.';
+      'Lines: share of the time in each mode if state and input stayed there.' :
+      'Background: the mode with the largest share of the time if state and input stayed there.';
   const keys = groupsOf(bank).map(({name, colour}) => [colour, name]);
   return figure(
       'Which states and inputs belong to which mode',

@@ -1,5 +1,5 @@
-// Colours of the page. Scripts pass the palette's colours on as they are; what draws them makes them lighter on a dark
-// ground, to the same colour everywhere: shade() (colour.js) for elements and SVG, onCanvas() for a canvas.
+// Colours of the page. Scripts pass colours of the palette unchanged. The drawing code makes them lighter on a dark
+// background, equally everywhere: shade() (colour.js) for elements and SVG, onCanvas() for a canvas.
 import palette from '../palette.json';
 
 import {hueColour, onGround, paletteColour, translucent, usedColour} from './colour.js';
@@ -8,15 +8,15 @@ import {dark} from './page.js';
 
 export {palette, translucent};
 
-/** The colour of text and of what was measured. */
+/** The colour of text and of measurements. */
 export const INK = 'var(--ink)';
 export const inkNow = () => (dark() ? '#e8eaee' : '#16181d');
 export const groundNow = () => (dark() ? '#14161a' : '#ffffff');
 
-/** A colour as it is now. */
+/** A colour in the present theme. */
 export const onCanvas = (colour) => (colour === INK ? inkNow() : onGround(colour, dark()));
 
-/** A trace or level of a plot over time in its colour as it is now, and what else is on the canvas. */
+/** A trace or level of a time plot with its colour in the present theme, for a canvas. */
 export const coloured = (it) => ({...it, colour: onCanvas(it.colour)});
 export const canvasLook = () => ({
   ink: inkNow(),

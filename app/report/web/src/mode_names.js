@@ -1,5 +1,5 @@
-// What the page calls the modes of its bank, and which of them come first; a page of several banks says neither, and
-// their modes have numbers alone.
+// Names and order of the modes on a page with one bank. A page with several banks sets neither, so modes are plain
+// numbers.
 let names = [];
 let ranks = [];
 let hues = [];
@@ -25,14 +25,14 @@ export function nameModes(list, order = [], told = Infinity) {
   });
 }
 
-/** How many modes are used more. */
+/** Number of modes with more use. */
 export const rankOf = (k) => (ranks[k] === undefined ? k : ranks[k]);
 /** Its hue, which modes of the same label share, and how many more used modes of that label there are. */
 export const hueOf = (k) => hues[k] || {hue: rankOf(k), turn: 0};
-/** Whether a mode is among those that are hardly used and taken as one. */
+/** Whether a mode is among the rarely used ones that are merged. */
 export const isOther = (k) => rankOf(k) >= toldCount;
 
-/** In a column of modes. */
+/** Text for a column of modes. */
 export const modeCell = (k) => (names[k] ? `${k} ${names[k]}` : String(k));
-/** Anywhere else. */
+/** Text for other places. */
 export const modeTitle = (k) => (names[k] ? `mode ${k}: ${names[k]}` : `mode ${k}`);

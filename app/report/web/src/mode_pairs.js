@@ -1,8 +1,8 @@
-// What is said of modes of two banks that are matched. Draws nothing.
+// Texts and colours of matched modes of two banks, without drawing.
 
 /**
- * Ranks of colours (usedColour) of the modes of each bank, so that matched modes share A's: those of A by use, the
- * others told one by one of theirs; what a bank has alone comes after A's, by use. Infinity: others.
+ * Ranks of colours (usedColour) of the modes of each bank. Matched modes have A's rank, which is by use. The other
+ * listed modes of a bank follow after A's, by use. Infinity: merged modes.
  * @param {({order: number[], told: number}|null)[]} banks
  * @param {{modes: {first: number, second: number}[]}[]} matches of the second, third, ... with A
  * @returns {number[][]}
@@ -34,19 +34,19 @@ export function matchedRanks(banks, matches) {
   return all;
 }
 
-// [differing, agreeing] pairs of a match: the farthest apart first, modes that one bank has alone after all pairs.
+// [differing, agreeing] pairs of a match: the largest distance first, unmatched modes last.
 export function sortedPairs({modes}) {
   const distance = ({first, second, distance: cell}) => (first < 0 || second < 0 ? -1 : cell.v || 0);
   const sorted = [...modes].sort((p, q) => distance(q) - distance(p) || p.first - q.first);
   return [sorted.filter(({agree}) => !agree), sorted.filter(({agree}) => agree)];
 }
 
-// In which parameters a pair differs most: "B (+5.2), A (-3.1)".
+// The parameters in which a pair differs most: "B (+5.2), A (-3.1)".
 export function differingWords({first, second, agree, z}, names, letter) {
   if (first < 0) return `only in ${letter}`;
   if (second < 0) return 'only in A';
   if (agree) return 'agree within their errors';
-  if (!z.length) return '–';  // of other models
+  if (!z.length) return '–';  // modes of different models
   const far = z.map(({v, t}, i) => ({v: Math.abs(v), text: `${names[i].replace(/ \[[^\]]*\]$/, '')} (${t})`}))
                   .sort((p, q) => q.v - p.v);
   return `differ in ${far.slice(0, 2).filter(({v}) => v > 2).map(({text}) => text).join(', ')}`;

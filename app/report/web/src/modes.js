@@ -3,7 +3,7 @@ import {legend} from './elements.js';
 import {modeColour, palette} from './look.js';
 import {modeTitle} from './mode_names.js';
 
-/** Rows of the modes that are told one by one, and those of the others. */
+/** Rows of the modes listed one by one, and those of the others. */
 export function byUse(bank) {
   const rows = bank.order.map((k) => bank.modes[k]);
   return {told: rows.slice(0, bank.told), others: rows.slice(bank.told)};
@@ -11,7 +11,7 @@ export function byUse(bank) {
 
 export const othersName = (count) => `${count} other${count === 1 ? '' : 's'}`;
 
-/** Of a bank, which may be absent. */
+/** The legend of a bank; `bank` may be missing. */
 export function modeLegend(bank) {
   if (!bank || bank.modes.length < 2) return null;
   const {told, others} = byUse(bank);

@@ -1,6 +1,6 @@
-// Numbers as the page's own scripts write them; those of tables were written by C++ (numbers.hpp).
+// Numbers formatted by the page's scripts; numbers in tables are formatted by C++ (numbers.hpp).
 
-/** At most `digits` digits that count; a true minus sign. */
+/** At most `digits` significant digits, with a true minus sign. */
 export function shortNumber(value, digits = 6) {
   if (!Number.isFinite(value)) return '–';
   const text = String(Number(value.toPrecision(digits)));
@@ -10,7 +10,7 @@ export function shortNumber(value, digits = 6) {
 /** A time in seconds, to a tenth of a millisecond. */
 export const secondsText = (t) => `${shortNumber(Math.round(t * 1e4) / 1e4, 12)} s`;
 
-/** What a readout says of {low, high}: one value, or a range where they differ. */
+/** Readout of {low, high}: one value, or a range if they differ. */
 export function rangeText({low, high}, unit) {
   const text = low === high || Number.isNaN(low) ? shortNumber(low) : `${shortNumber(low)} … ${shortNumber(high)}`;
   return unit ? `${text} ${unit}` : text;

@@ -1,8 +1,8 @@
-// The page around its sections: head, contents, theme, printing.
+// The frame of a page: head, contents, theme, printing.
 import {h} from './elements.js';
 import {finishWhenIdle, holdPrinting} from './finishing.js';
 
-// A section of the page with its entry in the contents.
+// A section of the page, with its entry in the contents.
 export function section(id, title, ...content) {
   const heading = h('h2', {id: `${id}-title`}, title);
   const element = h('section', {id, 'aria-labelledby': `${id}-title`}, heading, content);
@@ -33,9 +33,9 @@ const announce = () => {
   return Promise.all(listeners.map((listener) => listener()));
 };
 
-// What must be done before the page can be printed, e.g. drawing what is still out of sight.
+// Tasks to finish before the page is printed, such as drawing figures out of sight.
 const unfinished = [];
-// `place`: the element it is drawn in.
+// `place`: the element of the drawing.
 export function beforePrint(finish, place = null) {
   unfinished.push({finish, place});
 }
@@ -83,20 +83,20 @@ export function head(title, subtitle) {
   markTheme();
 }
 
-// The script runs before the arrays that stand after it in the file are read.
+// Resolves when the page is parsed: this script runs before the arrays after it are read.
 const parsed = () => new Promise((resolve) => {
   if (document.readyState !== 'loading') resolve();
   document.addEventListener('DOMContentLoaded', resolve);
 });
 
-// After what is there has been painted; a page that nobody sees is never painted.
+// Resolves after the next painting; a hidden page is never painted.
 const painted = () => new Promise((resolve) => {
   requestAnimationFrame(() => setTimeout(resolve, 0));
   setTimeout(resolve, 300);
 });
 
-// Runs what draws the page: `first` is seen before anything else is read. A failure is shown and thrown on, so that
-// tests see it.
+// Runs the script of a page. `first`: drawn and visible before other data are read. An error is shown and thrown again,
+// so that tests see it.
 export async function draw(body, first = () => undefined) {
   const release = holdPrinting();
   try {
@@ -109,7 +109,7 @@ export async function draw(body, first = () => undefined) {
     finishWhenIdle(unfinished).then(release);
   } catch (error) {
     release();
-    const text = `This page failed to draw itself: ${error.message}`;
+    const text = `This page could not be drawn: ${error.message}`;
     document.getElementById('main').append(h('p', {class: 'failure note bad', role: 'alert'}, text));
     throw error;
   }

@@ -1,4 +1,4 @@
-// Runs that are compared, A, B, ...: one colour, dash and symbol each in every plot.
+// Compared runs A, B, ...: each has one colour, dash and symbol in all plots.
 import {legend} from './elements.js';
 import {palette, rankColour} from './look.js';
 import {matchedRanks} from './mode_pairs.js';
@@ -9,13 +9,13 @@ export const symbols = ['circle', 'diamond', 'square', 'triangle-up', 'cross', '
 export const dashes = [undefined, 'dash', 'dot', 'dashdot', 'longdash', 'longdashdot'];
 
 
-/** Of the page's data: for each run which colour its modes have, the same where they are matched. */
+/** For each run of the page's data the colours of its modes; matched modes have equal colours. */
 export function modeColours(data) {
   const ranks = matchedRanks(data.runs.map((run) => run.bank), data.matches);
   return ranks.map((of) => (mode) => rankColour(of[mode]));
 }
 
-// `runs`: of the page's data; `extra`: more entries.
+// `runs`: those of the page's data; `extra`: further entries.
 export function pairLegend(runs, extra = []) {
   return legend([...runs.map((run, k) => [colours[k], `${letters[k]}: ${run.name}`]), ...extra]);
 }

@@ -1,5 +1,5 @@
-// What plots over time are drawn with: a pen for the screen (canvas) and one for files (SVG), so that a figure's file
-// is what the screen shows. A path is a function that calls moveTo, lineTo, arc, rect, ... of what it is given.
+// Pens that draw time plots: one for the screen (canvas) and one for files (SVG), so that both look the same. A path is
+// a function that calls moveTo, lineTo, arc, rect, ... on its argument.
 import {path as d3Path} from 'd3-path';
 
 import {s} from './elements.js';
@@ -46,7 +46,7 @@ export function canvasPen(context) {
       drawn(path);
       context.fill();
     },
-    // A path of as many pieces takes the browser tens of times as long.
+    // One path with as many pieces would take the browser tens of times as long.
     boxes: (boxes, colour) => {
       context.fillStyle = colour;
       for (let i = 0; i < boxes.length; i += 4) context.fillRect(boxes[i], boxes[i + 1], boxes[i + 2], boxes[i + 3]);
@@ -76,7 +76,7 @@ const anchors = {
 };
 
 /**
- * Appends to an SVG element what is drawn.
+ * A pen that appends its drawing to an SVG element.
  * @param {Element} root
  * @returns {Pen}
  */

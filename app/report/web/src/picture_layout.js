@@ -1,6 +1,6 @@
-// Sums of the first picture that need no canvas.
+// Computations of the first picture that need no canvas.
 
-/** Stretches of equal values: {from, to, value}, `to` excluded. */
+/** Runs of equal values: {from, to, value}, without `to`. */
 export function segments(values) {
   const list = [];
   values.forEach((value, i) => {
@@ -14,7 +14,7 @@ export function segments(values) {
   return list;
 }
 
-/** About `wanted` round numbers within [low, high]. */
+/** About `wanted` round numbers in [low, high]. */
 export function ticks([low, high], wanted) {
   const rough = (high - low) / wanted, size = 10 ** Math.floor(Math.log10(rough));
   const step = size * [1, 2, 5, 10].find((factor) => factor * size >= rough);

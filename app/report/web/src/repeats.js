@@ -1,11 +1,11 @@
-// Runs that differ in their seed alone, as one line of a table.
+// Repeats (runs that differ only in their seed) as one row of a table.
 import {isNumber, mean} from './statistics.js';
 
-const rounding = 1e-5;  // of the mean: what is apart by less shows no difference in a table
+const rounding = 1e-5;  // relative to the mean; a smaller difference is invisible in a table
 
 const known = (cell) => Boolean(cell) && typeof cell === 'object' && isNumber(cell.v);
 
-// Mean ± standard deviation of a score's cells; {t, v} as C++ writes numbers.
+// Mean ± standard deviation of a score's cells, as a formatted number {t, v}.
 function meanCell(cells) {
   const values = cells.filter(known).map(({v}) => v);
   if (!values.length) return cells[0];
@@ -16,7 +16,7 @@ function meanCell(cells) {
   return {t: `${Number(middle.toPrecision(4))} ± ${Number(sd.toPrecision(2))}`, v: middle};
 }
 
-// "done" where all are alike, else "2 done, 1 failed".
+// "done" if all are equal, else "2 done, 1 failed".
 function wordsOf(cells) {
   const counts = new Map();
   for (const cell of cells) counts.set(cell, (counts.get(cell) || 0) + 1);
@@ -31,7 +31,7 @@ function cellOf(column, cells) {
   return column.kind === 'about' ? wordsOf(cells) : meanCell(cells);
 }
 
-// One row per setting, in the order of their first runs; what is chosen in it is the first run. `members`: its runs.
+// One row per setting, in the order of their first runs. Choosing it chooses its first run. `members`: its runs.
 export function groupedRows(columns, rows) {
   const groups = new Map();
   for (const row of rows) {

@@ -1,4 +1,4 @@
-// The bank: its modes in words, in numbers, by label.
+// The bank: its modes in words, in numbers and by label.
 import {details, facts, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {modeColour} from './look.js';
@@ -17,7 +17,7 @@ const which = {
 };
 const gains = (bank) => list('gains', bank.gain_names.map((name) => `steady gain ${name}`));
 
-// What a mode means to who drives: how much it is used, how it moves, whether its band is true.
+// A mode in words for users: its use, its motion, and the reliability of its band.
 function wordColumns(bank) {
   const seen = bank.modes.some((row) => row.usage);
   return [
@@ -67,7 +67,7 @@ function modeTables(bank) {
 
 function bankFacts(bank) {
   const {merged} = bank;
-  const refined = 'refined by expectation-maximisation: they are no longer the mixture’s components';
+  const refined = 'refined by expectation-maximisation, so they differ from the mixture’s components';
   const limit = merged &&
       `${merged.components} components merged; log score on ${roleNames[bank.role]} ` +
           `${merged.log_score.t}, without the limit (${merged.modes_unlimited} modes) ${
@@ -94,7 +94,7 @@ function screenedTable(screened) {
       screened, {caption: 'Components that were left out of the bank'});
 }
 
-// Which modes each label's samples were taken for.
+// The most probable modes for the samples of each label.
 function confusionTable(bank) {
   const {confusion} = bank;
   if (!confusion) return null;
@@ -111,7 +111,7 @@ function confusionTable(bank) {
 }
 
 export function drawBank(bank) {
-  if (!bank) return section('bank', 'The modes', note('This archive holds no bank: no modes were learned.'));
+  if (!bank) return section('bank', 'The modes', note('This archive has no bank, because no modes were learned.'));
   return section(
       'bank', 'The modes', modeTables(bank), confusionTable(bank), switching(bank),
       details('The bank they make up', bankFacts(bank), screenedTable(bank.screened)));

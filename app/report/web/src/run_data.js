@@ -1,4 +1,4 @@
-// All of a run over time: data, prediction, inputs, modes, innovations and NIS upon one axis; and the link to a view.
+// A run over time: data, prediction, inputs, modes, innovations and NIS on one axis, with a link to the view.
 import {check, controls, copyButton, h} from './elements.js';
 import {timeJumps} from './time_jumps.js';
 import {keyHelp} from './time_keys.js';
@@ -6,7 +6,7 @@ import {innovationRow, inputRows, nisRow, probabilityRow, stateRow} from './time
 import {timePlot} from './timeview.js';
 import {linkOf, viewIn} from './view_link.js';
 
-const link_delay_ms = 300;  // browsers refuse to change the address many times a second
+const link_delay_ms = 300;  // browsers limit how often the address may change
 
 const parts = {
   inputs: 'Inputs',
@@ -15,7 +15,7 @@ const parts = {
   nis: 'NIS',
 };
 
-// The rows of the parts that are shown.
+// Rows of the visible parts.
 function dataRows(runs, state, {layer}, shown) {
   const filter = layer.of(state.current);
   return [
@@ -27,7 +27,7 @@ function dataRows(runs, state, {layer}, shown) {
   ];
 }
 
-// Keeps the address at what is shown, and shows what the address says.
+// Writes the view into the address, and restores it from there.
 function followLink(state, filters, options) {
   const view = () => ({run: state.current.name, filter: filters[options.chosen], range: state.range, at: state.at});
   const follow = () => {
@@ -49,7 +49,7 @@ function followLink(state, filters, options) {
     return Promise.resolve();
   };
   addEventListener('hashchange', follow);
-  // Once the page stands: what it shows at first is no wish of its reader.
+  // After the first view: it is the default, so the address stays unchanged.
   Promise.resolve().then(() => {
     follow();
     state.plots.push({refresh: keep, point: keep});
@@ -58,7 +58,7 @@ function followLink(state, filters, options) {
 }
 
 /**
- * The plot with what leads it, top to bottom. `options`: layer and number of the filter that is shown; `filters`: their
+ * The plot with its controls, from top to bottom. `options`: layer and index of the visible filter; `filters`: their
  * names.
  */
 export function dataPlot(runs, state, filters, options) {

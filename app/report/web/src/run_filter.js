@@ -1,4 +1,4 @@
-// What the filter said of every sample, and whether to believe it.
+// A filter's evaluation of every sample, and its reliability.
 import {figure} from './chart.js';
 import {choice, choiceIfAny, controls, h, note} from './elements.js';
 import {autocorrelationPanel, pitPanel} from './filter_drawings.js';
@@ -17,7 +17,7 @@ function histograms(filter) {
     const rows = filter.histograms.filter((row) => row.role === role);
     const panels = rows.map((row) => pitPanel(row, filterColour(row.filter), filterNames[row.filter]));
     return {panels, height: 84, wide: 240};
-  }, 'Grey: where 95 % of a true filter’s bars lie. High ends: overconfident; high middle: underconfident.');
+  }, 'Grey: contains 95 % of a true filter’s bars. High ends: overconfident; high middle: underconfident.');
   const pick = choiceIfAny('Runs', roles.map((name) => roleNames[name]), 0, (i) => {
     role = roles[i];
     plot.update();
@@ -60,9 +60,9 @@ const sideColours = {
   above: palette.modes[3],
   below: palette.modes[5]
 };
-const faint = 0.5;  // of training runs
+const faint = 0.5;  // opacity for training runs
 
-// The bars of one side of the interval and one kind of runs, the n-th of `count` beside each other.
+// Bars for one side of the interval and one role, at position n of `count`.
 function outsideMark(rows, key, {side, role}, n, count) {
   const width = 0.8 / count, cell = (row) => row[sidesOf[key][side]];
   return {
@@ -77,7 +77,7 @@ function outsideMark(rows, key, {side, role}, n, count) {
   };
 }
 
-// The paper's figure 5: how many samples lie outside the interval, above and below, training and held out.
+// The paper's figure 5: number of samples outside of the interval, above and below, for training and held-out runs.
 function outside(filter) {
   const pooled = filter.scores.filter((row) => row.run === '*');
   const roles = present(pooled, 'role'), filters = present(pooled, 'filter');
@@ -107,7 +107,7 @@ function outside(filter) {
 }
 
 export function drawFilter(filter, runs, state) {
-  const absent = 'This archive holds no evaluation: no filter was run over the data.';
+  const absent = 'This archive has no evaluation, because no filter was run over the data.';
   if (!filter) return section('filter', 'The filter', note(absent));
   return section(
       'filter', 'The filter',

@@ -1,4 +1,4 @@
-// Where the run comes from, for who must check it: one click away, at the end of the page.
+// Origin of the run, for checking: one click away, at the end of the page.
 import {controls, copyButton, details, facts, h, note} from './elements.js';
 import {section} from './page.js';
 import {table} from './table.js';

@@ -1,4 +1,4 @@
-// The page of one run, top to bottom: verdict, data, modes, filter, local models, selection, what was run.
+// The page of one run, from top to bottom: verdict, data, modes, filter, local models, selection, configuration.
 import {drawCloud} from './cloud.js';
 import {choiceIfAny, controls, h, legend, note} from './elements.js';
 import {filterNames} from './filters.js';
@@ -16,7 +16,7 @@ import {drawSelection} from './run_selection.js';
 import {drawVerdict} from './run_verdict.js';
 import {runChoice, timeControls, TimeState} from './timeview.js';
 
-// Drop-downs of run and filter, one pair per place, all of them of the same state.
+// Drop-downs of run and filter in several places, all with the same state.
 function pickers(state, filters, options) {
   const all = [];
   const showChosen = () => all.forEach(([run, filter]) => {
@@ -55,7 +55,7 @@ function dataLegend(runs, filtered) {
   ]);
 }
 
-// The plot has a legend of few modes itself.
+// With few modes the plot itself has a legend.
 const legendOfMany = (bank) => (bank && bank.modes.length > 8 ? modeLegend(bank) : null);
 
 function drawData(runs, state, options, picker) {
@@ -68,7 +68,7 @@ function drawData(runs, state, options, picker) {
 
 async function drawWindows(windows, runs, goTo) {
   if (!windows) {
-    section('windows', 'Local models', note('This archive holds no windows.'));
+    section('windows', 'Local models', note('This archive has no windows.'));
     return;
   }
   const place = section('windows', 'Local models');
@@ -78,7 +78,7 @@ async function drawWindows(windows, runs, goTo) {
   place.querySelector('h2').after(h('p', {}, text));
 }
 
-// What all sections with a filter share: which filter and which state are shown.
+// State of all sections with a filter: the index of the filter and of the state.
 function filterOptions(filters) {
   const options = {chosen: Math.max(0, filters.indexOf('bank')), state: 0};
   options.layer = {
@@ -103,7 +103,7 @@ function drawFirst() {
 async function drawRest() {
   const runs = data.data;
   if (!runs || !runs.runs.length) {
-    section('data', 'The data', note('This archive holds no data.'));
+    section('data', 'The data', note('This archive has no data.'));
     drawOrigin(data.origin);
     return;
   }

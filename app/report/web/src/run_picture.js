@@ -1,5 +1,5 @@
-// The data in little, drawn on a plain canvas so that it is seen first: the first state in the colour of the most
-// probable mode, the modes as a strip, and beneath it what is known of the ground.
+// A small picture of the data, on a plain canvas so that it appears early. It shows the first state in the colours of the most
+// probable modes, the modes as a strip, and labels below.
 import {endOf} from './chart_layout.js';
 import {mixed} from './colour.js';
 import {h, legend} from './elements.js';
@@ -11,10 +11,10 @@ import {segments, ticks} from './picture_layout.js';
 import {inNaturalOrder} from './run_names.js';
 
 const strip_px = 13, gap_px = 4, above_px = 18, left_px = 66, apart_px = 6;
-const least_name_px = 40;  // of a run's name, which is made narrower where its run is
-const least_px = 60;       // of a run's width: below it there is no room for its times
+const least_name_px = 40;  // smallest width of a run's name; names are narrowed to the width of their run
+const least_px = 60;       // smallest width of a run with times
 
-// Greys, so that no label looks like a mode: the share of ink, and the colour as it is now and in the legend.
+// Labels are grey, so that they do not look like modes: the share of ink, and the colour on canvas and in the legend.
 const inkShare = (k, count) => 0.12 + (0.58 * k) / Math.max(1, count - 1);
 const labelNow = (k, count) => mixed(groundNow(), inkNow(), inkShare(k, count));
 const labelColour = (k, count) =>
@@ -22,7 +22,7 @@ const labelColour = (k, count) =>
 
 const titleOf = ({name, unit}) => (unit ? `${name} [${unit}]` : name);
 
-// Where everything stands on a canvas so wide and high: each run's stretch in proportion to its samples.
+// Positions on a canvas of this size; each run's width is proportional to its samples.
 function layoutOf(picture, width, height) {
   const strips = [picture.modes > 1 ? 'mode' : null, picture.labels.length ? 'label' : null].filter(Boolean);
   const total = picture.runs.reduce((sum, run) => sum + run.low.length, 0);
@@ -131,7 +131,7 @@ function paint(canvas, picture) {
   drawNames(pen, picture, at);
 }
 
-// What the picture shows, in words.
+// A description of the picture, for screen readers.
 function described(picture, role) {
   const shown = picture.runs.length;
   const which = shown < picture.of_runs ? `${shown} of ${picture.of_runs} ${roleNames[role]}` : roleNames[role];
@@ -147,7 +147,7 @@ function key(picture, modes) {
   return legend([...told, ...others, ...known], 'Colours of modes and labels');
 }
 
-/** Into `place`: the picture of the verdict's section, anew whenever its size or the theme changes. */
+/** Draws the picture of the verdict's section into `place`, again after each change of size or theme. */
 export function drawPicture(place, {picture: given, role, modes}) {
   const picture = {...given, runs: inNaturalOrder(given.runs)};
   const text = described(picture, role);

@@ -77,7 +77,7 @@ const freeRunColumns = (filter) =>
 export const freeRunTable = (filter) =>
     table(freeRunColumns(filter), filter.free_runs, {caption: 'Free run, all runs together', sortable: true});
 
-// Filters and roles as C++ has them, the runs of each in natural order.
+// Filters and roles in C++'s order, runs in natural order.
 function inOrder(scores) {
   const groups = [...new Set(scores.map(({filter, role}) => `${filter} ${role}`))];
   const place = ({filter, role}) => groups.indexOf(`${filter} ${role}`);

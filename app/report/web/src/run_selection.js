@@ -1,4 +1,4 @@
-// How many components: the criteria over K, what the restarts agree on, the table.
+// The number of components: criteria over K, agreement of restarts, table.
 import {figure} from './chart.js';
 import {note} from './elements.js';
 import {palette} from './look.js';
@@ -19,7 +19,7 @@ const valueOf = (row, key) => {
   return row.restarts ? (100 * row.agreeing.v) / row.restarts : null;
 };
 
-// A line for each shape of covariance that was fitted, through the candidates.
+// A line through the candidates for each shape of covariance.
 function curves(candidates, key) {
   return shapes.flatMap(([covariance, colour, dash, symbol]) => {
     const rows = candidates.filter(
@@ -43,7 +43,7 @@ function panels(candidates) {
   const keys = shapes.filter(([name]) => names.has(name)).map(([name, colour]) => [colour, name]);
   const drawing = {panels: list.map(panelOf), height: 150, wide: 330, legend: keys.length > 1 ? keys : null};
   return figure(
-      'Criteria over the number of components; the table below holds the same numbers', () => drawing,
+      'Criteria over the number of components; the table below has the same numbers', () => drawing,
       `Lower is better for BIC, ICL and AIC, higher for held out.${
           chosen ? ` Dashed: the chosen K = ${chosen.components}.` : ''}`);
 }
@@ -72,9 +72,9 @@ const columns = [
 
 export function drawSelection(selection) {
   const title = 'How many components';
-  if (!selection) return section('selection', title, note('This archive holds no mixture: nothing was clustered.'));
+  if (!selection) return section('selection', title, note('This archive has no mixture, because nothing was clustered.'));
   const rows = selection.candidates;
-  const one = 'One number of components was asked for, so there was nothing to choose.';
+  const one = 'Only one number of components was configured, so there was no choice.';
   return section(
       'selection', title, rows.length > 1 ? panels(rows) : note(one),
       selection.warnings.map((text) => note(text, true)),

@@ -1,4 +1,4 @@
-// How the modes of a bank follow each other, and how long they last.
+// Transitions between the modes of a bank, and their durations.
 import {details, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {transitionGraph} from './graph.js';
@@ -40,13 +40,13 @@ function transitionTable(bank) {
   return table(columns, order, {caption: 'Transition probabilities per sample'});
 }
 
-// Said before what is drawn: a switch that never happens at the mean may happen all the time elsewhere.
+// A note above the drawing: a switch that is rare at the mean may be frequent elsewhere.
 const movedSwitches = () => note(
-    'State and input move these switches: graph and matrix hold where they are at their training mean, and ' +
-    'each unit more adds the weights in the table to the log odds of a mode. Where no error stands, data say that a ' +
-    'weight is large and no more: a hard border.');
+    'These transitions depend on state and input. Graph and matrix are for their training mean, and ' +
+    'each further unit adds the weights in the table to the log odds of a mode. Without an error, the data show only ' +
+    'that a weight is large: a hard border.');
 
-/** The weights of switches that see state and input. */
+/** The weights of state-dependent transitions. */
 function switchWeights(weights) {
   const first = {name: 'to', text: true, of: (row) => modeTitle(row.k), swatch: (row) => modeColour(row.k)};
   const columns = [first, ...weights.names.map((name, i) => ({name, of: (row) => row.cells[i]}))];
@@ -60,7 +60,7 @@ function guard(bank) {
 }
 
 export function switching(bank) {
-  if (bank.modes.length < 2) return note('One mode: it has nothing to switch to.');
+  if (bank.modes.length < 2) return note('There is one mode, so there are no switches.');
   const nodes = nodesOf(bank), stays = bank.modes.some((row) => row.stay_seen);
   const folded = bank.order.length > bank.told;
   return [

@@ -1,8 +1,8 @@
-// What a study's settings reach: a setting is one combination of varied values; its runs differ in seed alone. Draws
-// nothing.
+// Scores of a study's settings, without drawing. A setting is one combination of varied values; its runs differ in seed
+// alone.
 import {isNumber, lossOf, mean} from './statistics.js';
 
-// {rows, mean, sd} of each setting with a score, in the rows' order; sd is null of one run.
+// {rows, mean, sd} of each setting with a score, in the order of rows; sd is null for one run.
 export function settingsOf(rows, score) {
   const groups = new Map();
   for (const row of rows) {
@@ -23,18 +23,17 @@ export function bestSetting(settings, goal) {
       (best, one) => (best === null || lossOf(goal, one.mean) < lossOf(goal, best.mean) ? one : best), null);
 }
 
-// What settings come to: the best of them, so that the best of all levels is the study's best, or the mean of their
-// runs.
+// Summary of settings: the best of them, so that the best of all levels is the study's best, or the mean of their runs.
 export function reached(settings, goal, by) {
   if (!settings.length) return null;
   if (by === 'best') return bestSetting(settings, goal).mean;
   return mean(settings.flatMap((one) => one.rows.map(() => one.mean)));
 }
 
-// Settings by level of an axis.
+// The level of an axis that a setting has.
 export const levelOf = (axis, setting) => axis.of(setting.rows[0]);
 
-// {a, b, value}: the best cell; null where there is none.
+// The best cell as {a, b, value}; null if there is none.
 export function bestCell(cells, goal) {
   let best = null;
   cells.forEach((line, b) => line.forEach((value, a) => {

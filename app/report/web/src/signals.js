@@ -1,8 +1,8 @@
-// Runs' signals at the level of detail a plot can show (series.hpp): samples themselves where few enough are in view,
-// else extremes over buckets.
+// Runs' signals in the detail that a plot can show (series.hpp): the samples if few are in view, else extremes of
+// buckets.
 import {array} from './page_data.js';
 
-// Number of the first sample at or after time t.
+// Index of the first sample at or after time t.
 function indexIn(times, t) {
   let low = 0, high = times.length;
   while (low < high) {
@@ -16,7 +16,7 @@ function indexIn(times, t) {
   return low;
 }
 
-// The clock of a run: samples by time and times by sample, at its finest level.
+// The clock of a run at its finest level: index by time, and time by index.
 export async function clock(axis) {
   if (axis.samples === 0) return {samples: 0, start: 0, end: 0, at: () => 0, near: () => 0};
   const {samples, start, end, period} = axis;
@@ -34,16 +34,16 @@ export async function clock(axis) {
   };
 }
 
-// Which samples a view of `range` shows and how many go into one bucket of the drawing, so that a bucket is about a
-// pixel wide. Buckets of a power of two hold whole ones of every stored level and stay the
-// same while the view moves. A bucket beyond both edges is drawn, too: lines go on to the edge.
+// The samples that a view of `range` shows, and the number in a bucket of the drawing, about a pixel wide. It is a
+// power of two, so that buckets consist of whole buckets of a stored level and stay the same while the view moves. One
+// bucket beyond either edge is drawn, too, so that lines continue to the edge.
 export function view(clockOf, range, pixels) {
   const first = clockOf.near(range[0]), last = clockOf.near(range[1]);
   const per = 2 ** Math.max(0, Math.round(Math.log2((last - first + 1) / pixels)));
   return {first: Math.max(0, first - 2 * per), last: Math.min(clockOf.samples - 1, last + 2 * per), per};
 }
 
-// The coarsest stored level whose buckets are not larger than the drawing's.
+// The coarsest stored level with buckets not larger than the drawing's.
 function levelFor(signal, per) {
   let best = signal.raw ? {bucket: 1, low: signal.raw, high: signal.raw} : null;
   for (const level of signal.levels) {
@@ -61,18 +61,18 @@ function merged(values, from, to, count, pick) {
   }
   return result;
 }
-// Of two values the one that is known, or the lower or higher of both.
+// The lower or higher of two values; if one is NaN, the other.
 const lower = (a, b) => (a < b || Number.isNaN(b) ? a : b);
 const higher = (a, b) => (a > b || Number.isNaN(b) ? a : b);
 
-// A view's drawing in buckets made of `count` of a level's; `from` is the level's first bucket that is drawn.
+// How to make a view's buckets from a level: `count` of the level's in each, from its bucket `from` on.
 function grouping(level, shown) {
   const count = Math.max(1, Math.floor(shown.per / level.bucket)), per = level.bucket * count;
   return {count, per, from: Math.floor(shown.first / per) * count};
 }
 
-// Buckets of one signal in a view: {first, per, low, high}: bucket i holds samples first + i per ...; with per 1 low is
-// high is the samples.
+// Buckets of one signal in a view: {first, per, low, high}. Bucket i has the samples from first + i per. With per = 1
+// low and high are the samples.
 async function buckets(signal, shown, edge) {
   const level = levelFor(signal, shown.per);
   const {count, per, from} = grouping(level, shown);
@@ -85,7 +85,7 @@ async function buckets(signal, shown, edge) {
   return {first: from * level.bucket, per, low, high};
 }
 
-// x and y of a line through a signal; extremes of a bucket become two points.
+// x and y of a line through a signal; a bucket gives two points, its extremes.
 export async function line(signal, clockOf, shown) {
   const b = await buckets(signal, shown), n = b.low.length;
   if (b.per === 1) return {x: Float64Array.from({length: n}, (_, i) => clockOf.at(b.first + i)), y: b.low, per: 1};
@@ -100,7 +100,7 @@ export async function line(signal, clockOf, shown) {
   return {x, y, per: b.per};
 }
 
-// Means over `count` values each, of those that are known.
+// Means over `count` values each, without unknown ones.
 function means(values, from, to, count) {
   return Float32Array.from({length: Math.ceil((to - from) / count)}, (_, i) => {
     let sum = 0, known = 0;
@@ -113,7 +113,7 @@ function means(values, from, to, count) {
   });
 }
 
-// The same for a mean per bucket: shares.
+// The same with a mean per bucket, for shares.
 export async function share(signal, clockOf, shown) {
   const level = levelFor(signal, shown.per), values = await array(level.low);
   const {count, per, from} = grouping(level, shown);
@@ -121,9 +121,9 @@ export async function share(signal, clockOf, shown) {
   return {x: Float64Array.from(y, (_, i) => clockOf.at((from + i * count) * level.bucket)), y, per};
 }
 
-const few = 16;  // samples per bucket up to which a band's edges are computed sample by sample
+const few = 16;  // up to this many samples per bucket a band's edges are computed sample by sample
 
-// Lowest and highest edge of center +- half over buckets of shown.per samples.
+// Smallest and largest edge of center +- half in buckets of shown.per samples.
 async function edgesOfSamples(center, half, shown) {
   const c = await array(center.raw), w = await array(half.raw), per = shown.per;
   const first = Math.floor(shown.first / per) * per, length = shown.last + 1 - first;
@@ -137,8 +137,8 @@ async function edgesOfBuckets(lowest, highest, shown) {
   return {first, per, low, high};
 }
 
-// A band between center - half and center + half: closed outlines, one per stretch without gaps; where samples are not
-// drawn one by one the lowest and the highest edge of each bucket, as of a line.
+// A band between center - half and center + half: closed outlines, one per part without gaps. For buckets the outline
+// has the smallest and the largest edge in each.
 export async function band({center, half, lowest, highest}, clockOf, shown) {
   const bySample = !lowest.levels.length || (center.raw && shown.per < few);
   const {first, per, low, high} = bySample ?
@@ -177,15 +177,15 @@ function outlines(low, high, time) {
   return {x, y};
 }
 
-// + and - a half width, for bounds about zero.
+// Bounds + half and - half about zero.
 export async function bounds(half, clockOf, shown) {
   const up = await line(half, clockOf, shown);
   return {up, down: {...up, y: up.y.map((v) => -v)}};
 }
 
 /**
- * What a signal is at sample k as far as the page holds it: the value itself, or where only extremes of buckets are
- * stored the least and the greatest there.
+ * A signal at sample k: its value, or, where only extremes of buckets are stored, the smallest and the largest value in
+ * its bucket.
  * @returns {Promise<{low: number, high: number}>}
  */
 export async function valueAt(signal, k) {

@@ -1,11 +1,11 @@
-// What the pages compute themselves, of numbers that C++ gave.
+// Statistics that the pages compute from C++'s numbers.
 
 export const isNumber = (v) => typeof v === 'number' && Number.isFinite(v);
 export const mean = (values) => values.reduce((a, b) => a + b, 0) / values.length;
 
-const enough = 20000;  // values of a list tell its quantiles well
+const enough = 20000;  // enough values of a list for its quantiles
 
-// Where nearly all values of the lists lie: some windows say nothing of a parameter and would hide the others.
+// The range of nearly all values in the lists: outliers of badly determined windows would hide the others.
 export function usualRange(...lists) {
   const some = lists.flatMap((list) => {
     const step = Math.max(1, Math.floor(list.length / enough));
@@ -18,13 +18,13 @@ export function usualRange(...lists) {
   return [low - pad, high + pad];
 }
 
-// How bad a score is by its goal (study_page.cpp): the smaller the better.
+// A score as a loss by its goal (study_page.cpp); smaller is better.
 export function lossOf(goal, score) {
   if (!goal || goal.kind === 'higher') return -score;
   return goal.kind === 'lower' ? score : Math.abs(score - goal.nominal);
 }
 
-// Points {x, loss} that no other point beats in both.
+// Points {x, loss} such that no other point is better in both.
 export function paretoFront(points) {
   const front = [];
   for (const point of [...points].sort((a, b) => a.x - b.x || a.loss - b.loss)) {

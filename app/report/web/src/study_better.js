@@ -28,12 +28,12 @@ function columnsOf(study, showRun) {
   ];
 }
 
-// What the table says in a sentence.
+// A sentence that summarises the table.
 function sentence({rivals, settings}) {
   const undecided = rivals.filter((rival) => rival.verdict !== 'worse').length;
   const all = settings - 1 > rivals.length ? `the next ${rivals.length} of ${settings - 1} settings` :
                                              `the other ${rivals.length} settings`;
-  if (undecided === 0) return `The best setting is better than ${all}, beyond what chance makes.`;
+  if (undecided === 0) return `The best setting is better than ${all}, by more than chance explains.`;
   return `Of ${all}, ${
       undecided} cannot be told from the best: choose among them by what else matters, e.g. fewer modes.`;
 }
@@ -46,9 +46,9 @@ export function drawBetter(study, showRun) {
   }
   const how =
       'Differences of the log score, each sample against the same sample; the error is clustered by run (of the ' +
-      'first repeat), so that long runs do not count as many. Of repeats the mean counts, and their spread is in the ' +
-      'error. Settings were chosen as the best by these very scores: ' +
-      'the best of many is a little too good.';
+      'first repeat), so that a long run counts once. The gain is the mean over repeats; their variance is in the ' +
+      'error. The best setting was chosen by these same scores, so its score ' +
+      'is a little too good.';
   section(
       'better', title, h('p', {class: 'verdict'}, sentence(better)),
       table(columnsOf(study, showRun), better.rivals, {caption: 'The next best settings against the best'}),

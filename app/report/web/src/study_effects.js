@@ -1,4 +1,4 @@
-// Main effects of a study: what each value of each varied key reaches.
+// Main effects of a study: scores by the values of each varied key.
 import {figure} from './chart.js';
 import {controls, h} from './elements.js';
 import {palette} from './look.js';
@@ -7,9 +7,9 @@ import {bestCell, bestSetting, levelOf, reached, settingsOf} from './settings.js
 import {isNumber} from './statistics.js';
 import {axisOf, follow, namesOf, scoreChoice, wayChoice, wayWords} from './study_axes.js';
 
-const spread = 0.16;  // of a level's width, over which runs of one level are strewn
+const spread = 0.16;  // share of a level's width over which its runs are scattered
 
-// The runs as dots, what each level comes to as a line, and a star at the best.
+// Runs as dots, a line at each level's summary, and a star at the best.
 function effectMarks(axis, score, rows, by, showRun) {
   const level = (row) => axis.position.get(axis.of(row));
   const strewn = (row) => level(row) + spread * (((row.number * 0.618) % 1) - 0.5);
@@ -36,7 +36,7 @@ function effectMarks(axis, score, rows, by, showRun) {
   ];
 }
 
-// The range in which the levels differ: one bad level of another key must not press all lines together. Null: all.
+// The range in which levels differ, so that one bad level of another key does not flatten the lines. Null: all values.
 function usefulRange(axes, score, rows, by) {
   const settings = settingsOf(rows, score);
   const values =
@@ -66,7 +66,7 @@ export function drawEffects(context) {
   const axes = namesOf(study, 'varied').map((key) => axisOf(study, key)).filter((axis) => axis.levels.length > 1);
   let score = study.standard_score, by = 'best';
   const element = figure(
-      'Main effects: what each value of each varied key reaches',
+      'Main effects: scores by the values of each varied key',
       () => effectsDrawing(axes, axisOf(study, score), shown.rows, by, showRun),
       'Line: the best setting with that value over all other keys (or, if chosen, the mean of its runs); star: ' +
           'the best value; dotted: the best setting of all; dots: the runs, those far below outside the frame.');

@@ -1,5 +1,5 @@
-// The table of a study's runs: click a heading to sort; type under it to filter; a run is chosen by click or Enter.
-// Repeats of a setting stand together in a row unless asked for one by one.
+// The table of a study's runs: a click on a heading sorts, text under it filters, a click or Enter on a row chooses the
+// run. Repeats of a setting are one row unless the reader asks for single runs.
 import {check, controls, details, h} from './elements.js';
 import {filterOf} from './filter_text.js';
 import {sortedRows} from './ordering.js';
@@ -7,7 +7,7 @@ import {groupedRows} from './repeats.js';
 import {columnTitle} from './score_names.js';
 import {ariaSort, cellOf, headingOf, pressed, scrolling, sortButton} from './table.js';
 
-const at_once = 30;  // lines shown at first
+const at_once = 30;  // number of rows at first
 
 class StudyTable {
   // `reader`: filter(rows), showRun(row), chosen() => row.
@@ -27,7 +27,7 @@ class StudyTable {
     this.more = h('button', {type: 'button', onclick: () => this.showMore()}, 'Show more');
   }
 
-  // What was varied, the score that the verdict is about, how many modes, then the rest.
+  // Varied keys first, then the verdict's score, the number of modes and the rest.
   inOrder(columns) {
     const place = ({kind, name}) =>
         (kind === 'varied'                      ? 0 :
@@ -39,7 +39,7 @@ class StudyTable {
         .map(([, , column]) => column);
   }
 
-  // By the score that the verdict is about.
+  // Sorts by the verdict's score, the best first.
   bestFirst() {
     const column = this.columns.find(({name}) => name === this.study.standard_score) || null;
     return {column, down: Boolean(column && (!column.goal || column.goal.kind === 'higher'))};
@@ -78,14 +78,14 @@ class StudyTable {
     this.more.hidden = !cut;
   }
 
-  // What the table's lines hold: the runs, or the settings of those.
+  // Rows of the table: runs, or settings with their repeats.
   lines() {
     const rows = this.grouped ? groupedRows(this.study.columns, this.rows) : this.rows;
     const {column, down} = this.order;
     return column ? sortedRows(rows, column.of, down) : rows;
   }
 
-  // Filters and sorts the rows anew.
+  // Filters and sorts the rows again.
   update() {
     const tests = this.columns.filter(({filter}) => filter.trim()).map(({filter, of}) => [filterOf(filter), of]);
     this.rows = this.study.rows.filter((row) => tests.every(([test, of]) => test(of(row))));

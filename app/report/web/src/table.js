@@ -5,8 +5,8 @@ import {sortedRows} from './ordering.js';
 import {meaningOf} from './terms.js';
 import {describe, headingWithTip} from './tips.js';
 
-// Cell of a row: columns are {name, text: true for words, prose: true for sentences, of: row => cell, swatch: row =>
-// colour or null}.
+// The cell of a row. Columns are {name, text: true for words, prose: true for sentences, of: row => cell, swatch: row
+// => colour or null}.
 export function cellOf(column, row) {
   const cell = value(column.of(row), 'td');
   if (column.text || column.prose) cell.classList.add('text');
@@ -16,17 +16,17 @@ export function cellOf(column, row) {
   return cell;
 }
 
-// `content`: the heading's text, or the button that sorts by it; either tells what the column means.
+// `content`: the heading's text, or the button that sorts by it. Both have a tip with the column's meaning.
 export function headingOf(column, attributes, content) {
   const told = content instanceof Element ? describe(content, meaningOf(column.name)) : headingWithTip(content);
   return h('th', {scope: 'col', class: column.text || column.prose ? 'text' : null, ...attributes}, told);
 }
 
-// A heading's button; `order` is {column, down}: what the table is sorted by.
+// A heading's button; `order`: the table's present order {column, down}.
 export const sortButton = (onclick, ...content) => h('button', {type: 'button', onclick}, content);
 export const ariaSort = (order, column) => (order.column === column ? (order.down ? 'descending' : 'ascending') : null);
 
-// A heading was pressed: its column ascending, and descending when pressed again.
+// The order after a press on a heading: ascending by its column, then descending.
 export function pressed(order, column) {
   return {column, down: order.column === column && !order.down};
 }

@@ -1,4 +1,4 @@
-// What terms mean, in the words of help TERM.
+// Definitions of terms, in the words of `modebank help TERM`.
 import terms from '../terms.json';
 
 import {Glossary} from './glossary.js';

@@ -1,4 +1,4 @@
-// Where a panel of a plot over time has what: its inside, its scales and their ticks.
+// Geometry of a time plot's panels: their inside, scales and ticks.
 import scaleLinear from 'd3-scale/src/linear.js';
 import scaleLog from 'd3-scale/src/log.js';
 
@@ -12,11 +12,11 @@ const px_per_tick = {
  * @typedef {{to: Position, from: Position, ticks: {at: number, text: string}[], range: [number, number]}} Scale
  */
 
-/** How wide a panel's margins are, the same for all panels of a page, so that times stand above each other. */
+/** Margins of a panel. All panels of a page have the same, so that equal times are above each other. */
 export const margins = (width) => ({left: width < 600 ? 46 : 64, right: 10});
 
 /**
- * @param {[number, number]} range what the pixels from `first` to `last` show
+ * @param {[number, number]} range of the values from pixel `first` to `last`
  * @returns {Scale}
  */
 export function linearScale(range, first, last, count) {
@@ -37,7 +37,7 @@ const powerOfTen = (power) =>
     `10${power < 0 ? '⁻' : ''}${[...String(Math.abs(power))].map((d) => superscripts[Number(d)]).join('')}`;
 
 /**
- * Powers of ten, not more than fit.
+ * A scale with ticks at powers of ten, as many as fit.
  * @param {[number, number]} range
  * @returns {Scale}
  */
@@ -63,7 +63,7 @@ export function valueScale(range, top, bottom, log = false) {
 }
 
 /**
- * What all traces take, with a little room; a constant gets some about itself.
+ * The range of all traces with a small margin; a constant gets a margin of its own.
  * @param {{y: ArrayLike<number|null>}[]} traces
  * @returns {[number, number]}
  */

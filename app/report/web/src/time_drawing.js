@@ -2,9 +2,9 @@
 import {extent, margins, timeScale, valueScale} from './time_axes.js';
 
 /**
- * A curve: x and y of equal length, NaN or null where there is nothing. 'line': through the points; 'area': the inside
- * of closed outlines; 'shares': stacked upon the shares before it; 'dots': the points alone. `per`: samples per bucket;
- * of a line or band of more than one, two points each are a bucket's extremes.
+ * A curve: x and y of equal length; NaN or null leaves a gap. 'line': through the points; 'area': the inside of closed
+ * outlines; 'shares': stacked on the shares before; 'dots': only points. `per`: samples per bucket. If `per` exceeds 1,
+ * a line or band has two points per bucket, its extremes.
  * @typedef {{kind: 'line'|'area'|'shares'|'dots', x: ArrayLike<number|null>, y: ArrayLike<number|null>, colour: string,
  *   name: string, per?: number, width?: number, dash?: 'dash'|'dot', step?: boolean, symbol?: string, size?: number}}
  * Trace
@@ -14,13 +14,13 @@ import {extent, margins, timeScale, valueScale} from './time_axes.js';
  * @typedef {{ink: string, faint: string, ground: string, mark: string}} Look
  */
 
-export const axis_px = 34;  // below the last panel: the axis of time
+export const axis_px = 34;  // height of the time axis, below the last panel
 const above = 6, below = 6;
-const least_px = 0.05;  // less of a share is not seen
+const least_px = 0.05;  // thinner shares are invisible
 
 const known = (v) => v !== null && !Number.isNaN(v);
 
-/** A line's path, broken where a value is not known. @returns {import('./pens.js').Path} */
+/** A line's path, broken at unknown values. @returns {import('./pens.js').Path} */
 export function linePath({x, y, step}, toX, toY) {
   return (context) => {
     let last = NaN;
@@ -41,15 +41,15 @@ export function linePath({x, y, step}, toX, toY) {
   };
 }
 
-/** From pixel to pixel, so that what lies beside each other neither overlaps nor gapes. */
+/** Rounded to whole pixels, so that neighbours neither overlap nor leave gaps. */
 function pixelSpan(x, i, step, toX) {
   const left = Math.floor(toX(x[i])), next = i + step < x.length ? Math.floor(toX(x[i + step])) : left + 1;
   return [left, Math.max(1, next - left)];
 }
 
 /**
- * Buckets of a line or band as boxes of about a pixel's width from the least to the greatest value; those of a line
- * touch the one before.
+ * Buckets of a line or band as boxes about a pixel wide, from the smallest to the largest value. Boxes of a line touch
+ * the previous one.
  * @returns {number[]} x, y, width and height of each box
  */
 export function bucketBoxes({kind, x, y, width = 1}, toX, toY) {
@@ -65,7 +65,7 @@ export function bucketBoxes({kind, x, y, width = 1}, toX, toY) {
   return boxes;
 }
 
-/** Closed outlines, one after the other. */
+/** A path of closed outlines. */
 function outlinePath({x, y}, toX, toY) {
   return (context) => {
     let open = false;
@@ -82,7 +82,7 @@ function outlinePath({x, y}, toX, toY) {
   };
 }
 
-/** Between two sums of shares; what is not known counts as none. */
+/** The area between two sums of shares; unknown shares count as 0. */
 function stackPath({x, step}, lower, upper, toX, toY) {
   return (context) => {
     const n = x.length;
@@ -98,7 +98,7 @@ function stackPath({x, step}, lower, upper, toX, toY) {
   };
 }
 
-/** The same of buckets. */
+/** The same for buckets. */
 function stackBoxes({x}, lower, upper, toX, toY) {
   const boxes = [];
   for (let i = 0; i < x.length; ++i) {
@@ -193,7 +193,7 @@ function drawAxes(pen, frame, times, values, look) {
 /**
  * Draws a panel with its upper left corner at the origin.
  * @param {import('./pens.js').Pen} pen
- * @param {Frame} frame `height` without the axis of time, which the last panel has below
+ * @param {Frame} frame `height`: without the time axis below the last panel
  * @param {Content} content
  * @param {Look} look
  */

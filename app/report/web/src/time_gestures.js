@@ -1,12 +1,12 @@
-// What a pointer does to a plot over time: a mouse drags a window of time, with Shift or a finger it moves the view.
-const still_px = 4;  // a press that moves less is a click
+// Pointer actions on a time plot: a mouse drags a window of time; with Shift, or a finger, it moves the view.
+const still_px = 4;  // a press with less movement is a click
 const wheel_rate = 0.0015;
 
 /**
  * @param {HTMLElement} plot
  * @param {import('./time_state.js').TimeState} state
- * @param {{time: (x: number) => number, choose: (span: [number, number]|null) => void}} place pixels of the window to
- *   times; and a stretch of them that is being chosen
+ * @param {{time: (x: number) => number, choose: (span: [number, number]|null) => void}} place `time`: pixels to times;
+ * `choose`: shows the part of the view that is being chosen
  */
 export function listenToPointer(plot, state, place) {
   /** @type {{x: number, t: number, range: [number, number], moves: boolean}|null} */
@@ -50,7 +50,7 @@ export function listenToPointer(plot, state, place) {
   listenToWheel(plot, state, place);
 }
 
-// A wheel scrolls the page until the plot was clicked, or with Ctrl.
+// The wheel scrolls the page until the plot was clicked, unless Ctrl is pressed.
 function listenToWheel(plot, state, place) {
   plot.addEventListener('wheel', (event) => {
     if (!event.ctrlKey && document.activeElement !== plot) return;

@@ -1,15 +1,15 @@
-// Where to look first: the samples that a filter was most wrong about, and where the likeliest mode changes.
+// Jumps to interesting samples: a filter's largest errors, and changes of the likeliest mode.
 import {h} from './elements.js';
 import {secondsText, shortNumber} from './number_text.js';
 import {array} from './page_data.js';
 
-const stretches = 2000;  // a run is cut into at most, each of which has one worst sample
+const stretches = 2000;  // largest number of parts of a run, each with one worst sample
 const most_worst = 20;
 
 const finest = (signal) => (signal.raw ? {bucket: 1, low: signal.raw, high: signal.raw} : signal.levels[0]);
 
 /**
- * The greatest of values and where, of each stretch one, the greatest first. @returns {{at: number, value: number}[]}
+ * The largest value of each part with its index, the largest first. @returns {{at: number, value: number}[]}
  */
 export function greatest(values, count = most_worst) {
   const length = Math.max(1, Math.ceil(values.length / stretches)), found = [];
@@ -23,7 +23,7 @@ export function greatest(values, count = most_worst) {
   return found.sort((a, b) => b.value - a.value).slice(0, count);
 }
 
-/** Where another of the shares becomes the greatest. @returns {number[]} */
+/** Indices where another share becomes the largest. @returns {number[]} */
 export function changes(shares) {
   const found = [], n = shares[0].length;
   let last = -1;
@@ -39,7 +39,7 @@ export function changes(shares) {
   return found;
 }
 
-/** Times of a filter's worst samples, the worst first, with their NIS. */
+/** Times of a filter's worst samples with their NIS, the worst first. */
 async function worstOf(filter, clock) {
   const level = finest(filter.nis), values = await array(level.high);
   return greatest(values).map(({at, value}) => ({t: clock.at(at * level.bucket), value}));
@@ -50,16 +50,15 @@ async function switchesOf(filter, clock) {
   return changes(shares).map((i) => clock.at(i * levels[0].bucket));
 }
 
-/** The next of ascending times after t, or the one before; null where there is none. */
+/** In ascending times the next one after t, or the previous one; null if there is none. */
 export function beside(times, t, direction) {
   const list = direction > 0 ? times.find((time) => time > t) : [...times].reverse().find((time) => time < t);
   return list === undefined ? null : list;
 }
 
 /**
- * Buttons and keys that go there. `of`: run => its filter.
- * @returns {{buttons: HTMLElement[], said: HTMLElement, keys: {key: string, name: string, does: string, act: () =>
- *     unknown}[]}}
+ * Buttons and keys for jumps. `of`: run => its filter.\n@returns {{buttons: HTMLElement[], said: HTMLElement, keys:
+ * {key: string, name: string, does: string, act: () =>\n    unknown}[]}}
  */
 export function timeJumps(state, of) {
   const said = h('p', {class: 'soft', 'aria-live': 'polite'});

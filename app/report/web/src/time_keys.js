@@ -1,10 +1,10 @@
-// What keys do to a plot over time that has the focus, and the list of them that the page shows.
+// Keys of a time plot with the focus, and the list of them on the page.
 import {details, facts} from './elements.js';
 
 const coarse_steps = 10;
 const pixels_across = 500;
 
-// A step of the crosshair: a sample, or where there are more than pixels a share of the view.
+// One step of the crosshair: a sample, or a share of the view if that shows more samples than pixels.
 function step(state, direction, coarse) {
   const [from, to] = state.shown(), {start, end, samples} = state.current.time;
   const by = Math.max((end - start) / Math.max(1, samples - 1), (to - from) / pixels_across);
@@ -19,7 +19,7 @@ const edge = (state, which) => {
   if (which === 'to' && state.at > from) state.zoom([from, state.at]);
 };
 
-// Keys (as events name them), what they are called, what they do, how.
+// [names of keys in events, name for people, description, action]
 /**
  * @type {[string[], string, string, (state: import('./time_state.js').TimeState, event: KeyboardEvent) => unknown][]}
  */
@@ -29,7 +29,7 @@ const actions = [
     (state, event) => step(state, event.key === 'ArrowLeft' ? -1 : 1, event.shiftKey)
   ],
   [
-    ['[', ']'], '[ ]', 'let the view begin, end at the crosshair',
+    ['[', ']'], '[ ]', 'start, end the view at the crosshair',
     (state, {key}) => edge(state, key === '[' ? 'from' : 'to')
   ],
   [
@@ -44,7 +44,7 @@ const actions = [
   [['Escape'], 'Esc', 'take the crosshair away', (state) => state.point(null)],
 ];
 
-/** Steps on what `jumps` adds: {key, name, does, act}. */
+/** Handles these keys and those of `jumps`: {key, name, does, act}. */
 export function listenToKeys(plot, state, jumps = []) {
   plot.addEventListener('keydown', (event) => {
     if (event.target !== plot || event.ctrlKey || event.altKey || event.metaKey) return;
@@ -59,7 +59,7 @@ export function listenToKeys(plot, state, jumps = []) {
 
 export function keyHelp(jumps = []) {
   const pointer = [
-    ['drag', 'show a stretch of time; with Shift, or by a finger: move'],
+    ['drag', 'show a part of the time; with Shift, or by a finger: move'],
     ['wheel', 'zoom, once the plot was clicked, or with Ctrl; with Shift: move'],
     ['double click', 'the whole run'],
   ];

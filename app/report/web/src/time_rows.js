@@ -1,9 +1,9 @@
-// The rows of plots over time: states with predictions, inputs, mode probabilities, innovations, NIS. What belongs to
-// one filter is drawn by a layer: {of: run => its filter or null, prefix: '', band, line: colours, nis: colour, stroke:
-// {dash}, symbol}. A page of one run has one layer, a page that compares two runs has two.
+// Rows of time plots: states with predictions, inputs, mode probabilities, innovations, NIS. A layer draws one filter:
+// {of: run => its filter or null, prefix: '', band, line: colours, nis: colour, stroke: {dash}, symbol}. A page of one
+// run has one layer, a page that compares runs has several.
 //
 // A row is {title, height, draw: async ({run, clock, shown, range}) => traces, read: async (run, k) => entries, range,
-// log, levels}: `read` tells what its signals are at sample k (-1: none, the entries are then a legend).
+// log, levels}. `read` returns the signals' values at sample k; for k = -1 the entries are a legend.
 import {INK, modeColour, palette, translucent} from './look.js';
 import {modeTitle, rankOf} from './mode_names.js';
 import {array} from './page_data.js';
@@ -19,7 +19,7 @@ const told_modes = 4;
 
 export const titleOf = ({name, unit}) => (unit ? `${name} [${unit}]` : name);
 
-// An entry of a row's readout; k < 0: only its name and colour.
+// An entry of a row's readout; only name and colour if k < 0.
 async function told(signal, k, entry) {
   return k < 0 || !signal ? entry : {...entry, value: await valueAt(signal, k)};
 }
@@ -109,7 +109,7 @@ function stateEntries(layers, i, unit, run, k) {
   return Promise.all(entries);
 }
 
-// Measured state i with each layer's band and prediction, truth and, for a single layer, outliers.
+// Measured state i with each layer's band and prediction, and the truth; outliers only with a single layer.
 export function stateRow(runs, i, layers, height = 230) {
   return {
     title: titleOf(runs.states[i]),
@@ -119,7 +119,7 @@ export function stateRow(runs, i, layers, height = 230) {
   };
 }
 
-// Inputs that share a unit, in one row; their colours are not those of modes.
+// Inputs with the same unit, in one row; their colours differ from those of modes.
 export function inputRows(runs) {
   const look = (k) => ({
     colour: palette.inputs[k % palette.inputs.length],
@@ -138,7 +138,7 @@ export function inputRows(runs) {
   });
 }
 
-// The likeliest modes at sample k, the likeliest first.
+// The likeliest modes at sample k, sorted by probability.
 async function modeEntries(filter, k, colourOf) {
   const byUse = filter.probability.map((_, mode) => mode).sort((a, b) => rankOf(a) - rankOf(b));
   const shares = await Promise.all(
@@ -147,7 +147,7 @@ async function modeEntries(filter, k, colourOf) {
   return shares.filter(({value}) => value.low > 0.005).sort((a, b) => b.value.low - a.value.low).slice(0, told_modes);
 }
 
-// `of`: run => the filter; `title` and the modes' colours where there are several.
+// `of`: run => the filter. `title` and the modes' colours differ on pages with several filters.
 export function probabilityRow(of, title = 'probability of the modes', colourOf = modeColour) {
   const draw = ({run, clock, shown}) => {
     const filter = of(run);

@@ -1,16 +1,16 @@
-// What all plots over time of a page show together.
+// Common state of all time plots of a page.
 import {clock} from './signals.js';
 
-const fewest_samples = 4;    // that a view holds at least
-const around_samples = 200;  // that are shown on either side of what was jumped to from the whole run
+const fewest_samples = 4;    // smallest number of samples in a view
+const around_samples = 200;  // samples on either side of the target, when a jump starts from the whole run
 
 /**
- * @typedef {{refresh: () => Promise<unknown>, point?: () => void}} View what follows the state: a plot, a field, the
- * link
+ * @typedef {{refresh: () => Promise<unknown>, point?: () => void}} View a plot, a field or the link, which shows the\n
+ * state
  */
 
-// Run, range: [from, to] in seconds or null for all of the run, mark: [from, to] or null, at: the crosshair's time or
-// null. Changes reach every view through `changed`, the crosshair's through `pointed`.
+// run; range: [from, to] in seconds, or null for the whole run; mark: [from, to] or null; at: the crosshair's time or
+// null. `changed` notifies views of changes, `pointed` of the crosshair.
 export class TimeState {
   constructor(runs) {
     this.runs = runs;
@@ -70,7 +70,7 @@ export class TimeState {
     const [a, b] = this.shown(), by = share * (b - a);
     return this.zoom([a + by, b + by]);
   }
-  // `about`: the time that stays where it is.
+  // `about`: the time that keeps its place.
   scale(factor, about = null) {
     const [a, b] = this.shown(), center = about === null ? (a + b) / 2 : about;
     return this.zoom([center - factor * (center - a), center + factor * (b - center)]);
@@ -79,13 +79,13 @@ export class TimeState {
     this.mark = null;
     return this.zoom(this.whole());
   }
-  // The crosshair onto the sample next to a time; null: away.
+  // Moves the crosshair to the sample next to a time; null removes it.
   async point(t) {
     const clockOf = await this.clock();
     this.at = t === null ? null : clockOf.at(clockOf.near(t));
     this.pointed();
   }
-  // The crosshair and the middle of the view onto a time.
+  // Moves the crosshair and the middle of the view to a time.
   async jump(t) {
     const [start, end] = this.whole(), period = (end - start) / Math.max(1, this.current.time.samples);
     const half = this.range ? (this.range[1] - this.range[0]) / 2 : around_samples * period;

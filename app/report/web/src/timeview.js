@@ -1,4 +1,4 @@
-// Plots over time that share one run and one stretch of time, and what leads them.
+// Time plots with a common run and view, and their controls.
 import {choice, h} from './elements.js';
 import {roleOf} from './filters.js';
 import {shortName} from './run_names.js';
@@ -8,7 +8,7 @@ export {TimeState} from './time_state.js';
 
 const shortTime = (t) => String(Number(t.toFixed(4)));
 
-// Two fields of the time from which and up to which is shown.
+// Two fields for the first and the last visible time.
 function windowFields(state) {
   const field = (label, i) => {
     const input = h('input', {type: 'number', step: 'any', class: 'seconds', 'aria-label': `${label}, in seconds`});
@@ -32,7 +32,7 @@ function windowFields(state) {
   return h('span', {class: 'window-fields'}, fields[0], ' to ', fields[1], ' s');
 }
 
-// What a mouse does to a plot, for keys and screen readers.
+// The mouse actions of a plot, for keyboards and screen readers.
 export function timeControls(state) {
   const button = (text, label, act) =>
       h('button', {type: 'button', 'aria-label': label, title: label, onclick: act}, text);

@@ -33,7 +33,7 @@ function show(element, meaning) {
       `${below + label.offsetHeight < innerHeight ? below : Math.max(8, box.top - label.offsetHeight - 6)}px`;
 }
 
-/** Makes `element`, which can be focused, tell what it means; screen readers read it as its description. */
+/** Gives `element`, which must be focusable, a tip with its meaning; screen readers read it as the description. */
 export function describe(element, meaning) {
   if (!meaning) return element;
   element.classList.add('term');
@@ -51,9 +51,9 @@ export function describe(element, meaning) {
 
 const term = (text, meaning) => describe(h('span', {tabindex: 0}, text), meaning);
 
-/** A heading: the whole of it is the term, whatever unit it has. */
+/** A heading with a tip: the whole text is the term, apart from its unit. */
 export const headingWithTip = (text) => (meaningOf(text) ? term(text, meaningOf(text)) : text);
 
-/** A sentence's parts: the first mention of each term in it tells what it means. */
+/** A sentence in parts: the first mention of each term has a tip. */
 export const withTips = (text) =>
     termsIn(String(text || '')).map(({part, meaning}) => (meaning ? term(part, meaning) : part));

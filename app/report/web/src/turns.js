@@ -1,12 +1,12 @@
-// When figures are drawn: near the window, and one after the other.
+// Scheduling of figures: near the window, and one after the other.
 
 let turn = Promise.resolve();
-/** Runs the task after those before it, so that the first figure is seen before a large one begins. */
+/** Runs a task after the earlier ones, so that the first figure appears before a large one starts. */
 export function inTurn(task) {
   turn = turn.then(task).then(() => new Promise((shown) => setTimeout(shown, 0)));
 }
 
-/** Calls `begin` when the element comes near the window: a page of many figures opens at once. */
+/** Calls `begin` when the element comes near the window, so that a page with many figures opens at once. */
 export function whenNear(element, begin) {
   const near = (entries) => {
     if (entries.some((entry) => entry.isIntersecting)) begin();

@@ -1,4 +1,4 @@
-// The part of a page's address that says what its plots over time show: #view?run=...&from=...&to=...&at=...&filter=...
+// The part of a page's address with the view of its time plots: #view?run=...&from=...&to=...&at=...&filter=...
 
 const prefix = '#view?';
 const text = (seconds) => String(Number(seconds.toFixed(6)));
@@ -22,7 +22,7 @@ export function linkOf({run, filter, range, at}) {
 
 const number = (word) => (word === null || word.trim() === '' ? NaN : Number(word));
 
-/** What a link says; null where the address says nothing of a view. @returns {View|null} */
+/** The view in an address; null if it has none. @returns {View|null} */
 export function viewIn(hash) {
   if (!hash.startsWith(prefix)) return null;
   const words = new URLSearchParams(hash.slice(prefix.length)), view = {};

@@ -1,4 +1,4 @@
-// Local models as points of a cloud: their groups, the Gaussians behind those, what is shown of them. Draws nothing.
+// Local models as points of a cloud: their groups, Gaussians and visibility. Draws nothing.
 import {part} from './ellipse.js';
 import {modeCell, modeTitle, rankOf} from './mode_names.js';
 
@@ -10,7 +10,7 @@ import {modeCell, modeTitle, rankOf} from './mode_names.js';
 export class WindowCloud {
   /**
    * @param {any} windows C++'s windows_section
-   * @param {WindowArrays} arrays as loadWindows gives them
+   * @param {WindowArrays} arrays from loadWindows
    * @param {string[]} runs names
    */
   constructor(windows, arrays, runs) {
@@ -26,10 +26,10 @@ export class WindowCloud {
     this.count = this.run.length;
     this.axes = windows.default_axes;
     this.by = this.firstGrouping();
-    this.showAll = false;  // outlying windows, too
+    this.showAll = false;  // also outlying windows
     this.showBank = true;
     this.picked = -1;
-    this.hidden = new Set();  // groups
+    this.hidden = new Set();  // hidden groups
   }
 
   firstGrouping() {
@@ -46,7 +46,7 @@ export class WindowCloud {
     return list ? list[i] : -1;
   }
 
-  // [group, its window numbers]: components in order, modes by use, windows without one first.
+  // [group, its windows]: components in order, modes by use, windows without a group first.
   groups() {
     const lists = new Map();
     for (let i = 0; i < this.count; ++i) {
@@ -63,7 +63,7 @@ export class WindowCloud {
     return this.by === 'none' ? 'windows' : 'not clustered';
   }
 
-  // How far a group reaches over the axes.
+  // The extent of a group over the axes.
   reach(list, axes) {
     const some = list.filter((_, j) => j % Math.max(1, Math.floor(list.length / 300)) === 0);
     return axes.reduce((product, a) => {
@@ -72,7 +72,7 @@ export class WindowCloud {
     }, 1);
   }
 
-  // Those that are not hidden; wide ones come first, or they would hide the narrow ones when drawn.
+  // The visible groups; wide ones come first, or they would hide the narrow ones.
   shownGroups(axes) {
     return this.groups()
         .filter(([key]) => !this.hidden.has(key))
@@ -80,12 +80,12 @@ export class WindowCloud {
         .sort((a, b) => b.reach - a.reach);
   }
 
-  // Are all these axes parameters, which have errors and stand in the bank?
+  // Whether all these axes are parameters, which have errors and are in the bank.
   parametersOnly(axes) {
     return axes.every((a) => a < this.windows.parameters);
   }
 
-  // Element of window i's error covariance, which is stored row by row below its diagonal.
+  // Entry of window i's error covariance, which is stored as its lower triangle, row by row.
   covarianceOf(i, a, b) {
     const row = Math.max(a, b), column = Math.min(a, b);
     return this.covariance[(row * (row + 1)) / 2 + column][i];
@@ -97,7 +97,7 @@ export class WindowCloud {
     return axes.map((a) => this.values[a][i]);
   }
 
-  // The Gaussians behind the groups that are shown: mixture components, or the spread of the bank's modes.
+  // The Gaussians of the visible groups: mixture components, or the covariance of the bank's modes.
   ellipses(axes) {
     const {components, bank, parameters, axes: named} = this.windows;
     if (this.by === 'none') return [];
@@ -117,7 +117,7 @@ export class WindowCloud {
     return `run ${this.runs[this.run[i]]}, ${this.begin[i].toFixed(3)} to ${this.end[i].toFixed(3)} s`;
   }
 
-  // What is said of a window: its parameters with their standard errors, its groups.
+  // Description of a window: its parameters with their standard errors, and its groups.
   described(i) {
     const numbers = this.windows.axes.map((axis, a) => {
       const known = this.covariance && a < this.windows.parameters;

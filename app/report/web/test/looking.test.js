@@ -27,7 +27,7 @@ test('the worst of each stretch, the worst first', () => {
   const values = new Float32Array(10000).fill(NaN);
   Object.assign(values, {7: 3, 9: 4, 5000: 9, 9999: 5});
   assert.deepEqual(greatest(values, 2), [{at: 5000, value: 9}, {at: 9999, value: 5}]);
-  assert.deepEqual(greatest(values).map(({at}) => at), [5000, 9999, 9]);  // 7 and 9 lie in one stretch
+  assert.deepEqual(greatest(values).map(({at}) => at), [5000, 9999, 9]);  // 7 and 9 are in the same part
 });
 
 test('a change of the likeliest mode is where another becomes the greatest', () => {

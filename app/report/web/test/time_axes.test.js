@@ -4,7 +4,7 @@ import {test} from 'node:test';
 import {extent, margins, timeScale, valueScale} from '../src/time_axes.js';
 import {bucketBoxes, drawPanel, linePath} from '../src/time_drawing.js';
 
-// A pen that notes what it is told.
+// A pen that records its calls.
 function notes() {
   const list = [];
   const pathOf = (path) => {
@@ -74,7 +74,7 @@ test('buckets are boxes beside each other that hold their extremes; a line\'s to
   const toX = (v) => 1.4 * v, toY = (v) => 100 - v, x = [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5];
   const y = [10, 20, 50, 40, NaN, NaN, 5, 7];
   const line = bucketBoxes({kind: 'line', x, y, width: 2}, toX, toY);
-  // From 10 to 20; from 40 to 50 and on down to 20, where the line comes from; after a gap from nowhere.
+  // From 10 to 20; from 40 to 50 and down to 20, the previous value of the line; after a gap without a start.
   assert.deepEqual(line, [0, 79, 1, 12, 1, 49, 1, 32, 4, 92, 1, 4]);
   const band = bucketBoxes({kind: 'area', x, y}, toX, toY);
   assert.deepEqual(band, [0, 80, 1, 10, 1, 50, 1, 10, 4, 93, 1, 2]);
@@ -88,5 +88,5 @@ test('shares of buckets fill a panel, too', () => {
   const [lower, upper] = list.filter(({kind}) => kind === 'boxes');
   const {left} = margins(1000), half = Math.floor(left + (1000 - 10 - left) / 2);
   assert.deepEqual([...lower.boxes], [left, 81, half - left, 25, half, 6, 1, 100]);
-  assert.deepEqual([...upper.boxes], [left, 6, half - left, 75]);  // nothing of it in the second
+  assert.deepEqual([...upper.boxes], [left, 6, half - left, 75]);  // the second bucket is empty
 });
