@@ -23,7 +23,7 @@ namespace po = boost::program_options;
 namespace modebank::app {
 namespace {
 
-/// Each option once: those of one name, in several commands, have one target.
+/// All options, each once: an option that several commands have sets the same member.
 std::map<std::string, CommandOption> all_options() {
   std::map<std::string, CommandOption> options;
   const auto add = [&](const std::vector<CommandOption>& more) {
@@ -55,7 +55,7 @@ po::options_description describe_options(const std::map<std::string, CommandOpti
   return description;
 }
 
-/// An option that is short for a key sets it; one with words to choose from has one of them.
+/// Sets the keys for which options are short. An option with alternatives must have one of them.
 void take_values(const std::map<std::string, CommandOption>& options, const po::variables_map& values,
                  CommandLine& line) {
   for (const auto& [name, option] : options) {
@@ -69,7 +69,7 @@ void take_values(const std::map<std::string, CommandOption>& options, const po::
   }
 }
 
-/// Whether the shell finds this program by the name alone.
+/// Whether the shell finds this program by its name alone.
 bool is_in_path(const std::filesystem::path& program) {
   const char* const path = std::getenv("PATH");
   std::vector<std::string> folders;
@@ -87,7 +87,7 @@ std::string program_as_called(const std::string& typed) {
   return by_name ? std::filesystem::path(typed).filename().string() : shell_quoted(typed);
 }
 
-/// Behind it all words are files, whatever they look like.
+/// All words after it are files.
 const std::string end_of_options = "--";
 
 bool takes_a_value(const po::options_description& description, const std::string& word) {
@@ -96,16 +96,16 @@ bool takes_a_value(const po::options_description& description, const std::string
   return option && option->semantic()->max_tokens() > 0;
 }
 
-/// Whether a word that follows a key is the next option, so that the key's value was forgotten. Values may look like
-/// options themselves: those of sbatch do.
+/// Whether the word after a key is another option, so that the key lacks its value. Values may begin with dashes, as
+/// options of sbatch do.
 bool is_option(const po::options_description& description, const std::string& word) {
   const std::string key = word.substr(0, word.find('='));
   const std::string name = key.find('.') == std::string::npos ? word : key;
   return name.rfind("--", 0) == 0 && name != end_of_options && description.find_nothrow(name.substr(2), false);
 }
 
-/// The words with each key and its value as Boost takes them for what they are, whatever the value holds: --key=value,
-/// or two words where the value is empty.
+/// The words with each key and its value joined, so that Boost accepts any value: --key=value, or two words for an
+/// empty value.
 std::vector<std::string> joined_values(int argc, const char* const* argv, const po::options_description& description) {
   std::vector<std::string> words;
   const auto push = [&](const std::string& key, const std::string& value) {
@@ -133,20 +133,20 @@ std::vector<std::string> joined_values(int argc, const char* const* argv, const 
   return words;
 }
 
-/// The key that says where a command writes what it has no -o for; empty where it has none.
+/// The key of a command's output file if the command has no -o; empty if there is none.
 std::string output_key(const Command& command) {
   for (const char* key : {"archive.output", "study.output", "simulate.output"})
     if (command.reads(key)) return key;
   return {};
 }
 
-/// The key that takes the place of an option that the command does not read.
+/// The key to use in place of an option that the command does not have.
 std::string instead_of(const Command& command, const std::string& option) {
   const std::string key = option == "output" ? output_key(command) : "";
   return key.empty() ? "" : fmt::format("--{} PATH says where it writes; ", key);
 }
 
-/// "--data.*, --track.filter", and of the sections what is left out.
+/// "--data.*, --track.filter", with the keys that are left out of sections.
 std::string known_words(const Command& command) {
   std::vector<std::string> known;
   for (const CommandOption& each : command.options) known.push_back("--" + each.long_name());
@@ -182,14 +182,14 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   CommandLine line;
   for (int i = 0; i < argc; ++i) line.typed += (i ? " " : "") + shell_quoted(argv[i]);
   line.program = program_as_called(argc > 0 ? argv[0] : "modebank");
-  if (argc > 1) refuse_gone_command(argv[1]);  // before its options, which went with it
+  if (argc > 1) refuse_gone_command(argv[1]);  // first, because options of a removed command were removed, too
   const std::map<std::string, CommandOption> options = all_options();
   const po::options_description description = describe_options(options, line);
   po::positional_options_description positional;
   positional.add("words", -1);
   po::variables_map values;
   try {
-    // No guessing: an abbreviated key would change its meaning when keys are added.
+    // Options may not be abbreviated, since new keys could change the meaning of an abbreviation.
     const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
     const po::parsed_options parsed = po::command_line_parser(joined_values(argc, argv, description))
                                           .options(description)

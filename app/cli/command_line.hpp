@@ -6,16 +6,16 @@
 
 namespace modebank::app {
 
-/// What the user typed, split but not yet interpreted.
+/// The command line, split but not interpreted.
 struct CommandLine {
   std::string command;                                         ///< empty: none given
   std::vector<std::string> files;                              ///< positional arguments after the command
   std::vector<std::pair<std::string, std::string>> overrides;  ///< configuration keys given as options, in order
   std::vector<std::string> given;                              ///< long names of all other options, in order
   std::string typed;                                           ///< the whole line, for provenance
-  std::string program;  ///< as the user has to call it: modebank where the shell finds it, else its path
+  std::string program;  ///< modebank if the shell finds it by this name, else its path
 
-  // Values of the options; the table of commands tells what each means.
+  // Values of the options; the table of commands has their meanings.
   bool help = false, version = false, quiet = false, verbose = false;
   bool json = false, dry_run = false, force = false;
   bool schema = false, markdown = false, repair = false, findings = false, apply = false, yes = false;
@@ -25,11 +25,11 @@ struct CommandLine {
   double wheel_separation_m = 0.0, wheel_radius_m = 0.0;  ///< 0: not given
 };
 
-/// A word as a shell takes it.
+/// A word quoted for a shell.
 std::string shell_quoted(const std::string& word);
 
-/// Throws ConfigurationError for an unknown option (naming the nearest known one), one without its value and one that
-/// the command does not read.
+/// Throws ConfigurationError for an unknown option (with the nearest known one), an option without its value and one
+/// that the command does not have.
 CommandLine parse_command_line(int argc, const char* const* argv);
 
 }  // namespace modebank::app

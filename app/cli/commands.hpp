@@ -8,12 +8,12 @@
 
 namespace modebank::app {
 
-/// Runs the command that was typed; returns the exit status. Errors are exceptions (ConfigurationError: 2, others: 1).
+/// Runs the command and returns the exit status. Throws on errors (ConfigurationError: 2, others: 1).
 int run_command(const CommandLine& line);
 
 int run_pipeline(const CommandLine& line);    ///< run, identify, cluster, evaluate
 Result do_pipeline(const CommandLine& line);  ///< the same without printing
-/// The same for a valid configuration that stands in `file`, or is to stand there.
+/// The same for a valid configuration that is, or will be, in `file`.
 Result do_configured(const CommandLine& line, const Config& config, const std::filesystem::path& file);
 int run_init(const CommandLine& line);
 int run_demo(const CommandLine& line);

@@ -8,7 +8,7 @@
 
 namespace modebank::app {
 
-/// Which files a command would read and write, and which of these are there. Throws what finding the data throws.
+/// Files that a command would read and write, and which of them exist. Throws as the search for the data does.
 Result dry_run(const Config& config, const std::vector<std::filesystem::path>& written);
 
 }  // namespace modebank::app

@@ -32,7 +32,7 @@ void import_and_cut(const Config& config) {
 
 struct Remedy {
   std::string words;
-  std::function<bool(Proposal&)> apply;  ///< false: there is nothing to change
+  std::function<bool(Proposal&)> apply;  ///< returns false if there is nothing to change
 };
 
 std::vector<Remedy> remedies() {
@@ -54,7 +54,8 @@ std::vector<Remedy> remedies() {
   return {
       {"rows keep their own rate",
        [=](Proposal& proposal) {
-         const ProposedKey* const time = proposal.find("time");  // without times the rate stands for them
+         const ProposedKey* const time =
+             proposal.find("time");  // without times there is a rate in place of the key time
          return (time == nullptr || time->value != " ") && dropped("rate_hz")(proposal);
        }},
       {"rows are sorted by time", set("disorder", "sort", "times repeat or go backwards")},
@@ -95,12 +96,12 @@ void make_it_run(Proposal& proposal, const fs::path& target) {
   if (first.empty()) return;
   const auto take_if_it_runs = [&](Proposal changed, const std::string& words) {
     if (!refusal(changed, target).empty()) return false;
-    changed.doubts.push_back(fmt::format("{}, or run would end in: {}", words, first));
+    changed.doubts.push_back(fmt::format("{}, because run would end in: {}", words, first));
     proposal = std::move(changed);
     return true;
   };
   const std::vector<Remedy> all = remedies();
-  for (const Remedy& remedy : all)  // one is enough, if any
+  for (const Remedy& remedy : all)  // the first that helps is enough
     if (Proposal changed = proposal; remedy.apply(changed) && take_if_it_runs(changed, remedy.words)) return;
   Proposal changed = proposal;
   std::string words;

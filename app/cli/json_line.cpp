@@ -10,7 +10,7 @@
 namespace modebank::app {
 namespace {
 
-/// Numbers that JSON has no name for, outside strings, made null.
+/// Replaces NaN and infinities outside strings by null.
 std::string without_bare_nan(std::string_view line) {
   std::string result;
   bool quoted = false;

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-/// Numbers as results in JSON have them.
+/// Numbers for JSON.
 namespace modebank::app {
 
-/// JSON has no NaN.
+/// A number, or null for NaN, which JSON lacks.
 inline nlohmann::json json_number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array signals{SIGINT, SIGTERM};
 
-/// What a signal handler may print: made beforehand, since it may not allocate.
+/// Message for the signal handler, made beforehand, since a handler may not allocate.
 std::array<char, 4096> kept_message;
 std::atomic<std::size_t> kept_size = 0;
 
@@ -38,7 +38,7 @@ void set_message(const std::string& text) {
 
 void tell_kept(const fs::path& folder) {
   set_message(fmt::format(
-      "\nmodebank: stopped; finished stages that took long are kept in {}: the same command goes on from there\n",
+      "\nmodebank: stopped; finished stages that took long are kept in {}. The same command continues from there\n",
       printable(folder.string())));
 }
 
@@ -50,11 +50,11 @@ KeptStages::KeptStages(const fs::path& output)
   set_message("\nmodebank: stopped; no stage that took long was finished, so nothing is kept\n");
   for (std::size_t i = 0; i < signals.size(); ++i) {
     before_[i] = std::signal(signals[i], say_what_is_kept);
-    if (before_[i] == SIG_IGN) std::signal(signals[i], SIG_IGN);  // as nohup and a shell's background jobs ask for
+    if (before_[i] == SIG_IGN)
+      std::signal(signals[i], SIG_IGN);  // a signal that was ignored stays so, as under nohup and for background jobs
   }
   if (folder_is_link())
-    spdlog::warn("{} is a symbolic link, which may lead to files of others: no stage is kept there; remove the link",
-                 folder_.string());
+    spdlog::warn("{} is a symbolic link, so no stage is kept there; remove the link", folder_.string());
 }
 
 void KeptStages::provide(Stage stage, const std::string& key, const StagePart& part) {

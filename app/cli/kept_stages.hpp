@@ -8,13 +8,13 @@
 
 namespace modebank::app {
 
-/// Keeps stages that took long in a folder beside the archive that is to come, so that a run that was stopped, by
-/// Ctrl-C or a power cut, goes on from there when it is repeated. Keeps nothing in a folder that is a symbolic link.
+/// Stores stages that took long in a folder beside the future archive. A run that was stopped, by Ctrl-C or a power
+/// cut, continues from there when it is repeated. Stores nothing in a folder that is a symbolic link.
 class KeptStages : public StageSource {
  public:
-  /// From now on Ctrl-C prints what is kept.
+  /// Installs a handler: Ctrl-C prints where the stages are stored.
   explicit KeptStages(const std::filesystem::path& output);
-  /// Nothing is left of a run that ended, well or by an error; signals do what they did before.
+  /// Removes the folder after a run that ended, well or by an error, and restores the signal handlers.
   ~KeptStages() override;
   KeptStages(const KeptStages&) = delete;
   KeptStages& operator=(const KeptStages&) = delete;
@@ -26,7 +26,7 @@ class KeptStages : public StageSource {
 
   std::filesystem::path folder_;
   StageStore store_;
-  std::array<void (*)(int), 2> before_{};  ///< what SIGINT and SIGTERM did
+  std::array<void (*)(int), 2> before_{};  ///< previous handlers of SIGINT and SIGTERM
 };
 
 }  // namespace modebank::app

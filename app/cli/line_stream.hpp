@@ -7,7 +7,7 @@
 
 namespace modebank::app {
 
-/// Lines from standard input as they come, until the input ends or SIGINT or SIGTERM asks to stop: those are held back
+/// Lines from standard input as they come, until the input ends or SIGINT or SIGTERM arrives. Signals are blocked
 /// except while waiting, so none is lost between two lines. One object per program.
 class LineStream {
  public:

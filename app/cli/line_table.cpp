@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* stream_name = "standard input";
 
-/// Columns for a plan, whose rows come later.
+/// A reader that has columns for a plan, but no rows.
 class ColumnsAlone final : public TableReader {
  public:
   explicit ColumnsAlone(TableInfo table) : table_(std::move(table)) {}
@@ -42,7 +42,7 @@ bool holds(const std::vector<std::string>& all, const std::string& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
-/// Options for one stream that has all columns: without files, runs and roles, and every value may be missing.
+/// Options for one stream with all columns: no files, runs or roles, and every value may be missing.
 DataOptions of_a_stream(DataOptions data) {
   for (std::string* text : {&data.inputs, &data.states, &data.run, &data.label, &data.weight}) text->clear();
   for (std::vector<std::string>* names : {&data.truth, &data.train, &data.test}) names->clear();
@@ -55,14 +55,14 @@ DataOptions of_a_stream(DataOptions data) {
   return data;
 }
 
-/// A derived channel that the stream has as a column is read from there.
+/// Removes derived channels that the stream has as columns.
 void derive_what_lacks(DataOptions& data, const std::vector<std::string>& columns) {
   std::erase_if(data.derive, [&](const std::string& line) { return holds(columns, parse_derived(line).name); });
 }
 
 ColumnInfo column_of(const std::string& name) { return {name, std::string(split_unit(name).unit), {}}; }
 
-/// The columns that a channel is read or computed from.
+/// Adds the columns from which a channel is read or computed.
 void add_operands(const DerivedChannels& derived, const std::string& channel, std::vector<std::string>& columns) {
   const DerivedChannel* const computed = derived.find(channel);
   if (computed == nullptr && !holds(columns, channel)) columns.push_back(channel);
@@ -89,7 +89,7 @@ bool LineTable::open(const std::string& line) {
   return !after_header_;
 }
 
-/// By the archive's own format; a stream that is written otherwise shows its own.
+/// Uses the archive's format; a stream in another format is detected.
 void LineTable::open_csv() {
   FormatOptions& format = data_.format;
   try {
@@ -107,7 +107,7 @@ bool LineTable::starts_with_a_row() const {
   try {
     return rows_of({}, data_.time_unit).rows() > 0;
   } catch (const DataError&) {
-    return true;  // with a value that is none
+    return true;  // a missing value
   }
 }
 
@@ -139,8 +139,8 @@ void LineTable::plan_for(const TableInfo& table) {
     const DerivedChannels derived(data);
     for (const std::string& operand : derived.where()->expression.channels()) add_operands(derived, operand, operands);
     if (!std::all_of(operands.begin(), operands.end(), [&](const auto& operand) { return holds(columns_, operand); })) {
-      notes_.push_back(
-          fmt::format("data.where = {} names a column that {} lacks: every sample is taken", data.where, stream_name));
+      notes_.push_back(fmt::format("data.where = {} names a column that {} lacks, so every sample is used", data.where,
+                                   stream_name));
       data.where.clear();
     }
   }
@@ -160,7 +160,7 @@ Table LineTable::rows_of(const std::vector<std::string>& lines, TimeUnit unit) c
   std::string text = head_;
   for (const std::string& line : lines) {
     text += line;
-    if (std::count(line.begin(), line.end(), '"') % 2 != 0) text += '"';  // quotes that nobody closed end with the line
+    if (std::count(line.begin(), line.end(), '"') % 2 != 0) text += '"';  // an unclosed quote ends with the line
     text += '\n';
   }
   return parse_csv(stream_name, text, request, data_.format);
@@ -183,7 +183,7 @@ std::vector<std::string> LineTable::fields_in(const std::string& line) const {
   return fields_of(line, dialect.separator == Separator::blank ? ' ' : dialect.delimiter());
 }
 
-/// The line after the header, where it has a text for each column and no number.
+/// Takes the line after the header as units if it has text in each column and no number.
 bool LineTable::take_units(const std::string& line) {
   if (!std::exchange(after_header_, false)) return false;
   const std::vector<std::string> fields = fields_in(line);
@@ -227,7 +227,7 @@ Table LineTable::read(const std::vector<std::string>& lines) {
   return table;
 }
 
-/// The first row decides on the separator of all rows.
+/// The first row determines the separator of all rows.
 void LineTable::begin(const std::string& line, const Table& table) {
   first_row_ = line;
   first_s_ = time_s(table, 0);
@@ -235,7 +235,7 @@ void LineTable::begin(const std::string& line, const Table& table) {
   if (format_ == Format::csv) data_.format.separator = find_dialect(head_ + line + "\n", true, data_.format).separator;
 }
 
-/// Two rows show what times count; the reader's finding holds for all that follow.
+/// Two rows determine the unit of times; the reader's result applies to all rows that follow.
 void LineTable::learn_unit(const std::vector<std::string>& lines, const Table& table) {
   std::vector<std::string> all{first_row_};
   all.insert(all.end(), lines.begin(), lines.end());
@@ -266,7 +266,7 @@ double LineTable::rest_s(const Table& table, std::size_t row) const {
   return static_cast<double>(table.time_ns[row] - static_cast<std::int64_t>(whole) * billion) / 1e9 - (seconds - whole);
 }
 
-/// The reader has counted days from the first row to these alone.
+/// The reader counted days from the batch's first row; this adds the days before it.
 void LineTable::pass_midnights(Table& table) {
   for (std::int64_t& time_ns : table.time_ns)
     if (time_ns != missing_stamp) time_ns = days_.on(time_ns / billion) * billion + time_ns % billion;
@@ -276,7 +276,7 @@ void LineTable::derive(Table& table) {
   const SourcePlan& source = plan_->sources.front();
   if (source.derived.empty()) return;
   if (!origin_ns_ && !table.time_ns.empty()) origin_ns_ = table.time_ns.front();
-  std::vector<double> seconds;  // from the first row, so that nanoseconds since 1970 cost no precision
+  std::vector<double> seconds;  // relative to the first row, since nanoseconds since 1970 would cost precision
   for (std::size_t row = 0; row < table.rows(); ++row)
     seconds.push_back(!has_times() || table.time_ns[row] == missing_stamp
                           ? time_s(table, row)

@@ -11,34 +11,33 @@
 
 namespace modebank::app {
 
-/// Lines of a log that come one by one, as rows of the table that import makes of a file with the same lines: the same
-/// reader, times and derived channels. CSV has a header or none, and may have a row of units; NDJSON one object per
-/// line.
+/// Lines of a log that arrive one by one, as rows of the table that import makes of a file with these lines. Reader,
+/// times and derived channels are the same. CSV may have a header and a row of units; NDJSON has one object per line.
 class LineTable {
  public:
-  /// `data`: channels, times and formats of the archive.
+  /// `data`: channels, times and formats from the archive.
   explicit LineTable(const DataOptions& data);
 
-  /// Takes a line that comes before the columns are known; is_open() afterwards unless it is a comment. True: it is a
-  /// row, which read() has yet to take. Throws ConfigurationError without a needed column, listing those there are.
+  /// Takes a line before the columns are known; afterwards is_open(), unless it was a comment. Returns true for a row,
+  /// which must then be passed to read(). Throws ConfigurationError, with the existing columns, if a needed column is
+  /// missing.
   bool open(const std::string& line);
   bool is_open() const { return plan_.has_value(); }
-  /// Whether lines are JSON objects, each with its names; else they are CSV.
+  /// Whether lines are JSON objects with names; else they are CSV.
   bool has_objects() const { return format_ == Format::objects; }
-  /// A row per line, with derived channels in place; none of the line after the header where that has the columns'
-  /// units. Throws std::runtime_error, naming no line, unless every line is a row. One line at a time until the first
-  /// row is there.
+  /// One row per line, with derived channels; none for a line of units after the header. Throws std::runtime_error,
+  /// without a line number, unless every line is a row. Pass one line at a time until the first row.
   Table read(const std::vector<std::string>& lines);
   bool has_rows() const { return !first_row_.empty(); }
-  /// Where states, inputs and data.where stand in Table::numbers.
+  /// Positions of states, inputs and data.where in Table::numbers.
   const FilePlan& plan() const { return *plan_; }
-  /// Seconds of a row of the table that was read last; NaN: missing.
+  /// Seconds of a row in the table of the last read; NaN: missing.
   double time_s(const Table& table, std::size_t row) const;
-  /// The remainder to add to it: a double of seconds since 1970 lacks nanoseconds.
+  /// The remainder of time_s: a double of seconds since 1970 lacks nanoseconds.
   double rest_s(const Table& table, std::size_t row) const;
   /// Whether rows have times; else row k is k / data.rate_hz.
   bool has_times() const { return !plan_->sources.front().request.time.column.empty(); }
-  /// The first row's time, where the second row has shown that its unit is another than was taken. Once.
+  /// The first row's time, if the second row shows that its unit was guessed wrongly. Returned once.
   std::optional<double> corrected_first_s() { return std::exchange(corrected_first_s_, std::nullopt); }
   /// The reader's remarks since the last call.
   std::vector<std::string> notes() { return std::exchange(notes_, {}); }
@@ -48,18 +47,18 @@ class LineTable {
  private:
   DataOptions data_;
   enum class Format { unknown, csv, objects };
-  Format format_ = Format::unknown;   ///< by the first line
-  std::string head_;                  ///< of CSV: the lines before the first row, each with its line break
-  std::vector<std::string> columns_;  ///< of CSV all, of NDJSON the members that are read
+  Format format_ = Format::unknown;   ///< from the first line
+  std::string head_;                  ///< for CSV: the lines before the first row, with their line breaks
+  std::vector<std::string> columns_;  ///< for CSV all columns, for NDJSON the members that are read
   std::optional<FilePlan> plan_;
-  std::string first_row_;                   ///< stays before all others of CSV: they are read as it was
-  std::size_t rows_ = 0, rows_before_ = 0;  ///< rows_before_: the table that was read last
+  std::string first_row_;                   ///< put before later CSV rows, so that these are read in its format
+  std::size_t rows_ = 0, rows_before_ = 0;  ///< rows_before_: before the table of the last read
   double first_s_ = 0.0;
   std::optional<double> corrected_first_s_;
   bool unit_known_ = false, after_header_ = false;
   std::vector<Expression::Memory> memory_;  ///< per derived channel
   std::optional<std::int64_t> origin_ns_;
-  DayCount days_;  ///< of times of day, over all rows so far
+  DayCount days_;  ///< for times of day, over all rows so far
   std::vector<std::string> notes_;
 
   void open_csv();

@@ -21,12 +21,12 @@
 namespace modebank::app {
 namespace {
 
-/// Refuses a filter whose snapshot cannot be written, before the first sample is read (open_filter).
+/// Throws, before the first sample is read, for a filter without snapshots (open_filter).
 BankFilter& kept(AnyFilter& filter) {
   if (BankFilter* const bank = filter.of_bank()) return *bank;
   throw ConfigurationError(
-      "track.checkpoint and track.resume: the state of several filters together cannot be written; leave them out, or "
-      "track one filter");
+      "track.checkpoint and track.resume do not work with combined filters; leave them out, or set track.filter to one "
+      "filter");
 }
 
 }  // namespace
@@ -44,10 +44,10 @@ Resumed resume(AnyFilter& filter, const std::string& file, const std::string& id
   }
   if (snapshot.samples.samples == 0) return {not_a_number, 0, {}};
   if (!std::isfinite(snapshot.samples.time_s)) throw DataError(file + ": the last sample has no time");
-  return {snapshot.samples.time_s, snapshot.samples.samples, snapshot.samples.inputs.col(0)};  // the newest
+  return {snapshot.samples.time_s, snapshot.samples.samples, snapshot.samples.inputs.col(0)};  // the newest samples
 }
 
-/// kf is the global model alone, whatever the bank.
+/// kf is always the global model.
 std::string tracked_bank(const Config& config) {
   TrackedFilter filter = config.track.filter == TrackedFilter::combined ? TrackedFilter::bank : config.track.filter;
   if (filter == TrackedFilter::bank && config.filter.variant == FilterVariant::kf) filter = TrackedFilter::baseline;
@@ -69,11 +69,11 @@ void check_columns(const Config& config, const Bank& bank, const OpenArchive& ar
 
 void require_bank(const Config& config, const std::string& what) {
   if (config.track.filter == TrackedFilter::drifting)
-    throw ConfigurationError(what + ": a model whose coefficients learn in every run is no bank");
+    throw ConfigurationError(what + ": a model whose coefficients learn in every run is not a bank");
   if (config.track.filter == TrackedFilter::combined)
-    throw ConfigurationError(what + ": several filters together are no bank");
+    throw ConfigurationError(what + ": combined filters are not a bank");
   if (config.track.filter == TrackedFilter::nonlinear)
-    throw ConfigurationError(what + ": exported filters are linear; bank, baseline, noise_only and one_motion are");
+    throw ConfigurationError(what + ": exported filters are linear; use bank, baseline, noise_only or one_motion");
 }
 
 namespace {
@@ -90,7 +90,7 @@ OpenedFilter open_one(const OpenArchive& archive, const std::string& which, cons
   return open_bank(archive, which, options);
 }
 
-/// The filters that the archive has combined one sample ahead, the bank first, with the weights that training left.
+/// The filters that the archive combines one sample ahead, the bank first, with their weights after training.
 OpenedFilter open_combined(const OpenArchive& archive, const Config& config) {
   const CombinedMembers members = combined_members(archive, 1);
   std::vector<std::unique_ptr<AnyFilter>> filters;
@@ -116,7 +116,9 @@ CombinedMembers combined_members(const OpenArchive& archive, Index horizon) {
   CombinedMembers members;
   for (const CombinationRow& row : rows)
     if (row.role == Role::train && row.horizon == at) members.names.push_back(row.filter);
-  if (members.names.empty()) throw DataError(archive.path().string() + ": holds no combined forecasts; run it again");
+  if (members.names.empty())
+    throw DataError(archive.path().string() +
+                    ": the archive has no combined forecasts; make it again with modebank run");
   members.weights = start_weights(rows, at, members.names);
   return members;
 }

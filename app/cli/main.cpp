@@ -33,7 +33,7 @@ int fail_to_print(const std::string& reason) {
   return fail(run_failure, ("cannot write the results to standard output: " + reason).c_str());
 }
 
-/// Programs that asked for JSON learn from it, too, what went wrong.
+/// Prints an error; after --json also as JSON.
 int fail_as_asked(int argc, char** argv, int status, const char* what) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   const auto command = std::find_if(words.begin(), words.end(), [](const std::string& w) { return w[0] != '-'; });
@@ -51,14 +51,14 @@ int main(int argc, char** argv) {
     return modebank::app::run_study_worker(argc, argv);
   try {
     const int status = modebank::app::run_command(modebank::app::parse_command_line(argc, argv));
-    // A full disk or a closed pipe must not pass for success.
+    // A full disk or a closed pipe is an error.
     return std::fflush(stdout) == 0 ? status : fail_to_print(std::generic_category().message(errno));
   } catch (const modebank::ConfigurationError& error) {
     return fail_as_asked(argc, argv, usage_error, error.what());
   } catch (const std::filesystem::filesystem_error& error) {
     const std::string what = error.path1().string() + ": " + error.code().message();
     return fail_as_asked(argc, argv, run_failure, what.c_str());
-  } catch (const std::system_error& error) {  // fmt's name no file
+  } catch (const std::system_error& error) {  // fmt's exception has no file name
     return std::ferror(stdout) ? fail_to_print(error.code().message())
                                : fail_as_asked(argc, argv, run_failure, error.what());
   } catch (const std::exception& error) {

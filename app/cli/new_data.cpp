@@ -22,8 +22,8 @@ void turn_to_new_files(const CommandLine& line, DataOptions& data) {
   if (!given(line, "data.root")) data.root = std::filesystem::current_path().string();
   if (!given(line, "data.states") && !data.states.empty())
     throw ConfigurationError(
-        fmt::format("data.states: the states of {} came from files of their own ({}): name those of the new inputs, or "
-                    "--data.states= where they are columns of the same files",
+        fmt::format("data.states: the states of {} came from separate files ({}); name those of the new inputs, or "
+                    "give --data.states= if they are columns of the same files",
                     archive, data.states));
   if (!given(line, "data.train")) data.train.clear();
   if (!given(line, "data.test")) data.test.clear();
@@ -45,7 +45,7 @@ AveragedColumns take_sampling(const CommandLine& line, const OpenArchive& archiv
   averaged.further_lag_s = 0.5 * period_s;
   data.lag_s = lag->lag.mean - averaged.further_lag_s;
   if (lag->correction == LagCorrection::drift)
-    spdlog::warn("{}: its lag drifts; new data have the constant lag of {:.3g} s", archive.path().string(),
+    spdlog::warn("{}: its lag drifts; for new data the constant lag {:.3g} s is taken", archive.path().string(),
                  lag->lag.mean);
   return averaged;
 }

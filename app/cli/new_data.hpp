@@ -9,16 +9,16 @@
 
 namespace modebank::app {
 
-/// Whether the user typed this key.
+/// Whether the key is on the command line.
 bool given(const CommandLine& line, const std::string& key);
 
-/// An archive's data section for files that it was not made from: their roles, places and labels are other ones, and
-/// their measurements may end. Throws ConfigurationError where states came from files of their own and none are named.
+/// Prepares an archive's data section for other files, which have other roles, places and labels; their measurements
+/// may end early. Throws ConfigurationError where the archive's states came from separate files and none are given.
 void turn_to_new_files(const CommandLine& line, DataOptions& data);
 
-/// How new data are brought to the archive's rate: which columns are averaged. Where the archive's lag was estimated,
-/// sets data.lag_s to the pooled one, as held-out runs had it, taken in the middle of each step of `period_s`. A lag
-/// that is stated stays.
+/// How new data are brought to the archive's rate: the columns to average. If the archive's lag was estimated, sets
+/// data.lag_s to the pooled one, as for held-out runs, taken in the middle of each step of `period_s`. A stated lag
+/// stays.
 AveragedColumns take_sampling(const CommandLine& line, const OpenArchive& archive, double period_s, DataOptions& data);
 
 }  // namespace modebank::app

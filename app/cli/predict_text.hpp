@@ -6,15 +6,15 @@
 
 #include "filter/judge/run/free_run.hpp"
 
-/// What `predict` says: samples without a prediction are left out.
+/// Output of `predict`; samples without a prediction are left out.
 namespace modebank::app {
 
 Index predicted_samples(const std::vector<FreeRun>& predicted);
 
-/// A line per predicted sample; columns of the prediction, its standard deviation and its band per state.
+/// One line per predicted sample, with columns of the prediction, its standard deviation and its band per state.
 std::string predicted_csv(const Recording& recording, const std::vector<FreeRun>& predicted);
 
-/// The same per run, an array per column.
+/// The same per run, with one array per column.
 nlohmann::json predicted_json(const Recording& recording, const std::vector<FreeRun>& predicted);
 
 }  // namespace modebank::app

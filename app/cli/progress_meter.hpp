@@ -9,8 +9,8 @@
 
 namespace modebank::app {
 
-/// While it lives, says on standard error how far loops are that take over a second: on a terminal in one line that is
-/// rewritten, elsewhere in a line every ten seconds.
+/// While it exists, prints the progress of loops over a second to standard error. On a terminal one line is rewritten;
+/// elsewhere a line is added every ten seconds.
 class ProgressMeter {
  public:
   explicit ProgressMeter(bool wanted);
@@ -28,7 +28,7 @@ class ProgressMeter {
   std::thread thread_;
 };
 
-/// "windows: 12000 of 50000, 3.1e+04 per s, 1.2 s left"; nothing of what is left before anything is done.
+/// "windows: 12000 of 50000, 3.1e+04 per s, 1.2 s left"; the time left is missing before the first item.
 std::string progress_text(const WorkDone& work);
 
 }  // namespace modebank::app

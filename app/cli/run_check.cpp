@@ -24,11 +24,11 @@ namespace {
 
 void require_usage(const CommandLine& line) {
   if (line.apply && line.output.empty())
-    throw ConfigurationError("--apply: name the configuration file to write: modebank check CONFIG --apply -o FILE");
+    throw ConfigurationError("--apply needs a file to write: modebank check CONFIG --apply -o FILE");
   if (!line.apply && !line.output.empty())
-    throw ConfigurationError("-o: check writes a file with --apply only: modebank check CONFIG --apply -o FILE");
+    throw ConfigurationError("-o works with --apply only: modebank check CONFIG --apply -o FILE");
   if (line.apply && line.findings)
-    throw ConfigurationError("--findings tries no settings, so --apply has none to write");
+    throw ConfigurationError("--findings tries no settings, so --apply has none to write; leave one of them out");
 }
 
 void check_target(const CommandLine& line, const Config& config) {
@@ -72,7 +72,7 @@ nlohmann::json structure_json(const FoundStructure& found) {
           {"scores", scores}};
 }
 
-/// Findings come at once, suggestions when they are scored.
+/// Prints findings at once, and suggestions when they are scored.
 Suggestions tell(const CommandLine& line, const Config& config, const DataCheck& check, nlohmann::json& page) {
   const std::vector<std::string> findings = findings_of(check, config);
   print_text(line, check_text(check, findings));

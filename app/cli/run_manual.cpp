@@ -10,11 +10,11 @@
 #include "app/config/option_table.hpp"
 #include "modebank/base/error.hpp"
 
-/// Manual pages in man(7)'s roff.
+/// Manual pages in roff, for man(7).
 namespace modebank::app {
 namespace {
 
-/// Text that roff takes as it stands.
+/// Text with roff's special characters escaped.
 std::string roff(std::string text) {
   boost::replace_all(text, "\\", "\\e");
   boost::replace_all(text, "-", "\\-");

@@ -31,7 +31,7 @@
 namespace modebank::app {
 namespace {
 
-/// Stages that are taken as they are must have been made as the configuration says, which the new archive will record.
+/// Throws unless reused stages were made with the configuration's settings, which the new archive will state.
 void check_same_settings(const Config& config, const std::string& stored, Stage taken) {
   const std::map<std::string, std::string> before = resolved_values(stored),
                                            now = resolved_values(resolved_text(config));
@@ -40,18 +40,18 @@ void check_same_settings(const Config& config, const std::string& stored, Stage 
     if (!option.stage || *option.stage > taken || stage == before.end()) continue;
     if (const std::string& value = now.at(option.key); stage->second != value)
       throw ConfigurationError(
-          fmt::format("archive.input: {} was made with {} = {}, the configuration says '{}': take the stored value, or "
-                      "start from the data",
+          fmt::format("archive.input: {} was made with {} = {}, but the configuration has '{}'; set the stored value, "
+                      "or start from the data",
                       config.archive.input, option.key, stage->second.empty() ? "''" : stage->second, value));
   }
 }
 
-/// The last stage that a command takes from --archive.input, if it is there.
+/// The last stage that a command takes from --archive.input.
 Stage last_taken(const std::string& command) {
   return command == "identify" ? Stage::data : command == "cluster" ? Stage::windows : Stage::mixture;
 }
 
-/// Earlier stages from --archive.input; what the file lacks is computed.
+/// Earlier stages from --archive.input; stages that the file lacks are computed.
 StoredStages earlier_stages(const Config& config, const std::string& command) {
   StoredStages source(config.archive.input, last_taken(command));
   const Archive& stored = source.stored();
@@ -60,8 +60,7 @@ StoredStages earlier_stages(const Config& config, const std::string& command) {
   return source;
 }
 
-/// An archive of other data is somebody's result. Asked when it is known which data these are, before anything is
-/// fitted to them.
+/// Throws if an archive of other data would be replaced. Checked as soon as the data's hash is known, before fits.
 void check_replaces_same_data(const std::string& output, const std::string& data_hash) {
   std::error_code error;
   if (!std::filesystem::exists(output, error)) return;
@@ -70,21 +69,21 @@ void check_replaces_same_data(const std::string& output, const std::string& data
     other = load_data_hash(output);
   } catch (const std::exception& reason) {
     throw DataError(
-        fmt::format("archive.output: {} is there and not replaced, for it cannot be read: {}; name another "
-                    "file, or --force",
+        fmt::format("archive.output: {} exists and is not replaced, because it cannot be read: {}; name another file, "
+                    "or add --force",
                     output, reason.what()));
   }
   if (other != data_hash)
     throw DataError(
-        fmt::format("archive.output: {} holds other data (data_hash {}, this run's is {}) and is not replaced; name "
-                    "another file, or --force",
+        fmt::format("archive.output: {} was made from other data (data_hash {}, this run's is {}) and is not replaced; "
+                    "name another file, or add --force",
                     output, other, data_hash));
 }
 
-/// Writes to the log.
+/// Prints a chain's messages to the log.
 class Log : public Adviser {
  public:
-  /// `output`: looked at when the data are read; empty: whatever is there is replaced.
+  /// `output`: checked when the data are read; empty: any file is replaced.
   explicit Log(std::string output) : output_(std::move(output)) {}
 
   void done(Stage stage, const Archive& archive) const override {
@@ -103,7 +102,7 @@ std::string archive_line(const Config& config) { return fmt::format("\narchive  
 
 nlohmann::json written(const Config& config) { return {{"written", {config.archive.output}}}; }
 
-/// Too many windows for memory: written as they are fitted.
+/// For too many windows for memory: writes them as they are fitted.
 Result identify_many(const Config& config, const Chain& chain, const Archive& data, const Log& log) {
   const Stopwatch watch;
   WindowCounts counts;
@@ -117,20 +116,20 @@ Result identify_many(const Config& config, const Chain& chain, const Archive& da
   return {data_text(*data.recording) + windows_text(common, counts, labels) + archive_line(config), written(config)};
 }
 
-/// A stored bank is judged as it is: options of how one is learned would change nothing.
+/// Throws for options of learning, which have no effect on a stored bank.
 void refuse_learning_options(const CommandLine& line, const Config& config) {
   if (config.archive.bank.empty()) return;
   for (const auto& [key, value] : line.overrides)
     if (key.starts_with("mixture.") || (key.starts_with("bank.") && key != "bank.mode_names"))
       throw ConfigurationError(
-          fmt::format("--{}: with archive.bank nothing is learned, the bank is that of {}", key, config.archive.bank));
+          fmt::format("--{}: with archive.bank nothing is learned; the bank is that of {}", key, config.archive.bank));
 }
 
 Stage last_stage(const std::string& command) {
   return command == "identify" ? Stage::windows : command == "cluster" ? Stage::mixture : Stage::bank_scores;
 }
 
-/// Runs the stages of the command and writes the archive.
+/// Runs the command's stages and writes the archive.
 Result execute(const CommandLine& line, const Config& config, StageSource& source) {
   const Log log(line.force ? "" : config.archive.output);
   Chain chain(source, log);
@@ -170,7 +169,8 @@ Result do_configured(const CommandLine& line, const Config& config, const std::f
 Result do_pipeline(const CommandLine& line) {
   if (line.command == "run" && names_logs(line.files)) return do_run_log(line);
   if (std::find(line.given.begin(), line.given.end(), "effort") != line.given.end())
-    throw ConfigurationError("--effort: a configuration has its decisions already; it is for logs: modebank run LOG");
+    throw ConfigurationError(
+        "--effort works with logs only (modebank run LOG); a configuration already has all decisions");
   if (line.files.size() != 1)
     throw ConfigurationError(
         fmt::format("{} needs one configuration file, or logs: modebank {} CONFIG", line.command, line.command));

@@ -30,7 +30,7 @@ double period_of(const OpenArchive& archive, const Config& config) {
   return load_bank(archive, tracked_bank(config)).dt_s;
 }
 
-/// By one filter of the archive.
+/// Free runs by one filter of the archive.
 std::vector<FreeRun> predict_alone(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const FilterOptions options = tracked_options(config);
   const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
@@ -39,8 +39,8 @@ std::vector<FreeRun> predict_alone(const OpenArchive& archive, const Config& con
   return free_runs(bank, recording.runs, options, how);
 }
 
-/// By all of them, with the weights that made the training runs' free runs most likely: nothing is measured on the way
-/// by which weights could move.
+/// Free runs by all filters, with the weights that maximise the likelihood of the training runs' free runs. Without
+/// measurements weights cannot adapt.
 std::vector<FreeRun> predict_together(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const CombinedMembers members = combined_members(archive, 0);
   std::vector<std::vector<FreeRun>> of_filters;
@@ -76,7 +76,7 @@ FileForm predictions_form() {
           }};
 }
 
-/// A prediction: its configuration and the sampling of its data.
+/// One prediction: its configuration and the sampling of its data.
 struct Task {
   Config config;
   AveragedColumns averaged;
@@ -87,7 +87,7 @@ Task task_of(const CommandLine& line, const OpenArchive& archive) {
   Config& config = task.config;
   if (config.scoring.free_run.samples == 0)
     throw ConfigurationError(
-        "predict needs the number of measured samples that it starts from: --samples N (filter.simulate)");
+        "predict needs the number of measured samples at the start: --samples N (filter.simulate)");
   if (given(line, "data.inputs")) {
     turn_to_new_files(line, config.data);
     task.averaged = take_sampling(line, archive, config.data.lag_auto ? period_of(archive, config) : 0.0, config.data);

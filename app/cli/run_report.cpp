@@ -16,13 +16,13 @@
 namespace modebank::app {
 namespace {
 
-/// Whether one folder is named that is not a study's.
+/// Whether the command line has one folder that is not a study's.
 bool is_site(const CommandLine& line) {
   const std::filesystem::path folder = line.files.front();
   return line.files.size() == 1 && std::filesystem::is_directory(folder) && !report::holds_a_study(folder);
 }
 
-/// Where the page or the site goes: -o, else into the current folder under the archive's or folder's name.
+/// Path of the page or site: -o, else the archive's or folder's name in the current folder.
 std::filesystem::path page_path(const CommandLine& line) {
   if (!line.output.empty()) return line.output;
   std::filesystem::path named = std::filesystem::path(line.files.front()).lexically_normal();
@@ -38,7 +38,7 @@ void report_run(const OpenArchive& opened, const std::filesystem::path& page, co
   report::write_page(page, report::run_page(archive, file.filename().string(), options), written);
 }
 
-/// The index of a folder and the pages of its archives.
+/// Writes the index of a folder and the pages of its archives.
 void report_site(const CommandLine& line, const std::filesystem::path& site, const ReportConfig& options,
                  report::Written& written) {
   const report::SiteResult result = report::report_folder(line.files.front(), site, options, written);
@@ -53,7 +53,7 @@ void report_site(const CommandLine& line, const std::filesystem::path& site, con
   print_json(line, {{"written", written.files}, {"removed", result.removed}, {"problems", problems}});
 }
 
-/// The page or pages of what was named.
+/// Writes the page or pages of the files.
 void report_files(const CommandLine& line, const std::filesystem::path& page, const ReportConfig& options,
                   report::Written& written) {
   if (line.files.size() > 1) {

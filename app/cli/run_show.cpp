@@ -41,13 +41,13 @@ void print_overview(const CommandLine& line) {
   fmt::print("{}{}", modes_in_words(archive, width), mode_diagnostics_text(archive, width));
 }
 
-/// I + A instead of A, for datasets A (K, n, n).
+/// Adds I to A in datasets A (K, n, n).
 void add_identity(json& matrices) {
   for (json& matrix : matrices)
     for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i][i] = matrix[i][i].get<double>() + 1.0;
 }
 
-/// The same for rows of theta = vec of [A B (c)]: entry (i, i) of A stands at i (q + 1).
+/// The same for rows of theta = vec of [A B (c)]: entry (i, i) of A has the index i (q + 1).
 void add_identity_to_theta(json& rows, const LinearStructure& structure) {
   for (json& row : rows)
     for (Index i = 0; i < structure.states; ++i) {
@@ -68,7 +68,7 @@ void convert_to_full_form(const OpenArchive& file, const std::string& path, json
     add_identity_to_theta(rows, structure);
     object["value"] = one_row ? rows[0] : rows;
   } else {
-    throw ConfigurationError(path + ": --form full applies to A and to parameters");
+    throw ConfigurationError(path + ": --form full works with A and parameters only");
   }
   object["form"] = "full";
 }

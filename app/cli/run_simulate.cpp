@@ -17,9 +17,11 @@ SimulationOptions system_of(const Config& config) {
   system.states = static_cast<Index>(config.data.state.size());
   system.inputs = static_cast<Index>(config.data.input.size());
   system.dt_s = 1.0 / config.simulate.rate_hz;
-  if (system.states == 0) throw ConfigurationError("data.state is empty: simulate takes the states' names from it");
+  if (system.states == 0)
+    throw ConfigurationError(
+        "data.state is empty; simulate takes the names of the states from it, for example data.state = wz");
   if (system.modes.empty())
-    throw ConfigurationError(config.simulate.name + ": system.modes is empty: give the parameters of each mode");
+    throw ConfigurationError(config.simulate.name + ": system.modes is empty; give the parameters of each mode");
   const Index p = system.modes.front().size();
   system.intercept = p == system.states * (system.states + system.inputs + 1);
   return system;
@@ -43,7 +45,7 @@ VehicleSimulationOptions vehicle_of(const Config& config) {
   return vehicle;
 }
 
-/// As many as there are kinds, or none.
+/// One name per kind of ground, or none.
 const std::vector<std::string>& grounds_of(const SimulateConfig& options) {
   const std::size_t kinds = options.vehicle.friction.size();
   if (!options.ground_names.empty() && options.ground_names.size() != kinds)

@@ -16,7 +16,7 @@
 namespace modebank::app {
 namespace {
 
-/// Runs as `run` imports them, but in one piece each: what is missing is predicted.
+/// Reads runs as `run` does, but without splitting them: missing values are predicted.
 std::vector<Trajectory> read_runs(const OpenArchive& archive, const Config& config, const Bank& bank,
                                   const AveragedColumns& averaged) {
   const ImportedData data = import_data(data_options_of(config), nullptr, &averaged);
@@ -26,7 +26,7 @@ std::vector<Trajectory> read_runs(const OpenArchive& archive, const Config& conf
   return data.recording.runs;
 }
 
-/// The checkpoint that the filter goes on from may be replaced by the next.
+/// The checkpoint that the filter resumes from may be replaced by its next one.
 void check_checkpoint(const std::string& archive, const Config& config, bool reads_files) {
   if (config.track.checkpoint.empty()) return;
   std::vector<std::filesystem::path> sources{archive};

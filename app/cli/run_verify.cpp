@@ -14,12 +14,12 @@ namespace {
 
 using nlohmann::json;
 
-/// A problem behind the name of its file, which most begin with already.
+/// A problem after the name of its file, unless it begins with that.
 std::string named_problem(const std::string& file, const std::string& what) {
   return what.rfind(file + ": ", 0) == 0 ? what : fmt::format("{}: {}", file, what);
 }
 
-/// The problems of one archive or study, and remarks on it.
+/// Problems of one archive or study, and remarks on it.
 json report_archive(const CommandLine& line, const std::string& file) {
   const Verification result = verify_archive(file);
   if (result.ok()) print_text(line, fmt::format("{}: ok\n", file));
@@ -42,7 +42,7 @@ json report_study(const CommandLine& line, const std::string& folder) {
         {{"file", problem.file.string()}, {"what", problem.what}, {"redo", problem.redo}, {"removed", removed}});
   }
   if (line.repair) repair_study(folder, result);
-  print_text(line, fmt::format("{}: {} trials are whole{}\n", folder, result.whole,
+  print_text(line, fmt::format("{}: {} trials are complete{}\n", folder, result.whole,
                                problems.empty() ? ": ok" : fmt::format(", {} problems", problems.size())));
   return {{"file", folder}, {"problems", problems}, {"whole_trials", result.whole}};
 }
@@ -51,7 +51,7 @@ json report_study(const CommandLine& line, const std::string& folder) {
 
 int run_verify(const CommandLine& line) {
   if (line.repair && std::none_of(line.files.begin(), line.files.end(), is_study_folder))
-    throw ConfigurationError("--repair: verify repairs folders of studies alone; " + line.files.front() + " is none");
+    throw ConfigurationError("--repair works only with folders of studies; " + line.files.front() + " is none");
   json files = json::array();
   bool all_good = true;
   for (const std::string& file : line.files) {

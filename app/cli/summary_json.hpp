@@ -6,7 +6,7 @@
 
 namespace modebank::app {
 
-/// What the first screen says, as docs/reference/json.md has it.
+/// Content of the first screen, as docs/reference/json.md describes it.
 nlohmann::json summary_json(const Archive& archive, const Settings& settings);
 
 }  // namespace modebank::app

@@ -17,7 +17,7 @@
 namespace modebank::app {
 namespace {
 
-/// Removes the reader's place, which counts the lines that it was given, not the user's.
+/// Removes the reader's line number, which counts lines of the batch, not the user's.
 std::string without_place(std::string message) {
   const std::string place = "standard input:";
   if (!message.starts_with(place)) return message;
@@ -76,7 +76,7 @@ void SampleReader::read_head(std::string line, std::size_t position, const Take&
     take(position, table_.is_open() ? Line::header : Line::blank);
 }
 
-/// One malformed line fails the whole batch: halves of it are read until that line is alone.
+/// One malformed line fails the whole batch, so halves are read until it is alone.
 void SampleReader::read_rows(const Rows& rows, const Take& take) {
   if (rows.lines.empty()) return;
   Table table;
@@ -91,7 +91,7 @@ void SampleReader::read_rows(const Rows& rows, const Take& take) {
     return read_rows(
         {{rows.lines.begin() + half, rows.lines.end()}, {rows.positions.begin() + half, rows.positions.end()}}, take);
   }
-  if (table.rows() == 0) return take(rows.positions.front(), Line::header);  // the columns' units
+  if (table.rows() == 0) return take(rows.positions.front(), Line::header);  // a row of units
   for (std::size_t row = 0; row < rows.lines.size(); ++row) take(rows.positions[row], accept(table, row));
 }
 
@@ -101,7 +101,7 @@ void SampleReader::leave_out(double& value, const std::string& name, const char*
   value = not_a_number;
 }
 
-/// A missing input is the last known one, as the command that still acts.
+/// A missing input repeats the last one, as a command that still acts.
 SampleReader::Line SampleReader::accept(const Table& table, std::size_t row) {
   const FilePlan& plan = table_.plan();
   remarks_.clear();
@@ -114,15 +114,15 @@ SampleReader::Line SampleReader::accept(const Table& table, std::size_t row) {
   for (std::size_t i = 0; i < plan.state.size(); ++i) {
     double& value = next_.measurement(static_cast<Eigen::Index>(i));
     value = table.numbers[plan.state[i].column][row];
-    leave_out(value, data_.state[i], "taken as missing");
+    leave_out(value, data_.state[i], "counts as missing");
   }
   for (std::size_t i = 0; i < plan.input.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     double& value = next_.input(at);
     value = table.numbers[plan.input[i].column][row];
-    leave_out(value, data_.input[i], "the last known one still acts");
+    leave_out(value, data_.input[i], "the last known value is used");
     if (std::isfinite(value)) continue;
-    if (!any_input_) return malformed(fmt::format("{} is missing, and no earlier one is known", data_.input[i]));
+    if (!any_input_) return malformed(fmt::format("{} is missing, and it has no earlier value", data_.input[i]));
     value = sample_.input(at);
   }
   any_input_ = true;

@@ -11,22 +11,22 @@
 
 namespace modebank::app {
 
-/// Reads samples from lines as they come: the rows of a LineTable with what acts where an input is missing.
+/// Reads samples from lines as they come: rows of a LineTable, with the held input where one is missing.
 class SampleReader {
  public:
   explicit SampleReader(const DataOptions& data);
 
   enum class Line { sample, header, blank, left_out, malformed };
-  /// Takes lines in and calls `take` for each in order, with its position. While it runs sample() is that of a
-  /// `sample`, and reason() says why a line is `malformed`: nothing of it is kept. `left_out`: data.where is false. A
-  /// header without a needed column throws ConfigurationError, which lists those there are.
+  /// Reads lines and calls `take` for each in order, with its position. During a call, sample() is that of a `sample`,
+  /// and reason() is the fault of a `malformed` line, of which nothing is kept. `left_out`: data.where is false. Throws
+  /// ConfigurationError, with the existing columns, for a header without a needed column.
   void read(const std::vector<std::string>& lines, const std::function<void(std::size_t, Line)>& take);
 
   const TimedSample& sample() const { return sample_; }
   const std::string& reason() const { return reason_; }
-  /// Which of the last sample's numbers are too large for a filter, and what becomes of them.
+  /// Remarks on numbers of the last sample that are too large for a filter.
   const std::vector<std::string>& remarks() const { return remarks_; }
-  /// Sets the input that acts where the next sample lacks one: that of the sample before the first line.
+  /// Sets the held input, for a next sample that lacks one: that of the sample before the first line.
   void remember(const Eigen::VectorXd& input);
   LineTable& table() { return table_; }
 
@@ -47,7 +47,7 @@ class SampleReader {
   void read_rows(const Rows& rows, const Take& take);
   Line accept(const Table& table, std::size_t row);
   Line malformed(std::string reason);
-  /// Makes a number that is too large for a filter a missing one, with a remark.
+  /// Makes a number that is too large for a filter missing, with a remark.
   void leave_out(double& value, const std::string& name, const char* instead);
 };
 

@@ -14,8 +14,8 @@
 
 namespace modebank::app {
 
-/// Messages of a live filter beside its estimates. Never waits and never fails: what standard error does not take is
-/// dropped, and counted for the next message that it takes.
+/// Messages of a live filter beside its estimates. Never waits and never fails: messages that standard error does not
+/// take are dropped, and their number is part of the next one.
 class LiveMessages {
  public:
   void say(std::string_view text) {
@@ -23,7 +23,7 @@ class LiveMessages {
       dropped_ = 0;
     if (dropped_ > 0 || !say_now(fmt::format("modebank: {}\n", printable(text)))) ++dropped_;
   }
-  /// Says the first message of its kind: those that differ in numbers and quoted words alone count as one.
+  /// Prints the first message of its kind. Messages that differ only in numbers and quoted words are of one kind.
   void say_once(const std::string& place, const std::string& text) {
     Repeats& repeats = repeats_[kind_of(text)];
     if (repeats.count++ == 0) {
@@ -32,11 +32,11 @@ class LiveMessages {
     }
     repeats.last = place;
   }
-  /// Says what was found out about the stream; what was said before is not said again, nor counted.
+  /// Prints remarks on the stream. Repeated remarks are neither printed nor counted.
   void say_note(const std::string& place, const std::string& text) {
     if (notes_.insert(text).second) say(fmt::format("{}: {}", place, text));
   }
-  /// How often each message of say_once was repeated.
+  /// Prints how often each message of say_once was repeated.
   void say_repeats() {
     for (const auto& [kind, repeats] : repeats_)
       if (repeats.count > 1)
@@ -48,7 +48,7 @@ class LiveMessages {
  private:
   struct Repeats {
     std::size_t count = 0;
-    std::string first, last;  ///< places
+    std::string first, last;  ///< places of the first and last one
   };
   std::size_t dropped_ = 0;
   std::map<std::string, Repeats> repeats_;

@@ -11,11 +11,11 @@
 
 namespace modebank::app {
 
-/// The form of lines, and their fields beside the estimate.
+/// Format of lines, and the fields beside the estimate.
 struct EstimateLines {
-  bool json = false;      ///< NDJSON in place of CSV under a header
-  bool run = false;       ///< the run's name
-  bool forecast = false;  ///< what is expected at the time of the newest sample
+  bool json = false;      ///< NDJSON instead of CSV with a header
+  bool run = false;       ///< lines have the run's name
+  bool forecast = false;  ///< lines have a forecast to the time of the newest sample
 };
 
 /// A forecast from an estimate to the time of the newest sample.
@@ -24,14 +24,14 @@ struct Forecast {
   LiveVerdict expected;
 };
 
-/// Writes estimates as lines of CSV or NDJSON. What is not known is empty, or null.
+/// Writes estimates as lines of CSV or NDJSON. Unknown values are empty, or null.
 class EstimateWriter {
  public:
   EstimateWriter(std::vector<std::string> states, Eigen::Index modes, const EstimateLines& lines);
 
-  /// Appends the header, which NDJSON has none of.
+  /// Appends the header; NDJSON has none.
   void header(fmt::memory_buffer& out) const;
-  /// `forecast`: where lines have one.
+  /// `forecast`: null if lines have none.
   void line(const std::string& run, double time_s, const FilterEstimate& estimate, const LiveVerdict& verdict,
             const ValidityFlags& flags, const Forecast* forecast, fmt::memory_buffer& out) const;
 

@@ -6,27 +6,27 @@
 
 namespace modebank::app {
 
-/// Says at a stated period how a live filter fares, whether samples come or not. Its clock is the caller's: seconds
-/// from any moment, which only go forward.
+/// Makes a status line of a live filter at a fixed period, whether samples come or not. The caller passes the time:
+/// seconds from any origin, never decreasing.
 class Watchdog {
  public:
-  /// `period_s`: 0: never says anything.
+  /// `period_s`: 0: no lines.
   Watchdog(double period_s, double now_s) : period_s_(period_s), told_s_(now_s) {}
 
   bool on() const { return period_s_ > 0.0; }
-  /// A line came in; a sample was taken, its stamp and the mode probabilities after it; its estimate left so long after
-  /// it had arrived.
+  /// Events: a line was read; a sample was used, with its stamp and the mode probabilities after it; its estimate was
+  /// written so long after its arrival.
   void heard() { ++lines_; }
   void took(double stamp_s, const Eigen::VectorXd& mode_probability);
   void answered(double latency_s);
-  /// Until the next line is due; infinite when it never is.
+  /// Time until the next status line; infinite if there is none.
   double remaining_s(double now_s) const;
-  /// The line that is due, without its time; empty when none is.
+  /// The status line that is due, without its time; empty if none is.
   std::string due(double now_s);
 
  private:
   double period_s_, told_s_;
-  std::size_t lines_ = 0, samples_ = 0, all_samples_ = 0;  ///< since the last line was said, but for the last
+  std::size_t lines_ = 0, samples_ = 0, all_samples_ = 0;  ///< since the last status line, except all_samples_
   double stamp_s_ = 0.0, slowest_s_ = 0.0;
   Eigen::VectorXd mode_probability_;
 

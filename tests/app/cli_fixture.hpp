@@ -11,20 +11,20 @@
 
 namespace modebank::test {
 
-/// A folder with two small runs in one-file layout and a configuration for them; every test changes what it is about.
+/// A folder with two small runs in one-file layout and their configuration; every test changes what it tests.
 class CliTest : public ::testing::Test {
  protected:
   CliTest();
 
   ProgramResult modebank(std::vector<std::string> arguments) const;
-  /// `modebank run` on the configuration, with further options.
+  /// Runs `modebank run` on the configuration, with further options.
   ProgramResult run(std::vector<std::string> options = {}) const;
 
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const std::string& content) const { write_file(file(name), content); }
   std::string archive() const { return file("out.h5").string(); }
   std::string config() const { return file("test.ini").string(); }
-  /// Everything in the folder that the fixture did not put there.
+  /// Everything in the folder that is not from the fixture.
   std::vector<std::string> left_behind() const;
 
   static std::string csv_run(int samples, unsigned seed);

@@ -24,12 +24,12 @@ void put(KeyEdit edit, std::vector<KeyEdit>& edits) {
   for (const std::string& value : edit.values)
     if (value.find('#') != std::string::npos)
       throw ConfigurationError(
-          fmt::format("-o: {} = '{}' holds a #, which starts a comment in configuration files", edit.key, value));
+          fmt::format("-o: {} = '{}' contains a #, which starts a comment in configuration files", edit.key, value));
   std::erase_if(edits, [&](const KeyEdit& earlier) { return earlier.key == edit.key; });
   edits.push_back(std::move(edit));
 }
 
-/// Where relative data paths start: as here, also if the new file stands in another folder.
+/// Keeps the folder that relative data paths start from, even if the new file is in another folder.
 void keep_root(const Config& config, const std::filesystem::path& output, std::vector<KeyEdit>& edits,
                const std::filesystem::path& file, const std::string& text) {
   const auto folder_of = [](const std::filesystem::path& path) {

@@ -22,19 +22,19 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double least_resolved = 0.25;  // sample periods: a shorter time constant is none
+constexpr double least_resolved = 0.25;  // in sample periods; shorter time constants cannot be resolved
 
-/// All that is known of the data while the report is made.
+/// Data that the parts of the report share.
 struct Material {
   std::vector<RunStreams> recorded;
   std::vector<RunPair> ordered;
-  std::vector<Trajectory> parts;  // joined, split at gaps; all of them, whatever the role
+  std::vector<Trajectory> parts;  // joined runs of all roles, split at gaps
   LinearStructure structure;
   VectorXd still_level;                                      // per input
-  std::vector<std::vector<bool>> states_rest, inputs_still;  // per run, of its samples
+  std::vector<std::vector<bool>> states_rest, inputs_still;  // per run and sample
 };
 
-/// The runs as `run` would join them if it accepted all that can be mended.
+/// Joins the runs as `run` would after all faults that can be corrected are corrected.
 void join_parts(const CheckOptions& options, Material& material, DataCheck& check) {
   DataOptions lenient = options.data;
   lenient.missing = Missing::gap;
@@ -47,7 +47,7 @@ void join_parts(const CheckOptions& options, Material& material, DataCheck& chec
     ordered[i].inputs.stream = material.ordered[i].inputs;
     ordered[i].truth.clear();
   }
-  std::vector<std::string> notes;  // `run` has them
+  std::vector<std::string> notes;  // `run` repeats these notes
   const LogSampling sampling = choose_sampling(ordered, lenient, nullptr, notes);
   for (std::size_t i = 0; i < ordered.size(); ++i) {
     try {
@@ -73,7 +73,7 @@ std::vector<VectorXd> rows_of(const std::vector<RunPair>& runs, bool of_states, 
 
 double share_beyond(const VectorXd& values, const SaturationLimits& limits) {
   if (values.size() == 0) return 0.0;
-  const auto beyond = (values.array() <= limits.low || values.array() >= limits.high).count();  // false for NaN
+  const auto beyond = (values.array() <= limits.low || values.array() >= limits.high).count();  // NaN compares false
   return static_cast<double>(beyond) / static_cast<double>(values.size());
 }
 
@@ -88,7 +88,7 @@ VectorXd joined(const std::vector<VectorXd>& rows) {
   return all;
 }
 
-/// One channel in every run, and over all of them.
+/// Checks one channel in every run, and over all of them.
 void check_channels(const Material& material, const std::string& name, const std::string& unit, bool is_state,
                     Index row, DataCheck& check) {
   ChannelSummary& summary = check.channels.emplace_back();
@@ -99,7 +99,7 @@ void check_channels(const Material& material, const std::string& name, const std
   summary.values = check_channel(all);
   summary.values.outliers = 0;
   summary.limits = saturation_limits(rows);
-  if (summary.limits.soft && is_state)  // smooth motion turns round slowly: that is no limiter
+  if (summary.limits.soft && is_state)  // smooth motion reverses slowly, which looks like a limit
     summary.limits = {not_a_number, not_a_number, false};
   summary.saturated = share_beyond(all, summary.limits);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -120,7 +120,7 @@ void check_all_channels(const DataOptions& data, const Material& material, DataC
     check_channels(material, data.input[i], unit(data.input_unit, i), false, static_cast<Index>(i), check);
 }
 
-/// Share of repeated samples in motion, over all runs or those of a role.
+/// Share of repeated samples in motion, over all runs or over those of a role.
 double repeats_of(const Material& material, bool is_state, Index row, const std::optional<Role>& role = {}) {
   std::vector<VectorXd> rows;
   std::vector<bool> at_rest;
@@ -170,7 +170,7 @@ void check_lags(const CheckOptions& options, const Material& material, DataCheck
   if (!check.has_lag) return;
   try {
     check.lag = choose_lag(material.ordered, {options.data.lag_range_s, options.data.rate_hz});
-  } catch (const DataError&) {  // nothing to fit: said elsewhere on the page
+  } catch (const DataError&) {  // too few data to fit; find_unusable reports it
     check.has_lag = false;
     return;
   }
@@ -184,8 +184,8 @@ double median_of(std::vector<double> values) {
   return values.empty() ? 0.0 : median(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
 }
 
-/// Largest share of repeated values in motion of a measured input; one that never changes has no rate. Commands are
-/// coarse or switched; measurements take many values.
+/// Largest share of repeated values in motion among measured inputs. Commands are left out: they are coarse or
+/// switched, while measurements have many values. An input that never changes is left out, too.
 double repeated_inputs(const Material& material) {
   double most = 0.0;
   for (Index i = 0; i < material.structure.inputs; ++i) {
@@ -208,7 +208,7 @@ Recording training_of(const Material& material, const DataCheck& check) {
   return training;
 }
 
-/// By the training runs alone: what is held out must not decide how it is looked at.
+/// Uses training runs alone, since held-out runs must not affect the settings.
 void advise(const Material& material, const Recording& training, DataCheck& check) {
   std::vector<double> inputs_hz, states_hz, jitter, time_constants;
   for (const RunReport& run : check.runs) {
@@ -234,12 +234,12 @@ Index longest_training_stretch(const Material& material) {
   return longest;
 }
 
-/// Why identification would fail; empty: it would not.
+/// Reason why identification would fail; empty if it would not.
 std::string find_unusable(const DataCheck& check, const Recording& training) {
   for (const RunReport& run : check.runs)
     if (!run.problem.empty()) return run.problem;
   if (check.longest_stretch < check.window_length)
-    return fmt::format("the longest stretch of the training runs has {} transitions, fewer than one window",
+    return fmt::format("the longest part of the training runs without a gap has {} transitions, fewer than one window",
                        check.longest_stretch);
   try {
     refuse_constant_states(training);
@@ -265,7 +265,7 @@ DataCheck check_data(const CheckOptions& options) {
     report.run = run.run;
     report.role = run.role;
     if (material.ordered.back().states.time_s.size() < 2 || material.ordered.back().inputs.time_s.size() < 2)
-      throw DataError(fmt::format("run \"{}\" has fewer than two samples with a time of their own", run.run));
+      throw DataError(fmt::format("run \"{}\" has fewer than two samples with different times", run.run));
   }
   join_parts(options, material, check);
   check_all_channels(options.data, material, check);

@@ -10,7 +10,7 @@
 
 namespace modebank {
 
-/// One run as recorded.
+/// One recorded run.
 struct RunReport {
   std::string run;
   Role role = Role::train;
@@ -23,7 +23,7 @@ struct RunReport {
   RunLag lag;
   Index transitions = 0;  ///< joined, without gaps
   DeficientWindows windows;
-  std::string problem;  ///< why it cannot be joined; empty: it can
+  std::string problem;  ///< reason why it cannot be joined; empty if it can
 };
 
 /// A channel over all runs.
@@ -31,12 +31,12 @@ struct ChannelSummary {
   Channel channel;
   bool is_state = false;
   ChannelCheck values;
-  double repeated = 0.0;  ///< share of samples equal to the one before, where the system does not rest
+  double repeated = 0.0;  ///< share of samples equal to the one before, while the system moves
   SaturationLimits limits{0.0, 0.0, false};
   double saturated = 0.0;
 };
 
-/// What the training runs, joined as they were, speak for.
+/// Settings that suit the training runs, which are joined as configured.
 struct Advice {
   RateFacts rate_facts;
   RateAdvice rate;
@@ -51,20 +51,20 @@ struct DataCheck {
   LagReport lag;
   bool has_lag = false;
   Advice advice;
-  Index longest_stretch = 0;            ///< transitions without a gap in the training runs
-  std::vector<std::string> dominating;  ///< lines on values that least squares would follow alone
-  std::string open_effects;             ///< a line on effects that the training runs leave open; empty: none
-  std::string unusable;                 ///< why nothing can be identified; empty: something can
+  Index longest_stretch = 0;            ///< longest sequence of transitions without a gap in the training runs
+  std::vector<std::string> dominating;  ///< remarks on values that would dominate least squares
+  std::string open_effects;  ///< a remark on effects that the training runs leave unidentifiable; empty: none
+  std::string unusable;      ///< reason why nothing can be identified; empty if something can
 };
 
-/// What is checked, and the windows that it would be cut into.
+/// The data to check, and the length of their windows.
 struct CheckOptions {
   DataOptions data;
   Index window_length = 0;  ///< transitions
   bool intercept = false;
 };
 
-/// Reads all runs leniently and gathers every number. Throws as read_streams does.
+/// Reads all runs, tolerating faults, and computes the report. Throws as read_streams does.
 DataCheck check_data(const CheckOptions& options);
 
 }  // namespace modebank

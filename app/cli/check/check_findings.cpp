@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_names = 8;
 
-/// "00, 03 and 5 more" of the runs that meet a condition; empty: none does.
+/// "00, 03 and 5 more": runs that meet a condition; empty if none does.
 std::string runs_where(const DataCheck& check, const std::function<bool(const RunReport&)>& condition) {
   std::vector<std::string> names;
   for (const RunReport& run : check.runs)
@@ -58,22 +58,23 @@ void time_findings(const DataCheck& check, const Config& config, std::vector<std
   if (const auto runs =
           runs_where(check, [](const RunReport& r) { return r.inputs.missing_times + r.states.missing_times > 0; });
       !runs.empty())
-    found.push_back(fmt::format("samples without a time in {}: remove these rows, no setting accepts them", runs));
+    found.push_back(
+        fmt::format("samples without a time in {}; remove these rows, since no setting accepts them", runs));
   if (const auto runs = runs_where(check, [](const RunReport& r) { return r.inputs.gaps + r.states.gaps > 0; });
       !runs.empty())
-    found.push_back(fmt::format("gaps of more than 5 periods in {}: they split these runs", runs));
+    found.push_back(fmt::format("gaps of more than 5 periods in {}, which split these runs", runs));
   const auto scatters = [](const RunReport& r) { return r.inputs.jitter > most_step_scatter; };
   if (const auto runs = runs_where(check, scatters); !runs.empty()) {
     double worst = 0.0;
     for (const RunReport& run : check.runs) worst = std::max(worst, run.inputs.jitter);
-    found.push_back(fmt::format(
-        "steps scatter by up to {:.0f} % of their median in {}: a model holds for one step length, and where steps "
-        "differ it finds modes that are none, so that modes are not judged; log at an even rate",
-        percent * worst, runs));
+    found.push_back(
+        fmt::format("steps scatter by up to {:.0f} % of their median in {}, but a model has one step length. Other "
+                    "lengths look like modes, so modes are not judged; log at an even rate",
+                    percent * worst, runs));
   }
 }
 
-/// Excitation of the inputs together, in the run that excites least; empty where a run does not excite at all.
+/// Joint excitation of the inputs in the run with the least; empty if a run has none.
 std::string excitation_words(const DataCheck& check) {
   Index least = check.runs.empty() ? 0 : check.runs.front().excitation;
   for (const RunReport& run : check.runs) least = std::min(least, run.excitation);
@@ -87,20 +88,20 @@ void channel_findings(const DataCheck& check, std::vector<std::string>& found) {
     const ChannelSummary& channel = check.channels[i];
     const std::size_t states = check.runs.empty() ? 0 : check.runs.front().state.size();
     if (channel.saturated > 0.0)
-      found.push_back(fmt::format(
-          "{} {} ({:.1f} % of samples; range {:.4g} to {:.4g}) in {}: a limiter? the model cannot know what it cut off",
-          channel.channel.name,
-          channel.limits.soft ? "crowds towards the end of its range" : "piles up at the end of its range",
-          percent * channel.saturated, channel.values.least, channel.values.largest,
-          runs_where(check, [&](const RunReport& run) {
-            return (channel.is_state ? run.state_saturated[i] : run.input_saturated[i - states]) > 0.0;
-          })));
+      found.push_back(
+          fmt::format("{} {} ({:.1f} % of samples; range {:.4g} to {:.4g}) in {}: possibly a limiter, whose effect the "
+                      "model does not include",
+                      channel.channel.name,
+                      channel.limits.soft ? "crowds towards the end of its range" : "piles up at the end of its range",
+                      percent * channel.saturated, channel.values.least, channel.values.largest,
+                      runs_where(check, [&](const RunReport& run) {
+                        return (channel.is_state ? run.state_saturated[i] : run.input_saturated[i - states]) > 0.0;
+                      })));
     if (channel.values.quantum > 0.0)
-      found.push_back(fmt::format(
-          "{} comes in multiples of {:.6g}{}", channel.channel.name, channel.values.quantum,
-          channel.is_state ? ": noise of a third of that is in every sample; data.quantum = auto takes values for "
-                             "intervals of it where that is coarse against the noise"
-                           : ""));
+      found.push_back(fmt::format("{} comes in multiples of {:.6g}{}", channel.channel.name, channel.values.quantum,
+                                  channel.is_state ? "; the rounding error is a third of that. data.quantum = auto "
+                                                     "treats values as intervals if that is coarse against the noise"
+                                                   : ""));
     if (channel.values.levels == 1)
       found.push_back(fmt::format("{} is constant: {:g} in every sample", channel.channel.name, channel.values.least));
     else if (channel.values.two_level)
@@ -108,7 +109,7 @@ void channel_findings(const DataCheck& check, std::vector<std::string>& found) {
                                   channel.channel.name, channel.values.least, channel.values.largest,
                                   channel.is_state ? "" : excitation_words(check)));
     else if (channel.repeated > 0.3 && (channel.is_state || channel.values.quantum == 0.0))
-      found.push_back(fmt::format("{} repeats {:.0f} % of its samples in motion: its source is slower than the file",
+      found.push_back(fmt::format("{} repeats {:.0f} % of its samples in motion, so its source is slower than the file",
                                   channel.channel.name, percent * channel.repeated));
     if (channel.is_state && channel.values.outliers > 0)
       found.push_back(fmt::format("{} has {} isolated spikes", channel.channel.name, channel.values.outliers));
@@ -148,9 +149,8 @@ void lag_findings(const DataCheck& check, const Config& config, std::vector<std:
     const auto score = std::find_if(check.lag.scores.begin(), check.lag.scores.end(),
                                     [&](const LagScore& s) { return s.correction == check.lag.correction; });
     found.push_back(
-        fmt::format("the inputs act {:+.3f} +- {:.3f} s later than their stamps say: undone, the global model gains "
-                    "{:.3f} +- {:.3f} "
-                    "nats/transition on training runs left out",
+        fmt::format("the inputs act {:+.3f} +- {:.3f} s after their stamps; with this corrected the global model gains "
+                    "{:.3f} +- {:.3f} nats/transition on training runs left out",
                     check.lag.lag.mean, check.lag.lag.standard_error, score->gain, score->gain_standard_error));
   }
   if (const auto runs = runs_where(check,
@@ -160,7 +160,7 @@ void lag_findings(const DataCheck& check, const Config& config, std::vector<std:
                                    });
       !runs.empty())
     found.push_back(
-        fmt::format("the lag wanders by more than 0.5 s inside {}: the stamps cannot be trusted there", runs));
+        fmt::format("the lag changes by more than 0.5 s inside {}, so the stamps are unreliable there", runs));
 }
 
 }  // namespace
@@ -188,19 +188,19 @@ std::string rate_reason(const Advice& advice) {
   switch (advice.rate.reason) {
     case RateReason::too_fast:
       return fmt::format(
-          "{:.3g} Hz resolves the response's time constant of {:.2g} s {:.0f}-fold, which leaves mostly "
-          "noise in one step; ten samples do",
+          "{0:.3g} Hz gives {2:.0f} samples per time constant of the response ({1:.2g} s), so one step is mostly "
+          "noise; ten samples are enough",
           facts.inputs_hz, facts.time_constant_s, facts.inputs_hz * facts.time_constant_s);
     case RateReason::too_slow:
       return fmt::format(
-          "{:.3g} Hz has fewer than two samples in the response's time constant of {:.2g} s, the states "
-          "({:.3g} Hz) show more",
+          "{:.3g} Hz gives fewer than two samples per time constant of the response ({:.2g} s); the states have {:.3g} "
+          "Hz",
           facts.inputs_hz, facts.time_constant_s, facts.states_hz);
     case RateReason::repeats:
-      return fmt::format("the inputs repeat {:.0f} % of their samples, so they really come at about this rate",
+      return fmt::format("the inputs repeat {:.0f} % of their samples, so this is about their own rate",
                          percent * facts.repeated);
     case RateReason::jitter:
-      return fmt::format("intervals vary by {:.0f} % of a period, but one step must mean one time",
+      return fmt::format("intervals vary by {:.0f} % of a period, but a model has one step length",
                          percent * facts.jitter);
     case RateReason::keep:
       break;
@@ -209,18 +209,17 @@ std::string rate_reason(const Advice& advice) {
     return fmt::format(
         "the inputs' own times: {:.3g} Hz is {:.2g} samples per time constant ({:.2g} s), jitter {:.1f} %",
         facts.inputs_hz, facts.inputs_hz * facts.time_constant_s, facts.time_constant_s, percent * facts.jitter);
-  return fmt::format("the inputs' own times ({:.3g} Hz, jitter {:.1f} %); no run shows a time constant to judge it by",
+  return fmt::format("the inputs' own times ({:.3g} Hz, jitter {:.1f} %); no run shows a time constant for comparison",
                      facts.inputs_hz, percent * facts.jitter);
 }
 
 std::string length_reason(const Advice& advice) {
-  if (advice.length.length == 0) return "no run is long enough for any";
+  if (advice.length.length == 0) return "no run is long enough for any length";
   if (advice.length.enough)
     return fmt::format("the shortest with at most a fifth of the windows rank deficient ({:.0f} %)",
                        percent * advice.length.deficient);
   return fmt::format(
-      "{:.0f} % of the windows are rank deficient even so, and longer ones hardly gain: the prior has to "
-      "carry them",
+      "{:.0f} % of the windows are still rank deficient, and longer ones help little, so these depend on the prior",
       percent * advice.length.deficient);
 }
 
@@ -230,9 +229,9 @@ std::string loss_reason(const Advice& advice) {
       "{:.2g} % of one-step errors are beyond 4 robust standard deviations, {:.2g} % beyond 8 (normal "
       "noise: 0.006 %, 0 %); {}",
       percent * tails.beyond_four, percent * tails.beyond_eight,
-      advice.loss.loss == Loss::trivial ? "least squares loses nothing"
-      : advice.loss.loss == Loss::tukey ? "that many gross errors must have no pull at all"
-                                        : "a bounded pull is safe, and costs 5 % at most");
+      advice.loss.loss == Loss::trivial ? "so least squares is fine"
+      : advice.loss.loss == Loss::tukey ? "so many gross errors must have no influence"
+                                        : "a bounded influence is safe, and costs 5 % efficiency at most");
 }
 
 }  // namespace modebank::app

@@ -9,16 +9,16 @@
 
 namespace modebank::app {
 
-/// Why the data cannot be used as configured; empty: they can.
+/// Reason why the data cannot be used as configured; empty if they can.
 std::string unusable_text(const DataCheck& check);
 
-/// What stands out, each with what would accept or mend it.
+/// Findings, each with the key that accepts or corrects it.
 std::vector<std::string> findings_of(const DataCheck& check, const Config& config);
 
 std::string check_text(const DataCheck& check, const std::vector<std::string>& findings);
 nlohmann::json check_json(const DataCheck& check, const std::vector<std::string>& findings);
 
-/// Why the advice is what it is.
+/// Reason for the advice on the rate.
 std::string rate_reason(const Advice& advice);
 std::string length_reason(const Advice& advice);
 std::string loss_reason(const Advice& advice);

@@ -37,7 +37,7 @@ std::string gain_text(const PairedGain& gain) {
 
 std::string runs_text(const Suggestions& s) {
   return s.whole_runs ? fmt::format("{} training runs left out in turn", s.runs)
-                      : fmt::format("stretches of {} training run{} left out in turn", s.runs, s.runs == 1 ? "" : "s");
+                      : fmt::format("parts of {} training run{} left out in turn", s.runs, s.runs == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -55,12 +55,12 @@ std::string reason_text(const Trial& trial) {
                  ? rate_reason(trial.advice)
                  : rate_reason(trial.advice) + "; there " + length_reason(trial.advice);
     case Change::lag:
-      return "the inputs act at other times than their stamps say";
+      return "the inputs act at other times than their stamps";
     case Change::length:
       return length_reason(trial.advice);
     case Change::noise:
-      return fmt::format("at rest ({:.1f} s of the training runs) the state scatters by {:.2g}", trial.rest.duration_s,
-                         std::sqrt(trial.rest.variance));
+      return fmt::format("at rest ({:.1f} s of the training runs) the state has a standard deviation of {:.2g}",
+                         trial.rest.duration_s, std::sqrt(trial.rest.variance));
     case Change::restarts:
       return "more random starts of mixture and bank";
     case Change::loss:
@@ -81,7 +81,7 @@ std::string accepted_text(const Suggestions& s, const Config& config) {
                         reason_text(trial));
   }
   if (accepted > 1) text += fmt::format("  together: {} nats per sample\n", gain_text(s.together));
-  return accepted > 0 ? text : "  nothing: no other setting gains more than one standard error\n";
+  return accepted > 0 ? text : "  nothing, because no other setting gains more than one standard error\n";
 }
 
 json gain_json(const PairedGain& gain) {
@@ -93,7 +93,7 @@ json gain_json(const PairedGain& gain) {
 }  // namespace
 
 KeyValues changed_keys(const Config& config, const Settings& from, const Settings& to) {
-  Config stated = config;  // numbers in place of those that follow from the structure
+  Config stated = config;  // with numbers in place of `auto`
   if (from.window_length != to.window_length) stated.structure.length = LagChoice::number;
   if (from.window_step != to.window_step) stated.structure.step = LagChoice::number;
   const Config before = with(stated, from), after = with(stated, to);
@@ -106,7 +106,8 @@ KeyValues changed_keys(const Config& config, const Settings& from, const Setting
 }
 
 std::string suggestions_text(const Suggestions& s, const Config& config) {
-  if (!s.unscored.empty()) return fmt::format("\nsuggested\n  nothing: nothing could be scored: {}\n", s.unscored);
+  if (!s.unscored.empty())
+    return fmt::format("\nsuggested\n  nothing, because nothing could be scored: {}\n", s.unscored);
   std::string text =
       fmt::format("\nsuggested, by {}, each on top of those before\n{}", runs_text(s), accepted_text(s, config));
   std::vector<std::string> in_vain, unscored;
@@ -117,7 +118,7 @@ std::string suggestions_text(const Suggestions& s, const Config& config) {
     else
       unscored.push_back(fmt::format("{} ({})", keys_text(config, trial), trial.unscored));
   }
-  if (!in_vain.empty()) text += fmt::format("tried in vain: {}\n", fmt::join(in_vain, "; "));
+  if (!in_vain.empty()) text += fmt::format("no improvement from: {}\n", fmt::join(in_vain, "; "));
   if (!unscored.empty()) text += fmt::format("not scored: {}\n", fmt::join(unscored, "; "));
   return text;
 }

@@ -10,21 +10,21 @@
 
 namespace modebank::app {
 
-/// The keys that a change from one set of settings to another sets, with their values.
+/// Keys, with values, that change one set of settings into another.
 KeyValues changed_keys(const Config& config, const Settings& from, const Settings& to);
 
-/// Why a change was tried.
+/// Reason for a trial.
 std::string reason_text(const Trial& trial);
 
-/// Its gain, by which runs, and why it was tried; or why it has no gain.
+/// The trial's gain with its runs and reason; or the reason why it has no gain.
 std::string gain_reason(const Suggestions& suggestions, const Trial& trial);
 
-/// What is suggested, with its gains, and what was tried in vain.
+/// Text on the suggestions with their gains, and on trials without improvement.
 std::string suggestions_text(const Suggestions& suggestions, const Config& config);
 nlohmann::json suggestions_json(const Suggestions& suggestions, const Config& config);
 
-/// The configuration file with what the command line set and what is suggested, to stand as `output`. Throws
-/// ConfigurationError where a path cannot be written into a configuration.
+/// The configuration file with the command line's keys and the suggestions, to be written as `output`. Throws
+/// ConfigurationError for a path that a configuration cannot contain.
 std::string applied_text(const Suggestions& suggestions, const Config& config, const std::filesystem::path& file,
                          const KeyValues& overrides, const std::filesystem::path& output);
 

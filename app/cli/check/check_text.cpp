@@ -108,8 +108,8 @@ std::string check_text(const DataCheck& check, const std::vector<std::string>& f
           fmt::format(
               "  rest: all inputs zero; const: longest constant command in motion; levels, sat: distinct and saturated "
               "values;\n  exc: order of persistent excitation (10: or more); defic: rank-deficient windows of {} "
-              "transitions; lag: dead\n  time of the inputs, + later; best match: delay with the response's time "
-              "constant in it, median over windows\n\n",
+              "transitions; lag: dead\n  time of the inputs, + later; best match: delay that includes the response's "
+              "time constant, median over windows\n\n",
               check.window_length);
   text += channel_table(check) + "\n";
   if (check.has_lag) {
@@ -119,7 +119,7 @@ std::string check_text(const DataCheck& check, const std::vector<std::string>& f
   }
   text += "\nfindings\n";
   for (const std::string& finding : findings) text += "- " + finding + "\n";
-  if (findings.empty()) text += "- nothing stands out\n";
+  if (findings.empty()) text += "- no finding\n";
   return text;
 }
 

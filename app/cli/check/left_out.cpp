@@ -15,13 +15,13 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// More would cost more than they tell: each part is a chain of its own.
+/// More parts cost more than they add, since each is a chain of its own.
 constexpr Index most_parts = 3;
 
-/// Whether periods differ by no more than what rounding of rates makes of them.
+/// Whether periods are equal up to the rounding of rates.
 bool as_long(double a, double b) { return std::abs(a - b) <= 0.02 * b; }
 
-/// The recording as `run` would import it if the part were held out.
+/// The recording as `run` would import it with the part held out.
 ValidationSplit split_of(const DataOptions& data, const LeftOutPlan& plan, std::size_t part) {
   DataOptions options = data;
   options.test = plan.parts[part];
@@ -43,13 +43,13 @@ std::vector<ValidationSplit> splits_of(const DataOptions& data, const LeftOutPla
   return splits;
 }
 
-/// How many samples are as long as `common_s`; 0: no whole number is.
+/// Number of samples that last `common_s`; 0 if it is not a whole number.
 Index samples_ahead(double common_s, double period_s) {
   const double ahead = std::round(common_s / period_s);
   return ahead >= 1.0 && as_long(ahead * period_s, common_s) ? static_cast<Index>(ahead) : 0;
 }
 
-/// Position of the run that a part of it belongs to: import and validation_splits name parts RUN.2 and RUN[40].
+/// Index of the run to which a part belongs. Import and validation_splits name parts RUN.2 and RUN[40].
 std::size_t owner_of(const std::string& part, const std::vector<std::string>& runs) {
   std::size_t owner = runs.size();
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -73,7 +73,7 @@ VectorXd joined(const std::vector<const VectorXd*>& pieces) {
   return all;
 }
 
-/// The parts of one run, in order of time, as one.
+/// Joins the parts of one run, in order of time.
 LeftOutRun in_one(std::vector<LeftOutRun> parts) {
   std::erase_if(parts, [](const LeftOutRun& part) { return part.time_s.size() == 0; });
   std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.time_s(0) < b.time_s(0); });
@@ -99,7 +99,7 @@ LeftOut predict_all(const ChainOptions& options, const LeftOutPlan& plan, double
   return left_out;
 }
 
-/// Position of the time next to `at_s`, which is no further than half a period away; -1: there is none.
+/// Index of the time nearest to `at_s`, at most half a period away; -1: there is none.
 Index nearest(const VectorXd& time_s, double at_s, double period_s) {
   const double* const begin = time_s.data();
   const Index after = std::lower_bound(begin, begin + time_s.size(), at_s) - begin;
@@ -109,7 +109,7 @@ Index nearest(const VectorXd& time_s, double at_s, double period_s) {
   return best >= 0 && std::abs(time_s(best) - at_s) <= half * period_s ? best : -1;
 }
 
-/// Log densities of one run beside each other: at the slower one's samples, the faster one's at the nearest.
+/// Log densities of one run in pairs: one per sample of the slower rate, with the nearest sample of the faster one.
 struct Beside {
   VectorXd slower, faster;
 };

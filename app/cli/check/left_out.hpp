@@ -9,12 +9,12 @@
 #include "filter/judge/score/paired_gain.hpp"
 #include "filter/learn/chain/learn_left_out.hpp"
 
-/// What configurations predict of training runs that were left out, so that two of them can be compared on the same
-/// samples. Runs that are held out take no part.
+/// Predictions of training runs that were left out, by which configurations are compared on the same samples. Held-out
+/// runs are not used.
 namespace modebank {
 
-/// The training runs, and which of them are left out together; without parts too few can be used to leave whole runs
-/// out, and each is cut into stretches (validation_splits).
+/// The training runs, and which of them are left out together. With too few usable runs, parts is empty and each run is
+/// cut into parts (validation_splits).
 struct LeftOutPlan {
   std::vector<std::string> runs;
   std::vector<std::vector<std::string>> parts;
@@ -22,19 +22,19 @@ struct LeftOutPlan {
 LeftOutPlan plan_left_out(const DataCheck& check);
 
 struct LeftOut {
-  std::vector<LeftOutRun> runs;  ///< in the plan's order
+  std::vector<LeftOutRun> runs;  ///< in the order of the plan
   double period_s = 0.0;         ///< median between samples
-  std::string problem;           ///< why nothing was learned; empty: something was
+  std::string problem;           ///< reason why nothing was learned; else empty
 };
 
-/// Learns a bank as `run` does from the other training runs of each part in turn, and predicts those left out. Lags are
-/// estimated anew without them. `common_s`: how long ahead predictions are made in common with configurations of
-/// another rate. The same for any number of threads.
+/// Leaves out each part in turn, learns a bank from the other training runs as `run` does, and predicts the part. Lags
+/// are estimated anew each time. `common_s`: length of the predictions that are compared with configurations of another
+/// rate. The result is the same for any number of threads.
 LeftOut predict_left_out(const ChainOptions& options, const LeftOutPlan& plan, double common_s);
 
-/// What `better` gains over `other`. At the same rate: of predictions one sample ahead, on the samples that both have.
-/// At two rates: of predictions made equally long ahead of the slower one's samples, each beside the nearest of the
-/// faster one. The gain is NaN where fewer than half of the samples have a counterpart.
+/// Gain of `better` over `other`. At equal rates it compares predictions one sample ahead on the samples that both
+/// have. At two rates it compares predictions of equal length: each sample of the slower rate with the nearest of the
+/// faster one. NaN if fewer than half of the samples have a counterpart.
 PairedGain compare_left_out(const LeftOut& better, const LeftOut& other);
 
 }  // namespace modebank

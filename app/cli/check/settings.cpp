@@ -1,4 +1,4 @@
-// The settings that suggestions change, in the options of a chain, and what the data state about them.
+// Settings that suggestions change, as options of a chain, and their values by the data.
 #include <algorithm>
 #include <cmath>
 

@@ -15,7 +15,7 @@
 namespace modebank {
 namespace {
 
-/// By the rule of whatever a model may add: less would not survive on other runs.
+/// The rule for any addition to a model; a smaller gain would not repeat on other runs.
 bool is_taken(const PairedGain& gain) {
   return is_worth_it(PairedLoss{gain.gain, gain.standard_error},
                      Eigen::VectorXd::Constant(1, static_cast<double>(gain.samples)));
@@ -25,7 +25,7 @@ CheckOptions check_options(const ChainOptions& options) {
   return {options.data, options.window.length, options.window.intercept};
 }
 
-/// The way through the trials. Predictions of all that was accepted are kept, those of the present settings first.
+/// The sequence of trials. Predictions of all accepted settings are kept, the present settings first.
 class Search {
  public:
   Search(const ChainOptions& options, const DataCheck& check, const SuggestionScope& scope, const Listener& listener)
@@ -54,18 +54,18 @@ class Search {
 
  private:
   const ChainOptions& options_;
-  DataCheck check_;  ///< of the data as accepted so far
+  DataCheck check_;  ///< check of the data with the accepted settings
   const SuggestionScope& scope_;
   const Listener& listener_;
   LeftOutPlan plan_;
   double common_s_ = 0.0;
-  std::vector<LeftOut> held_;   ///< without random starts
-  std::vector<LeftOut> whole_;  ///< with them; the first as soon as it is needed
+  std::vector<LeftOut> held_;   ///< predictions without random starts
+  std::vector<LeftOut> whole_;  ///< predictions with random starts; the first is computed on demand
   Suggestions found_;
 
   Settings& held() { return found_.suggested; }
 
-  /// Without, the rate is a fact that the configuration states, and no choice.
+  /// Without times the configuration states the rate, so it cannot be changed.
   bool has_times() const { return !options_.data.time.empty(); }
 
   double wanted_hz() const { return check_.advice.rate.rate_hz; }
@@ -73,17 +73,17 @@ class Search {
     return found_.present.rate_hz > 0.0 ? found_.present.rate_hz : check_.advice.rate_facts.inputs_hz;
   }
 
-  /// Of the two rates that may be compared the slower one's period.
+  /// The slower period of the two rates to compare.
   double common_time_s() const {
     return 1.0 / (wanted_hz() > 0.0 ? std::min(wanted_hz(), present_hz()) : present_hz());
   }
 
-  /// Whether refinement has random starts, which take half of the time or more.
+  /// Whether refinement has random starts, which take at least half of the time.
   bool has_random_starts() const {
     return !scope_.one_motion && options_.bank.em.restarts > 0 && chain_inputs(options_).bank.bank.refine == Refine::em;
   }
 
-  /// Settings that few searches change.
+  /// The settings that differ from the present ones, for messages.
   std::string other_words(const Settings& settings) const {
     std::string words;
     if (settings.measurement_variance != found_.present.measurement_variance)
@@ -126,14 +126,14 @@ class Search {
     trial.gain = trial.unscored.empty() ? compare_left_out(said, before) : PairedGain{};
     trial.accepted = trial.unscored.empty() && is_taken(trial.gain);
     if (trial.unscored.empty() && (!std::isfinite(trial.gain.gain) || std::isnan(trial.gain.standard_error)))
-      trial.unscored = "too few predictions of the same samples to compare";
+      trial.unscored = "there are too few predictions of the same samples to compare";
   }
 
   void start_whole() {
     if (whole_.empty()) whole_.push_back(has_random_starts() ? predict(found_.present, true) : held_.front());
   }
 
-  /// What gained without random starts must gain with them: else it made up for an optimum that `run` does not end in.
+  /// A gain without random starts must repeat with them; otherwise it came from an optimum that `run` does not reach.
   void confirm(LeftOut said, Trial& trial) {
     start_whole();
     LeftOut whole = has_random_starts() ? predict(trial.to, true) : said;
@@ -151,7 +151,7 @@ class Search {
     DataCheck then;
     try {
       then = checked(to, to.lag_s);
-    } catch (const std::runtime_error& error) {  // blocks that are too short for windows of that rate
+    } catch (const std::runtime_error& error) {  // the blocks are too short for windows at that rate
       return found_.trials.push_back({Change::rate, held(), to, check_.advice, {}, error.what(), false});
     }
     if (then.advice.length.length > 0) to.window_length = then.advice.length.length;
@@ -168,14 +168,15 @@ class Search {
       return;
     Settings to = held();
     to.lag_auto = true;
-    Trial unscored{Change::lag, held(), to, check_.advice, {}, "fewer than three training runs", false};
-    if (plan_.parts.empty()) return found_.trials.push_back(unscored);  // their own lag would be known
+    Trial unscored{Change::lag, held(), to, check_.advice, {}, "there are fewer than three training runs", false};
+    if (plan_.parts.empty())
+      return found_.trials.push_back(unscored);  // without parts the lag of a run would be estimated on itself
     attempt(Change::lag, to, check_.advice);
     if (found_.trials.back().accepted) check_ = checked(to, check_.lag.lag.mean);
   }
 
   void try_length() {
-    const bool with_rate = held().rate_hz != found_.present.rate_hz;  // chosen together
+    const bool with_rate = held().rate_hz != found_.present.rate_hz;  // the rate is changed together with the length
     Settings to = held();
     to.window_length = check_.advice.length.length;
     if (to.window_length == 0 || to.window_length == held().window_length || with_rate) return;
@@ -188,7 +189,7 @@ class Search {
     if (check_.advice.loss.tails.transitions > 0 && to.loss != held().loss) attempt(Change::loss, to, check_.advice);
   }
 
-  /// The state's scatter at rest in place of an R that is learned. Drift needs states that are measured exactly.
+  /// Tries the state's variance at rest as R. Drift is left out, because it needs states measured exactly.
   void try_noise() {
     const RestNoise rest = rest_noise(check_);
     if (held().measurement_variance || !(rest.variance > 0.0) || options_.bank.em.drift != Drift::none) return;
@@ -197,7 +198,7 @@ class Search {
     attempt(Change::noise, to, check_.advice);
   }
 
-  /// Random starts are what is tried, so it is judged with them at once.
+  /// The trial changes the random starts, so it is judged with them at once.
   void try_restarts() {
     using app::many_restarts;
     if (held().restarts >= many_restarts || !has_random_starts()) return;

@@ -5,7 +5,7 @@
 namespace modebank::test {
 namespace {
 
-/// Each case breaks one thing and says what the user must be told.
+/// Each case has one fault, with the message that the user must get.
 class BadInput : public CliTest {
  protected:
   void expect(const ProgramResult& result, int status, const std::vector<std::string>& message) const {
@@ -114,7 +114,7 @@ TEST_F(BadInput, CommentThatTouchesAValue) {
 TEST_F(BadInput, UnknownCommand) { expect(modebank({"rnu", config()}), 2, {"rnu", "run"}); }
 TEST_F(BadInput, NoCommand) { expect(modebank({}), 2, {"modebank help"}); }
 
-/// Archives that cannot be read.
+/// Unreadable archives.
 class BadArchive : public BadInput {
  protected:
   void expect_refused(const std::string& content, int status, const std::string& message) const {

@@ -1,4 +1,4 @@
-// Wrong clocks and numbers that are none: what is said of them before anything is fitted, and what is right even so.
+// Wrong clocks and values that are not numbers: messages before any fit, and results that are right in spite of them.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ class ClocksAndNumbers : public CliTest {
  protected:
   using Row = std::vector<std::string>;  // time, wz, left, right
 
-  /// Changes the rows of a run's file; `line`: its number in the file, the header's is 1.
+  /// Changes the rows of a run's file; `line`: line number in the file, where the header has 1.
   void change(const std::string& name, const std::function<void(int line, Row& row)>& change_row) const {
     std::istringstream in(csv_run(80, name == "run_00.csv" ? 1 : 2));
     std::string all, text;
@@ -73,7 +73,7 @@ TEST_F(ClocksAndNumbers, Finding_D4_APauseOfADayCostsNoGrid) {
 
 TEST_F(ClocksAndNumbers, Finding_D7_AValueThatNoScoreWouldCountIsRefusedWithItsPlace) {
   for (const char* value : {"1e30", "-1e50", "1e155", "1e300"})
-    for (const char* name : {"run_00.csv", "run_01.csv"}) {  // of training, held out
+    for (const char* name : {"run_00.csv", "run_01.csv"}) {  // training and held-out run
       change("run_00.csv", [](int, Row&) {});
       change(name, [&](int line, Row& row) { row[1] = line == 42 ? value : row[1]; });
       for (const ProgramResult& result : {run(), check()}) {
@@ -87,7 +87,7 @@ TEST_F(ClocksAndNumbers, Finding_D7_AValueThatNoScoreWouldCountIsRefusedWithItsP
   EXPECT_THAT(run().err, HasSubstr("run_00.csv:7: column left: 1e+40"));
 }
 
-/// Nothing that import takes is missing to a filter.
+/// Filters accept every number that import accepts.
 static_assert(largest_value == largest_measurement);
 
 TEST_F(ClocksAndNumbers, Finding_D7_AValueBelowTheLimitIsScored) {
@@ -128,7 +128,7 @@ TEST_F(ClocksAndNumbers, Finding_D9_AZeroInputLeavesTheOthersTheirErrors) {
   EXPECT_GT(variance(0), 0.0);
   EXPECT_TRUE(std::isnan(variance(1)));
   EXPECT_GT(variance(2), 0.0);
-  // What a prior says of it is nowhere told as if it had been found.
+  // An unidentifiable parameter comes from its prior, and texts must not present it as a result.
   for (const std::optional<Bank>& bank :
        {archive.bank, archive.unrefined, archive.baseline, archive.noise_only, archive.one_motion})
     for (const Mode& mode : bank.value().modes) {
@@ -162,7 +162,7 @@ TEST_F(ClocksAndNumbers, Finding_D9_CollinearInputsLeaveTheStateItsErrors) {
   EXPECT_THAT(check().out, Not(HasSubstr("nan")));
 }
 
-/// An input that is the state itself: how fast the state decays is open, and so is every gain.
+/// With an input equal to the state, the decay and every gain are unidentifiable.
 TEST_F(ClocksAndNumbers, Finding_D9_AnOpenStateLeavesNoTimeConstantAndNoGain) {
   change_both([](int, Row& row) { row[3] = row[1]; });
   const ProgramResult result = run();
@@ -176,7 +176,7 @@ TEST_F(ClocksAndNumbers, Finding_D9_AnOpenStateLeavesNoTimeConstantAndNoGain) {
   EXPECT_THAT(check().out, HasSubstr("the effect of the state wz, right, which are zero or sums of multiples"));
 }
 
-/// The rate that would be half of it is none that data.rate_hz takes.
+/// Half of this period would need a rate beyond the range of data.rate_hz.
 TEST_F(ClocksAndNumbers, AFasterRateThanAnyIsNotTried) {
   change_both([](int line, Row& row) { row[0] = std::to_string(line) + "e-8"; });
   const ProgramResult result = check();
@@ -197,10 +197,10 @@ TEST_F(ClocksAndNumbers, Finding_D16_AFewOutliersAndThoseHeldOutAreNamed) {
   });
   change("run_01.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e6" : row[1]; });
   const ProgramResult result = run({"--bank.refine", "none"});
-  EXPECT_THAT(result.err, HasSubstr("run_00.csv:40: run \"00\": wz = -150000 and 2 more hold 100 % of the spread"));
+  EXPECT_THAT(result.err, HasSubstr("run_00.csv:40: run \"00\": wz = -150000 and 2 more hold 100 % of the variance"));
   EXPECT_THAT(result.err,
               HasSubstr("run_01.csv:42: run \"01\": wz = 1e+06 holds 100 % of the spread of wz in the held-out "
-                        "runs: scores and errors are about it"));
+                        "runs: so scores and errors are mostly of it"));
 }
 
 TEST_F(ClocksAndNumbers, AColumnWithoutAValueIsNamed) {
@@ -218,7 +218,7 @@ TEST_F(ClocksAndNumbers, AColumnWithoutAValueIsNamed) {
   }
 }
 
-/// Nothing that was measured drops out of a score without being counted.
+/// Every measured sample without a score is counted.
 TEST_F(ClocksAndNumbers, MeasuredSamplesWithoutAScoreAreCounted) {
   change("run_00.csv", [](int, Row&) {});
   change("run_01.csv", [](int line, Row& row) {
@@ -227,7 +227,7 @@ TEST_F(ClocksAndNumbers, MeasuredSamplesWithoutAScoreAreCounted) {
   const ProgramResult result =
       run({"--data.missing", "predict", "--window.model", "varx", "--window.state_lags", "3", "--bank.refine", "none"});
   ASSERT_EQ(result.status, 0) << result.err;
-  // 80 samples, every third of them missing from the second on: 53, of which three would be the start.
+  // Of 80 samples every third is missing from the second on. Of the other 53, three are at the start.
   EXPECT_THAT(result.err, HasSubstr("scores: 50 of 133 measured samples have no score, most of them in run 01"));
   EXPECT_THAT(modebank({"show", archive()}).out, HasSubstr("measured samples have no score"));
   const ProgramResult gaps = run({"--data.missing", "gap", "--bank.refine", "none"});
@@ -242,7 +242,7 @@ TEST_F(ClocksAndNumbers, Finding_D16_OneOutlierThatOwnsTheGlobalModelIsNamed) {
   const char* said = "run_00.csv:42: run \"00\": wz = 100000 holds 100 % of the spread of wz in the training runs";
   EXPECT_THAT(run().err, HasSubstr(said));
   EXPECT_THAT(check().out, HasSubstr("run_00.csv:42: run \"00\": wz = 100000"));
-  // Held out it owns no model, but scores; and where data.where leaves it out it is none of the data.
+  // Held out, the column does not affect a model, but scores. Where data.where is false it does not belong to the data.
   change("run_00.csv", [](int, Row&) {});
   EXPECT_THAT(run().err, Not(HasSubstr("of the spread of")));
   change("run_01.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e5" : row[1]; });
@@ -263,7 +263,7 @@ TEST_F(ClocksAndNumbers, Finding_D15_NoControlCharacterReachesTheTerminal) {
     EXPECT_THAT(result.err, HasSubstr("w\\x1b[31mRED\\x07"));
     EXPECT_THAT(result.out + result.err, Not(HasSubstr("\x1b")));
   };
-  expect_shown(run());  // among the columns that there are
+  expect_shown(run());  // in the list of existing columns
   expect_shown(run({"--data.state", escape}));
   expect_shown(modebank({"check", config(), "--data.root", file(".").string(), "--data.state", escape}));
   for (const char* name : {"run_00.csv", "run_01.csv"}) change(name, [](int, Row&) {});

@@ -55,7 +55,7 @@ TEST_F(Commands, ResidualTestsAreInTheArchiveAndInTheSummary) {
   EXPECT_NE(shown.out.find("R^2 of the increments"), std::string::npos) << shown.out;
 }
 
-/// The loss is the difference of the summary's scores, also where lags leave samples unscored.
+/// The loss is the difference of the summary's scores, even if lags leave samples unscored.
 TEST_F(Commands, MergingModesSaysWhatItCostsInTheSummarysScores) {
   std::vector<std::string> options{"--window.model", "varx", "--window.state_lags", "3", "--mixture.components", "3"};
   const auto pooled = [&](Role role) {
@@ -87,7 +87,7 @@ TEST_F(Commands, MergingModesSaysWhatItCostsInTheSummarysScores) {
   EXPECT_NE(shown.find(cost), std::string::npos) << cost << '\n' << shown;
 }
 
-/// A gyro that reads 1e15 now and then: every line keeps its columns.
+/// A gyro that occasionally reads 1e15: every line must keep its columns.
 TEST_F(Commands, HugeNumbersStayInTheirColumns) {
   std::string text = csv_run(80, 1);
   for (const double share : {0.3, 0.6}) {
@@ -107,7 +107,7 @@ TEST_F(Commands, HugeNumbersStayInTheirColumns) {
   EXPECT_EQ(result.out.find("00000000000"), std::string::npos) << result.out;
 }
 
-/// A column of zeros and ones is the same as leaving the transitions out; the column named must hold weights.
+/// A column of zeros and ones has the same effect as leaving out transitions. The column must have valid weights.
 TEST_F(Commands, SampleWeightsComeFromAColumn) {
   std::string text = csv_run(80, 1), weighted = "time,wz,left,right,w\n";
   std::istringstream lines(text);
@@ -134,7 +134,7 @@ TEST_F(Commands, AHorizonThatNoRunReachesIsAnError) {
   EXPECT_TRUE(left_behind().empty());
 }
 
-/// y[k+1] = 0.9 y[k] + 0.2 u[k], to all digits.
+/// y[k+1] = 0.9 y[k] + 0.2 u[k], with all digits.
 TEST_F(Commands, DataWithoutNoiseEndInCoefficients) {
   for (const char* name : {"run_00.csv", "run_01.csv"}) {
     std::string text = "time,y,u\n";
@@ -155,7 +155,7 @@ TEST_F(Commands, DataWithoutNoiseEndInCoefficients) {
     EXPECT_NE(screen.find(said), std::string::npos) << said << '\n' << screen;
 }
 
-/// A lag of 1 s and gain 2, discretised exactly between samples 0.05 to 0.35 s apart, came out as four modes.
+/// A lag of 1 s with gain 2, discretised exactly at steps of 0.05 to 0.35 s. An earlier version found four modes.
 TEST_F(Commands, StepsThatScatterEndInOneModelAndItsTimeConstant) {
   std::mt19937_64 generator(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -184,7 +184,7 @@ TEST_F(Commands, StepsThatScatterEndInOneModelAndItsTimeConstant) {
   EXPECT_NEAR(-archived.recording->median_period_s() / std::log1p(archived.bank->theta(0)(0)), 1.0, 0.1);
 }
 
-/// Import refuses values that have no square, so that none comes from a file.
+/// Import refuses values without a square in a double, so this test makes them itself.
 TEST(WindowWarnings, NameWindowsWithoutAFiniteFit) {
   app::WindowCounts counts;
   counts.status[static_cast<std::size_t>(FitStatus::converged)] = 5;
@@ -275,7 +275,7 @@ TEST_F(Commands, HelpOfACommandShowsItsUse) {
   }
 }
 
-/// What a user may copy has to run where he stands.
+/// A command on the screen must run where the user is.
 TEST_F(Commands, NextCommandsNameTheProgramAsItWasCalled) {
   const std::string path = std::getenv("PATH"), program = MODEBANK_PROGRAM;
   const std::string log = file("run_00.csv").string();
@@ -287,7 +287,7 @@ TEST_F(Commands, NextCommandsNameTheProgramAsItWasCalled) {
   EXPECT_NE(by_name.find("next: modebank run "), std::string::npos) << by_name;
 }
 
-/// The one definition of a term, by any of its names; a key by its own.
+/// A term has one definition, found by any of its names; a key has its own.
 TEST_F(Commands, HelpSaysWhatATermOrAKeyMeans) {
   const std::string definition = modebank({"help", "NIS"}).out;
   EXPECT_NE(definition.find("Normalised innovation squared"), std::string::npos) << definition;

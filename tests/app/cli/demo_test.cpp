@@ -52,7 +52,8 @@ TEST_F(Demo, IsTheCommandsThatItNames) {
   words.insert(words.end(), small.begin(), small.end());
   const ProgramResult by_hand = modebank(words);
   ASSERT_EQ(by_hand.status, 0) << by_hand.err;
-  const std::size_t next = by_hand.out.find("next   "), use = by_hand.out.find("use   ");  // next may name the archive
+  const std::size_t next = by_hand.out.find("next   "),
+                    use = by_hand.out.find("use   ");  // the next step may contain the archive's name
   EXPECT_THAT(shown.out, HasSubstr(by_hand.out.substr(0, next)));
   EXPECT_THAT(shown.out, HasSubstr(by_hand.out.substr(use, by_hand.out.find("archive   ") - use)));
 }

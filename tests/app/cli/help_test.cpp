@@ -25,7 +25,7 @@ TEST_F(Help, OfEveryCommandFitsAScreenAndIsTheSameBothWays) {
     ASSERT_EQ(help.status, 0) << command.name << help.err;
     EXPECT_EQ(help.out, modebank({command.name, "--help"}).out);
     const std::vector<std::string> lines = app::lines_of(help.out);
-    EXPECT_LE(lines.size(), 41u) << help.out;  // with the empty text after the last line's end
+    EXPECT_LE(lines.size(), 41u) << help.out;  // including the empty text after the last line end
     for (const std::string& line : lines) EXPECT_LE(app::columns_of(line), 100) << line;
     for (const app::CommandOption& option : command.options)
       EXPECT_NE(help.out.find("--" + option.long_name()), std::string::npos) << option.name;
@@ -46,11 +46,11 @@ TEST_F(Help, OfEveryKeySaysWhenToTouchIt) {
     EXPECT_FALSE(option.when.ends_with(".")) << option.key << ": the full stop is the printer's";
   }
   const std::string help = modebank({"help", "data.split"}).out;
-  EXPECT_NE(help.find("When to touch it: when there is one long run"), std::string::npos) << help;
+  EXPECT_NE(help.find("When to touch it: for a single long run"), std::string::npos) << help;
   EXPECT_NE(help.find("changes the stage data and those that follow"), std::string::npos) << help;
 }
 
-/// An option is declared in the table alone: commands that share its name share the place of its value.
+/// Options are declared in the table alone: commands with the same option set the same member.
 TEST_F(Help, OptionsOfOneNameHaveOneTarget) {
   std::map<std::string, app::CommandOption> known;
   for (const app::Command& command : app::command_table())
@@ -81,7 +81,7 @@ TEST_F(Help, WordsAfterACommandAreCounted) {
   }
 }
 
-/// An option that nothing would read is a mistake of the user's, whatever its value.
+/// An option that a command would not read is an error of the user, for any value.
 TEST_F(Help, OptionsThatACommandDoesNotReadAreRefused) {
   const std::vector<std::vector<std::string>> lines{{"show", archive(), "-o", "x"},
                                                     {"run", config(), "-o", "x"},
@@ -154,7 +154,7 @@ TEST_F(Help, DryRunNamesFilesAndWritesNone) {
   EXPECT_TRUE(left_behind().empty());
 }
 
-/// Stages that come from an archive bring their data along.
+/// Stages from an archive bring their data with them.
 TEST_F(Help, DryRunOnAnArchivesStagesReadsTheArchive) {
   write("out.h5", "is not opened");
   const ProgramResult result = modebank({"cluster", config(), "--archive.input", archive(), "--dry-run"});

@@ -8,7 +8,7 @@
 #include "app/cli/command_table.hpp"
 #include "tests/app/cli_fixture.hpp"
 
-/// What `--json` prints is what docs/reference/json.md says.
+/// The output of `--json` agrees with docs/reference/json.md.
 namespace modebank::test {
 namespace {
 
@@ -16,7 +16,7 @@ using nlohmann::json;
 
 class Json : public CliTest {
  protected:
-  /// The one object on standard output.
+  /// The single object on standard output.
   json object(const std::vector<std::string>& arguments, int status = 0) const {
     std::vector<std::string> all = arguments;
     all.emplace_back("--json");
@@ -54,7 +54,7 @@ void expect_documented(const json& object) {
     }
 }
 
-/// `track` prints an object per sample.
+/// `track` prints one object per sample.
 TEST_F(Json, EveryCommandButScriptsHasIt) {
   const std::set<std::string> without{"completion", "manual"};
   for (const app::Command& command : app::command_table()) {

@@ -1,4 +1,4 @@
-// From one log as users have it (epoch nanoseconds, semicolons, decimal commas, the ground in words) to an archive.
+// From a typical user's log (epoch nanoseconds, semicolons, decimal commas, ground as words) to an archive.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -72,7 +72,7 @@ TEST_F(OwnLog, ModesAreCalledAsTheUserSaysWhereverTheyAreListed) {
 TEST_F(OwnLog, AloneAndWholeProposesASplit) {
   const ProgramResult result = run({"--data.inputs", "log.csv", "--data.time", "stamp"});
   ASSERT_EQ(result.status, 0) << result.err;
-  // 400 samples hold no four blocks that are each four windows and their lag long; the screen wraps its lines.
+  // 400 samples are too few for four blocks of four windows and their lag each. The screen wraps its lines.
   EXPECT_TRUE(std::regex_search(result.out, std::regex("--data.split\\s+'last\\s+30\\s+%'"))) << result.out;
   EXPECT_EQ(proposed_split(399, 26), "last 30 %");
   EXPECT_EQ(proposed_split(420, 26), "blocks 4");

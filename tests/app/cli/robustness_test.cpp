@@ -1,4 +1,4 @@
-// What a user, a colleague's study folder or a file's name can do to the program, each as it was once found.
+// Damage to the program by users, foreign study folders or file names; each case was a real defect.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ using ::testing::Not;
 
 class Robustness : public CliTest {
  protected:
-  /// The folder of a study whose plan has one trial of that key.
+  /// The folder of a study whose plan has one trial with this key.
   fs::path study_of(const std::string& key) const {
     const fs::path folder = file("study");
     fs::create_directories(folder / "trials");
@@ -125,7 +125,7 @@ TEST_F(Robustness, D15ControlCharactersDoNotReachTheTerminal) {
     const ProgramResult chosen = modebank({command, config(), "--data.state", evil});
     EXPECT_EQ(chosen.status, 2) << command;
     EXPECT_THAT(chosen.out + chosen.err, AllOf(HasSubstr("\\x1b[31mRED"), Not(HasSubstr("\x1b")))) << command;
-    const ProgramResult listed = modebank({command, config()});  // the columns that there are
+    const ProgramResult listed = modebank({command, config()});  // existing columns
     EXPECT_EQ(listed.status, 2) << command;
     EXPECT_THAT(listed.out + listed.err, AllOf(HasSubstr("RED"), Not(HasSubstr("\x1b")))) << command;
   }
@@ -139,7 +139,7 @@ TEST_F(Robustness, D15BytesThatAreNoUtf8AreShownAsNumbers) {
                       "e \xe2\x82\xac \xf0\x9f\xa4\x96"),
             "gr\xc3\xb6\xc3\x9f"
             "e \xe2\x82\xac \xf0\x9f\xa4\x96");
-  // Cut off, longer than needed, half of a pair, beyond Unicode.
+  // Cut off, longer than needed, an unpaired surrogate, beyond Unicode.
   EXPECT_EQ(printable("\xe2\x82"), "\\xe2\\x82");
   EXPECT_EQ(printable("\xc0\xaf"), "\\xc0\\xaf");
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");
@@ -149,7 +149,7 @@ TEST_F(Robustness, D15BytesThatAreNoUtf8AreShownAsNumbers) {
   EXPECT_TRUE(name_holds_controls("gr\xf6\n"));
 }
 
-/// attack_05: JSON threw for a byte that is no UTF-8.
+/// attack_05: JSON threw for a byte that is not UTF-8.
 TEST_F(Robustness, D15TracksLinesAreUtf8WhateverTheName) {
   FilterEstimate estimate;
   estimate.state = estimate.mode_probability = Eigen::VectorXd::Ones(1);
@@ -218,14 +218,14 @@ TEST_F(Robustness, P8AnArchiveOfOtherDataIsNotReplaced) {
   EXPECT_NE(load_data_hash(archive()), hash);
   write("out.h5", "a text of mine");
   for (const std::vector<std::string>& options : {std::vector<std::string>(), {"--force"}}) {
-    EXPECT_THAT(go(options).err, HasSubstr("is there and not replaced, for it is not an archive"));
+    EXPECT_THAT(go(options).err, HasSubstr("exists and is not replaced, because it is not an archive"));
     EXPECT_EQ(read_file(archive()), "a text of mine");
   }
   write("out.h5", before.substr(0, before.size() / 2));
   EXPECT_EQ(go({"--force"}).status, 0) << "a damaged archive is one";
 }
 
-/// Each command, over a file that it reads and over one of another form.
+/// Each command with an output that is one of its inputs, and one of another form.
 TEST_F(Robustness, P8NoOutputTakesThePlaceOfWhatIsReadOrOfAnotherForm) {
   ASSERT_EQ(run({"--mixture.components", "1"}).status, 0);
   fs::create_directories(file("pages"));
@@ -297,7 +297,7 @@ TEST_F(Robustness, P8AnOutputIsReplacedByItsLike) {
       {"export", archive(), "--force", "--to", "c", "-o", file("a.c").string()},
       {"export", archive(), "--force", "--to", "ros2", "-o", file("ros2").string()},
       {"export", archive(), "--to", "csv", "--table", "/evaluation/summary", "-o", file("a.csv").string()}};
-  write("predicted.csv", "");  // holds nothing that could be lost
+  write("predicted.csv", "");  // an empty file may be replaced
   for (const std::vector<std::string>& words : commands)
     for (int time = 0; time < 2; ++time) {
       const ProgramResult result = modebank(words);
@@ -346,7 +346,7 @@ TEST_F(Robustness, P8WhatACommandDoesNotReadIsRefused) {
   refuses({"run", config(), "--repair"}, "--repair", "--force");
   refuses({"track", "none.h5", "--dry-run"}, "--dry-run", "--track.*");
   refuses({"report", "none.h5", "--to", "c"}, "--to", "--output");
-  // A section's keys that would change nothing, too.
+  // Also keys of a section that would have no effect.
   refuses({"track", "none.h5", "--data.label", "x"}, "--data.label", "but for --data.truth, --data.weight");
   refuses({"track", "none.h5", "--filter.horizon", "9"}, "--filter.horizon", "--filter.variant");
   refuses({"track", "none.h5", "--job.threads", "1"}, "--job.threads", "--track.*");
@@ -369,7 +369,7 @@ TEST_F(Robustness, P8WhatOneFormOfACommandDoesNotReadIsRefused) {
     EXPECT_EQ(result.status, 2) << why;
     EXPECT_THAT(result.err, HasSubstr(why));
   };
-  refuses({"verify", archive(), "--repair"}, "--repair: verify repairs folders of studies alone");
+  refuses({"verify", archive(), "--repair"}, "--repair works only with folders of studies");
   refuses({"export", archive(), "--to", "c", "--float"}, "--float, which went; instead: export --to c writes double");
   refuses({"export", archive(), "--to", "c", "--table", "/bank"}, "--table belongs to export --to csv");
   refuses({"export", archive(), "--to", "mat", "--wheel_radius_m", "1"},
@@ -403,7 +403,7 @@ TEST_F(Robustness, VerifyNamesAFileOnce) {
   EXPECT_THAT(modebank({"verify", study.string()}).out, Not(HasSubstr(plan + ": " + plan)));
 }
 
-/// What makes a line of a log, of a table or of C read otherwise than it is.
+/// Characters that change how a log, a table or C source is displayed.
 TEST_F(Robustness, D15CharactersThatTurnTheDirectionAreShown) {
   EXPECT_EQ(printable("a\u202eb\u2066c\u2028d\u2029"), "a\\u202eb\\u2066c\\u2028d\\u2029");
   EXPECT_EQ(printable("\u2027\u202f\u2065\u206a \u05d0"), "\u2027\u202f\u2065\u206a \u05d0");

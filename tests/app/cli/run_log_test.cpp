@@ -1,4 +1,4 @@
-// `modebank run LOG...`: from logs with known truth to a page, an archive and the configuration that repeats it.
+// `modebank run LOG...`: from logs with known truth to a page, an archive and the configuration that repeats them.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ using ::testing::Not;
 constexpr double measured_sd = 0.02;
 
 /// Speed of a body that follows its command within two samples, v[k+1] = 0.2 v[k] + 0.8 u[k], measured with noise of
-/// measured_sd. The command is zero in every fourth of its pieces of 40 samples, in which the body rests.
+/// standard deviation measured_sd. In every fourth part of 40 samples the command is zero and the body rests.
 std::string body_log(int samples, unsigned seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -57,7 +57,7 @@ TEST_F(RunLog, EndsInThreeFilesWhoseConfigurationGivesTheSameBits) {
     EXPECT_THAT(result.out, HasSubstr(said));
   EXPECT_THAT(read_file(html()), HasSubstr("<!DOCTYPE html>"));
   const std::string made = read_file(ini());
-  EXPECT_THAT(made, HasSubstr("state lag"));  // the structure that was found, as the reason of window.model
+  EXPECT_THAT(made, HasSubstr("state lag"));  // the structure, as the reason of window.model
   const std::string again = file("again.h5").string();
   ASSERT_EQ(modebank({"run", ini(), "--archive.output", again}).status, 0);
   EXPECT_EQ(all_stages(again), all_stages(h5()));
@@ -65,7 +65,7 @@ TEST_F(RunLog, EndsInThreeFilesWhoseConfigurationGivesTheSameBits) {
 }
 
 TEST_F(RunLog, RefusesFilesThatExistBeforeAnythingIsComputed) {
-  write("log.csv", "time,wz,left\n");  // without rows: it would be refused, too
+  write("log.csv", "time,wz,left\n");  // refused, too, since it has no rows
   write("drive.html", "<!DOCTYPE html>a page");
   write("drive.ini", "[data]\nstate = x\n");
   const ProgramResult result = run_log({file("log.csv").string()});
@@ -103,8 +103,8 @@ TEST_F(RunLog, ALogWithoutDataIsRefusedInOneSentence) {
   }
 }
 
-/// Two instruments, whose clocks differ by half a second: the lag stands in the configuration with its figure, and the
-/// screen states what a robot must do. The states' file has every time once more between those of the inputs.
+/// Two instruments whose clocks differ by half a second. The configuration contains the lag with its gain, and the
+/// screen states what a robot must do. The states' file has twice the rate of the inputs'.
 TEST_F(RunLog, LateInputsOfAnotherInstrumentAreFoundAndNamed) {
   std::mt19937_64 generator(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -124,13 +124,13 @@ TEST_F(RunLog, LateInputsOfAnotherInstrumentAreFoundAndNamed) {
   ASSERT_EQ(result.status, 0) << result.err;
   const Archive archive = read_archive(h5());
   ASSERT_TRUE(archive.lag);
-  EXPECT_NEAR(archive.lag->lag.mean, -0.5, 0.1);  // a period of the inputs
+  EXPECT_NEAR(archive.lag->lag.mean, -0.5, 0.1);  // within a period of the inputs
   EXPECT_THAT(read_file(ini()), ::testing::ContainsRegex("\nlag_s = auto +# inputs act -0\\.[45]"));
   EXPECT_THAT(result.out, HasSubstr("robot     the stamps of left, right are 0."));
 }
 
-/// The variance at rest, tried as R, is measured_sd^2: the training half rests in about 150 samples, whose variance has
-/// a relative standard error of sqrt(2 / 150), 12 %; three of them are allowed.
+/// The variance at rest, tried as R, is measured_sd^2. The training half rests for about 150 samples, whose variance
+/// has a relative standard error of sqrt(2 / 150), 12 %; three of these are allowed.
 TEST_F(RunLog, TheNoiseAtRestIsTriedAndItsGainStated) {
   write("body.csv", body_log(1600, 1));
   const ProgramResult result = run_log({file("body.csv").string(), "--json"});

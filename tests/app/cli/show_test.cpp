@@ -15,7 +15,7 @@
 namespace modebank::test {
 namespace {
 
-/// Sets a variable of the environment for one test.
+/// Sets an environment variable for one test.
 class WithVariable {
  public:
   WithVariable(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
@@ -96,7 +96,7 @@ TEST_F(Show, DrawsModeProbabilitiesOfHeldOutRunsAtTheWidthOfTheTerminal) {
   }
 }
 
-/// At every place the marks of all modes add up to one, as probabilities do.
+/// At every place the marks of all modes sum to one, as probabilities do.
 TEST_F(Show, SparklineIsTheArchivesProbabilities) {
   ASSERT_EQ(run({"--mixture.components", "2", "--bank.refine", "none"}).status, 0);
   Archive archived = read_archive(archive());

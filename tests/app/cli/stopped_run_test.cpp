@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 const std::string stage_hash(64, 'a'), another_hash(64, 'b');
 
-/// A stage that takes longer than is worth a file, whose result is one number.
+/// A stage that takes long enough to be stored; its result is one number.
 struct SlowStage {
   int computed = 0;
   double value = 0.0;
@@ -42,13 +42,13 @@ struct SlowStage {
 
 class StoppedRun : public CliTest {
  protected:
-  /// A process that is stopped by Ctrl-C after one stage; the message that it left. Says how often it computed.
+  /// Stops a process by Ctrl-C after one stage, and returns its message. `computed`: number of stages it computed.
   std::string stopped_after(double result, int& computed) const {
     std::array<int, 2> ends{}, counts{};
     EXPECT_EQ(pipe(ends.data()) | pipe(counts.data()), 0);
     const pid_t child = fork();
     if (child == 0) {
-      signal(SIGINT, SIG_DFL);  // a shell ignores it in what it runs in the background
+      signal(SIGINT, SIG_DFL);  // background processes of a shell ignore it
       dup2(ends[1], STDERR_FILENO);
       app::KeptStages kept(output());
       SlowStage stage;
@@ -57,7 +57,7 @@ class StoppedRun : public CliTest {
       raise(told > 0 ? SIGINT : SIGKILL);
       _exit(0);
     }
-    // Without a message the reads below end instead of waiting for this process itself.
+    // So that the reads below end, even without a message from the child.
     close(ends[1]);
     close(counts[1]);
     int status = 0;
@@ -72,14 +72,13 @@ class StoppedRun : public CliTest {
   fs::path output() const { return file("robot.h5"); }
 };
 
-/// Stages that a process stopped by Ctrl-C has kept are taken by the next, for the same key alone; a run that ended
-/// leaves none.
+/// The next process takes the stages that a stopped one has stored, if keys agree. A completed run removes them.
 TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   int computed = -1;
   EXPECT_NE(stopped_after(3, computed).find("are kept in"), std::string::npos);
   EXPECT_EQ(computed, 1);
   ASSERT_EQ(left_behind(), std::vector<std::string>{".robot.h5.stages"});
-  // Stopped once more before anything else was finished: what the first has kept is still there.
+  // Stopped again before another stage was finished: the stages of the first process are still there.
   EXPECT_NE(stopped_after(5, computed).find("are kept in"), std::string::npos);
   EXPECT_EQ(computed, 0);
   {
@@ -95,12 +94,12 @@ TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   EXPECT_TRUE(left_behind().empty());
 }
 
-/// As nohup has it; and what signals did before they do again.
+/// As under nohup. Afterwards signals have their previous handlers.
 TEST_F(StoppedRun, ASignalThatIsIgnoredStaysIgnored) {
   const auto before = signal(SIGINT, SIG_IGN);
   {
     const app::KeptStages kept(output());
-    EXPECT_EQ(raise(SIGINT), 0);  // or this process ends here
+    EXPECT_EQ(raise(SIGINT), 0);  // otherwise this process would end here
   }
   EXPECT_EQ(signal(SIGINT, before), SIG_IGN);
   const auto at_end = signal(SIGTERM, SIG_DFL);
@@ -108,7 +107,7 @@ TEST_F(StoppedRun, ASignalThatIsIgnoredStaysIgnored) {
   EXPECT_EQ(at_end, SIG_DFL);
 }
 
-/// Millions of windows are fitted in a second; to keep them took seconds more, and a gigabyte.
+/// Millions of windows are fitted in a second, but storing them took seconds and a gigabyte.
 TEST_F(StoppedRun, KeepsWhatTakesLongerThanItsWritingAlone) {
   app::KeptStages kept(output());
   const fs::path folder = output().parent_path() / ".robot.h5.stages";
@@ -122,7 +121,7 @@ TEST_F(StoppedRun, KeepsWhatTakesLongerThanItsWritingAlone) {
   EXPECT_TRUE(fs::exists(folder / stage_file_name(Stage::structure, another_hash)));
 }
 
-/// Beside the output may lie a folder, or a link to one, that somebody sent along.
+/// Beside the output there may be a folder, or a link to one, that came from somebody else.
 TEST_F(StoppedRun, NothingOfOthersIsRemovedOrWrittenThroughALink) {
   fs::create_directory(file("home"));
   const fs::path folder = file(".robot.h5.stages");

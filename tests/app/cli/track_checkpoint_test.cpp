@@ -1,4 +1,4 @@
-// The live filter's checkpoints from outside.
+// The live filter's checkpoints, through the program.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -18,8 +18,8 @@ using ::testing::HasSubstr;
 
 class TrackCheckpoint : public Track {
  protected:
-  /// Feeds samples first .. last - 1 of a run, after the header, and adds the answers. `ending`: a signal, or 0 for the
-  /// end of the input.
+  /// Sends samples first .. last - 1 of a run after the header, and appends the answers. `ending`: a signal, or 0 for
+  /// the end of the input.
   void feed(const std::vector<std::string>& options, std::size_t first, std::size_t last, int ending,
             std::vector<std::string>& answers) const {
     const std::vector<std::string> samples = lines("run_01.csv");
@@ -40,7 +40,7 @@ class TrackCheckpoint : public Track {
 
   std::string checkpoint() const { return file("state.json").string(); }
 
-  /// noise_only, which has several modes, with switches that see state and input.
+  /// Gives noise_only, which has several modes, state-dependent transitions.
   void give_noise_only_a_logit() const {
     Archive stored = read_archive(archive());
     Bank& bank = *stored.noise_only;
@@ -96,7 +96,7 @@ TEST_F(TrackCheckpoint, GoesOnFromACheckpointAsIfItHadNeverStopped) {
   const ProgramResult other =
       modebank({"track", archive(), "--track.resume", checkpoint(), "--track.filter", "baseline"});
   EXPECT_EQ(other.status, 1);
-  EXPECT_THAT(other.err, HasSubstr("is a checkpoint of another bank or of other filter settings"));
+  EXPECT_THAT(other.err, HasSubstr("the checkpoint was made with another bank or other filter settings"));
   write("half.json", "{\"format\": \"modebank checkpoint 2\"");
   EXPECT_EQ(modebank({"track", archive(), "--track.resume", file("half.json").string()}).status, 1);
   EXPECT_EQ(modebank({"track", archive(), "--track.resume", file("none.json").string()}).status, 2);
@@ -112,7 +112,7 @@ TEST_F(TrackCheckpoint, GoesOnWithCoefficientsThatWander) {
   EXPECT_EQ(parts, whole);
 }
 
-/// Killed right after a checkpoint was due: the next one goes on from there, to the last bit.
+/// Killed right after a checkpoint was due: the next process continues with identical bits.
 TEST_F(TrackCheckpoint, GoesOnAfterItWasKilledWhereSwitchesSeeStateAndInput) {
   const std::string option = "--track.filter", filter = "noise_only";
   std::vector<std::string> constant, whole, parts;

@@ -1,5 +1,5 @@
-// The live filter on logs as `run` reads them: stamps, dialects, derived channels, rates and lags. What is expected is
-// what evaluate has of the same run, or what the same numbers give in the plainest form.
+// The live filter on logs in the forms that `run` reads: stamps, dialects, derived channels, rates and lags. Expected
+// values are those of evaluate on the same run, or of the same numbers in the simplest form.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -30,7 +30,7 @@ class TrackLogs : public Track {
         result.push_back({numbers(line)[0], numbers(line)[1], numbers(line)[2], numbers(line)[3]});
     return result;
   }
-  /// Both runs written another way.
+  /// Writes both runs in another form.
   void rewrite(const std::string& header, const std::function<std::string(const Row&)>& line) const {
     for (const char* name : {"run_00.csv", "run_01.csv"}) {
       std::string text = header;
@@ -38,7 +38,7 @@ class TrackLogs : public Track {
       write(name, text);
     }
   }
-  /// Both runs at 51.5 Hz: wz and left move at each row, right is held for five.
+  /// Writes both runs at 51.5 Hz: wz and left change at each row, right is held for five rows.
   void write_faster(const std::function<std::string(double)>& stamp) const {
     for (const char* name : {"run_00.csv", "run_01.csv"}) {
       const std::vector<Row> slow = rows(name);
@@ -67,7 +67,7 @@ class TrackLogs : public Track {
     while (std::getline(text, line)) rows.push_back(numbers(line));
     return rows;
   }
-  /// The estimates of run 01 are those that evaluate has, at its times after `origin_s`.
+  /// The estimates of run 01 equal those of evaluate, at its times after `origin_s`.
   void expect_evaluated(const ProgramResult& result, double origin_s = 0.0, double within = 1e-12) const {
     const Archive stored = read_archive(archive());
     const Trajectory& run = stored.recording->runs[1];
@@ -131,10 +131,10 @@ TEST_F(TrackLogs, ReadsSemicolonsDecimalCommasUnitsAndNoHeader) {
   ASSERT_EQ(run({"--data.time", "c1", "--data.state", "c2", "--data.input", "c3, c4"}).status, 0);
   const ProgramResult result = track("run_01.csv");
   expect_evaluated(result);
-  EXPECT_THAT(result.err, HasSubstr("without a header: columns c1 to c4"));
+  EXPECT_THAT(result.err, HasSubstr("without a header (columns c1 to c4)"));
 }
 
-/// diff and unwrap need the row before, which may be of an earlier batch.
+/// diff and unwrap need the previous row, which may be in an earlier batch.
 TEST_F(TrackLogs, DerivesChannelsRowByRow) {
   double heading = 0.0;
   rewrite("time,heading_deg,left,right\n", [&](const Row& row) {
@@ -157,10 +157,10 @@ TEST_F(TrackLogs, DerivesChannelsRowByRow) {
     program.write(samples[k] + "\n");
     const std::vector<double> v = numbers(program.read_line().value());
     const auto i = static_cast<Index>(k - 1);
-    if (k < 20) continue;  // the first row has no slope live: another start
+    if (k < 20) continue;  // live, the first row has no slope, so the filter starts later
     EXPECT_NEAR(v[2], expected.prediction(0, i), 1e-6) << k;
   }
-  // A stream that has the channel itself is taken at its word.
+  // If the stream has the channel itself, that is used.
   const ProgramResult direct =
       run_program({"/bin/sh", "-c",
                    fmt::format("printf 'time,turn,left,right\\n0,0.5,0,0\\n0.1,0.4,0,0\\n' | '{}' track '{}'",
@@ -177,7 +177,7 @@ TEST_F(TrackLogs, BringsAFasterLogToTheArchivesRate) {
     const ProgramResult result = track("run_01.csv");
     expect_evaluated(result, 0.0, 1e-9);
     EXPECT_EQ(track("", "--data.inputs run_01.csv").out, result.out);
-    // The first half, then a filter that goes on from there.
+    // Sends the first half, then the second half to a filter that continues.
     const std::vector<std::string> samples = lines("run_01.csv");
     std::string first = samples[0] + "\n", second = first;
     for (std::size_t k = 1; k < samples.size(); ++k)
@@ -192,14 +192,14 @@ TEST_F(TrackLogs, BringsAFasterLogToTheArchivesRate) {
   }
 }
 
-/// A double of seconds since 1970 would move each step's ends by up to .1 us.
+/// A double of seconds since 1970 would shift the ends of each step by up to 0.1 us.
 TEST_F(TrackLogs, BringsDatesToTheArchivesRate) {
   write_faster([](double time_s) { return fmt::format("2024-05-01T10:00:{:09.6f}Z", time_s); });
   ASSERT_EQ(run({"--data.rate_hz", "10"}).status, 0);
   expect_evaluated(track("run_01.csv"), day_s + 0.003, 1e-9);  // the first row
 }
 
-/// In the new log every column is held; in the archive's wz and left moved.
+/// In the new log all columns are held; in the archive's log wz and left changed at every row.
 TEST_F(TrackLogs, AveragesWhatWasAveragedForTheArchive) {
   const std::vector<Row> slow = rows("run_01.csv");
   for (const char* name : {"run_00.csv", "run_01.csv"}) {
@@ -234,7 +234,7 @@ TEST_F(TrackLogs, HoldsBackTheStreamThatIsEarly) {
   }
 }
 
-/// The last estimate is 0.5 s old: the forecast is five steps of the filter without a measurement, its input held.
+/// The last estimate is 0.5 s old. The forecast is five filter steps without measurement and with held input.
 TEST_F(TrackLogs, ForecastsToTheNewestSample) {
   ASSERT_EQ(run({"--data.lag_s", "-0.5"}).status, 0);
   const auto plain = table(track("run_01.csv").out), said = table(track("run_01.csv", "--track.forecast true").out);
@@ -244,7 +244,7 @@ TEST_F(TrackLogs, ForecastsToTheNewestSample) {
   for (std::size_t k = 0; k < plain.size(); ++k)
     for (std::size_t i = 0; i < plain[k].size(); ++i)
       EXPECT_TRUE(plain[k][i] == said[k][i] || std::isnan(plain[k][i])) << "the forecast leaves the filter as it was";
-  // The same by hand: the aligned run, its last state and input, then a sample without measurement.
+  // The same computed here: the aligned run, its last state and input, then a sample without measurement.
   const Trajectory run = read_archive(archive()).recording->runs[1];
   std::string text = "time,wz,left,right\n";
   for (Index k = 0; k < run.samples(); ++k)
@@ -267,7 +267,7 @@ TEST_F(TrackLogs, ReadsFilesAsRunDoes) {
   EXPECT_EQ(nlohmann::json::parse(ndjson.out.substr(0, ndjson.out.find('\n'))).at("time"), 0.0);
 }
 
-/// A row every two hours for a week, in one batch of lines and line by line.
+/// A row every two hours for a week, in one batch of lines, and line by line.
 TEST_F(TrackLogs, PassesEveryMidnight) {
   std::string text = "time,wz,left,right\n";
   std::vector<double> times_s;
@@ -313,7 +313,7 @@ TEST_F(TrackLogs, TellsOfALineWithoutItsEnd) {
   EXPECT_THAT(track("cut.json").err, HasSubstr("fields are missing"));
 }
 
-/// A whole number alone may count anything; two show what.
+/// The unit of a single whole number is unknown; two determine it.
 TEST_F(TrackLogs, FindsWhatTimesCountAsTheImportDoes) {
   rewrite("time,wz,left,right\n", [](const Row& row) {
     return fmt::format("{},{},{},{}", std::llround(1000.0 * row.time_s) + 5000, row.wz, row.left, row.right);

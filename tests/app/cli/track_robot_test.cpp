@@ -1,4 +1,4 @@
-// The live filter where its surroundings fail: full disks, logs that nobody reads, kills.
+// The live filter in failing surroundings: full disks, logs without a reader, kills.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// Runs the program in a shell, whose redirections make the surroundings.
+/// Runs the program in a shell, whose redirections set up the failures.
 class TrackRobot : public Track {
  protected:
   ProgramResult shell(const std::string& script) const {
@@ -39,13 +39,13 @@ TEST_F(TrackRobot, Finding_D5_GoesOnWhereStandardErrorIsFullOrClosed) {
 TEST_F(TrackRobot, Finding_D5_NoCommandIsAbortedByItsOwnMessage) {
   for (const char* errors : {"2>/dev/full", "2>&-", "<&- >&- 2>&-"})
     EXPECT_EQ(shell(std::string("$M run nofile.ini ") + errors).status, 2) << errors;
-  // No file gets a standard stream's number, and messages in it.
+  // A file must not get the number of a standard stream, or messages would go into it.
   EXPECT_EQ(shell("$M run test.ini --archive.output closed.h5 2>&-").status, 0);
   EXPECT_EQ(shell("$M verify closed.h5").status, 0);
   EXPECT_EQ(shell("$M show out.h5 >&-").status, 1) << "nobody got the text";
 }
 
-/// A log whose reader has stopped reading: the pipe is full, and a message would wait for ever.
+/// A log whose reader has stopped reading: the pipe is full, and a blocking write would never return.
 TEST_F(TrackRobot, GoesOnWhereNobodyReadsItsMessages) {
   std::ofstream input(file("garbage.csv"));
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -84,7 +84,7 @@ TEST_F(TrackRobot, Finding_D6_GoesOnWhereACheckpointCannotBeWritten) {
   EXPECT_THAT(errors, HasSubstr("is written again"));
 }
 
-/// The last checkpoint cannot be written: that is said by the status, after all estimates.
+/// The last checkpoint cannot be written. All estimates come first, then the status reports it.
 TEST_F(TrackRobot, Finding_D6_EstimatesLeaveBeforeAFailure) {
   std::filesystem::create_directory(file("sub"));
   PipedProgram program(command({"--track.checkpoint", file("sub/state.json").string()}));
@@ -105,16 +105,16 @@ TEST_F(TrackRobot, Finding_D7_TellsOfAMeasurementThatCountsAsMissing) {
   EXPECT_EQ(result.err, "modebank: line 5: wz = 1e+50 is beyond 1e+30, and taken as missing\n");
 }
 
-/// Every kill at another distance from the last checkpoint; inputs are missing here and there. What the processes
-/// wrote, each cut where the next says it goes on, is what one process writes.
-/// The command that still acts is the last that was one.
+/// Each kill is at another distance from the last checkpoint, and some inputs are missing. The output of the processes,
+/// each cut where the next one continues, must equal that of a single process. A missing input repeats the last finite
+/// one.
 TEST_F(TrackRobot, TellsOfAnInputThatIsNoNumberToReckonWith) {
   const char* const header = "time,wz,left,right\\n0,0.1,0.1,0.2\\n0.1,0.2,0.1,0.2\\n";
   const std::string before = header;
   const ProgramResult held = shell("printf '" + before + "0.2,0.2,0.1,0.2\\n' | $M track out.h5");
   const ProgramResult wild = shell("printf '" + before + "0.2,0.2,1e200,0.2\\n' | $M track out.h5");
   EXPECT_EQ(wild.out, held.out);
-  EXPECT_THAT(wild.err, HasSubstr("line 4: left = 1e+200 is beyond 1e+30, and the last known one still acts"));
+  EXPECT_THAT(wild.err, HasSubstr("line 4: left = 1e+200 is beyond 1e+30, and the last known value is used"));
 }
 
 TEST_F(TrackRobot, AStampBeyondAllOthersIsNone) {
@@ -128,7 +128,7 @@ TEST_F(TrackRobot, AStampBeyondAllOthersIsNone) {
 
 TEST_F(TrackRobot, WritesTheSameBitsThroughKillsAsWithoutThem) {
   std::vector<std::string> samples = lines("run_01.csv");
-  for (std::size_t k = 3; k < samples.size(); k += 7)  // the last field, an input, is missing
+  for (std::size_t k = 3; k < samples.size(); k += 7)  // removes the last field, an input
     samples[k].erase(samples[k].rfind(',') + 1);
   const auto feed = [&](PipedProgram& program, std::size_t first, std::size_t last, std::vector<std::string>& out) {
     program.write(samples[0] + "\n");
@@ -156,7 +156,7 @@ TEST_F(TrackRobot, WritesTheSameBitsThroughKillsAsWithoutThem) {
     }
     program.send_signal(SIGKILL);
     program.wait();
-    // Checkpoints are of every fourth sample of a life.
+    // There is a checkpoint after every fourth sample of a process.
     const std::size_t kept = last == samples.size() ? out.size() : out.size() / 4 * 4;
     parts.insert(parts.end(), out.begin(), out.begin() + static_cast<std::ptrdiff_t>(kept));
     next = last == samples.size() ? last : next + kept;

@@ -1,4 +1,4 @@
-// The live filter from outside: a program between two pipes.
+// The live filter as a program between two pipes.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -38,7 +38,7 @@ TEST_F(Track, SaysLineByLineWhatEvaluateSaidOfTheSameRun) {
   };
   for (std::size_t k = 1; k < samples.size(); ++k) {
     program.write(samples[k] + "\n");
-    const auto line = program.read_line();  // each answer before the next sample is sent
+    const auto line = program.read_line();  // waits for each answer before it sends the next sample
     ASSERT_TRUE(line) << "sample " << k;
     const std::vector<double> v = numbers(*line);
     ASSERT_EQ(v.size(), names.size());
@@ -77,7 +77,7 @@ TEST_F(Track, SpeaksNdjson) {
   }
 }
 
-/// filter.variant = kf is the global model, not the first of the bank's modes.
+/// filter.variant = kf is the global model, not the bank's first mode.
 TEST_F(Track, AKalmanFilterIsTheGlobalModel) {
   PipedProgram kf(command({"--filter.variant", "kf"})), baseline(command({"--track.filter", "baseline"}));
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -90,7 +90,7 @@ TEST_F(Track, AKalmanFilterIsTheGlobalModel) {
   }
 }
 
-/// Competitors say live what evaluate has them say, whatever kind of filter they are.
+/// Competitors of every kind give the same estimates live as in evaluate.
 TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
   const Archive stored = read_archive(archive());
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -112,7 +112,7 @@ TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
   EXPECT_EQ(modebank({"track", archive(), "--track.filter", "combined", "--track.checkpoint", "c.json"}).status, 2);
 }
 
-/// All filters together say live what evaluate has scored of them one sample ahead.
+/// Combined filters predict live as evaluate has scored them one sample ahead.
 TEST_F(Track, CombinedFiltersAreThoseThatWereScored) {
   const Archive stored = read_archive(archive());
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -144,7 +144,7 @@ TEST_F(Track, CombinedFiltersAreThoseThatWereScored) {
   EXPECT_EQ(modebank({"predict", archive(), "--samples", "3", "--track.filter", "combined"}).status, 0);
 }
 
-/// Where no training sample was scored nothing tells filters apart: each has the same weight.
+/// Without scored training samples there is no reason to prefer a filter, so weights are equal.
 TEST_F(Track, CombinedFiltersStartEquallyWhereTrainingScoredNothing) {
   Archive unscored = read_archive(archive());
   std::vector<std::string> filters{"combined"};
@@ -155,7 +155,7 @@ TEST_F(Track, CombinedFiltersStartEquallyWhereTrainingScoredNothing) {
   }
   write_archive(archive(), unscored);
   const std::vector<std::string> samples = lines("run_01.csv");
-  std::vector<double> densities;  // of the first sample that is scored
+  std::vector<double> densities;  // of the first scored sample
   for (const std::string& filter : filters) {
     PipedProgram program(command({"--track.filter", filter}));
     program.write(samples[0] + "\n");
@@ -217,14 +217,14 @@ TEST_F(Track, TakesWhatOtherProgramsWrite) {
   };
   const std::vector<double> a = numbers(samples[1]), b = numbers(samples[2]);
   const auto plain = answer({samples[0] + "\n", samples[1] + "\n", samples[2] + "\n"}, 3);
-  // A byte order mark, CR LF, empty lines, columns in another order and more of them, no newline at the end.
+  // Byte order mark, CR LF, empty lines, more columns in another order, no newline at the end.
   const auto row = [](const std::vector<double>& v) { return fmt::format("{},x,{},{},{}", v[3], v[1], v[0], v[2]); };
   EXPECT_EQ(answer({"\xEF\xBB\xBF"
                     "right,note,\"wz\",time,left\r\n",
                     "\r\n", row(a) + "\r\n\n", row(b)},
                    3),
             plain);
-  // Python's NaN and Infinity are nothing measured.
+  // Python's NaN and Infinity count as missing measurements.
   const auto object = [](const std::vector<double>& v, const std::string& wz) {
     return fmt::format("{{\"time\": {}, \"note\": \"NaN\", \"wz\": {}, \"left\": {}, \"right\": {}}}\n", v[0], wz, v[2],
                        v[3]);

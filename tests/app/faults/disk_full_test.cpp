@@ -1,6 +1,6 @@
-// Every command on a disk that runs full: each call by which it puts something into a file fails, and nothing that was
-// there is lost, nothing new is there in part, and the message says which file and why. Here a seeded sample of the
-// calls; with MODEBANK_FAULTS=all (`make faults`) all of them.
+// Every command on a disk that becomes full: each call that writes to a file fails. Existing files must stay, new files
+// must be complete or absent, and the message must name the file and the reason. By default a seeded sample of the
+// calls fails; with MODEBANK_FAULTS=all (`make faults`) each of them.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-/// Files of a folder and below by their relative names, with their content.
+/// Files of a folder and its subfolders: content by relative name.
 using Content = std::map<std::string, std::string>;
 
 std::string bytes_of(const fs::path& path) {
@@ -37,7 +37,7 @@ Content content_of(const fs::path& folder) {
   return content;
 }
 
-/// What failing_call says: how many calls there were, and which failed.
+/// Output of failing_call: the number of calls, and those that failed.
 struct Report {
   std::size_t calls = 0;
   std::vector<std::string> failed;  ///< "write /path"
@@ -52,8 +52,8 @@ Report read_report(const fs::path& path) {
   return report;
 }
 
-/// The names that may be told of a call: of the file, without what makes it a temporary one, and of the folders above
-/// it.
+/// Names of a call's file that a message may use: the file without the parts of a temporary name, and the folders
+/// above.
 std::vector<std::string> names_in(const std::string& failed) {
   if (failed.ends_with("standard output")) return {"standard output"};
   std::vector<std::string> names;
@@ -78,13 +78,13 @@ class DiskFull : public CliTest {
           "runs = 4\nsamples = 80\nrate_hz = 6.5\nstate_rate_hz = 6.5\n");
   }
 
-  /// Makes an archive of the runs, to be reported, tracked or exported.
+  /// Makes an archive of the runs, for report, track and export.
   void make_archive() const { EXPECT_EQ(in("whole", {"run", "test.ini", "--archive.output", "two.h5"}).status, 0); }
 
-  /// The command in a folder of the fixture.
+  /// Runs the command in a folder of the fixture.
   ProgramResult in(const std::string& folder, const std::vector<std::string>& arguments,
                    const std::string& which = "0") const {
-    // Relative names are those of the folder; a shell gives `track` its lines.
+    // Relative names are relative to the folder; a shell sends lines to `track`.
     std::string line = "cd \"$1\" && shift && exec \"$@\"";
     if (arguments.front() == "track") line += " < run_01.csv";
     std::vector<std::string> whole{
@@ -94,7 +94,7 @@ class DiskFull : public CliTest {
     return run_program(whole);
   }
 
-  /// The numbers of the calls that are made to fail: all, or a few.
+  /// Numbers of the calls that will fail: all, or a sample.
   static std::vector<std::size_t> chosen(std::size_t calls, std::size_t few) {
     std::vector<std::size_t> numbers(calls);
     std::iota(numbers.begin(), numbers.end(), std::size_t{1});
@@ -105,7 +105,7 @@ class DiskFull : public CliTest {
     return numbers;
   }
 
-  /// Undisturbed first; then with each chosen call failing alone, and with those from there on.
+  /// Runs the command undisturbed; then with each chosen call failing alone, and with all calls from there on failing.
   void every_call(const std::vector<std::string>& arguments, std::size_t few = 5) {
     fs::copy(file("whole"), file("undisturbed"), fs::copy_options::recursive);
     const ProgramResult fine = in("undisturbed", arguments);
@@ -129,7 +129,7 @@ class DiskFull : public CliTest {
     fs::copy(file("whole"), file("full"), fs::copy_options::recursive);
     const ProgramResult result = in("full", arguments, which);
     const Report report = read_report(file("report"));
-    if (report.failed.empty()) return;  // it took another way this time
+    if (report.failed.empty()) return;  // the program made fewer calls this time
     SCOPED_TRACE("call " + which + ", " + report.failed.front() + "; status " + std::to_string(result.status) + ": " +
                  result.err);
     const Content now = content_of(file("full"));
@@ -150,7 +150,7 @@ class DiskFull : public CliTest {
     EXPECT_TRUE(names_a_file(report, result.err)) << "no file is named";
   }
 
-  /// As an undisturbed command leaves it. Times in it may differ, so that lines are counted.
+  /// Whether a file is as after an undisturbed command. Times in it may differ, so lines are counted.
   bool is_whole(const std::string& name, const std::string& bytes) const {
     if (name.ends_with("log.csv")) return bytes.empty() || bytes.back() == '\n';  // grows by whole lines
     if (name.ends_with(".h5")) return verify_archive(file("full") / name).ok();
@@ -160,8 +160,8 @@ class DiskFull : public CliTest {
     return bytes == expected->second || (lines(bytes) == lines(expected->second) && bytes.back() == '\n');
   }
 
-  /// Success is right where everything is there all the same (a file that was closed after it had been synced, a
-  /// probe), and where a warning says what is missing.
+  /// Success is right if all files are complete anyway (a file closed after its sync, a probe), or if a warning names
+  /// what is missing.
   bool may_pass(const Report& report, const ProgramResult& result, const Content& now) const {
     if (result.err.find("No space left on device") != std::string::npos) return names_a_file(report, result.err);
     return std::all_of(after_.begin(), after_.end(), [&](const auto& entry) {
@@ -169,7 +169,7 @@ class DiskFull : public CliTest {
     });
   }
 
-  /// Of the folder's own, not of what lies above it.
+  /// Whether the message names a file in the folder, not only a folder above it.
   bool names_a_file(const Report& report, const std::string& text) const {
     const std::string above = file("full").string();
     return std::any_of(report.failed.begin(), report.failed.end(), [&](std::string failed) {

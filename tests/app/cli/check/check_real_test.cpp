@@ -1,4 +1,4 @@
-// modebank check finds the facts that the READMEs of the real data state.
+// modebank check finds the facts in the READMEs of the real data.
 #include "tests/app/cli/check/check_fixture.hpp"
 
 namespace modebank::test {
@@ -7,7 +7,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-/// Looked up before the fixture hides the user's data folder from the program.
+/// Read before the fixture hides the user's data folder from the program.
 const std::filesystem::path shared_data = shared_data_dir();
 
 #define NEEDS_SHARED_DATA() MODEBANK_NEEDS_DATA(!shared_data.empty())
@@ -57,7 +57,7 @@ TEST_F(CheckOfRealData, FindsTheFactsOfBorealTc) {
 
 TEST_F(CheckOfRealData, FindsTheLagsOfBorealTc) {
   NEEDS_SHARED_DATA();
-  constexpr double tolerance_s = 0.1;  // README's windows, box and single regressor are its own
+  constexpr double tolerance_s = 0.1;  // README's windows, box and single regressor differ
   const json ice =
       real("inputs = borealtc/ICE/pro_*.csv\nstates = borealtc/ICE/imu_*.csv\nstate = wz\ninput = velL, velR\n");
   const json flooring = real(
@@ -107,7 +107,7 @@ TEST_F(CheckOfRealData, FindsTheFactsOfDriveBuckAndBag) {
   EXPECT_NEAR(bag.at("runs")[0].at("rest_mean")[0].get<double>(), -0.4e-3, 3e-4);
 }
 
-/// The settings that configs/husky_ice.ini states were found by scores such as these.
+/// The settings in configs/husky_ice.ini were found by such scores.
 TEST_F(CheckOfRealData, SuggestsForIceWhatGainsAndNamesWhatDoesNot) {
   NEEDS_SHARED_DATA();
   const json said =

@@ -1,4 +1,4 @@
-// What is compared with what when two configurations predict runs left out.
+// Which predictions of left-out runs are compared, for two configurations.
 #include "app/cli/check/left_out.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Six runs of so many samples from 0 s on, of density `value` + the run's number.
+/// Six runs from 0 s on with density `value` + the run's number.
 LeftOut six_runs(Index samples, double period_s, double one_step, double common_step, double start_s = 0.0) {
   LeftOut left_out;
   left_out.period_s = period_s;
@@ -39,14 +39,14 @@ TEST(CompareLeftOut, OneStepAheadAtTheSameRate) {
 
 TEST(CompareLeftOut, EquallyLongAheadAtTheSlowerOnesSamples) {
   const LeftOut slow = six_runs(40, 0.4, 1.0, 1.0);
-  LeftOut fast = six_runs(160, 0.1, 99.0, 1.25, 0.03);  // its samples are 0.03 s beside the slow one's
+  LeftOut fast = six_runs(160, 0.1, 99.0, 1.25, 0.03);  // its samples are 0.03 s away from those of the slow one
   for (LeftOutRun& run : fast.runs)
     for (Index k = 0; k < 160; ++k)
-      if (k % 4 != 0) run.common_step(k) = -1e9;  // of instants that the slow one has not
+      if (k % 4 != 0) run.common_step(k) = -1e9;  // at times without a sample of the slow one
   EXPECT_NEAR(compare_left_out(fast, slow).gain, 0.25, 1e-12);
   EXPECT_NEAR(compare_left_out(slow, fast).gain, -0.25, 1e-12);
   EXPECT_EQ(compare_left_out(fast, slow).samples, 240);
-  for (LeftOutRun& run : fast.runs) run.common_step.resize(0);  // no whole number of its samples is as long
+  for (LeftOutRun& run : fast.runs) run.common_step.resize(0);  // no whole number of its samples has this length
   EXPECT_TRUE(std::isnan(compare_left_out(fast, slow).gain));
 }
 

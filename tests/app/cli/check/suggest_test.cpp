@@ -1,4 +1,4 @@
-// modebank check's suggestions: scored by training runs left out, written by --apply.
+// Suggestions of modebank check: scored on training runs left out, written by --apply.
 #include <array>
 #include <deque>
 #include <fstream>
@@ -16,8 +16,8 @@ using ::testing::Not;
 
 class Suggest : public Check {
  protected:
-  /// Twelve runs of 160 samples of one motion, every second one trains. `gross`: share of samples that are off by 1;
-  /// `late`: samples from an input's column to its effect.
+  /// Twelve runs of 160 samples of one motion; every second one trains. `gross`: share of samples with an error of 1;
+  /// `late`: samples between an input's column and its effect.
   Suggest() { write_runs(0.0); }
 
   void write_runs(double gross, int late = 0) {
@@ -40,8 +40,8 @@ class Suggest : public Check {
       write("run_" + std::string(run < 10 ? "0" : "") + std::to_string(run) + ".csv", text.str());
     }
   }
-  /// A Kalman filter that knows the noise of runs with gross errors: theirs has mean square 0.05. No theta predicts
-  /// them better than the true one, and its theta is the windows' mean, which the errors bend where the loss lets them.
+  /// A Kalman filter with the known noise of runs with gross errors, whose mean square is 0.05. The true theta predicts
+  /// best. The filter's theta is the windows' mean, which the errors change as far as the loss allows.
   void write_config(const std::string& more) const {
     write("test.ini",
           "[data]\n# the robot's\ninputs = run_*.csv\nstate = wz\ninput = left, right  # wheels\n[mixture]\ncomponents "
@@ -56,7 +56,7 @@ class Suggest : public Check {
   }
 };
 
-/// Rows without times have the rate that the configuration states: no other can be tried.
+/// Without times the configuration states the rate, so other rates are not tried.
 TEST_F(Suggest, WithoutTimesTheRateIsNoChoice) {
   write_config("[data]\ntime =\nrate_hz = 10\n");
   const json said = check_json(config()).at("suggestions");
@@ -91,14 +91,14 @@ TEST_F(Suggest, NothingWhereTheSettingsAreRight) {
   EXPECT_EQ(said.at("suggested"), json::object()) << said.dump(1);
   EXPECT_TRUE(said.at("together").is_null());
   const ProgramResult page = modebank({"check", config()});
-  EXPECT_THAT(page.out, HasSubstr("nothing: no other setting gains"));
+  EXPECT_THAT(page.out, HasSubstr("nothing, because no other setting gains"));
 }
 
 TEST_F(Suggest, HeldOutRunsHaveNoSay) {
   write_runs(0.05);
   write_config("[window]\nloss = trivial\n");
   const json before = check_json(config());
-  for (int run = 1; run < 12; run += 2)  // every held-out run becomes another one
+  for (int run = 1; run < 12; run += 2)  // replaces every held-out run
     write("run_" + std::string(run < 10 ? "0" : "") + std::to_string(run) + ".csv", csv_run(100, 99));
   const json after = check_json(config());
   EXPECT_EQ(before.at("suggestions"), after.at("suggestions"));
@@ -150,7 +150,7 @@ TEST_F(Suggest, UsageErrorsWriteNothing) {
     return result.err;
   };
   const std::string before = content(config());
-  EXPECT_THAT(refusal({"--apply"}), HasSubstr("--apply: name the configuration file"));
+  EXPECT_THAT(refusal({"--apply"}), HasSubstr("--apply needs a file to write"));
   EXPECT_THAT(refusal({"-o", file("x.ini").string()}), HasSubstr("with --apply only"));
   EXPECT_THAT(refusal({"--apply", "-o", config()}), HasSubstr("is read by this command"));
   EXPECT_THAT(refusal({"--apply", "-o", file("run_00.csv").string()}), HasSubstr("is read by this command"));
