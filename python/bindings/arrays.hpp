@@ -10,17 +10,17 @@
 
 #include "modebank/base/matrix.hpp"
 
-/// Between numpy's arrays and ours. Ours hold one sample, window or mode per column, column after column, which in
-/// memory is numpy's row-major (count, ...) array: neither way needs a copy.
+/// Conversion between numpy's arrays and Eigen's. A matrix here has one sample, window or mode per column, in
+/// column-major order. In memory that is numpy's row-major (count, ...) array, so no copy is needed.
 namespace modebank::python {
 
 namespace py = pybind11;
 
-/// An array of doubles as somebody handed it over: seen in place where it is row-major, else a copy.
+/// An array of doubles from Python: used in place if it is row-major, else a copy.
 using Samples = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Shape = std::vector<py::ssize_t>;
 
-/// Numbers that `owner` holds, without a copy, not to be written to; they keep it alive.
+/// A read-only array of numbers that `owner` has, without a copy; it keeps the owner alive.
 template <class T>
 py::array_t<T> view(const T* numbers, Shape shape, py::handle owner) {
   py::array_t<T> array(std::move(shape), numbers, owner);
@@ -28,7 +28,7 @@ py::array_t<T> view(const T* numbers, Shape shape, py::handle owner) {
   return array;
 }
 
-/// One row per column of ours.
+/// One row per column of `matrix`, as a copy.
 template <class Derived>
 py::array_t<typename Derived::Scalar> view(const Eigen::PlainObjectBase<Derived>& values, py::handle owner) {
   if constexpr (Derived::IsVectorAtCompileTime)
@@ -37,7 +37,7 @@ py::array_t<typename Derived::Scalar> view(const Eigen::PlainObjectBase<Derived>
     return view(values.data(), {values.cols(), values.rows()}, owner);
 }
 
-/// An array of its own.
+/// A copy with its own memory.
 template <class T>
 py::array_t<T> copied(const T* numbers, Shape shape) {
   return py::array_t<T>(std::move(shape), numbers);
@@ -45,7 +45,7 @@ py::array_t<T> copied(const T* numbers, Shape shape) {
 inline py::array_t<double> copied(const std::vector<double>& values) {
   return copied(values.data(), {static_cast<py::ssize_t>(values.size())});
 }
-/// Rows stay rows.
+/// The same, with rows as rows.
 inline py::array_t<double> copied(const Matrix& matrix) {
   py::array_t<double> array(Shape{matrix.rows, matrix.cols});
   for (py::ssize_t i = 0; i < matrix.rows; ++i)
@@ -53,12 +53,12 @@ inline py::array_t<double> copied(const Matrix& matrix) {
   return array;
 }
 
-/// What numpy calls (N, n), as our n x N; a vector is (N, 1).
+/// numpy's (N, n) as an n x N matrix; a vector counts as (N, 1).
 inline Eigen::Map<const Eigen::MatrixXd> columns(const Samples& samples) {
   return {samples.data(), samples.ndim() < 2 ? 1 : samples.shape(1), samples.ndim() < 1 ? 1 : samples.shape(0)};
 }
 
-/// Throws std::invalid_argument unless it is (N, n) or (N,).
+/// Throws std::invalid_argument unless the shape is (N, n) or (N,).
 inline void require_samples(const char* name, const Samples& samples) {
   if (samples.ndim() == 1 || samples.ndim() == 2) return;
   throw std::invalid_argument(std::string(name) + " has " + std::to_string(samples.ndim()) +

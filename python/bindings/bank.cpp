@@ -13,7 +13,7 @@ namespace modebank::python {
 
 namespace {
 
-/// One matrix of every mode, (K, rows, cols).
+/// One matrix per mode as an array (K, rows, cols).
 py::array_t<double> stacked(const filter::Bank& bank, const std::function<Matrix(const filter::Mode&)>& part) {
   const filter::BankDescription all = bank.description();
   const Matrix first = part(all.modes.front());
@@ -106,7 +106,7 @@ void bind_bank(py::module_& module) {
           "The bank of an archive, or the competitor `which`; its hash is checked.")
       .def_property_readonly(
           "A", [](const filter::Bank& b) { return stacked(b, [](const filter::Mode& m) { return m.A; }); },
-          "(K, n, n) of the increment: the full form is I + A")
+          "(K, n, n) matrices of the increment; the full form is I + A")
       .def_property_readonly(
           "B", [](const filter::Bank& b) { return stacked(b, [](const filter::Mode& m) { return m.B; }); }, "(K, n, m)")
       .def_property_readonly(

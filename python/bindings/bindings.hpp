@@ -2,7 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
-/// Each part of the module, in a file of its name.
+/// Parts of the module; each is in a file of its name.
 namespace modebank::python {
 
 void bind_archive(pybind11::module_& module);

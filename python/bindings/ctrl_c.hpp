@@ -8,14 +8,14 @@
 
 namespace modebank::python {
 
-/// Lets go of the interpreter's lock, and lets Ctrl-C end what is computed meanwhile: KeyboardInterrupt, or whatever
-/// the signal's handler throws, comes out of the computation.
+/// Releases the interpreter's lock, and lets Ctrl-C end the computation: it throws KeyboardInterrupt, or the exception
+/// of the signal's handler.
 class Unlocked {
  public:
   Unlocked() : hook_([this] { look(); }) {}
 
  private:
-  /// Looking takes the lock: not more often than anyone would notice.
+  /// Takes the lock to check for signals; rarely enough to cost no time.
   void look() {
     using std::chrono::steady_clock;
     constexpr std::chrono::milliseconds pause(50);

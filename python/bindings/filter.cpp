@@ -20,8 +20,8 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Numbers of a sample as Python has them, written into a vector that keeps its size. The usual ways are taken without
-/// making an array: a step is a matter of microseconds.
+/// Copies a sample's numbers from Python into a vector of fixed size. Usual types are read without making an array,
+/// since a step takes only microseconds.
 void take(const char* name, py::handle given, std::vector<double>& numbers) {
   const auto size = static_cast<py::ssize_t>(numbers.size());
   const auto require_size = [&](py::ssize_t found) {
@@ -48,7 +48,7 @@ void take(const char* name, py::handle given, std::vector<double>& numbers) {
   }
 }
 
-/// A bank at work.
+/// A running filter of a bank.
 class Filter {
  public:
   Filter(const filter::Bank& bank, const FilterOptions& options)
@@ -84,12 +84,13 @@ class Filter {
   std::vector<double> input_, measurement_;
 };
 
-/// Of a Bank with the keys' options, or of an archive as its own evaluation stepped, but for what the keys say.
+/// A filter of a Bank with the options in `keys`, or of an archive with the options of its own evaluation; `keys`
+/// override these.
 Filter make_filter(const py::object& bank, const std::string& which, const py::kwargs& keys) {
   if (py::isinstance<filter::Bank>(bank)) return {bank.cast<const filter::Bank&>(), config_of(keys, "filter.").filter};
   const std::string path = path_of(bank);
   const FilterOptions of_bank = app::stored_config(load_configuration(path), key_values(keys, "filter.")).filter;
-  const bool single = which == "bank" && of_bank.variant == FilterVariant::kf;  // the global model, whatever the bank
+  const bool single = which == "bank" && of_bank.variant == FilterVariant::kf;  // the global model, for every bank
   const FilterOptions options = which == "bank" ? of_bank : competitor_filter(which, of_bank);
   return {archive::load_bank(path, single ? "baseline" : which), options};
 }
@@ -105,7 +106,8 @@ struct ForecastArrays {
     double *x = state.mutable_data(), *P = covariance.mutable_data(), *mu = mode_probability.mutable_data();
     for (const filter::Forecast& sample : ahead) {
       x = std::ranges::copy(sample.state, x).out;
-      P = std::ranges::copy(sample.covariance.values, P).out;  // symmetric
+      P = std::ranges::copy(sample.covariance.values, P)
+              .out;  // symmetric, so the order of rows and columns does not matter
       mu = std::ranges::copy(sample.mode_probability, mu).out;
     }
   }
@@ -119,7 +121,7 @@ struct ForecastArrays {
         return view(values.data(), {static_cast<py::ssize_t>(values.size())}, self); \
       },                                                                             \
       text)
-// Covariances are symmetric: by rows and by columns they are the same.
+// Covariances are symmetric, so row-major and column-major order are equal.
 #define MODEBANK_ESTIMATE_MATRIX(name, text)                                 \
   .def_property_readonly(                                                    \
       #name,                                                                 \
@@ -133,34 +135,37 @@ struct ForecastArrays {
 
 void bind_filter(py::module_& module) {
   using filter::Estimate;
-  py::class_<Estimate>(
-      module, "Estimate",
-      "What a filter says about one sample; n states, n_y measurements, K modes. Before the start, and "
-      "where a measurement is missing, numbers that there are none of are NaN.")
-      MODEBANK_ESTIMATE_VECTOR(prediction, "(n,) of the state before the measurement, all modes combined [state unit]")
+  py::class_<Estimate>(module, "Estimate",
+                       "A filter's estimate at one sample; n states, n_y measurements, K modes. Before the start, and "
+                       "where a measurement is missing, numbers that there are none of are NaN.")
+      MODEBANK_ESTIMATE_VECTOR(prediction,
+                               "(n,) predicted state before the measurement, all modes combined [state unit]")
           MODEBANK_ESTIMATE_VECTOR(innovation, "(n_y,) measurement minus prediction [state unit]")
-              MODEBANK_ESTIMATE_MATRIX(innovation_covariance, "(n_y, n_y) of the combined prediction [state unit^2]")
-                  MODEBANK_ESTIMATE_VECTOR(state, "(n,) after the measurement [state unit]") MODEBANK_ESTIMATE_MATRIX(
-                      covariance, "(n, n) after the measurement [state unit^2]")
-                      MODEBANK_ESTIMATE_VECTOR(pit, "(n_y,) probability integral transform of the measurement, 0 to 1")
-                          MODEBANK_ESTIMATE_VECTOR(mode_probability_predicted, "(K,) before the measurement")
-                              MODEBANK_ESTIMATE_VECTOR(mode_probability, "(K,) after the measurement")
-                                  .def_readonly("nis", &Estimate::nis,
-                                                "normalised innovation squared of the signals that are there")
-                                  .def_readonly("log_density", &Estimate::log_density,
-                                                "of the measurement as predicted [nats]")
-                                  .def_readonly("spread_share", &Estimate::spread_share,
-                                                "of the modes' differences in the innovation covariance's trace")
-                                  .def_readonly("steps", &Estimate::steps,
-                                                "model steps since the sample before; 0: (re)started here");
+              MODEBANK_ESTIMATE_MATRIX(innovation_covariance,
+                                       "(n_y, n_y) covariance of the combined prediction [state unit^2]")
+                  MODEBANK_ESTIMATE_VECTOR(state, "(n,) estimated state after the measurement [state unit]")
+                      MODEBANK_ESTIMATE_MATRIX(covariance, "(n, n) covariance after the measurement [state unit^2]")
+                          MODEBANK_ESTIMATE_VECTOR(pit,
+                                                   "(n_y,) probability integral transform of the measurement, 0 to 1")
+                              MODEBANK_ESTIMATE_VECTOR(mode_probability_predicted, "(K,) before the measurement")
+                                  MODEBANK_ESTIMATE_VECTOR(mode_probability, "(K,) after the measurement")
+                                      .def_readonly("nis", &Estimate::nis,
+                                                    "normalised innovation squared of the signals that are there")
+                                      .def_readonly("log_density", &Estimate::log_density,
+                                                    "of the measurement as predicted [nats]")
+                                      .def_readonly("spread_share", &Estimate::spread_share,
+                                                    "of the modes' differences in the innovation covariance's trace")
+                                      .def_readonly("steps", &Estimate::steps,
+                                                    "model steps since the sample before; 0: (re)started here");
   py::class_<ForecastArrays>(
       module, "Forecast", "Predictions of the samples ahead, all modes combined; NaN before the start of the filter.")
       .def_readonly("state", &ForecastArrays::state, "(steps, n) [state unit]")
       .def_readonly("covariance", &ForecastArrays::covariance, "(steps, n, n) [state unit^2]")
       .def_readonly("mode_probability", &ForecastArrays::mode_probability, "(steps, K)");
-  py::class_<Filter>(module, "Filter",
-                     "A bank at work, sample by sample; one object per stream. Filter(archive) steps as the archive's "
-                     "evaluation did, Filter(bank) by the defaults.")
+  py::class_<Filter>(
+      module, "Filter",
+      "A running filter of a bank, sample by sample; one object per stream. Filter(archive) steps as the archive's "
+      "evaluation did, Filter(bank) by the defaults.")
       .def(py::init(&make_filter), py::arg("bank"), py::kw_only(), py::arg("which") = "bank",
            "bank: an Archive, its path, or a Bank; which: the archive's bank, or a competitor's name (baseline, "
            "noise_only, one_motion, nonlinear). Options are the keys of the [filter] section, as noise='adaptive'.")
@@ -177,11 +182,11 @@ void bind_filter(py::module_& module) {
           "The next `steps` samples without measurements; the filter stays as it is. u (samples, inputs): row i is the "
           "input planned for the sample i + 1 ahead, as step will be given it; steps minus the bank's input delay "
           "(usually 1) of them are enough, None: none. Returns a Forecast.")
-      .def("snapshot", &Filter::snapshot, "All that the filter remembers, as an array to keep or to write.")
+      .def("snapshot", &Filter::snapshot, "The filter's state as an array, to store it.")
       .def("restore", &Filter::restore, py::arg("snapshot"),
-           "Goes on from a snapshot of a filter of the same bank and options; later steps are the same to the bit.")
+           "Continues from a snapshot of a filter of the same bank and options, with bit-identical steps.")
       .def_property_readonly("estimate", &Filter::estimate, "what the last step said")
-      .def("restart", &Filter::restart, "Forgets everything; the next whole measurement is a start.")
+      .def("restart", &Filter::restart, "Resets the filter; it starts anew at the next complete measurement.")
       .def_property_readonly("started", &Filter::started, "whether it has had a start");
 }
 

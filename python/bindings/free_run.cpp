@@ -37,7 +37,7 @@ FreeRun predict(const Bank& bank, const app::Config& config, const Samples& time
   return std::move(free_runs(bank, {run}, config.filter, how).front());
 }
 
-/// Of a Bank with the keys' options, or of an archive with its own, but for what the keys say.
+/// A free run of a Bank with the options in `keys`, or of an archive with its own options; `keys` override these.
 FreeRun simulate(const py::object& bank, const Samples& time_s, const Samples& states, const Samples& inputs,
                  const py::dict& keys) {
   if (py::isinstance<filter::Bank>(bank))
@@ -57,13 +57,14 @@ void bind_free_run(py::module_& module) {
   py::class_<FreeRun>(
       module, "FreeRun",
       "Predictions of a run from its first samples and the inputs alone, one row per sample; NaN (mode: "
-      "-1) where nothing was predicted.") MODEBANK_FREE_RUN_ARRAY("mean", mean, "(N, n_y) [state unit]")
-      MODEBANK_FREE_RUN_ARRAY("sd", deviation, "(N, n_y) standard deviation of the measurement [state unit]")
-          MODEBANK_FREE_RUN_ARRAY("lower", lower, "(N, n_y) of the central 95 % band [state unit]")
-              MODEBANK_FREE_RUN_ARRAY("upper", upper, "(N, n_y) of the central 95 % band [state unit]")
-                  MODEBANK_FREE_RUN_ARRAY("log_density", log_density,
-                                          "(N,) of the measurements [nats]; NaN where there is none")
-                      MODEBANK_FREE_RUN_ARRAY("mode", mode, "(N,) most probable mode");
+      "-1) where nothing was predicted.")
+      MODEBANK_FREE_RUN_ARRAY("mean", mean, "(N, n_y) mean of the measurement [state unit]")
+          MODEBANK_FREE_RUN_ARRAY("sd", deviation, "(N, n_y) standard deviation of the measurement [state unit]")
+              MODEBANK_FREE_RUN_ARRAY("lower", lower, "(N, n_y) lower end of the central 95 % band [state unit]")
+                  MODEBANK_FREE_RUN_ARRAY("upper", upper, "(N, n_y) upper end of the central 95 % band [state unit]")
+                      MODEBANK_FREE_RUN_ARRAY("log_density", log_density,
+                                              "(N,) log density of the measurements [nats]; NaN without a measurement")
+                          MODEBANK_FREE_RUN_ARRAY("mode", mode, "(N,) most probable mode");
   module.def("simulate", &simulate, py::arg("bank"), py::arg("times"), py::arg("states"), py::arg("inputs"),
              py::arg("keys"));
 }

@@ -18,7 +18,7 @@ py::array_t<double> covariances(const GaussianMixture& mixture) {
   return array;
 }
 
-/// (N, F) points as the mixture's functions take them.
+/// Points (N, F) in the form of the mixture's functions.
 Eigen::MatrixXd points_of(const Samples& points) {
   require_samples("points", points);
   return columns(points);

@@ -13,7 +13,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// Hands lines of progress and warnings to Python, and lets Ctrl-C end the run at each of them.
+/// Passes progress and warnings to Python; Ctrl-C can end the run at each of them.
 class Callbacks : public app::Adviser {
  public:
   Callbacks(py::object progress, py::object warning) : progress_(std::move(progress)), warning_(std::move(warning)) {}
@@ -35,7 +35,7 @@ class Callbacks : public app::Adviser {
   py::object progress_, warning_;
 };
 
-/// Returns where the archive is.
+/// Returns the path of the archive.
 std::string run_file(const std::string& file, const py::dict& keys, const py::object& progress,
                      const py::object& warning) {
   const app::Config config = app::load_valid_config(file, key_values(keys, ""));
@@ -48,7 +48,7 @@ std::string run_file(const std::string& file, const py::dict& keys, const py::ob
   return config.archive.output;
 }
 
-/// The same of runs in memory; archive.output must be among the keys.
+/// The same for runs in memory; `keys` must contain archive.output.
 std::string run_tables(const py::dict& tables, const py::dict& keys, const py::object& progress,
                        const py::object& warning) {
   app::Config config = config_of(keys, "");

@@ -40,7 +40,8 @@ py::object array_of(FileColumn&& column) {
   return copied(stamps.data(), {std::ssize(stamps)}).attr("view")("datetime64[ns]");
 }
 
-/// {table: ({column: values}, {column: unit})} of any readable log; of `chosen` tables and columns alone, unless empty.
+/// {table: ({column: values}, {column: unit})} of any readable log; only the tables and columns in `chosen`, unless it
+/// is empty.
 py::dict read_log(const std::string& path, const std::vector<std::string>& chosen, const py::dict& keys) {
   const app::Config config = config_of(keys, "data.");
   std::vector<TableInfo> tables;

@@ -6,9 +6,9 @@
 
 namespace modebank::python {
 
-/// The tables of {run: (inputs, states)} or {run: (inputs,)}, each {column: values} as numpy arrays of doubles or
-/// 64-bit integers, lists of texts, or times as datetime64[ns]. Their numbers stay where they are: `tables` must
-/// outlive the result.
+/// Tables of {run: (inputs, states)} or {run: (inputs,)}. Each is {column: values} with numpy arrays of doubles or
+/// 64-bit integers, lists of texts, or times as datetime64[ns]. Numbers are not copied, so `tables` must outlive the
+/// result.
 MemoryTables memory_tables(const pybind11::dict& tables);
 
 }  // namespace modebank::python

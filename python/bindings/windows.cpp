@@ -16,7 +16,7 @@ namespace modebank::python {
 
 namespace {
 
-/// Windows' fits with what tells whose they are.
+/// Fits of windows, with the run and place of each.
 struct Windows {
   WindowFits fits;
   std::vector<std::string> labels;
@@ -32,7 +32,7 @@ std::vector<Channel> channels(const std::vector<std::string>& names, Index count
   return result;
 }
 
-/// A run, with `in_place` where it is.
+/// A run; the arrays are not copied if `in_place`.
 Trajectory run_of(std::size_t number, const Samples& states, const Samples& inputs, double dt_s, bool in_place) {
   require_samples("states", states);
   require_samples("inputs", inputs);
@@ -57,7 +57,7 @@ Windows identify(const std::vector<Samples>& states, const std::vector<Samples>&
     throw std::invalid_argument("as many states as inputs are needed");
   if (!(dt_s > 0.0) || !std::isfinite(dt_s)) throw std::invalid_argument("dt must be a positive number of seconds");
   app::Config config = config_of(keys, "window.");
-  if (!keys.contains("model")) config.structure.automatic_model = false;  // windows alone: of the lags that are stated
+  if (!keys.contains("model")) config.structure.automatic_model = false;  // Windows alone use the lags in the options.
   if (app::searched_lags_of(config).any())
     throw ConfigurationError("lags and delay = auto, and window.model = auto, are found by run; give numbers here");
   const bool in_place = is_linear(config.window);
@@ -94,7 +94,7 @@ std::vector<std::string> statuses(const Windows& windows) {
   return result;
 }
 
-/// An array of `member`, which must be a member of WindowFits, by its name.
+/// An array for `member`, a member of WindowFits, with the same name.
 #define MODEBANK_WINDOWS_ARRAY(name, member, text) \
   .def_property_readonly(                          \
       name, [](const py::object& self) { return view(self.cast<const Windows&>().member, self); }, text)
@@ -117,9 +117,9 @@ void bind_windows(py::module_& module) {
               "(M, p, p) covariance of theta; NaN where the window does not determine it and there is no prior")
               MODEBANK_WINDOWS_ARRAY("noise_variance", fits.noise_variance,
                                      "(M, n) variance of the one-step residuals [state unit^2]")
-                  MODEBANK_WINDOWS_ARRAY("run", run, "(M,) position of the window's run, from 0")
+                  MODEBANK_WINDOWS_ARRAY("run", run, "(M,) index of the window's run, from 0")
                       MODEBANK_WINDOWS_ARRAY("start", start, "(M,) first sample of the window") MODEBANK_WINDOWS_ARRAY(
-                          "rank", fits.rank, "(M,) directions of theta that the window's data determine")
+                          "rank", fits.rank, "(M,) number of directions of theta that the window's data determine")
                           MODEBANK_WINDOWS_ARRAY("condition", fits.condition, "(M,) of the scaled regressors")
                               MODEBANK_WINDOWS_ARRAY("information", fits.information,
                                                      "(M, p) 1 - posterior over prior variance; NaN without a prior")

@@ -1,10 +1,10 @@
-"""Identifies motion with changing character from recorded runs: windows, mixtures, filter banks.
+"""Identifies motion that switches between modes from recorded runs: windows, mixtures, filter banks.
 
     import modebank
     archive = modebank.run("robot.ini")     # or {name: DataFrame, ...}: what `modebank run` does
-    print(archive)                          # the answer on one screen
+    print(archive)                          # prints the answer on one screen
     archive.A, archive.summary              # arrays with names, pandas tables
-    f = modebank.Filter(archive)            # the filter at work
+    f = modebank.Filter(archive)            # a running filter
     f.step(t, u, y).prediction
 
 Arrays have one sample, window or mode per row. Nothing is computed in Python.
@@ -34,7 +34,7 @@ __all__ = ["Archive", "Array", "Bank", "ConfigurationError", "DataError", "Estim
 
 
 def _flat(keys):
-    """Keys by their full names: window={"length": 30} is the same as **{"window.length": 30}."""
+    """Keys with their full names: window={"length": 30} becomes {"window.length": 30}."""
     flat = {}
     for key, value in keys.items():
         if isinstance(value, dict):
@@ -50,14 +50,14 @@ def _warn(line, callers=3):
 
 def run(data: Path | Frames, *, state: str | Sequence[str] | None = None, input: str | Sequence[str] | None = None,
         time: str | Sequence[str] | None = None, progress: Callable[[str], Any] | None = None, **keys: Any) -> Archive:
-    """Takes the whole chain over runs and returns its Archive, as `modebank run` does.
+    """Runs the whole chain on runs and returns its Archive, as `modebank run` does.
 
     data: a configuration file, or {name: DataFrame} of one run each, or {name: (inputs, states)} of two frames with
-    times of their own. Such a run is repeated by handing over the frames again: its archive names no files. Of frames, state and input name the columns, and time that of seconds (None: the index).
-    progress: is called with each line of progress. Further keys are those of the configuration, by
-    **{"window.length": 30} or window={"length": 30}; archive.output says where the archive is kept (of frames it is
-    temporary otherwise). Warnings are Python's. The interpreter lock is released meanwhile; Ctrl-C ends it at the next
-    line of progress."""
+    times of their own. To repeat such a run, pass the frames again, since its archive names no files. state and
+    input: names of a frame's columns; time: its column of seconds (None: the index).
+    progress: called with each line of progress. Further keys are those of the configuration, by **{"window.length":
+    30} or window={"length": 30}; archive.output: path of the archive (for frames it is temporary without this key).
+    Warnings are Python warnings. Releases the interpreter lock; Ctrl-C ends it at the next line of progress."""
     keys = _flat(keys)
     if isinstance(data, dict):
         return _run_frames(data, state, input, time, progress, keys)
@@ -68,7 +68,7 @@ def run(data: Path | Frames, *, state: str | Sequence[str] | None = None, input:
 
 
 def _columns(name, frame, time):
-    """A frame's columns as arrays, in place where they are contiguous; its index is one, that of times unless one is."""
+    """A frame's columns as arrays, without a copy if they are contiguous. The index becomes a column, named time unless there is one."""
     columns = {str(label): frame[label] for label in frame.columns}
     index = frame.index
     if time is None and "time" not in columns and not isinstance(index, pandas.RangeIndex):
@@ -97,7 +97,7 @@ def _values(name, label, column):
 
 def _run_frames(data, state, input, time, progress, keys):
     def warn(line):
-        _warn(line, 5)  # the line that called run
+        _warn(line, 5)  # stack level of the line that called run
 
     tables = {}
     for name, frames in data.items():
@@ -123,10 +123,10 @@ def _run_frames(data, state, input, time, progress, keys):
 
 
 def read(log: Path, *, columns: Sequence[str] = (), **options: Any) -> dict[str, pandas.DataFrame]:
-    """The tables of any readable log as {name: DataFrame}; the one table of a CSV file is called "".
+    """The tables of any readable log as {name: DataFrame}; the table of a CSV file has the name "".
 
-    columns: names of those that are wanted, or of tables (topics), of which all are; none: everything. options: keys of the configuration's [data] section that say how a file is to be read, as separator="semicolon".
-    Units, where the format says them, are in frame.attrs["units"] by column."""
+    columns: names of columns, or of tables (topics) with all their columns; none: everything. options: keys of the configuration's [data] section on formats, such as separator="semicolon".
+    Units, where the format states them, are in frame.attrs["units"] by column."""
     frames = {}
     for name, (columns, units) in _modebank.read_log(os.fspath(log), list(columns), options).items():
         frames[name] = pandas.DataFrame(columns)
@@ -137,7 +137,7 @@ def read(log: Path, *, columns: Sequence[str] = (), **options: Any) -> dict[str,
 def read_iddata(file: Path, variable: str | None = None) -> dict[str, pandas.DataFrame]:
     """The experiments of an iddata object that MATLAB saved (-v7 or older) as {name: DataFrame}, which run takes.
 
-    variable: the object's name, where the file holds several. Outputs come first, then inputs, after the column "time"
+    variable: the object's name, if the file has several. Outputs come first, then inputs, after the column "time"
     [s]; units are in frame.attrs["units"]. Needs scipy."""
     import scipy.io
 
@@ -170,7 +170,7 @@ def identify(states: np.ndarray | Sequence[np.ndarray], inputs: np.ndarray | Seq
 
     states: (N, n), or (N,) of one state, or a list of such arrays, one per run; inputs likewise (N, m), or None; dt:
     sample period [s]. options: the keys of the configuration's [window] section, as length=30, step=5, prior="none".
-    Row-major arrays of doubles are read where they are, without a copy. Releases the interpreter lock; Ctrl-C ends it."""
+    Row-major arrays of doubles are read without a copy. Releases the interpreter lock; Ctrl-C ends it."""
     runs = list(states) if isinstance(states, (list, tuple)) else [states]
     if inputs is None:
         inputs = [np.empty((len(run), 0)) for run in runs]
@@ -182,8 +182,8 @@ def simulate(bank: Archive | Bank | Path, states: np.ndarray, inputs: np.ndarray
              times: np.ndarray | None = None, samples: int = 1, horizon: int = 0, **options: Any) -> FreeRun:
     """A free run: predicts the run after its first samples, from these and the inputs alone. Returns FreeRun.
 
-    bank: an Archive, its path or a Bank; states: (N, n), of which the first `samples` are used (the others may be NaN;
-    where they are known, log_density is of them); inputs: (N, m); dt: sample period [s] (None: the bank's), or times:
+    bank: an Archive, its path or a Bank; states: (N, n); only the first `samples` are used, later ones may be NaN, else
+    log_density scores them; inputs: (N, m); dt: sample period [s] (None: the bank's), or times:
     (N,) [s]; horizon: samples to predict, 0: all. options: further keys of the [filter] section. Ctrl-C ends it."""
     states = np.asarray(states, dtype=float)
     keys = {"simulate": samples, "simulate_horizon": horizon, **options}
@@ -195,10 +195,10 @@ def simulate(bank: Archive | Bank | Path, states: np.ndarray, inputs: np.ndarray
 
 def fit_mixture(points: np.ndarray, components: int | str | Sequence[int] = "1..12", *, runs: Sequence[int] = (),
                 effective_samples: float = 0.0, seed: int = 1, **options: Any) -> Mixture:
-    """Fits Gaussian mixtures to points (N, F) and returns the best Mixture by the criterion (BIC unless told).
+    """Fits Gaussian mixtures to points (N, F) and returns the best Mixture by the criterion (default: BIC).
 
-    components: a number, a list, or a range as "1..12"; runs: (N,) the run each point is from, for held-out scores;
-    effective_samples: independent samples that the points are worth, 0: all. options: further keys of
+    components: a number, a list, or a range as "1..12"; runs: (N,) the run of each point, for held-out scores;
+    effective_samples: number of independent samples to which the points amount, 0: all. options: further keys of
     the configuration's [mixture] section, as criterion="icl". Releases the interpreter lock; Ctrl-C ends it."""
     if isinstance(components, range):
         components = list(components)

@@ -1,4 +1,4 @@
-"""An archive's content as numpy and pandas have it. h5py reads it, after its hash was checked once."""
+"""An archive's content as numpy arrays and pandas tables, read by h5py after one check of its hash."""
 from __future__ import annotations
 
 import os
@@ -9,7 +9,7 @@ import pandas
 
 from . import _modebank
 
-# What the axes of a bank's and the windows' arrays are.
+# Meaning of the axes of a bank's and the windows' arrays.
 _AXES = {
     "A": ("modes", "states", "states"), "B": ("modes", "states", "inputs"), "c": ("modes", "states"),
     "Q": ("modes", "states", "states"), "Q_standard_error": ("modes", "states", "states"), "weight": ("modes",),
@@ -23,7 +23,7 @@ _AXES = {
 
 
 class Array(np.ndarray):
-    """A numpy array that says what its axes are: names has a list of labels per axis, or None; units are as stored."""
+    """A numpy array with labelled axes: names has a list of labels per axis, or None; units are as stored."""
 
     def __new__(cls, values, names=None, units=None):
         array = np.asarray(values).view(cls)
@@ -32,13 +32,13 @@ class Array(np.ndarray):
         return array
 
     def __array_finalize__(self, other):
-        # What is made of an array (slices, sums) has other axes.
+        # An array made from this one (slices, sums) has other axes.
         self.names = None
         self.units = getattr(other, "units", None)
 
 
 def _text(value):
-    """Texts for bytes, numbers for arrays of one."""
+    """Converts bytes to texts, and arrays with one element to numbers."""
     value = np.asarray(value)
     if value.dtype.kind == "S":
         value = np.char.decode(value, "utf-8")
@@ -83,7 +83,7 @@ class Run:
 
 
 class Archive:
-    """What one execution produced. archive["/evaluation/summary"] is a pandas table, archive["/bank/A"] an Array,
+    """The results of one execution. archive["/evaluation/summary"] is a pandas table, archive["/bank/A"] an Array,
     archive["/config"] text, archive["/bank"] the names of a group's members."""
 
     def __init__(self, path: str | os.PathLike):
@@ -122,7 +122,7 @@ class Archive:
         return Array(values, self._names(path, values.ndim), units)
 
     def attributes(self, path: str = "/") -> dict:
-        """Of a group or dataset, by name: texts, lists of texts, numbers."""
+        """Attributes of a group or dataset, by name: texts, lists of texts, numbers."""
         return {name: _text(value) for name, value in self._at(path).attrs.items()}
 
     def run(self, name: str) -> Run:
@@ -135,7 +135,7 @@ class Archive:
             column = records[name]
             if column.dtype.kind == "S":
                 columns[name] = np.char.decode(column, "utf-8").astype(object)
-            elif column.ndim == 2:  # one value per state
+            elif column.ndim == 2:  # a column with one value per state
                 labels = self.state_names if len(self.state_names) == column.shape[1] else range(column.shape[1])
                 columns.update({f"{name}[{label}]": column[:, i] for i, label in enumerate(labels)})
             else:
@@ -156,12 +156,12 @@ class Archive:
 
     @property
     def state_names(self) -> list[str]:
-        """n names."""
+        """Names of the n states."""
         return self.attributes("/data").get("state_names", []) if "/data" in self else []
 
     @property
     def input_names(self) -> list[str]:
-        """m names."""
+        """Names of the m inputs."""
         return self.attributes("/data").get("input_names", []) if "/data" in self else []
 
     @property
@@ -171,22 +171,22 @@ class Archive:
 
     @property
     def modes(self) -> int:
-        """K, how many modes the bank has."""
+        """K, the number of modes."""
         return len(self["/bank/weight"])
 
     @property
     def A(self) -> Array:
-        """(K, n, n) of the increment: the full form is I + A."""
+        """(K, n, n) matrices of the increment; the full form is I + A."""
         return self["/bank/A"]
 
     @property
     def B(self) -> Array:
-        """(K, n, m)."""
+        """(K, n, m) matrices of the inputs."""
         return self["/bank/B"]
 
     @property
     def c(self) -> Array:
-        """(K, n) [state unit]."""
+        """(K, n) constant increments [state unit]."""
         return self["/bank/c"]
 
     @property
@@ -196,7 +196,7 @@ class Archive:
 
     @property
     def C(self) -> Array:
-        """(n_y, n)."""
+        """(n_y, n) matrix of the measurement."""
         return self["/bank/C"]
 
     @property
@@ -211,7 +211,7 @@ class Archive:
 
     @property
     def weights(self) -> Array:
-        """(K,) shares of the windows."""
+        """(K,) weights: shares of the windows."""
         return self["/bank/weight"]
 
     @property

@@ -1,4 +1,4 @@
-"""The compiled part: what its classes and functions take and give; their docstrings say shapes and units."""
+"""Types of the compiled part's classes and functions; their docstrings have shapes and units."""
 import os
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -19,14 +19,14 @@ from scipy import stats
 
 import modebank
 
-COLUMN, PAGE = 3.5, 7.16  # inches: the widths of a column and of a page of IEEE journals
-# Okabe and Ito (2008); of the modes the most used comes first. Page and figures share colours.
+COLUMN, PAGE = 3.5, 7.16  # inches: widths of a column and of a page in IEEE journals
+# Colours of Okabe and Ito (2008), in the order of the modes' use. Page and figures share them.
 MODES = ["#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#F0E442", "#4A2570"]
 FILTERS = {"baseline": "#D55E00", "noise_only": "#009E73", "one_motion": "#E69F00", "drifting": "#56B4E9", "nonlinear": "#F0E442",
            "combined": "#4A2570", "bank": "#0072B2"}
 COMPETITORS = ["baseline", "noise_only", "one_motion", "drifting", "nonlinear"]
 OUTSIDE, OTHERS, BAND, ACCEPTED = "#D55E00", "#9a9a9a", "#d0d0d0", "#e6e6e6"
-MOST_SAMPLES = 2000  # of a run, from its start: a column of print shows no more
+MOST_SAMPLES = 2000  # first samples of a run; a printed column shows no more
 MOST_WINDOWS = 6000
 RARE_SWITCH = 0.005  # probability per sample below which an arrow is left out
 LEVEL = 0.95
@@ -41,7 +41,7 @@ STYLE = {
 
 
 class LeftOut(Exception):
-    """The archive holds no numbers for a figure."""
+    """Raised if the archive has no data for a figure."""
 
 
 def blank(width, height, rows=1, columns=1, **grid):
@@ -51,14 +51,14 @@ def blank(width, height, rows=1, columns=1, **grid):
 
 
 def legend(axes, *others, **more):
-    """Above the plot, so that it hides nothing, in as many columns as have room. `others`: axes that lie on top of these."""
+    """A legend above the plot, in as many columns as fit. `others`: axes on top of these."""
     handles, labels = (sum(parts, []) for parts in zip(*(part.get_legend_handles_labels() for part in (axes, *others))))
     columns = int(18 * axes.figure.get_figwidth()) // (max(map(len, labels)) + 4) // axes.get_subplotspec().get_gridspec().ncols
     axes.legend(handles, labels, loc="lower left", bbox_to_anchor=(0, 1), ncol=max(1, columns), **more)
 
 
 def shown(name):
-    """A channel's name for a legend: the end of a long one; matplotlib leaves out what begins with an underscore."""
+    """A channel's name for a legend: only the end of a long one. A blank in front keeps matplotlib from skipping names with an underscore."""
     return "\u2026" + name[-27:] if len(name) > 28 else " " + name if name.startswith("_") else name
 
 
@@ -67,13 +67,13 @@ def with_unit(name, unit):
 
 
 def judged_role(archive):
-    """Held-out runs where there are some, else training runs."""
+    """The role of the judged runs: held-out if there are any, else training."""
     summary = archive.summary
     return "test" if ((summary["filter"] == "bank") & (summary["role"] == "test")).any() else "train"
 
 
 def modes_by_use(archive):
-    """The modes that are told apart, most used first, and the others: at most eight, each used 1 % or more."""
+    """Modes to draw one by one, most used first (at most eight, each used 1 % or more), and all others."""
     use = np.asarray(archive.weights, float).copy()
     if "/evaluation/diagnostics" in archive:
         table = archive["/evaluation/diagnostics"]
@@ -94,7 +94,7 @@ def bank_title(archive):
 
 
 def judged_run(archive, name=None):
-    """The run of that name, else the first of those that were judged."""
+    """The run of this name, or the first judged run."""
     if "/bank" not in archive or "/evaluation/bank" not in archive:
         raise LeftOut("the archive holds no evaluation of a bank")
     table = archive["/data/runs"]
@@ -110,7 +110,7 @@ def predicted(archive, run, filter="bank"):
 
 
 def nis_of_all(run, filter):
-    """NIS of each sample; where signals are missing, the value that a true filter exceeds as often with all of them."""
+    """NIS of each sample. With missing signals it is the value of equal tail probability for all signals."""
     nis, pit = np.array(run[filter]["nis"]), run[filter]["pit"]
     there = np.count_nonzero(~np.isnan(pit), axis=1)
     some = (there > 0) & (there < pit.shape[1])
@@ -119,7 +119,7 @@ def nis_of_all(run, filter):
 
 
 def draw_modes(archive, run, axes):
-    """Mode probabilities as a stack over time."""
+    """Draws mode probabilities stacked over time."""
     told, others = modes_by_use(archive)
     probability = np.asarray(run["bank"]["mode_probability"])[:MOST_SAMPLES]
     layers = [probability[:, k] for k in told] + ([probability[:, others].sum(axis=1)] if others else [])
@@ -138,7 +138,7 @@ def local_models(archive, width=COLUMN):
     points = np.asarray(archive["/mixture/features" if clustered else "/windows/parameters"])
     about = archive.attributes("/windows")
     names = archive.attributes("/mixture")["feature_names"] if clustered else about["parameter_names"]
-    # A parameter of A and two of B, as in Salvi et al., figure 2b; others where there are none.
+    # Features as in Salvi et al., figure 2b: a parameter of A and two of B; others where these are missing.
     first = [i for i, name in enumerate(names) if name.startswith("A")][:1]
     first += [i for i, name in enumerate(names) if name.startswith("B")][:3 - len(first)]
     used = (first + [i for i in range(len(names)) if i not in first])[:3]
@@ -147,7 +147,7 @@ def local_models(archive, width=COLUMN):
     called = dict(zip(about["parameter_names"], about["parameter_labels"]))
     weight, label = archive["/mixture/weights"], archive["/mixture/labels"]
     told = np.sort(np.argsort(-np.asarray(weight), kind="stable")[:8])
-    order = told[np.argsort(-np.asarray(weight)[told], kind="stable")]  # the points of the lighter ones lie over theirs
+    order = told[np.argsort(-np.asarray(weight)[told], kind="stable")]  # points of lighter modes are on top of the others
     every = -(-len(points) // MOST_WINDOWS)
     pairs = [(0, 1), (0, 2), (1, 2)] if len(used) == 3 else [(0, 1)]
     figure, grid = blank(width, width * (0.95 if len(pairs) == 3 else 0.7), *((2, 2) if len(pairs) == 3 else (1, 1)), squeeze=False)
@@ -189,7 +189,7 @@ def local_models(archive, width=COLUMN):
 
 
 def frame(values, boundaries):
-    """Stray windows do not shrink the cloud: 96 % of the windows, and of the ellipses what widens this by at most a quarter."""
+    """Limits of an axis without outlying windows: 96 % of the windows, and ellipses as far as they add at most a quarter."""
     low, high = np.nanpercentile(values, [2, 98])
     room, ellipses = 0.25 * (high - low), np.concatenate(boundaries)
     low, high = max(min(low, ellipses.min()), low - room), min(max(high, ellipses.max()), high + room)
@@ -366,7 +366,7 @@ def transition(archive, width=COLUMN):
             axes.add_patch(FancyArrowPatch(
                 discs[i].center, discs[j].center, patchA=discs[i], patchB=discs[j], shrinkA=0, shrinkB=1, color=MODES[i],
                 connectionstyle="arc3,rad=-0.25", arrowstyle="-|>,head_width=2.5,head_length=4", linewidth=0.4 + 4 * np.sqrt(share)))
-            if len(modes) <= 5:  # more leave no room for numbers
+            if len(modes) <= 5:  # more than five modes leave no room for numbers
                 way = np.subtract(discs[j].center, discs[i].center)
                 axes.annotate(f"{share:.2g}", np.add(discs[i].center, discs[j].center) / 2 + 0.2 * np.array([-way[1], way[0]]), ha="center", va="center", zorder=4)
     axes.set(xlim=(-1.3, 1.3), ylim=(-1.2, 1.2), aspect="equal")
@@ -375,7 +375,7 @@ def transition(archive, width=COLUMN):
 
 
 def headline(study):
-    """The log score that studies compare settings by, and what it is called."""
+    """The log score by which studies compare settings, and its title."""
     effects = study["/answers/main_effects"]
     for score, name in (("bank_test_log_score", "held-out log score [nats]"), ("bank_train_log_score", "training log score [nats]")):
         if np.isfinite(effects["best"][effects["score"] == score]).any():
@@ -384,7 +384,7 @@ def headline(study):
 
 
 def better_part(best):
-    """The range of scores that is drawn: runs further below are outside the frame."""
+    """The range of scores to draw; runs further below are outside the frame."""
     low, high = np.nanmin(best), np.nanmax(best)
     reach = high - low or max(0.1, 0.1 * abs(high))
     return low - 0.5 * reach, high + 0.1 * reach
@@ -438,7 +438,7 @@ def effects(study, width=COLUMN):
 
 
 def position_of(value, values):
-    """The place of a run's value among those of a table of effects, where many numbers are ranges: 4..7.5"""
+    """Index of a run's value in a table of effects, which has ranges such as 4..7.5 for many numbers."""
     texts = [f"{value:g}", str(value)] if isinstance(value, (int, float, np.number)) else [str(value)]
     for text in texts:
         if text in values:
@@ -464,7 +464,7 @@ def pareto(study, width=COLUMN):
 
 
 def draw(archive, run=None, width=COLUMN):
-    """{name: figure} of all that the archive holds numbers for, and {name: reason} of the others."""
+    """{name: figure} for which the archive has data, and {name: reason} for the others."""
     with_states = [("estimates", estimates), ("prediction", prediction)]
     if "/answers" in archive:
         tasks = [("coverage", study_coverage, {}), ("effects", effects, {}), ("pareto", pareto, {})]

@@ -1,4 +1,4 @@
-"""docs/howto/any_reader.md: its lines run as they stand, and the program prints them where it refuses such a file. Stubs
+"""docs/howto/any_reader.md: its lines run unchanged, and the program prints them when it refuses such a file. Stubs
 with the readers' interfaces stand in for the readers, which Debian has no packages of."""
 import os
 import pathlib
@@ -24,7 +24,7 @@ RUN = modebank.run
 
 
 def motion(samples=600):
-    """A decay of 0.7 per sample, 0.1 s each, and what drives it."""
+    """A state with a decay of 0.7 per sample of 0.1 s, and its input."""
     rng = np.random.default_rng(1)
     left, right = (np.repeat(rng.uniform(-1, 1, samples // 5), 5) for _ in range(2))
     wz = np.zeros(samples)
@@ -82,11 +82,11 @@ class AnyReader(unittest.TestCase):
         os.chdir(scratch.name)
 
     def archive_of(self, block, stubs):
-        """The archive that the page's lines leave, by a chain of seconds."""
+        """The archive of the page's lines, made in seconds."""
         quick = lambda *args, **keys: RUN(*args, **QUICK, **keys)
         names = {}
         with unittest.mock.patch.dict(sys.modules, stubs), unittest.mock.patch("modebank.run", quick), warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # on the split and the times; a file that a line leaves open
+            warnings.simplefilter("ignore")  # warnings on split and times, and on a file that a line leaves open
             exec(BLOCKS[block], names)
         return names["archive"]
 

@@ -1,4 +1,4 @@
-"""Windows, filters, free runs and mixtures on numpy arrays, against closed forms written out in numpy."""
+"""Windows, filters, free runs and mixtures on numpy arrays, compared with closed forms in numpy."""
 import os
 import signal
 import subprocess
@@ -91,7 +91,7 @@ class Windows(unittest.TestCase):
             modebank.identify(states[:10], inputs[:10], 0.1, length=30)
 
     def test_a_million_rows_are_read_where_they_are(self):
-        # In a process of its own, whose peak is this alone. The first call is for what every call needs.
+        # In a separate process, to measure its own peak. The first call allocates what every call needs.
         script = """
 import numpy as np, resource, modebank
 generator = np.random.default_rng(1)
@@ -119,7 +119,7 @@ print((after - before) * 1024 / (states.nbytes + inputs.nbytes))
 
         worker = threading.Thread(target=fit)
         worker.start()
-        while not done.is_set():  # with the interpreter lock held there would be a turn or two
+        while not done.is_set():  # with the interpreter lock held, there would be one or two turns
             turns.append(len(turns))
             time.sleep(1e-4)
         worker.join()
@@ -127,10 +127,10 @@ print((after - before) * 1024 / (states.nbytes + inputs.nbytes))
 
 
 class CtrlC(unittest.TestCase):
-    """Jobs of minutes, which the signal ends."""
+    """Jobs of minutes that a signal ends."""
 
     def setUp(self):
-        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in what it runs in the background
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # background processes of a shell ignore it
 
     def interrupted(self, job):
         timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
@@ -142,7 +142,7 @@ class CtrlC(unittest.TestCase):
             timer.cancel()
 
     def test_ends_identify(self):
-        states, inputs = linear_run(19_000, 0.1)  # Ceres solves up to 20,000 windows
+        states, inputs = linear_run(19_000, 0.1)  # up to 20,000 windows Ceres solves them
         self.interrupted(lambda: modebank.identify(states, inputs, 0.1, length=200, step=1))
 
     def test_ends_fit_mixture(self):
@@ -214,7 +214,7 @@ class Filters(unittest.TestCase):
         f = modebank.Filter(self.bank())
         for k in range(20):
             now = f.step(0.1 * k, inputs[k], states[k])
-        ahead = f.forecast(inputs[20:24], 5)  # the fifth step is made by the input before it
+        ahead = f.forecast(inputs[20:24], 5)  # the input before the fifth step acts in it
         x, P, F = now.state, now.covariance, np.eye(2) + A
         for i in range(5):
             x, P = F @ x + B @ inputs[19 + i], F @ P @ F.T + 0.01 * np.eye(2)
@@ -235,7 +235,7 @@ class Filters(unittest.TestCase):
         first, second = modebank.Filter(self.bank()), modebank.Filter(self.bank())
         for k in range(20):
             first.step(0.1 * k, inputs[k], states[k])
-        second.restore(np.frombuffer(first.snapshot().tobytes()))  # written and read
+        second.restore(np.frombuffer(first.snapshot().tobytes()))  # through bytes, as from a file
         self.assertTrue(second.started)
         for k in range(20, 40):
             said, expected = (f.step(0.1 * k, inputs[k], states[k]) for f in (first, second))

@@ -1,4 +1,4 @@
-"""The demo from Python: a configuration file's run, its archive as h5py reads it, and its filter at work."""
+"""The demo in Python: a run of its configuration file, its archive read by h5py, and its filter."""
 import os
 import pathlib
 import signal
@@ -22,7 +22,7 @@ class Demo(unittest.TestCase):
         cls.addClassCleanup(cls.scratch.cleanup)
         cls.archive = modebank.run(SOURCE / "configs/demo.ini", progress=cls.lines.append, **QUICK,
                                    **{"data.root": folder(), "archive.output": cls.scratch.name + "/demo.h5"})
-        cls.file = h5py.File(cls.archive.path)  # both have it open from here on
+        cls.file = h5py.File(cls.archive.path)  # from here on both have the file open
         cls.addClassCleanup(cls.file.close)
 
     def test_the_demo_in_ten_lines(self):
@@ -144,7 +144,7 @@ class Demo(unittest.TestCase):
             modebank.run("no_such_file.ini")
 
     def test_ctrl_c_ends_the_run(self):
-        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in what it runs in the background
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # background processes of a shell ignore it
         output = self.scratch.name + "/interrupted.h5"
         with self.assertRaises(KeyboardInterrupt):
             modebank.run(SOURCE / "configs/demo.ini", progress=lambda line: os.kill(os.getpid(), signal.SIGINT), **QUICK,
@@ -163,5 +163,5 @@ class Demo(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    warnings.simplefilter("ignore", UserWarning)  # of candidates so few
+    warnings.simplefilter("ignore", UserWarning)  # warning on few candidates
     unittest.main()

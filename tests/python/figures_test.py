@@ -1,4 +1,4 @@
-"""Figures for papers: every one of a small archive and of a small study, its fonts, and its numbers as h5py reads them."""
+"""Figures for papers of a small archive and a small study: their fonts, and their numbers compared with h5py's."""
 import importlib.util
 import json
 import os
@@ -38,7 +38,7 @@ class Figures(unittest.TestCase):
         cls.archive = modebank.run(SOURCE / "configs/demo.ini", **QUICK, **{"data.root": folder(), "archive.output": cls.scratch / "demo.h5"})
         cls.file = h5py.File(cls.archive.path)
         cls.addClassCleanup(cls.file.close)
-        (row,) = [row for row in cls.file["data/runs"][:] if row["name"] == b"01"]  # the first that is held out
+        (row,) = [row for row in cls.file["data/runs"][:] if row["name"] == b"01"]  # the first held-out run
         assert row["role"] == b"test"
         cls.rows = slice(row["first"], row["first"] + row["samples"])
         cls.bank = {name: values[cls.rows] for name, values in cls.file["evaluation/bank"].items()}
@@ -50,7 +50,7 @@ class Figures(unittest.TestCase):
         self.assertEqual({file.name for file in target.iterdir()}, {f"{name}.{ending}" for name in names for ending in ("pdf", "svg")} | {"figures.tex"})
         for name in names:
             pdf = (target / f"{name}.pdf").read_bytes()
-            self.assertIn(b"/FontFile2", pdf, name)  # a TrueType font is in the file
+            self.assertIn(b"/FontFile2", pdf, name)  # the file contains a TrueType font
             self.assertNotIn(b"/Type3", pdf, name)
             self.assertIn("<text", (target / f"{name}.svg").read_text(encoding="utf-8"), name)
             self.assertIn(f"{{{name}}}", (target / "figures.tex").read_text(encoding="utf-8"))
@@ -94,7 +94,7 @@ class Figures(unittest.TestCase):
         drawn = figures.draw(self.archive)[0]
         summary = self.file["evaluation/summary"][:]
         (row,) = [row for row in summary if (row["filter"], row["role"], row["run"]) == (b"bank", b"test", b"*")]
-        bars = drawn["coverage"].axes[0].containers  # training above, below, held out above, below; the bank comes last
+        bars = drawn["coverage"].axes[0].containers  # training above and below, held-out above and below; the bank is last
         np.testing.assert_allclose([bars[2][-1].get_height(), -bars[3][-1].get_height()], [100 * row["nis_above"], 100 * row["nis_below"]])
         candidates = self.file["mixture/candidates"][:]
         np.testing.assert_array_equal(line(drawn["selection"].axes[0], "BIC").get_ydata(), candidates["bic"])

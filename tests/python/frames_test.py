@@ -1,4 +1,4 @@
-"""Frames are what files are: the same data, roles, resampling, lags and missing values give the same archive."""
+"""Frames and files with the same data, roles, resampling, lags and missing values give the same archive."""
 import os
 import tempfile
 import unittest
@@ -14,14 +14,14 @@ from simulated import COLUMNS, QUICK, folder, frames
 
 
 def content(archive):
-    """Every array, but for where it comes from."""
+    """Every array, without its provenance."""
     found = {}
 
     def take(path, item):
         if isinstance(item, h5py.Dataset) and path != "config" and not path.startswith("provenance"):
             found[path] = np.asarray(item[()])
         if path == "data/runs":
-            found[path] = repack_fields(found[path][["name", "role", "first", "samples", "lag_s"]])  # but for the file
+            found[path] = repack_fields(found[path][["name", "role", "first", "samples", "lag_s"]])  # except for the file name
 
     with h5py.File(archive.path) as file:
         file.visititems(take)
@@ -195,5 +195,5 @@ class Logs(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    warnings.simplefilter("ignore", UserWarning)  # of candidates so few
+    warnings.simplefilter("ignore", UserWarning)  # warning on few candidates
     unittest.main()

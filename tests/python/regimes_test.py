@@ -1,4 +1,4 @@
-"""`export --to regimes` read on its own: by json, h5py and numpy against the archive, and the gates against scipy."""
+"""`export --to regimes`, compared with the archive by json, h5py and numpy; gates compared with scipy."""
 import json
 import os
 import pathlib

@@ -10,13 +10,13 @@ import tempfile
 import pandas
 
 SOURCE = pathlib.Path(os.environ["MODEBANK_SOURCE"])
-# What keeps the demo's chain to seconds.
+# Options that shorten the demo's chain to seconds.
 QUICK = {"window.model": "linear", "window.step": 5, "mixture.components": [1, 2], "mixture.restarts": 2, "bank.refine": "none"}
 
 
 @functools.lru_cache
 def folder():
-    """With pro_NN.csv (inputs) and imu_NN.csv (states) of four runs."""
+    """A folder with pro_NN.csv (inputs) and imu_NN.csv (states) of four runs."""
     path = pathlib.Path(tempfile.mkdtemp(prefix="modebank-python-test-"))
     atexit.register(shutil.rmtree, path)
     subprocess.run([os.environ["MODEBANK_PROGRAM"], "simulate", SOURCE / "configs/simulate_ice.ini", "--simulate.output",

@@ -1,4 +1,4 @@
-"""Stubs name what the module has, no more and no less, and everything that users see says what it is."""
+"""Stubs name exactly the module's content, and every public object has a docstring."""
 import ast
 import inspect
 import pathlib
