@@ -1,5 +1,6 @@
-# make demo and make test are all a new machine needs; see README.md.
-# A compiler for each processor, but only one for every 2.5 GB of free memory: the largest sources take 2.3 GB.
+# A new machine needs only `make demo` and `make test`; see README.md.
+# Number of compilers: one per processor, but at most one for every 2.5 GB of free memory, since the largest sources
+# take 2.3 GB.
 JOBS := $(shell awk -v cores=$$(nproc) '/^MemAvailable/ { most = int($$2 / 2500000); print most < 1 ? 1 : most < cores ? most : cores }' /proc/meminfo)
 DEMO := build/demo
 
@@ -7,7 +8,7 @@ DEMO := build/demo
 
 all: build
 
-# Configured for the program alone; `make test` and `make bench` add to the same folder what they need.
+# First configured for the program alone; `make test` and `make bench` add to the same folder.
 PROGRAM_ALONE := $(if $(wildcard build/CMakeCache.txt),,-DMODEBANK_BUILD_TESTS=OFF -DMODEBANK_BUILD_BENCHMARKS=OFF)
 build/build.ninja: CMakePresets.json | packages-build
 	cmake --preset release $(PROGRAM_ALONE) >/dev/null
@@ -21,7 +22,8 @@ packages-build:
 packages-%:
 	@sh .ci/install-packages $*
 
-# The program for development, build/dev/modebank: each source on its own, so that one edited line is compiled and linked in seconds.
+# The program for development, build/dev/modebank: each source is compiled on its own, so that a changed line takes
+# seconds.
 build/dev/build.ninja: CMakePresets.json
 	@$(MAKE) --no-print-directory packages-build
 	cmake --preset dev >/dev/null
@@ -31,12 +33,12 @@ build/dev/build.ninja: CMakePresets.json
 dev: build/dev/build.ninja
 	cmake --build --preset dev -j $(JOBS) --target modebank
 
-# Simulates a robot on ice and grip with known truth and takes the whole chain over its runs.
+# Simulates a robot on ice and grip with known truth, and runs the whole chain on its runs.
 demo: build
 	@rm -rf $(DEMO)
 	build/modebank demo -o $(DEMO)
 
-# Debian packages, build/packages/*.deb, and a trial in an empty Debian 12, which takes minutes.
+# Debian packages, build/packages/*.deb; package-test tries them in an empty Debian 12, which takes minutes.
 packages: packages-build packages-package build/build.ninja
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	rm -rf build/packages
@@ -45,7 +47,7 @@ packages: packages-build packages-package build/build.ninja
 package-test: packages packages-root
 	packaging/test_packages.sh build/packages build/empty_root
 
-# The program with its libraries for any Linux that has their glibc, and a trial in empty Debian 12 and 13.
+# The program with its libraries, for any Linux with their glibc; dist-test tries it in an empty Debian 12 and 13.
 dist: packages-build packages-dist build/build.ninja
 	cmake --preset release >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank_dist
@@ -53,7 +55,7 @@ dist: packages-build packages-dist build/build.ninja
 dist-test: dist packages-root
 	packaging/test_dist.sh build/modebank-*.tar.gz build/empty_root
 
-# Installs the Python module by pip in an empty Debian 12.
+# Installs the Python module with pip in an empty Debian 12.
 pip-test: packages-root
 	packaging/test_pip.sh build/empty_root
 
@@ -67,7 +69,7 @@ bench-programs: packages-build packages-bench build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_BENCHMARKS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank benchmarks
 
-# The others compare window fits and EM with other people's, in Python too where it is installed.
+# Benchmarks. Some compare window fits and EM with other programs, in Python only where these are installed.
 bench: bench-programs
 	build/bench_modebank
 	build/compare_windows 5 build/compare_windows.bin
@@ -79,7 +81,7 @@ bench: bench-programs
 	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/em_peers.py build/compare_em
 	-PYTHONPATH=build/python /usr/bin/python3 tests/bench/python_step.py
 
-# Other people's benchmarks, their data in MODEBANK_DATA: one table each, build/benchmarks/NAME.md; half an hour of a processor.
+# Public benchmarks, with data in MODEBANK_DATA: one table each, build/benchmarks/NAME.md; half an hour of a processor.
 BENCHMARKS := $(notdir $(basename $(shell grep -l '^def main' tests/bench/benchmarks/*.py)))
 benchmarks: $(BENCHMARKS:%=build/benchmarks/%.md)
 build/benchmarks/%.md: build FORCE
@@ -88,81 +90,86 @@ build/benchmarks/%.md: build FORCE
 	@cat $@
 FORCE:
 
-# Heading error after the gyro is lost, as docs/results/gyro_lost.md has it; five minutes of a processor.
+# Heading error after the gyro is lost, for docs/results/gyro_lost.md; five minutes of a processor.
 gyro-lost: build/benchmarks/gyro_lost.md
 
-# Switches that see state and input, on systems that are known, over seeds; MODEBANK_DATA as for benchmarks.
+# State-dependent transitions of known systems, over seeds; MODEBANK_DATA as for benchmarks.
 guards: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_guards.py build/modebank
 
-# Coverage of the stated 95 % regions, as docs/results/uncertainty.md has it.
+# Coverage of the stated 95 % regions, for docs/results/uncertainty.md.
 uncertainty: bench-programs
 	build/measure_coverage
 
-# How often the true number of modes is found, as docs/results/mixture.md has it.
+# How often the true number of modes is found, for docs/results/mixture.md.
 recovery: bench-programs
 	build/measure_recovery
 
-# How often modes of motion are claimed where there are none, and found where there are some; hours on two cores.
+# How often modes are claimed where there are none, and found where there are some; hours on two cores.
 evidence: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_evidence.py build/modebank --table docs/results/evidence.csv --revision $$(git log -1 --format=%h -- app filter ident io mixture)
 
-# How often the rule on what a bank may add takes what is not there, and what is, as docs/results/rule.md has it; half an hour of two processors.
+# How often the rule for additions to a bank accepts false ones, and true ones, for docs/results/rule.md; half an hour
+# of two processors.
 rule: bench-programs
 	build/measure_rule 60 > docs/results/rule.csv
 	/usr/bin/python3 tests/bench/rule_table.py docs/results/rule.csv
 
-# How much is lost against the filter with the true parameters, on systems that are known; about three hours of a processor.
+# Loss against the filter with the true parameters, for known systems; about three hours of a processor.
 systems: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_systems.py build/modebank
 
-# Time and memory of five million rows and of ten thousand runs, as docs/results/scale.md has them; ten minutes of two processors and 10 GB of disk.
+# Time and memory of five million rows and of ten thousand runs, for docs/results/scale.md; ten minutes of two
+# processors and 10 GB of disk.
 scale: build
 	/usr/bin/python3 tests/bench/scale.py build/modebank build/scale
 
-# Processor time against states, lags and samples, as docs/results/cost.md has it; half an hour of a processor.
+# Processor time against states, lags and samples, for docs/results/cost.md; half an hour of a processor.
 cost: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_cost.py build/modebank build/cost
 
-# Which features of windows with many lags find the modes, as docs/results/mixture.md has it; ten minutes of a processor.
+# Which features of windows with many lags find the modes, for docs/results/mixture.md; ten minutes of a processor.
 features: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_features.py build/modebank build/features
 
-# A robot's day through `modebank track`, killed every ten minutes of the log; docs/results/track.md.
+# A robot's day through `modebank track`, killed every ten minutes of the log, for docs/results/track.md.
 track-day: demo
 	/usr/bin/python3 tests/bench/track_day.py build/modebank $(DEMO)/demo.h5
 
-# Bias and stated uncertainty on rounded outputs, by their intervals and as they stand.
+# Bias and stated uncertainty for rounded outputs, taken as intervals and as exact values.
 quantised: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_quantised.py build/modebank
 
-# How often robots of known width, delays and noise lie within two standard errors of what `export --to ros2` says of them.
+# How often robots with known width, delays and noise are within two standard errors of the numbers of `export --to
+# ros2`.
 export-recovery: packages-build packages-test build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target test_export_recovery
 	MODEBANK_EXPORT_SEEDS=1000 build/test_export_recovery
 
-# The how-to's commands and lost nodes on a real Slurm of three nodes (slurmctld, slurmd, munge), which the test starts and ends.
+# The commands of the how-to and lost nodes on a real Slurm of three nodes (slurmctld, slurmd, munge). The test starts
+# and ends them.
 slurm: packages-build packages-test packages-nightly build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target test_study_survival
 	CI=true MODEBANK_STUDY_REPEATS=42 build/test_study_survival --gtest_filter='StudySlurm*:*TwentyKilledWorkers*'
 
-# Studies of several machines on a file system without locks, with caches and other clocks; 40 machines are lost. Root, for mounts.
+# Studies of several machines on a file system without locks, with caches and different clocks; 40 machines are lost.
+# Mounts need root.
 shared-fs: packages-build packages-test packages-nightly build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target test_shared_fs
 	CI=true MODEBANK_SHARED_FS_ROUNDS=40 build/test_shared_fs
 
-# Everything that CI runs beside `make test`; .ci/run times these one by one.
+# Everything that CI runs beside `make test`; .ci/run times each of these.
 CHECKS := format lint shellcheck docs tidy-changed sanitize-short
 .PHONY: list-checks
 check: $(CHECKS)
 list-checks:
 	@echo $(CHECKS)
 
-# Everything else, and `make` and `make test` on Debian 13; hours. Goes on after a failure. The table stands in build/nightly/table.md.
-# STEPS="slurm arm64" runs these steps alone and keeps the results of the others.
+# All other tests, and `make` and `make test` on Debian 13; hours. Continues after a failure. The table is
+# build/nightly/table.md. STEPS="slurm arm64" runs only these steps and keeps the results of the others.
 .PHONY: nightly debian
 nightly: packages-build packages-test packages-nightly
 	tests/nightly $(STEPS)
@@ -171,7 +178,8 @@ nightly: packages-build packages-test packages-nightly
 nightly-%: packages-nightly strict
 	ctest --test-dir build -L '^nightly_$*$$' --no-tests=error --output-on-failure -j $(JOBS)
 
-# README's two commands in an empty Debian: SUITE is trixie (Debian 13) or bookworm (Debian 12). If they fail, build/SUITE stays to look into.
+# README's two commands in an empty Debian. SUITE is trixie (Debian 13) or bookworm (Debian 12). After a failure
+# build/SUITE is kept.
 SUITE := trixie
 debian: packages-root
 	@mkdir -p build
@@ -181,12 +189,13 @@ debian: packages-root
 format: packages-check
 	git ls-files '*.hpp' '*.cpp' '*.js' | xargs clang-format --dry-run --Werror
 
-# The public headers' documentation, build/api/html; a warning is an error.
+# Documentation of the public headers, build/api/html; a warning is an error.
 api: packages-check
 	@mkdir -p build/api
 	doxygen Doxyfile
 
-# The pages of docs/, build/docs/index.html: built offline, a warning is an error; their spelling, and tables against their commands.
+# The pages of docs/, build/docs/index.html: built offline, a warning is an error. Checks spelling, and tables against
+# their commands.
 docs: packages-docs build api
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank_python
@@ -194,12 +203,12 @@ docs: packages-docs build api
 	/usr/bin/python3 docs/check_spelling.py README.md docs
 	/usr/bin/python3 docs/check_results.py $(if $(wildcard $(DATA)/.),--data $(DATA)) docs/results/*.md
 
-# The pages' search, as a reader uses it in Chromium.
+# The search of the pages, used by a script in Chromium.
 .PHONY: docs-search
 docs-search: docs packages-nightly
 	/usr/bin/python3 docs/check_search.py build/docs
 
-# What README and the tutorials print, run and compared; docs-update writes what is printed now into them.
+# Runs what README and the tutorials print and compares the output; docs-update writes the present output into them.
 DATA := $(or $(MODEBANK_DATA),../shared/data)
 PAGES := README.md docs/tutorials/*.md
 docs-examples docs-update: packages-test packages-nightly build
@@ -207,8 +216,8 @@ docs-examples docs-update: packages-test packages-nightly build
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 tests/docs/examples.py $(if $(findstring update,$@),--update) --data $(DATA) build $(PAGES)
 
-# Words of the change's added lines (.ci/words). The pages' scripts: style, and types as their comments state them; NODE_PATH tells
-# every node where Debian's modules are.
+# Words of the added lines (.ci/words), and style and types of the pages' scripts. NODE_PATH is where node finds
+# Debian's modules.
 lint: packages-check
 	.ci/check-words
 	NODE_PATH=/usr/share/nodejs eslint --format unix app/report/web/src app/report/web/test
@@ -217,18 +226,18 @@ lint: packages-check
 shellcheck: packages-check
 	git ls-files '*.sh' .ci | xargs grep -lE '^#!.*\b(ba)?sh$$' | xargs shellcheck
 
-# clang-tidy on every source, and on what changed; .ci/tidy says which these are.
+# clang-tidy on every source, or on changed sources; .ci/tidy decides which these are.
 tidy: packages-build packages-check
 	.ci/tidy --all
 
 tidy-changed: packages-build packages-check
 	.ci/tidy
 
-# The numeric tests of the libraries on 64-bit ARM, cross-compiled and run under qemu.
+# Numeric tests of the libraries for 64-bit ARM, cross-compiled and run under qemu.
 arm64: packages-build packages-arm64
 	.ci/arm64
 
-# The release build with benchmarks, warnings as errors; CI=true and `sanitize` make them errors, too.
+# The release build with benchmarks; CI=true and `sanitize`, too, make warnings errors.
 strict: packages-build packages-test packages-bench
 	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_BUILD_BENCHMARKS=ON -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
@@ -239,7 +248,8 @@ seeds: packages-build packages-test build/build.ninja
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset seeds -j $(JOBS)
 
-# Address and undefined-behaviour sanitizers: io and the stepping of filters, what CI runs; and all tests.
+# Address and undefined-behaviour sanitizers: sanitize-short tests io and the filters' steps, as CI does; sanitize runs
+# all tests.
 .PHONY: sanitize-short
 sanitize-short: packages-build packages-test
 	cmake --preset sanitize >/dev/null
@@ -251,12 +261,13 @@ sanitize: packages-build packages-test
 	cmake --build --preset sanitize -j $(JOBS)
 	ctest --preset sanitize -j $(JOBS)
 
-# Readers whose bytes we parse under libFuzzer: FUZZ_SECONDS for all together; its findings go to build/findings. `make nightly` takes a minute.
+# libFuzzer on the readers of bytes. FUZZ_SECONDS: time for all together; findings go to build/findings. `make nightly`
+# takes a minute.
 FUZZ_SECONDS ?= 600
 fuzz: packages-build packages-test
 	tests/fuzz/run $(FUZZ_SECONDS) $(JOBS)
 
-# Every command on a disk that runs full at every one of its calls; `make nightly` takes a sample of them.
+# Every command with a disk that becomes full at each of its calls; `make nightly` takes a sample of them.
 faults: packages-build packages-test build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target test_faults
@@ -267,15 +278,15 @@ coverage: packages-build packages-test
 	cmake --build --preset coverage -j $(JOBS)
 	ctest --preset coverage -j $(JOBS)
 
-# How evenly a page's plot follows a drag over a million samples; docs/results/speed.md.
+# Evenness of a page's plot during a drag over a million samples, for docs/results/speed.md.
 page-drag: packages-nightly build
 	/usr/bin/python3 tests/bench/page_drag.py build/modebank build/page_drag
 
-# Pages of a study of 200 runs and of a million samples in Chromium; `make nightly` has all others, too.
+# Pages of a study with 200 runs and of a million samples in Chromium; `make nightly` has all other pages, too.
 pages-large: packages-nightly build
 	/usr/bin/python3 tests/browser/pages_test.py build/modebank . build/pages_large LargePages
 
-# A page of every kind in Debian's Firefox; `make nightly` has Chromium, too.
+# A page of every kind in Debian's Firefox; `make nightly` uses Chromium.
 firefox: packages-firefox build
 	/usr/bin/python3 tests/browser/firefox_test.py build/modebank . build/firefox
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Whether the tables of docs/results are still those of the commands, configurations and data that they were made with.
+"""Checks that the tables of docs/results belong to the present commands, configurations and data.
 
 Each table stands under a block that says how it was made:
 
@@ -40,7 +40,7 @@ def content(path, revision=None):
 
 
 def code_only(path, data):
-    """Comments change no number."""
+    """The text without comments, which do not affect results."""
     return b"\n".join(line for line in (re.sub(rb"(^|\s)#.*", b"", line).rstrip() for line in data.split(b"\n")) if line) \
         if path.endswith(".ini") else data
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Whether the built pages can be searched without a server or a network, as a reader does who opens them from the disk.
+"""Checks that the built pages can be searched without a server or a network, opened from disk.
 
 Usage: check_search.py HTML_FOLDER. Asks search.html in a headless chromium; exit status 1, with what was found, where a page is missing.
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Spelling of what is written in pages: hunspell's British dictionary and words.txt beside this file, and codespell.
+"""Checks the spelling of pages: hunspell's British dictionary with words.txt in this folder, and codespell.
 
 Usage: check_spelling.py FILE|FOLDER... Prints each unknown word with the files that hold it; exit status 1 if there is any.
 """
@@ -14,7 +14,7 @@ NOT_PROSE = re.compile(r"^(`{3,}|:{3,}).*?^\1[`:]*$|<!--.*?-->|\$\$.*?\$\$|\{\w+
 
 
 def prose(text):
-    """Without code, formulas, targets of links and names that are no words (with digits, underscores, points within)."""
+    """The text without code, formulas, link targets and names with digits, underscores or points."""
     text = re.sub(r"'s\b", "", NOT_PROSE.sub(" ", text))
     return re.sub(r"\S*[\d_/\\@=]\S*|\w+\.\w+\S*|\b[A-Z]{2,}s?\b", " ", text)
 

@@ -1,9 +1,9 @@
 #!/bin/sh
-# README's two commands as root in an empty Debian, in a folder that contains source.bundle, the committed source. Prints the versions
-# that they found. `make debian` runs this script.
+# README's two commands as root in an empty Debian, in a folder with source.bundle, the committed source. Prints the versions of the tools.
+# `make debian` runs this script.
 set -eu
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
-# The data folder is not in this root: its tests are skipped, as on a user's machine.
+# The data folder is missing here, so its tests are skipped, as on a user's machine.
 unset CI MODEBANK_NIGHTLY MODEBANK_DATA
 apt-get update -q
 apt-get install -q -y --no-install-recommends make git

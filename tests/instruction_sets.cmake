@@ -1,5 +1,5 @@
-# The reference tests under each of the vector kernels' x86 instruction sets. One lane at a time runs with the libm of a machine
-# without AVX2 and FMA, too. A machine that lacks a set skips its tests; sanitizers must be loaded first and leave them out.
+# The reference tests under each x86 instruction set of the vector kernels. SCALAR also runs with the libm of a machine without AVX2 and
+# FMA. A machine that lacks a set skips its tests. They are left out under sanitizers, which must be preloaded first.
 if(MODEBANK_SANITIZERS OR MODEBANK_COVERAGE OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   return()
 endif()

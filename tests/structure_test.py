@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Which folder may include which: nothing includes upward, nobody includes another folder's detail/.
+"""Checks which folder includes which: never upward, never another folder's detail/.
 
 Usage: structure_test.py SOURCE_FOLDER. Prints one line per offence; exit status 1 if there is any.
 """
@@ -7,7 +7,7 @@ import pathlib
 import re
 import sys
 
-# A folder and what its files may include besides themselves, lowest first; everything under a folder that is not named belongs to it.
+# A folder with the folders that it may include, lowest first. Subfolders without an entry belong to their parent.
 IDENT = ["ident/base", "ident/data", "ident/model"]
 FIT = IDENT + ["ident/model/models", "ident/fit"]
 STEP = IDENT + ["filter/step"]
@@ -42,7 +42,7 @@ MAY_INCLUDE = {
     "io/archive": LIBRARIES + ["io/files", "io/hdf5", "io/archive/groups", "io/archive/bank"],
     "io/recording": IDENT[:1] + ["io/files", "io/table"],
     "io/import": FIT + ["ident/lag", "ident/check", "io/files", "io/table", "io/csv", "io/arrays", "io/recording"],
-    "io/include": LIBRARIES + ["io/archive/bank"],  # modebank/modebank.hpp, which includes all that is installed
+    "io/include": LIBRARIES + ["io/archive/bank"],  # modebank/modebank.hpp, which includes all installed headers
     "io/simulation": IDENT + ["ident/simulate", "io/files"],
     "app/config": BELOW_APP,
     "app/text": BELOW_APP,
@@ -54,10 +54,10 @@ MAY_INCLUDE = {
     "app/cli": BELOW_APP + [f"app/{room}" for room in ("config", "text", "chain", "study", "export", "report", "init")],
     "python/bindings": BELOW_APP + [f"app/{room}" for room in ("config", "text", "chain")],
 }
-# Whose the installed headers <modebank/NAME/...> are.
+# Folders of the installed headers <modebank/NAME/...>.
 PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge/run",
           "learn": "filter/learn", "archive": "io/archive/bank"}
-# The way lanes of a processor's vector registers are used is the one detail that all kernels share.
+# The only detail shared by all kernels: use of the lanes of vector registers.
 SHARED_DETAIL = "ident/base/detail"
 
 
@@ -88,13 +88,13 @@ def left_out_of_the_whole(root):
 
 
 def upward():
-    """Folders that may include one which stands after them in the table. Without such a folder, no circle is possible."""
+    """Folders that may include a later one in the table. Without such folders there are no cycles."""
     order = list(MAY_INCLUDE)
     return [f"{home} may include {target}, which stands above it" for home in order for target in MAY_INCLUDE[home] if order.index(target) > order.index(home)]
 
 
 def rooms_without_cmake_file(root):
-    """Rooms of app that are no library of their own."""
+    """Rooms of app without a library of their own."""
     return [f"{room} has no CMakeLists.txt" for room in MAY_INCLUDE if room.startswith("app/") and not (root / room / "CMakeLists.txt").exists()]
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of .ci/check-words on a small repository: which added lines it finds, and which it leaves alone."""
+"""Tests of .ci/check-words on a small repository: which added lines it reports, and which not."""
 import os
 import pathlib
 import shutil

@@ -1,4 +1,4 @@
-"""The archive's layout as a page: members and shapes as io/archive/layout*.hpp exchange them, texts as their comments have them.
+"""The archive's layout as a page: members and shapes from the functions in io/archive/layout*.hpp, texts from their comments.
 
 Above an exchange function a comment `/// - NAME: text` describes a member or a column, `/// /PATH: text` its group; other lines are
 for programmers alone.
@@ -17,7 +17,7 @@ LAMBDA = re.compile(r"const auto (\w+) = \[[^\]]*\]\(([^)]*)\) \{")
 
 
 def closing(text, start):
-    """Behind the bracket that closes the one at `start`, whatever stands in strings."""
+    """Position after the bracket that closes the one at `start`; strings are skipped."""
     pairs, depth, place = {"(": ")", "[": "]", "{": "}"}, [], start
     while place < len(text):
         if text[place] == '"':
@@ -33,7 +33,7 @@ def closing(text, start):
 
 
 def split(arguments):
-    """At the commas that no bracket and no string encloses."""
+    """Splits at the commas outside of brackets and strings."""
     parts, begin, place = [], 0, 0
     while place < len(arguments):
         if arguments[place] in "([{":

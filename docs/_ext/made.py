@@ -1,11 +1,11 @@
-"""The directive under which a table of results stands."""
+"""The directive in front of a table of results."""
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
 
 class Made(SphinxDirective):
-    """How a table was made; check_results.py says what stands in it."""
+    """How a table was made; check_results.py describes its content."""
 
     required_arguments = 1
     final_argument_whitespace = True

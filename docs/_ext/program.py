@@ -1,4 +1,4 @@
-"""What the program says of itself, asked of it while the pages are built: keys, commands, terms.
+"""Texts from the program itself, read while the pages are built: keys, commands, terms.
 
 A page holds <!-- modebank: keys -->, commands, terms, headers or archive where they belong; nothing of it is written down twice.
 Roles: {confval}`window.length` leads to a key, {term}`evidence` to a term, {command}`run` to a command.
@@ -52,7 +52,7 @@ def command_rows():
 
 
 def schema_of_keys():
-    """What the schema that editors are given says of each key."""
+    """The text on each key in the schema for editors."""
     sections = json.loads(ask("config", "--schema"))["properties"]
     return {f"{section}.{name}": key.get("oneOf", [key])[0] for section, content in sections.items() for name, key in content["properties"].items()}
 
@@ -62,7 +62,7 @@ def terms():
 
 
 def plain(text):
-    """Text of the program as Markdown that shows it as it is."""
+    """Text of the program, escaped so that Markdown shows it unchanged."""
     return re.sub(r"([\\*_<>\[\]#$`{}])", r"\\\1", text)
 
 
@@ -91,7 +91,7 @@ def commands_page():
 
 
 def terms_page():
-    """Other names that are words are terms, too; those of table columns stand behind the meaning."""
+    """Other names become terms if they are words; names of table columns follow the meaning."""
     lines = ["```{glossary}", ":sorted:", ""]
     for entry in terms():
         words, columns = [entry["term"]], []
@@ -108,7 +108,7 @@ def headers():
 
 
 def declared(header):
-    """(directive, name) of what a header declares, as Doxygen's XML has it."""
+    """(directive, name) of a header's declarations, from Doxygen's XML."""
     for file in sorted((BUILD / "api/xml").glob("*_8hpp.xml")):
         compound = ElementTree.parse(file).getroot().find("compounddef")
         if not compound.find("location").get("file").endswith(str(header)):
@@ -129,7 +129,7 @@ def declared(header):
 
 
 def is_nested(refid):
-    """A class within another is described with that."""
+    """Whether a class is inside another one, whose description contains it."""
     outer = refid.rpartition("_1_1")[0]
     return any((BUILD / "api/xml" / f"{kind}{outer.removeprefix('class').removeprefix('struct')}.xml").is_file() for kind in ("class", "struct"))
 
@@ -158,7 +158,7 @@ def list_others(app, name, source):
 
 
 def as_it_stands(app, what, name, thing, options, lines):
-    """Docstrings are plain text: what reStructuredText would take for its marks is not."""
+    """Escapes docstrings, which are plain text, for reStructuredText."""
     lines[:] = [re.sub(r"([*`|\\])", r"\\\1", line) for line in lines]
 
 

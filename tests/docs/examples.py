@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs what pages show and compares what is printed with what they show; docs/developing/testing.md says how blocks are marked.
+"""Runs the examples on pages and compares their output with the pages; docs/developing/testing.md explains the marks of blocks.
 
 Usage: examples.py [--update] [--data FOLDER] BUILD_FOLDER PAGE... Exit status 1 if a block differs or fails. Without the data
 that a page needs it is 77, with CI=true or MODEBANK_NIGHTLY=1 it is 1. The data folder is FOLDER, else $MODEBANK_DATA, else
@@ -31,7 +31,7 @@ def marks_of(block):
 
 
 def skeleton(line):
-    """A line without its numbers, and however wide its columns are."""
+    """A line without its numbers and its widths of columns."""
     return re.sub(r"[\s-]+", " ", NUMBER.sub("#", line)).strip()
 
 
@@ -48,7 +48,7 @@ def same_line(shown, printed, tolerance):
 
 
 def parts_of(shown):
-    """Lists of lines between those that are ... ."""
+    """The lists of lines between lines "..."."""
     parts = [[]]
     for line in shown:
         if line.strip() == "...":
@@ -66,7 +66,7 @@ def place_of(part, printed, begin, alike):
 
 
 def places_of(shown, printed, alike):
-    """Where each part of what is shown stands in what is printed, or None for the first that stands nowhere."""
+    """Positions in the output of each shown part; None for the first one that is missing."""
     parts, places, begin = parts_of(shown), [], 0
     for index, part in enumerate(parts):
         at = place_of(part, printed, begin, alike)
@@ -115,7 +115,7 @@ class Page:
         return done.stdout
 
     def console(self, text, tolerance):
-        """The block's text with what is printed now."""
+        """The block's text with the present output."""
         pieces = re.split(r"^\$ ", text, flags=re.M)
         renewed_text = pieces[0]
         for piece in pieces[1:]:

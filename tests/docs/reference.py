@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Whether the reference is whole: every key, command, term, dataset of an archive and public header; and what else pages must agree on.
+"""Checks that the reference has every key, command, term, dataset of an archive and public header, and that pages agree.
 
 Usage: reference.py BUILD_FOLDER. What the program has is asked of it by other ways than the pages are made by.
 """
@@ -72,7 +72,7 @@ def dataset_names():
 
 
 def sample_arrays():
-    """Arrays over the samples of all runs, by name: how many extents follow the samples'."""
+    """Arrays over the samples of all runs: by name the number of extents after the samples'."""
     with h5py.File(archive()) as file:
         samples = int(file["data/runs"]["samples"].sum())
         return {name: item.ndim - 1 for group in ("data", "evaluation/bank") for name, item in file[group].items() if item.shape[0] == samples}
@@ -93,7 +93,7 @@ def check_names():
     for entry in program.terms():
         expect(f"\n{entry['term']}\n" in text and entry["means"] in text, f"docs/reference/glossary.md has no term {entry['term']}")
         said = modebank("help", entry["term"]).stdout
-        expect(entry["means"] in said or said.startswith("["), f"modebank help {entry['term']} says something else")  # a section of that name comes first
+        expect(entry["means"] in said or said.startswith("["), f"modebank help {entry['term']} says something else")  # unless a section has this name, which takes precedence
     text = page("cpp.md")
     for header in subprocess.run(["git", "-C", ROOT, "ls-files", "*/include/*.hpp"], capture_output=True, text=True).stdout.split():
         expect(header in text, f"docs/reference/cpp.md has no {header}")

@@ -1,9 +1,9 @@
-# Installs each component alone into a folder of its own and uses the program from there; then packs them, where Debian's tools are,
-# and reads what is written on the packages: cmake -DBUILD=... -DWORK=... -DVERSION=... -P check_components.cmake
+# Installs each component alone into a folder and uses the program from there. Then packs the components, if Debian's tools exist, and reads
+# the packages' fields: cmake -DBUILD=... -DWORK=... -DVERSION=... -P check_components.cmake
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
-# Whether the installed tree of a component has files below each of these folders, and none elsewhere.
+# Checks that the installed tree of a component has files below each of these folders, and nowhere else.
 function(holds component)
   file(GLOB_RECURSE files RELATIVE ${WORK}/${component} ${WORK}/${component}/*)
   foreach(folder IN LISTS ARGN)
@@ -27,7 +27,7 @@ endforeach()
 holds(program bin share/doc/modebank share/man/man1 share/bash-completion/completions share/zsh/vendor-completions share/fish/vendor_completions.d)
 holds(development include/modebank lib/modebank lib/cmake/modebank share/doc/libmodebank-dev)
 
-# The program needs no file beside itself: not the source tree, and not its prefix.
+# The program needs no other file: neither the source tree nor its prefix.
 file(COPY ${WORK}/program/bin/modebank DESTINATION ${WORK}/elsewhere)
 run(${CMAKE_COMMAND} -E chdir ${WORK}/elsewhere ./modebank demo --simulate.runs=4 --simulate.samples=80 --mixture.components=1..2
     --mixture.restarts=1 --bank.refine=none)
@@ -46,12 +46,12 @@ foreach(tool dpkg-deb dpkg-shlibdeps file)
   endif()
 endforeach()
 get_filename_component(bin ${CMAKE_COMMAND} DIRECTORY)
-# Quickly compressed: this is about what is in them.
+# With fast compression, since only the content is tested.
 run(${bin}/cpack --config ${BUILD}/CPackConfig.cmake -G DEB -B ${WORK}/packages -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip)
 run(dpkg --print-architecture)
 string(STRIP "${output}" architecture)
 
-# A field of the package that was looked at last.
+# Checks a field of the last package.
 function(expect_field name expected)
   run(dpkg-deb -f ${deb} ${name})
   if(NOT output MATCHES "${expected}")
@@ -67,10 +67,10 @@ function(expect_package name section)
   expect_field(Maintainer "^[^<]+ <[^@ ]+@[^@ ]+>\n")
   expect_field(Description "^[a-z][^\n]*\n [^\n]")
   foreach(package IN LISTS ARGN)
-    # Or what it provides: libspdlog1.10-fmt9.
+    # Or a package that it provides: libspdlog1.10-fmt9.
     expect_field(Depends "(^|, )${package}[-a-z0-9]*( |,|\n)")
   endforeach()
-  # Everybody may read what root owns, nobody else may write it.
+  # Files belong to root and are readable by everybody, writable by root alone.
   run(dpkg-deb -c ${deb})
   string(REGEX REPLACE "\n$" "" output "${output}")
   string(REPLACE "\n" ";" entries "${output}")
@@ -84,7 +84,7 @@ function(expect_package name section)
   endif()
 endfunction()
 
-# The packages of the shared objects that the program asks for.
+# The packages of the shared objects that the program needs.
 needed_libraries(${BUILD}/modebank libraries)
 run(dpkg-architecture -qDEB_HOST_MULTIARCH)
 string(STRIP "${output}" folder)

@@ -1,9 +1,9 @@
-# Installs modebank into a folder of its own, builds the examples against it as a robot's makers would, and runs them:
-# cmake -DBUILD=... -DSOURCE=... -DWORK=... -DPART=... -P check_installed.cmake
-# PART install is first; the others need its folder and run side by side: components, plain, wide, debug, address.
+# Installs modebank into a folder, builds the examples against it as a robot's developers would, and runs them: cmake -DBUILD=...
+# -DSOURCE=... -DWORK=... -DPART=... -P check_installed.cmake
+# PART install is first; the others use its folder and run in parallel: components, plain, wide, debug, address.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
-# The libraries that a program of ours asks for itself, beside those every C++ program does.
+# Checks the libraries that a program needs itself, beside those of every C++ program.
 function(needs_only program allowed)
   needed_libraries(${program} needed)
   foreach(library IN LISTS needed)
@@ -28,7 +28,7 @@ if(PART STREQUAL install)
   return()
 endif()
 
-# Each component alone asks for what it links and nothing else.
+# Each component requires exactly the libraries that it links.
 if(PART STREQUAL components)
   foreach(without "filter|HDF5|OpenSSL|Ceres|TBB|fmt" "judge|HDF5|OpenSSL|Ceres|TBB|fmt" "archive|Ceres|TBB|fmt" "ident|HDF5|OpenSSL|fmt" "mixture|HDF5|OpenSSL|Ceres"
           "learn|HDF5|OpenSSL")
@@ -44,8 +44,8 @@ if(PART STREQUAL components)
   return()
 endif()
 
-# Users compile as they like: plainly, for wider registers, without optimisation, under a sanitizer, and beside another
-# library of Eigen's that was compiled otherwise, with other_flags.
+# Users compile in their own ways: plain, for wider registers, without optimisation, under a sanitizer, and beside another library with
+# Eigen that was compiled with other_flags.
 set(flags_plain "-O2")
 set(other_flags_plain "-O2 -march=x86-64-v3")
 set(flags_wide "-O2 -march=x86-64-v3")
@@ -79,6 +79,6 @@ message(STATUS "${PART}: ${output}")
 if(PART STREQUAL plain)
   needs_only(${WORK}/plain/embedded_bank "hwy")
   needs_only(${WORK}/plain/robot_loop "hwy|hdf5_serial|crypto")
-  # Ceres may be a static library, and then what it needs itself is asked for, too.
+  # Ceres may be a static library; then its own dependencies are needed, too.
   needs_only(${WORK}/plain/identify "hwy|tbb|fmt|ceres|glog|gflags|cholmod|cxsparse|spqr|lapack|blas|f77blas")
 endif()

@@ -1,5 +1,5 @@
-// combined ARCHIVE: predicts the next sample by the bank and its competitors together, each weighted by how well it has
-// predicted so far.
+// combined ARCHIVE: predicts the next sample with the bank and its competitors combined, each weighted by its score so
+// far.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -23,13 +23,13 @@ int main(int argc, char** argv) try {
   constexpr int samples = 200;
   for (int k = 0; k < samples; ++k) {
     const double time_s = bank.dt_s() * k;
-    for (double& command : input) command = 0.2 * std::sin(time_s);    // what your robot was told
-    for (double& value : measurement) value = 0.1 * std::cos(time_s);  // what its gyro says
+    for (double& command : input) command = 0.2 * std::sin(time_s);    // your robot's commands
+    for (double& value : measurement) value = 0.1 * std::cos(time_s);  // its gyro's measurement
     double prediction = 0.0;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       const modebank::filter::Estimate& estimate = filters[i].step(time_s, input, measurement);
       said[i] = estimate.log_density;
-      prediction += weights.weights()[i] * estimate.prediction[0];  // made before this measurement
+      prediction += weights.weights()[i] * estimate.prediction[0];  // the prediction before this measurement
     }
     if (k > 0) squares += std::pow(measurement[0] - prediction, 2);
     weights.observe(said);

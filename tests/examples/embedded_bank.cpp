@@ -1,4 +1,4 @@
-// A bank written into the program, stepped with what any program has: arrays of doubles.
+// A bank as part of the program, stepped with plain arrays of doubles.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -26,16 +26,16 @@ int main() {
   for (int k = 0; k < 200; ++k) {
     const double grip = k < 100 ? 1.0 : 0.3;
     const std::array wheels{-0.4 * std::sin(0.1 * k), 0.4 * std::sin(0.1 * k)};
-    filter.step(k, wheels, std::array{yaw_rate});  // measured now; the wheels act until the next sample
+    filter.step(k, wheels, std::array{yaw_rate});  // measured now; the wheel speeds act until the next sample
     if (k == 100) slip_while_gripping = filter.estimate().mode_probability[1];
     yaw_rate += grip * (-0.6 * yaw_rate + 0.5 * (wheels[1] - wheels[0]));
   }
 
-  // The yaw rate in five samples if the wheels stop now. The first of them is ruled by the wheels as they are.
+  // The yaw rate in five samples if the wheels stop now. The first of these steps still has the present wheel speeds.
   const std::vector<modebank::filter::Forecast> ahead = filter.forecast(modebank::Matrix(2, 4), 5);
   std::printf("in 5 samples: %.3f +- %.3f\n", ahead[4].state[0], std::sqrt(ahead[4].covariance(0, 0)));
 
-  // Kept through a restart of the program: another filter of the bank goes on from these numbers.
+  // Survives a restart of the program: another filter of the bank continues from these numbers.
   const std::vector<double> kept = filter.snapshot();
   modebank::filter::BankFilter resumed{modebank::filter::Bank(bank)};
   resumed.restore(kept);

@@ -1,5 +1,5 @@
-// From recorded runs to a filter, in one program: a robot on grip and on ice is made up, its windows are fitted and
-// clustered, a bank is learned from them and stepped over a run that nothing was learned from.
+// From recorded runs to a filter in one program. It simulates a robot on grip and on ice, fits and clusters windows,
+// and learns a bank. Then it steps the bank over a run that did not train.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +16,7 @@
 
 namespace {
 
-// Yaw rate x[k+1] = x + a x + b (right - left) + noise: its a and b on grip and on ice.
+// Yaw rate x[k+1] = x + a x + b (right - left) + noise, with its a and b on grip and on ice.
 struct Ground {
   double a, b;
 };
@@ -46,7 +46,8 @@ modebank::RecordedRun drive(unsigned seed, bool held_out) {
   return run;
 }
 
-// A model of one's own: an equation for any number, derivatives come by themselves. Here both wheels have one gain.
+// A model of your own: one equation for any number type, with automatic derivatives. Here both wheels have the same
+// gain.
 struct YawModel {
   template <class T>
   void operator()(const T* theta, const T* x, const T* u, double, T* next) const {
@@ -54,7 +55,7 @@ struct YawModel {
   }
 };
 
-// How far the nearest column (A, B_left, B_right) of theta is from a ground's truth.
+// Distance of the nearest column (A, B_left, B_right) of theta from a ground's true values.
 double distance(const modebank::Matrix& theta, const Ground& truth) {
   double nearest = INFINITY;
   for (std::ptrdiff_t k = 0; k < theta.cols; ++k)
@@ -70,7 +71,7 @@ int main() try {
   modebank::RecordedRuns runs{{}, {"yaw_rate"}, {"left", "right"}};
   for (unsigned seed = 1; seed <= 6; ++seed) runs.runs.push_back(drive(seed, seed == 6));
 
-  // Step by step: a local model of every window, and the clusters of these.
+  // Step by step: a local model per window, then their clusters.
   modebank::LearnOptions options;
   options.window.length = 20;
   const modebank::ident::Windows windows = modebank::ident::fit_windows(runs, options.window);
@@ -81,7 +82,7 @@ int main() try {
   modebank::mixture::Points points{windows.theta, {}, {}, windows.run};
   points.effective_samples = static_cast<double>(windows.run.size()) / static_cast<double>(options.window.length);
   modebank::SelectionOptions few;
-  few.components = {1, 2, 3, 4};  // the windows that hold a change of ground may be one of their own
+  few.components = {1, 2, 3, 4};  // windows over a change of ground may form their own component
   const modebank::mixture::Clusters clusters = modebank::mixture::select(points, few);
   std::printf("%zu windows (%td by Ceres, %td by the batch solver), %zu clusters\n", windows.run.size(),
               windows.audit.ceres, windows.audit.batch, clusters.mixture.weights.size());
@@ -89,7 +90,7 @@ int main() try {
     std::printf("cluster %td: %.2f of the windows about %s = %.3f\n", k, clusters.mixture.weights[k],
                 windows.parameter_names[0].c_str(), clusters.mixture.means(0, k));
 
-  // All at once: what `modebank run` learns.
+  // All at once, as in `modebank run`.
   options.mixture.selection.components = {1, 2, 3};
   options.bank.refine = modebank::Refine::em;
   const modebank::learn::Learned learned = modebank::learn::learn_bank(runs, options);
@@ -99,7 +100,7 @@ int main() try {
                 known.theta_standard_error(0, k));
   std::printf("log-likelihood %.1f, one Kalman filter %.1f\n", learned.log_likelihood, learned.baseline_log_likelihood);
 
-  // At work: which ground is it?
+  // Use of the filter: which ground is it?
   int right = 0;
   const int ice = std::abs(known.theta(0, 0) - grounds[1].a) < std::abs(known.theta(0, 1) - grounds[1].a) ? 0 : 1;
   const modebank::RecordedRun& held_out = runs.runs.back();

@@ -1,6 +1,6 @@
 #pragma once
 
-// Another library of the robot's that uses Eigen inside, compiled in its own way.
+// Another library of the robot that uses Eigen inside, compiled with its own options.
 
 /// Makes, resizes and frees matrices.
 double other_eigen_sum();

@@ -1,4 +1,4 @@
-// Text logs, in the dialect that is found and in stated ones.
+// Text logs, in the detected dialect and in stated ones.
 #include "tests/fuzz/entry.hpp"
 #include "tests/fuzz/read_log.hpp"
 
@@ -6,7 +6,7 @@ namespace modebank::fuzz {
 
 namespace {
 
-/// The number of bytes chooses the stated dialect, so that one input keeps its own.
+/// The length of the input selects the stated dialect, so that an input always has the same one.
 void read_csv(std::string_view text) {
   const std::filesystem::path file = scratch_file("fuzz.csv", text);
   FormatOptions format;

@@ -1,5 +1,4 @@
-// libFuzzer's functions for one reader, which MODEBANK_FUZZ names; or, without libFuzzer, a main that runs every
-// corpus.
+// libFuzzer's functions for one reader, named by MODEBANK_FUZZ. Without libFuzzer: a main that runs every corpus.
 #include "tests/fuzz/entry.hpp"
 
 #include <unistd.h>
@@ -15,7 +14,7 @@
 #include "modebank/base/error.hpp"
 #include "tests/support/paths.hpp"
 
-// TBB keeps its threads until the process ends.
+// TBB's threads run until the process ends.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libtbb\n"; }  // NOLINT
 
 namespace modebank::fuzz {
@@ -66,7 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 #else
 
-/// fuzz [NAME FILE...]: all corpora, or these files with that reader.
+/// fuzz [NAME FILE...]: runs all corpora, or one reader on these files.
 int main(int argc, char** argv) {
   const auto run_file = [](const std::string& name, const std::filesystem::path& path) {
     std::printf("%s %s\n", name.c_str(), path.c_str());

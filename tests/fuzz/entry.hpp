@@ -6,14 +6,14 @@
 
 namespace modebank::fuzz {
 
-/// A reader of the program under any bytes. `read` returns, or refuses its input with one of the project's two
-/// exceptions; anything else (another exception, a signal, a sanitizer's report) is a finding. A static object per
-/// reader registers it by its name, which is also its folder in tests/fuzz/corpus.
+/// A reader of the program on arbitrary bytes. `read` returns, or throws one of the project's two exceptions. Anything
+/// else (another exception, a signal, a sanitizer's report) is a finding. A static object per reader registers it by
+/// its name, which is also its folder in tests/fuzz/corpus.
 struct Entry {
   Entry(const char* name, void (*read)(std::string_view));
 };
 
-/// A file of this process with that content, written anew at each call.
+/// A file of this process, rewritten with the given content at each call.
 std::filesystem::path scratch_file(std::string_view name, std::string_view content);
 
 /// Throws std::logic_error, which is a finding.

@@ -9,7 +9,7 @@ namespace modebank::fuzz {
 
 namespace {
 
-/// Lines of data.derive; one that begins with "where " is data.where. Columns hold what logs hold.
+/// Lines of data.derive; a line that begins with "where " is data.where. Columns have typical values of logs.
 void compute_channels(std::string_view text) {
   DataOptions options;
   for (std::size_t begin = 0; begin < text.size();) {

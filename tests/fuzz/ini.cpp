@@ -1,4 +1,4 @@
-// Configurations, with the points of their studies.
+// Configurations, and the points of their studies.
 #include "app/config/config_file.hpp"
 #include "app/study/space/study_space.hpp"
 #include "tests/fuzz/entry.hpp"
@@ -7,7 +7,7 @@ namespace modebank::fuzz {
 
 namespace {
 
-/// A configuration file as every command reads it. What it was resolved to is a configuration of the same meaning.
+/// Reads a configuration file as commands do. The resolved text must be a configuration of the same meaning.
 void read_configuration(std::string_view text) {
   const app::Config config = app::load_config(scratch_file("fuzz.ini", text), {});
   const std::string resolved = app::resolved_text(config);

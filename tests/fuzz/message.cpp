@@ -8,7 +8,7 @@ namespace modebank::fuzz {
 
 namespace {
 
-/// First the encoding, then the definition to a line "%%", then a message.
+/// Input: the encoding, the definition up to a line "%%", a message.
 void read_message(std::string_view input) {
   Connection connection;
   connection.topic = "/t";
@@ -33,7 +33,7 @@ void read_message(std::string_view input) {
     }
   };
   read(message);
-  read(std::string_view(message).substr(0, message.size() / 2));  // as a later message, shorter or longer
+  read(std::string_view(message).substr(0, message.size() / 2));  // later messages, shorter or longer
   read(message + message);
 }
 

@@ -6,8 +6,8 @@
 
 namespace modebank::fuzz {
 
-/// Opens a log as `run` does and reads all columns of its tables. `way` chooses which columns are texts, whether values
-/// may miss, and whether two columns are imported besides.
+/// Opens a log as `run` does and reads all columns of its tables. `way` selects text columns, whether values may be
+/// missing, and whether two columns are also imported.
 void read_log(const std::filesystem::path& file, const FormatOptions& format, std::size_t way);
 
 }  // namespace modebank::fuzz

@@ -1,4 +1,4 @@
-// Inputs of `track`: lines of samples, and checkpoints.
+// Input of `track`: lines of samples, and checkpoints.
 #include <cmath>
 
 #include "app/cli/track_input.hpp"
@@ -38,7 +38,7 @@ void track_lines(std::string_view text) {
   }
 }
 
-/// Goes on from a checkpoint for a few samples. No estimate from finite samples may be infinite.
+/// Continues from a checkpoint for a few samples. Finite samples must not give an infinite estimate.
 void resume(std::string_view text) {
   BankFilter filter = new_filter(text.size() % 2 == 0);
   try {

@@ -4,8 +4,8 @@
 #include <cerrno>
 #include <cstddef>
 
-// For one source file of a test program of its own, since it replaces these for all of the program's code, our
-// libraries' included: whatever takes memory, Eigen and operator new included, comes through here.
+// For a single source file of a separate test program. It replaces the allocation functions for all code of the program
+// and its libraries, Eigen and operator new included.
 namespace modebank::test {
 inline std::atomic<long> allocations = 0;
 }  // namespace modebank::test

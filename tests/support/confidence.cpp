@@ -14,7 +14,7 @@ namespace modebank {
 
 namespace {
 
-/// Less of a parameter than this is taken as none: the region is the prior's.
+/// A smaller share of information counts as none: the region is the prior's.
 constexpr double least_share = 1e-6;
 
 void check_level(double level) {

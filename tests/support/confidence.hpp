@@ -6,22 +6,22 @@
 
 namespace modebank {
 
-/// p standard errors of theta, the roots of the covariance's diagonal; NaN where that is.
+/// p standard errors of theta: roots of the covariance's diagonal, NaN where it is.
 Eigen::VectorXd standard_error(const LocalModel& fit);
 
 /// theta / standard error: distance from zero.
 Eigen::VectorXd t_value(const LocalModel& fit);
 
-/// Degrees of freedom nu of the noise variance behind the covariance: regions are (theta - truth)' covariance^-1 (theta
-/// - truth) <= p F_level(p, nu). Without a prior nu = L - p, at least 1. With one only f = sum of `information` of the
-/// p directions rest on the estimated noise variance, the others on the prior's known one: nu = 2 + (L - p - 2) p / f,
-/// which gives the statistic its mean under truth drawn from the prior. L <= q: infinite (the noise is known, regions
-/// are chi-square).
+/// Degrees of freedom nu of the noise variance in the covariance: regions are (theta - truth)' covariance^-1 (theta -
+/// truth) <= p F_level(p, nu). Without a prior nu = L - p, at least 1. With a prior only f = sum of `information` of
+/// the p directions depend on the estimated noise variance, the others on the prior's known one. Then nu = 2 + (L - p -
+/// 2) p / f, which gives the statistic its mean for truth drawn from the prior. For L <= q it is infinite (the noise is
+/// known, regions are chi-square).
 double region_degrees_of_freedom(const LocalModel& fit);
 
-/// The ellipsoid that holds theta's true value with probability `level`. With a sandwich covariance of several states
-/// it is too small unless L is large against p (docs/explanation/uncertainty.md): there take each state's parameters on
-/// their own.
+/// The ellipsoid that contains the true theta with probability `level`. With a sandwich covariance of several states it
+/// is too small unless L is large against p (docs/explanation/uncertainty.md); use each state's parameters separately
+/// there.
 struct ConfidenceRegion {
   Eigen::VectorXd center;      ///< p, theta
   Eigen::MatrixXd covariance;  ///< p x p
@@ -36,7 +36,7 @@ struct ConfidenceRegion {
 /// Throws std::invalid_argument unless 0 < level < 1.
 ConfidenceRegion confidence_region(const LocalModel& fit, double level = 0.95);
 
-/// Half width of the interval of each parameter on its own: standard error times the quantile of Student's t with
+/// Half width of the interval of each parameter by itself: standard error times the quantile of Student's t with
 /// region_degrees_of_freedom.
 Eigen::VectorXd interval_half_width(const LocalModel& fit, double level = 0.95);
 

@@ -4,8 +4,8 @@
 
 namespace modebank::test {
 
-/// How many cases a law is tried on: all in release, fewer in the debug, coverage and sanitizer builds, which take up
-/// to fifty times as long and look at the same code each time. For numbers of cases only: bounds are the same in every
+/// Number of cases for a test: all in release. Fewer in debug, coverage and sanitizer builds, which take up to fifty
+/// times as long and run the same code each time. Only numbers of cases may depend on it; bounds are equal in every
 /// build.
 constexpr std::ptrdiff_t in_release(std::ptrdiff_t all, std::ptrdiff_t otherwise) {
 #ifdef NDEBUG

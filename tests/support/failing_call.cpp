@@ -1,10 +1,10 @@
 // failing_call K|K+ REPORT FOLDER PROGRAM ARGUMENTS...
 //
-// A disk that runs full, whatever library writes to it: runs a program and counts the system calls by which it and its
-// children put something into FOLDER (and into standard output, where that is a file): create, write, truncate, sync,
-// close what was written, rename, link. The K-th fails with ENOSPC and does nothing; with K+ all from there on. REPORT
-// gets the number of calls and the failed ones, a line each. Ends as the program does. The kernel hands each such call
-// over before it acts (seccomp's user notification), so that those inside the C library are seen, too.
+// Simulates a disk that becomes full, for any library. Runs a program and counts the system calls of it and its
+// children that write to FOLDER (and to standard output, if that is a file): create, write, truncate, sync, close after
+// writing, rename, link. The K-th call fails with ENOSPC and does nothing; with K+ all later ones fail, too. REPORT
+// gets the number of calls, and one line for each failed call. The exit status is the program's. The kernel reports
+// each call before it acts (seccomp's user notification), so calls inside the C library count, too.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/audit.h>
@@ -31,7 +31,7 @@
 
 namespace {
 
-/// A call, and where it says what it acts on.
+/// A system call, and the argument that names its file.
 struct Call {
   int number;
   const char* name;
@@ -68,7 +68,7 @@ constexpr std::array calls{Call{SYS_write, "write", On::descriptor, 0},
   std::exit(125);
 }
 
-/// From now on the kernel asks about these calls; returns where.
+/// Makes the kernel report these calls; returns the descriptor for the reports.
 int install_filter() {
   std::vector<sock_filter> program;
   program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)));
@@ -82,7 +82,7 @@ int install_filter() {
   return static_cast<int>(syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_NEW_LISTENER, &whole));
 }
 
-/// One byte, and beside it room for a descriptor.
+/// A message of one byte, with room for a descriptor.
 struct DescriptorMessage {
   char byte = 0;
   iovec part{&byte, 1};
@@ -95,7 +95,7 @@ struct DescriptorMessage {
     header.msg_control = control.data();
     header.msg_controllen = control.size();
   }
-  DescriptorMessage(const DescriptorMessage&) = delete;  // it points into itself
+  DescriptorMessage(const DescriptorMessage&) = delete;  // contains pointers into itself
   DescriptorMessage& operator=(const DescriptorMessage&) = delete;
 };
 
@@ -129,13 +129,14 @@ std::string text_at(unsigned pid, std::uint64_t address) {
   std::string text(4096, '\0');
   const int memory = open(fmt::format("/proc/{}/mem", pid).c_str(), O_RDONLY | O_CLOEXEC);
   ssize_t count = -1;
-  for (std::size_t room = text.size(); count < 0 && room > 8; room /= 2)  // the text may end where memory does
+  for (std::size_t room = text.size(); count < 0 && room > 8;
+       room /= 2)  // the text may end before its memory page does
     count = pread(memory, text.data(), room, static_cast<off_t>(address));
   close(memory);
   return text.c_str();
 }
 
-/// What the call puts something into; empty when that is nothing in the folder.
+/// The file that the call writes to; empty if it is outside of the folder.
 class Counted {
  public:
   explicit Counted(std::string folder) : folder_(std::move(folder)) {}
@@ -148,7 +149,7 @@ class Counted {
     if (!path.empty() && path.front() != '/') path = link_target(fmt::format("/proc/{}/cwd", asked.pid)) + "/" + path;
     if (!within(path)) return {};
     struct stat about {};
-    if (opens && stat(path.c_str(), &about) == 0) return {};  // nothing is made
+    if (opens && stat(path.c_str(), &about) == 0) return {};  // creates nothing
     return path;
   }
 
@@ -166,7 +167,7 @@ class Counted {
     return S_ISREG(about.st_mode) && written(asked.pid, descriptor) ? path : std::string();
   }
 
-  /// Whether it is open for writing.
+  /// Whether the descriptor is open for writing.
   static bool written(unsigned pid, int descriptor) {
     std::ifstream info(fmt::format("/proc/{}/fdinfo/{}", pid, descriptor));
     for (std::string word; info >> word;)
@@ -177,7 +178,7 @@ class Counted {
   std::string folder_;
 };
 
-/// Answers for every call until no process is left that makes any. Returns how many there were.
+/// Answers every call until no process is left. Returns the number of calls.
 std::uint64_t answer_all(int listener, std::uint64_t first, std::uint64_t last, const Counted& counted,
                          std::vector<std::string>& failed) {
   std::uint64_t count = 0;
@@ -187,7 +188,7 @@ std::uint64_t answer_all(int listener, std::uint64_t first, std::uint64_t last, 
       continue;
     }
     seccomp_notif asked{};
-    if (ioctl(listener, SECCOMP_IOCTL_NOTIF_RECV, &asked) != 0) continue;  // it was killed meanwhile
+    if (ioctl(listener, SECCOMP_IOCTL_NOTIF_RECV, &asked) != 0) continue;  // the process was killed meanwhile
     seccomp_notif_resp answer{asked.id, 0, 0, SECCOMP_USER_NOTIF_FLAG_CONTINUE};
     for (const Call& call : calls) {
       if (call.number != asked.data.nr) continue;
@@ -221,7 +222,7 @@ int main(int argc, char** argv) {
     const int listener = install_filter();
     if (listener < 0) fail("seccomp");
     send_descriptor(pair[1], listener);
-    // Closing it here would be asked about: exec closes it.
+    // Closed by exec, because a close() here would be reported.
     fcntl(listener, F_SETFD, FD_CLOEXEC);
     execvp(argv[4], argv + 4);
     fail(argv[4]);

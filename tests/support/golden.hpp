@@ -6,13 +6,13 @@
 
 namespace modebank::test {
 
-/// A golden file, tests/golden/NAME.json. Throws when it is absent.
+/// Reads a golden file, tests/golden/NAME.json. Throws when it does not exist.
 nlohmann::json read_golden(const std::string& name);
 
-/// Numbers, or rows of numbers (any nesting below), as the matrix with these rows; null: NaN.
+/// The matrix with these rows (numbers, or rows of numbers in any nesting); null becomes NaN.
 Eigen::MatrixXd golden_rows(const nlohmann::json& rows);
 
-/// The same with rows as columns: one sample per row there, one per column here.
+/// The same with rows as columns: the file has one sample per row, the matrix one per column.
 Eigen::MatrixXd golden_columns(const nlohmann::json& rows);
 
 }  // namespace modebank::test

@@ -1,6 +1,6 @@
-// Loaded before a test program (LD_PRELOAD): its vector kernels run by the instruction set that
-// MODEBANK_TEST_INSTRUCTION_SET names (AVX3, AVX2, SCALAR), not by the machine's best. Ends the program with `skipped`
-// where the machine lacks it, and with `unused` where no kernel was called, so that a test cannot pass by another set.
+// Preloaded before a test program (LD_PRELOAD): its vector kernels use the instruction set in
+// MODEBANK_TEST_INSTRUCTION_SET (AVX3, AVX2, SCALAR) instead of the machine's best. Ends the program with `skipped` if
+// the machine lacks the set, and with `unused` if no kernel was called, so that a test cannot pass with another set.
 #include <hwy/targets.h>
 #include <unistd.h>
 

@@ -8,7 +8,7 @@
 
 namespace modebank::test {
 
-/// The temporary file of a process that was killed two days ago; its path.
+/// Creates the temporary file of a process that was killed two days ago, and returns its path.
 inline std::filesystem::path leave_behind(const std::filesystem::path& target) {
   const std::filesystem::path path = temporary_path(target);
   std::ofstream(path) << "half";

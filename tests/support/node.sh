@@ -1,6 +1,6 @@
 #!/bin/sh
-# node.sh NAME MOUNT_PROGRAM BACKING MOUNT CACHE_S SKEW_S COMMAND...: runs a command as on a machine of that name
-# that sees BACKING at MOUNT over a network: with host name, processes and mounts of its own (root only).
+# node.sh NAME MOUNT_PROGRAM BACKING MOUNT CACHE_S SKEW_S COMMAND...: runs a command as on a machine of that name that
+# has BACKING at MOUNT over a network. It has its own host name, processes and mounts (root only).
 set -eu
 if [ "${MODEBANK_NODE:-}" != inside ]; then
   exec env MODEBANK_NODE=inside unshare --uts --pid --mount --fork --kill-child --mount-proc "$0" "$@"

@@ -5,15 +5,15 @@
 
 namespace modebank::test {
 
-/// The checkout.
+/// The root of the source tree.
 std::filesystem::path project_dir();
-/// Golden files; the scripts that made them are in generate/ beside it.
+/// Folder of golden files; its subfolder generate/ has the scripts that made them.
 std::filesystem::path golden_dir();
 
 /// Real data: $MODEBANK_DATA, else ../shared/data beside the checkout; empty when there is none.
 std::filesystem::path shared_data_dir();
 
-/// A folder of its own that is removed with the object.
+/// A temporary folder; the destructor removes it.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -40,8 +40,7 @@ bool has_python_modules(const std::string& names);
 
 }  // namespace modebank::test
 
-/// Skips the test with a reason where something from outside the project is absent. Fails instead where `required`
-/// holds.
+/// Skips the test, with a reason, if something outside of the project is missing. Fails instead if `required`.
 #define MODEBANK_NEEDS_UNLESS(present, absence, required)            \
   if (!(present)) {                                                  \
     ASSERT_FALSE(required) << (absence) << " (it is required here)"; \

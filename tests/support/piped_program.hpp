@@ -11,16 +11,16 @@
 
 namespace modebank::test {
 
-/// A program with pipes on its standard input and output, for tests that talk to it line by line.
+/// A program with pipes for its standard input and output, for tests that exchange lines with it.
 class PipedProgram {
  public:
   explicit PipedProgram(const std::vector<std::string>& arguments);
-  ~PipedProgram();  ///< kills what is left
+  ~PipedProgram();  ///< kills the program if it still runs
   PipedProgram(const PipedProgram&) = delete;
   PipedProgram& operator=(const PipedProgram&) = delete;
 
   void write(const std::string& text);
-  /// The next line of its output without the newline; nothing at the end of the output or after ten minutes.
+  /// The next line of output without the newline; nullopt at the end of the output, or after ten minutes.
   std::optional<std::string> read_line();
   void close_input();
   void close_output();

@@ -1,10 +1,9 @@
-// shared_mount BACKING MOUNT CACHE_S SKEW_S: shows a folder in another place as a machine sees one that it shares
-// over a network (libfuse3), until it is unmounted. What NFS does to programs, at its worst:
+// shared_mount BACKING MOUNT CACHE_S SKEW_S: shows a folder at another path as a machine sees it over a network
+// (libfuse3), until it is unmounted. It has the properties of NFS that trouble programs:
 // - every lock is refused (ENOLCK);
-// - what a name says (size, times, that there is nothing) is remembered for CACHE_S seconds, until the file is opened
-//   here, or for absent names until their folder is listed; what is read is fresh when the file was opened
-//   (close-to-open);
-// - times are SKEW_S seconds later than they are on the server, as they look to a machine whose clock is slow;
+// - attributes of a name (size, times, absence) are cached for CACHE_S seconds, until the file is opened here, or
+//   for absent names until their folder is listed; content is fresh after opening (close-to-open);
+// - times are SKEW_S seconds later than on the server, as on a machine with a slow clock;
 // - a file that another mount replaced or removed while it is open here is gone (ESTALE).
 #define FUSE_USE_VERSION 35
 #include <dirent.h>
@@ -27,7 +26,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct Known {
-  int error = 0;  ///< ENOENT where there is nothing
+  int error = 0;  ///< ENOENT for an absent name
   struct stat about {};
   Clock::time_point until;
 };
@@ -48,7 +47,7 @@ void forget(const char* path) {
   mount.known.erase(path);
 }
 
-/// A folder and everything in it.
+/// Removes a folder and everything in it from the cache.
 void forget_below(const std::string& folder) {
   const std::lock_guard lock(mount.mutex);
   const std::string prefix = folder == "/" ? folder : folder + "/";
@@ -82,10 +81,11 @@ int get_attributes(const char* path, struct stat* about, fuse_file_info* file) {
 
 int open_file(const char* path, fuse_file_info* file) {
   forget(path);
-  // The kernel knows files by their names here, and would mix pages of one that was replaced with those of the new one;
-  // a real network file system numbers files.
+  // The kernel identifies files here by their names, and would mix pages of a replaced file with those of the new one.
+  // A real network file system numbers files.
   file->direct_io = (file->flags & O_ACCMODE) == O_RDONLY;
-  const int descriptor = ::open(real(path).c_str(), file->flags & ~O_APPEND);  // the kernel says where to write
+  const int descriptor =
+      ::open(real(path).c_str(), file->flags & ~O_APPEND);  // the kernel passes the offset of each write
   if (descriptor < 0) return -errno;
   file->fh = static_cast<std::uint64_t>(descriptor);
   return 0;
@@ -99,7 +99,7 @@ int create_file(const char* path, mode_t mode, fuse_file_info* file) {
   return 0;
 }
 
-/// Whether the server has dropped the file: no mount but this one knew that it is open.
+/// Whether the server has dropped the file: only this mount had it open.
 bool is_stale(int descriptor) {
   struct stat about {};
   return ::fstat(descriptor, &about) == 0 && about.st_nlink == 0;
@@ -184,7 +184,7 @@ int lock_range(const char*, fuse_file_info*, int, struct flock*) { return -ENOLC
 int lock_whole(const char*, fuse_file_info*, int) { return -ENOLCK; }
 
 void* start(fuse_conn_info*, fuse_config* config) {
-  // Nothing is remembered by the kernel; what is remembered here is under control.
+  // The kernel caches nothing; only this program's cache counts.
   config->entry_timeout = config->negative_timeout = config->attr_timeout = 0.0;
   config->use_ino = 1;
   return nullptr;

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Ends what slurm_up.sh started: its jobs, then its daemons, by the ids they left in the folder. Usage: slurm_down.sh FOLDER
+# Ends the jobs and daemons that slurm_up.sh started, by the ids in the folder. Usage: slurm_down.sh FOLDER
 folder=$(readlink -f "$1")
 export SLURM_CONF="$folder/slurm.conf"
 timeout 10 scancel --full --state=RUNNING,PENDING --user="$(id -un)" 2>/dev/null

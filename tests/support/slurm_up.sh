@@ -1,6 +1,7 @@
 #!/bin/sh
-# Starts a Slurm of its own on this machine: munged, slurmctld and one slurmd per emulated node, all in one folder, no service, no
-# file outside. Usage: slurm_up.sh FOLDER NODES CPUS_PER_NODE FIRST_PORT. Then SLURM_CONF=FOLDER/slurm.conf; end: slurm_down.sh FOLDER.
+# Starts a private Slurm on this machine: munged, slurmctld and one slurmd per emulated node, all in one folder, without services or files
+# elsewhere. Usage: slurm_up.sh FOLDER NODES CPUS_PER_NODE FIRST_PORT. Then set SLURM_CONF=FOLDER/slurm.conf; end it with slurm_down.sh
+# FOLDER.
 set -eu
 PATH=$PATH:/usr/sbin
 mkdir -p "$1"
@@ -14,7 +15,7 @@ dd if=/dev/urandom of=munge/key bs=1 count=1024 status=none
 chmod 400 munge/key
 munged --force --key-file="$folder/munge/key" --socket="$folder/run/munge.sock" --pid-file="$folder/run/munged.pid" \
   --log-file="$folder/log/munged" --seed-file="$folder/munge/seed"
-# cred_expire: a job of a lost node waits that long before it is started again, two minutes by default.
+# cred_expire: time before a job of a lost node is started again, two minutes by default.
 # config_overrides: nodes may claim more processors than the machine has.
 cat > slurm.conf <<CONF
 ClusterName=modebank

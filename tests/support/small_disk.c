@@ -24,10 +24,10 @@ __attribute__((constructor)) static void open_counter(void) {
   close(file);
 }
 
-/* How much of it may be written; -1 with errno when nothing. */
+/* Number of bytes that may be written; -1 with errno when it is 0. */
 static ssize_t allowed(int file, size_t bytes) {
   struct stat about;
-  /* Messages go elsewhere, also where a test keeps them in a file. */
+  /* Messages are not limited, even if a test writes them to a file. */
   if (file == STDOUT_FILENO || file == STDERR_FILENO) return (ssize_t)bytes;
   if (!left_bytes || bytes == 0 || fstat(file, &about) != 0 || !S_ISREG(about.st_mode)) return (ssize_t)bytes;
   const int64_t before = atomic_fetch_sub(left_bytes, (int64_t)bytes);

@@ -227,7 +227,7 @@ TEST_F(ClocksAndNumbers, MeasuredSamplesWithoutAScoreAreCounted) {
   const ProgramResult result =
       run({"--data.missing", "predict", "--window.model", "varx", "--window.state_lags", "3", "--bank.refine", "none"});
   ASSERT_EQ(result.status, 0) << result.err;
-  // Of 80 samples every third is missing from the second on. Of the other 53, three are at the start.
+  // Every third of 80 samples is missing, from the second on. 53 remain, three of them at the start.
   EXPECT_THAT(result.err, HasSubstr("scores: 50 of 133 measured samples have no score, most of them in run 01"));
   EXPECT_THAT(modebank({"show", archive()}).out, HasSubstr("measured samples have no score"));
   const ProgramResult gaps = run({"--data.missing", "gap", "--bank.refine", "none"});

@@ -144,7 +144,7 @@ TEST_F(Track, CombinedFiltersAreThoseThatWereScored) {
   EXPECT_EQ(modebank({"predict", archive(), "--samples", "3", "--track.filter", "combined"}).status, 0);
 }
 
-/// Without scored training samples there is no reason to prefer a filter, so weights are equal.
+/// Without scored training samples all filters have equal weights.
 TEST_F(Track, CombinedFiltersStartEquallyWhereTrainingScoredNothing) {
   Archive unscored = read_archive(archive());
   std::vector<std::string> filters{"combined"};

@@ -281,7 +281,7 @@ TEST_F(Report, BeginsWithWhatTheFirstScreenSaysAndAPicture) {
   }
 }
 
-/// Of three modes the first is listed and two are merged. Transitions out of the merged ones are weighted by use.
+/// The first of three modes is listed, the other two are merged. Transitions out of the merged ones are weighted by use.
 TEST(ReportFolding, TransitionsOfTheOthersAreTheirMean) {
   const Eigen::MatrixXd T{{0.9, 0.06, 0.04}, {0.2, 0.7, 0.1}, {0.5, 0.1, 0.4}};
   const Eigen::MatrixXd folded = folded_transition(T, {0}, Eigen::Vector3d(0.7, 0.2, 0.1));
