@@ -169,7 +169,7 @@ def check_windows(file):
     expect("parameter_names", group.attrs["parameter_names"],
            np.array([b"A11", b"A12", b"B11", b"c1", b"A21", b"A22", b"B21", b"c2"]))
     expect("parameter_labels", group.attrs["parameter_labels"], LABELS)
-    check_strings(group["run"], "run", ("utf-8", "ascii"))  # ASCII is UTF-8, and all that Octave reads
+    check_strings(group["run"], "run", ("utf-8", "ascii"))  # ASCII is valid UTF-8, and Octave reads only ASCII
     expect("run", [name.decode() for name in group["run"]], ["10" if i % 3 == 2 else "run 2" for i in range(M)])
     expect_array(group["start"], (M,), "<i8")
     expect("start", group["start"][()], np.arange(M) % 7)
@@ -220,7 +220,7 @@ def check_mixture(file):
     expect_array(group["labels"], (M,), "<i4")
     expect_array(group["responsibilities"], (M, K), "<f8")
     expect("means", group["means"][()], pattern(K, F, 20.0))
-    for k in range(K):  # base + 101 i + 1/3 on the diagonal, 1/3 beside it
+    for k in range(K):  # base + 101 i + 1/3 on the diagonal, 1/3 elsewhere
         covariance = np.full((F, F), 1.0 / 3.0)
         np.fill_diagonal(covariance, 30.0 + k + 101.0 * np.arange(F) + 1.0 / 3.0)
         expect(f"covariances[{k}]", group["covariances"][k], covariance)

@@ -131,7 +131,7 @@ class Fold:
 
     def regressors(self, run):
         h, y, first = regressors(run, self.na, self.nb, self.delay)
-        # A run starts at the first sample with a whole history of samples, and is scored from the next one on.
+        # A run starts at the first sample whose lags are complete, and is scored from the next one on.
         return h / self.scale, y, first
 
     def grid(self):

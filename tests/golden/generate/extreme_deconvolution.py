@@ -67,14 +67,14 @@ def random_covariance(scale):
 truth_means = np.array([[0.0, 0.0, 0.0], [3.0, 2.0, -2.0], [-2.0, 4.0, 1.0]])
 shapes = [np.linalg.cholesky(random_covariance(0.5) + 0.1 * np.eye(F)) for _ in range(3)]
 labels = rng.choice(3, size=N, p=[0.5, 0.3, 0.2])
-# Every fifth point is exact; the others' errors reach from a tenth to three times the components' spread, and some leave one
-# direction entirely unknown.
+# Every fifth point is exact. The others' errors are 0.1 to 3 times the components' standard deviations, and some points have one unknown
+# direction.
 errors = np.array([np.zeros((F, F)) if i % 5 == 0 else random_covariance(10 ** rng.uniform(-1, 0.5)) for i in range(N)])
 direction = np.array([1.0, -1.0, 0.5]) / 1.5
 errors[3::17] += 1e5 * np.outer(direction, direction)
 points = np.array([truth_means[k] + shapes[k] @ rng.standard_normal(F) + rng.multivariate_normal(np.zeros(F), S)
                    for k, S in zip(labels, errors)])
-# As far as the point is concerned the unknown direction may read anything; keep the cloud's scale.
+# The value along an unknown direction does not matter, but should keep the cloud's scale.
 points[3::17] -= np.outer(points[3::17] @ direction, direction)
 points, errors = points * UNITS, errors * np.outer(UNITS, UNITS)
 importance = 0.5 + rng.random(N)

@@ -29,9 +29,9 @@ def weighted_least_squares(rng):
         "state": x.tolist(), "input": u.tolist(), "weight": w.tolist(), "sigma": [0.06],
         "theta": fit.params.tolist(), "covariance": fit.cov_params().tolist(), "hc3": fit.cov_HC3.tolist(),
         "standard_error": fit.bse.tolist(), "t_value": fit.tvalues.tolist(),
-        # statsmodels' scale is that of weight one, ours that of the mean weight
+        # statsmodels' scale is for weight one, modebank's for the mean weight
         "noise_variance": fit.scale / w[1:][used].mean(),
-        # statsmodels takes R^2 of a model without constant about zero, ours is about the mean
+        # statsmodels' R^2 of a model without constant is about zero, modebank's is about the mean
         "r_squared": 1 - fit.ssr / fit.centered_tss,
         "aic": fit.aic + 2,  # statsmodels does not count the variance as a parameter
         "population_variance": fit.ssr / used.sum() / w[1:][used].mean(),

@@ -123,7 +123,7 @@ def run_filter(bank, u, y, variant):
         xc = sum(c[j] * xp[j] for j in range(K))
         Sc = sum(c[j] * (S[j] + np.outer(C @ (xp[j] - xc), C @ (xp[j] - xc))) for j in range(K))
         out['prediction'][k], out['innovation_covariance'][k], out['predicted'][k] = xc, Sc, c
-        m = ~np.isnan(y[:, k])  # signals that are there
+        m = ~np.isnan(y[:, k])  # signals that are not missing
         if not m.any():
             x, P, mu = xp, Pp, floored(c)
         else:

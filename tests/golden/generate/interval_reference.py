@@ -27,7 +27,7 @@ def phi(x):
 def condition(mean, variance, R, low, high):
     """Mass, mean and variance of x ~ N(mean, variance) given that x + v is in [low, high], v ~ N(0, R)."""
     deviation = math.sqrt(variance)
-    # The grid is split at the interval's ends where there is no noise that smooths them.
+    # Without noise the integrand is discontinuous at the interval's ends, so the grid is split there.
     ends = np.clip([(low - mean) / deviation, (high - mean) / deviation], -9.0, 9.0)
     if R == 0.0:
         x = np.linspace(ends[0], ends[1], 40001)

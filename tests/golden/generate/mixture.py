@@ -19,7 +19,7 @@ warnings.filterwarnings("ignore")
 rng = np.random.default_rng(20250500)
 
 WEIGHTS = np.array([0.5, 0.3, 0.2])
-# Units differ on purpose, as far as scipy accepts the covariance as regular.
+# Units differ strongly, as far as scipy still accepts the covariance as regular.
 UNITS = np.array([1.0, 0.02, 10.0])
 MEANS = np.array([[0.0, 0.0, 0.0], [3.0, 1.0, -2.0], [-2.0, 3.0, 1.5]]) * UNITS
 SHAPES = [np.array([[1.0, 0.0, 0.0], [0.5, 0.8, 0.0], [-0.3, 0.2, 0.6]]),
@@ -74,7 +74,7 @@ labels = rng.choice(3, size=300, p=WEIGHTS)
 points = np.array([MEANS[k] + UNITS * (SHAPES[k] @ rng.standard_normal(3)) for k in labels])
 start = {"weights": np.array([0.4, 0.3, 0.3]), "means": MEANS + 0.4 * UNITS,
          "covariances": np.array([np.diag(UNITS**2) * s for s in (1.5, 1.0, 0.8)])}
-# The last three are 20, 1e3 and 1e6 standard deviations out.
+# The last three are 20, 1e3 and 1e6 standard deviations away.
 probes = np.vstack([points[:20], UNITS * 20.0, UNITS * -1e3, UNITS * 1e6])
 log_density, responsibilities = densities(probes)
 json.dump(plain({
