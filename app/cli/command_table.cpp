@@ -27,9 +27,9 @@ CommandOption output(const std::string& what, const std::string& help) {
 CommandOption force(const std::string& help) { return {"force", "", help, &CommandLine::force}; }
 CommandOption of_run(const std::string& help) { return {"run", "NAME", help, &CommandLine::run}; }
 CommandOption dry_run() {
-  return {"dry-run", "", "say what would be read and written, and stop", &CommandLine::dry_run};
+  return {"dry-run", "", "list the files to read and write, then stop", &CommandLine::dry_run};
 }
-CommandOption as_json(const std::string& help = "the result as one JSON object") {
+CommandOption as_json(const std::string& help = "print the result as one JSON object") {
   return {"json", "", help, &CommandLine::json};
 }
 
@@ -54,30 +54,30 @@ std::vector<Command> commands_to_start() {
        "modebank init robot.bag",
        {},
        {as_json(),
-        output("FILE", "the configuration (named after the log)"),
+        output("FILE", "path of the configuration (named after the log)"),
         force("overwrite a configuration of that name"),
-        {"yes", "", "ask nothing; without it a terminal is asked whether state and inputs are right",
+        {"yes", "", "ask no questions; without it `init` asks on a terminal whether state and inputs are right",
          &CommandLine::yes}},
        run_init},
       {"Start",
        "check",
        one_config,
        "advice on the data before anything is fitted, and settings that gain",
-       "Clocks, gaps, repeats, excitation and outliers, run by run; then settings that score better on training runs "
-       "left out.",
+       "Reports clocks, gaps, repeats, excitation and outliers of each run, then settings that score better on "
+       "training runs left out.",
        "modebank check robot.ini",
        chain_keys,
        {as_json(),
-        {"findings", "", "leave the settings out, which take minutes on large data", &CommandLine::findings},
+        {"findings", "", "try no settings, which would take minutes on large data", &CommandLine::findings},
         {"apply", "", "write the configuration with the suggested settings, to -o FILE", &CommandLine::apply},
-        output("FILE", "what --apply writes"),
+        output("FILE", "path of the file for --apply"),
         force("overwrite a configuration of that name")},
        run_check},
       {"Start",
        "config",
        {"CONFIG", "needs one configuration file", 0, 1},
        "the resolved configuration, and where each value comes from",
-       "Of every key its value and its origin: line of the file, command line or default. It is itself a "
+       "Prints every key with its value and origin (line of the file, command line or default). The output is itself a "
        "configuration.",
        "modebank config robot.ini",
        {"data", "window", "mixture", "bank", "filter", "archive", "job", "study", "track", "report", "simulate"},
@@ -97,13 +97,13 @@ std::vector<Command> commands_to_identify() {
        "Fits windows, clusters them, learns a bank of modes and judges it on held-out runs against simpler models. "
        "From "
        "logs it writes NAME.ini, NAME.h5 and NAME.html into the current folder: `init` proposes a configuration, and "
-       "training runs that are left out decide more of it.",
+       "training runs left out decide further settings.",
        "modebank run robot.bag",
        chain_keys,
        {as_json(),
         dry_run(),
-        force("replace an archive of other data, with logs all files"),
-        {"effort", "quick | normal | thorough", "how many settings are tried on logs (normal)", &CommandLine::effort}},
+        force("replace an archive of other data; with logs, all files"),
+        {"effort", "quick | normal | thorough", "number of settings to try on logs (normal)", &CommandLine::effort}},
        run_pipeline},
       {"Identify",
        "identify",
@@ -130,7 +130,7 @@ std::vector<Command> commands_to_identify() {
        "study",
        one_config,
        "run a chain for many settings, on one machine or on a Slurm cluster",
-       "Plans, runs and merges; what is done is not done again. --study.stage does one step.",
+       "Plans, runs and merges; finished runs are not repeated. --study.stage executes a single step.",
        "modebank study robot.ini --study.vary 'window.length = 20 | 40 | 80'",
        {"data", "window", "mixture", "bank", "filter", "job", "study"},
        written,
@@ -157,7 +157,7 @@ std::vector<Command> commands_to_use() {
        "modebank show robot.h5 /bank/A",
        {},
        {as_json(),
-        of_run("of arrays over samples and of tables, the rows of this run"),
+        of_run("print only the rows of this run, in arrays over samples and in tables"),
         {"form", "increment | full", "of A: x[k+1] - x[k] = A x[k], or x[k+1] = A x[k]", &CommandLine::form}},
        run_show},
       {"Use",
@@ -167,39 +167,38 @@ std::vector<Command> commands_to_use() {
                     report::most_compared),
         1, report::most_compared},
        "a page that opens offline in a browser: of a run, a study, runs side by side, or a folder",
-       "A folder of archives becomes SITE/index.html, a table that sorts, filters and compares, with a page for each "
-       "archive and study below the folder. Run again, it makes the pages whose archive changed.",
+       "For a folder of archives it makes SITE/index.html, a table to sort, filter and compare, and a page for each "
+       "archive and study. Later calls make only pages whose archive changed.",
        "modebank report robot.h5",
        {"report"},
-       {as_json(), output("FILE|SITE", "the page, or the folder of pages (named after the archive or folder)")},
+       {as_json(), output("FILE|SITE", "path of the page, or folder of the pages (named after the archive or folder)")},
        run_report},
       {"Use",
        "track",
        one_archive,
-       "live filter: samples in on standard input or from --data.inputs, estimates out, line by line",
-       "Lines in: a header with the columns that the archive was made from (or JSON objects of these names), then a "
-       "sample each, in any form that `run` reads; a state that was not measured stays empty. --data.inputs FILE reads "
-       "a "
-       "recorded log in place of lines. Lines out: the estimate, its interval, the modes' probabilities, the "
-       "prediction "
-       "for the next sample, an alarm.",
+       "filter live: reads samples line by line from standard input, or a log, and prints estimates",
+       "Input: a header with the archive's columns, then one line per sample (or JSON objects with these names), in "
+       "any form that `run` reads. A missing state is an empty field. --data.inputs FILE reads a recorded log instead. "
+       "Output lines: the estimate, its interval, the modes' probabilities, the prediction for the next sample, an "
+       "alarm.",
        "modebank track robot.h5 < log.csv",
        {"data", "filter.variant", "filter.noise", "track"},
-       {as_json("lines out are JSON objects, as they are where lines in are")},
+       {as_json("print JSON objects; this is the default for JSON input")},
        run_track,
        {"data.truth", "data.weight", "data.label"}},
       {"Use",
        "predict",
        one_archive,
-       "free run: a few measured samples, then inputs only",
-       "Files need the archive's columns; states after the first samples may be missing. Out comes, per sample and "
-       "state, the prediction with its standard deviation and 95 % band, and the most probable mode.",
+       "predict a run from a few measured samples, then inputs only",
+       "Files need the archive's columns; states after the first samples may be missing. Prints, per sample and state, "
+       "the prediction with its standard deviation and 95 % band, and the most probable mode.",
        "modebank predict robot.h5 --data.inputs plan.csv --samples 10",
        {"data", "filter", "track.filter", "job"},
        {as_json(),
-        {"samples", "N", "measured samples at the start, short for --filter.simulate", "filter.simulate"},
-        {"horizon", "H", "steps from there on, short for --filter.simulate_horizon", "filter.simulate_horizon"},
-        {"filter", "NAME", "which model, short for --track.filter", "track.filter"},
+        {"samples", "N", "number of measured samples at the start; short for --filter.simulate", "filter.simulate"},
+        {"horizon", "H", "number of samples to predict; short for --filter.simulate_horizon",
+         "filter.simulate_horizon"},
+        {"filter", "NAME", "filter of the archive; short for --track.filter", "track.filter"},
         output("FILE", "CSV file (standard output)")},
        run_predict,
        {"data.truth", "data.weight", "data.label", "filter.horizon", "filter.smooth"}},
@@ -217,9 +216,9 @@ std::vector<Command> commands_to_use() {
        {as_json(),
         {"to", "FORM", "json, regimes, mat, c, casadi, ros2 or csv", &CommandLine::to},
         output("FILE", "file, or folder of ros2"),
-        force("also where the verdict speaks against it"),
-        {"table", "PATH", "csv: which table of the archive", &CommandLine::table},
-        of_run("csv: the rows of this run; of /data or /evaluation/FILTER, a column per signal"),
+        force("export the bank even against this verdict"),
+        {"table", "PATH", "csv: path of the table in the archive", &CommandLine::table},
+        of_run("csv: only the rows of this run; /data or /evaluation/FILTER as one table with a column per signal"),
         {"wheel_separation_m", "W", "ros2: as the controller has it", &CommandLine::wheel_separation_m},
         {"wheel_radius_m", "R", "ros2: as the controller has it", &CommandLine::wheel_radius_m}},
        run_export},
@@ -230,7 +229,7 @@ std::vector<Command> commands_to_use() {
        "",
        "modebank verify robot.h5",
        {},
-       {as_json(), {"repair", "", "of study folders: remove what is broken", &CommandLine::repair}},
+       {as_json(), {"repair", "", "remove broken files of study folders", &CommandLine::repair}},
        run_verify},
   };
 }
@@ -240,23 +239,31 @@ std::vector<Command> commands_about() {
       {"About",
        "help",
        {"[COMMAND | SECTION | KEY | TERM]", "", 0, any_number},
-       "what a command, a key or a word of the summary means",
+       "explain a command, a key or a word of the summary",
        "",
        "modebank help window.length",
        {},
-       {as_json(), {"markdown", "", "all keys as a table", &CommandLine::markdown}},
+       {as_json(), {"markdown", "", "print all keys as a table", &CommandLine::markdown}},
        nullptr},
       {"About", "version", no_name, "version and revision", "", "modebank version", {}, {as_json()}, nullptr},
       {"About",
        "completion",
        {"bash | zsh | fish", "needs one shell", 1, 1},
-       "completion for a shell, to be sourced",
+       "print a completion script for a shell, to be sourced",
        "",
        "source <(modebank completion bash)",
        {},
        {},
        run_completion},
-      {"About", "manual", one_command, "manual page in roff", "", "modebank manual run | man -l -", {}, {}, run_manual},
+      {"About",
+       "manual",
+       one_command,
+       "print a manual page in roff",
+       "",
+       "modebank manual run | man -l -",
+       {},
+       {},
+       run_manual},
   };
 }
 
@@ -296,9 +303,9 @@ const std::vector<Command>& command_table() {
 
 const std::vector<CommandOption>& common_options() {
   static const std::vector<CommandOption> options{
-      {"help,h", "", "what a command does and reads", &CommandLine::help},
+      {"help,h", "", "explain the command and its options", &CommandLine::help},
       {"quiet,q", "", "errors only on standard error", &CommandLine::quiet},
-      {"verbose,v", "", "every candidate that was tried, too", &CommandLine::verbose},
+      {"verbose,v", "", "print also every candidate that was tried", &CommandLine::verbose},
       {"version", "", "version and revision", &CommandLine::version}};
   return options;
 }

@@ -47,8 +47,8 @@ ExportedBank read_bank(const CommandLine& line) {
       exported_bank(archive, file, tracked_bank(config), tracked_options(config), input_lag_of(archive, config));
   if (!bank.may_be_trusted() && !line.force)
     throw DataError(
-        fmt::format("{}: the verdict on {} is {}. What takes its uncertainty for true would be misled; --force exports "
-                    "it all the same, the verdict on top",
+        fmt::format("{}: the verdict on {} is {}. A program that relies on its uncertainty would be misled; --force "
+                    "exports it in spite of that, with the verdict at the top",
                     file.path().string(), bank.filter, bank.verdict_text()));
   return bank;
 }
@@ -125,7 +125,7 @@ json export_mat(const CommandLine& line) {
   write_mat(bank, output);
   print_text(line,
              fmt::format("wrote {0}: in MATLAB or Octave, m = load('{0}'); A = m.A(:, :, 1) is mode 1 of {1} ...\n"
-                         "  x[k+1] = A x[k] + B u[k] + c every m.dt_s; m.ss_lines makes a system of it\n",
+                         "  x[k+1] = A x[k] + B u[k] + c every m.dt_s; m.ss_lines has the code for a system\n",
                          output.string(), bank.bank.modes.size()));
   return {{"written", {output.string()}}};
 }
@@ -135,11 +135,11 @@ json export_c(const CommandLine& line) {
   path source = output_of(line, ".c");
   if (std::filesystem::is_directory(source)) source /= file_stem(path(line.files.front()).stem().string()) + ".c";
   if (source.extension() != ".c")
-    throw ConfigurationError(
-        fmt::format("-o {}: a name that ends in .c (the header goes beside it), or a folder", source.string()));
+    throw ConfigurationError(fmt::format(
+        "-o {}: give a name that ends in .c (the header is written beside it), or a folder", source.string()));
   const std::string stem = source.stem().string();
   if (stem != file_stem(stem))
-    throw ConfigurationError(fmt::format("-o {}: of letters, digits, '_' and '-' alone", source.string()));
+    throw ConfigurationError(fmt::format("-o {}: use only letters, digits, '_' and '-'", source.string()));
   const path header = path(source).replace_extension(".h");
   for (const path& file : {source, header}) check_export(line, file, bank_form());
   const CFiles files = to_c(read_bank(line), stem);
@@ -171,9 +171,8 @@ json export_ros2(const CommandLine& line) {
     written.push_back((folder / name).string());
     names += (names.empty() ? "" : ", ") + name;
   }
-  print_text(line, fmt::format("wrote {0}: {1}\n  copy the keys of the ground you drive on into your own parameter "
-                               "files; comments say which "
-                               "channel or option a missing one needs\n",
+  print_text(line, fmt::format("wrote {0}: {1}\n  copy the keys of your ground into your own parameter files; comments "
+                               "name the channel or option that a missing key needs\n",
                                folder.string(), names));
   return {{"written", written}};
 }

@@ -63,7 +63,7 @@ class ComparePage(PageTest):
     def test_runs_of_other_data(self):
         if "ice" in session.made:
             self.assert_whole(session.modebank.page("compare_other", session.made["demo"], session.made["ice"]), COMPARE_SECTIONS)
-            self.assertIn("do not compare", session.browser.run("return document.getElementById('verdict').textContent"))
+            self.assertIn("cannot be compared", session.browser.run("return document.getElementById('verdict').textContent"))
 
 
 class Refusals(unittest.TestCase):

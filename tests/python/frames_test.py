@@ -132,7 +132,7 @@ class Frames(unittest.TestCase):
             config = os.path.join(scratch, "again.ini")
             with open(config, "w", encoding="utf-8") as file:
                 file.write(archive.config)
-            with self.assertRaisesRegex(modebank.ConfigurationError, "hand them over again"):
+            with self.assertRaisesRegex(modebank.ConfigurationError, "call modebank.run with the same frames again"):
                 modebank.run(config, **{"archive.output": os.path.join(scratch, "again.h5")})
 
     def test_mistakes(self):

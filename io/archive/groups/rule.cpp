@@ -92,7 +92,7 @@ std::string broken_sums(Rule::Form form, const Stretch& rows, std::span<const do
     for (std::size_t i = begin; i < begin + row; ++i) sum += values[i];
     const bool above = sum > 1.0 + tolerance, below = sum < 1.0 - tolerance;  // neither if a value is missing
     if (above || (below && form == Rule::Form::probabilities))
-      return "has probabilities that sum to " + number_text(sum) + place(rows, begin);
+      return "holds probabilities that sum to " + number_text(sum) + place(rows, begin);
   }
   return {};
 }

@@ -85,7 +85,8 @@ TEST_F(Robustness, D13CausesInPlaceOfInternalMessages) {
   write_study_file(
       app::plan_file(study),
       {{}, "", "plan", {{"key", text}, {"repeat", text}, {"seed", text}, {"status", text}, {"message", text}}, {}, {}});
-  EXPECT_THAT(modebank({"verify", study.string()}).out, HasSubstr("not a plan: its column repeat holds another kind"));
+  EXPECT_THAT(modebank({"verify", study.string()}).out,
+              HasSubstr("not a plan: its column repeat has values of another type"));
   fs::remove(app::plan_file(study));
   fs::create_symlink("plan.h5", app::plan_file(study));
   const ProgramResult loop = modebank({"verify", study.string()});
@@ -241,7 +242,7 @@ TEST_F(Robustness, P8NoOutputTakesThePlaceOfWhatIsReadOrOfAnotherForm) {
     EXPECT_THAT(result.err, AllOf(HasSubstr(output), HasSubstr(why), HasSubstr("name another file"))) << words.front();
     EXPECT_EQ(read_file(output), before) << words.front();
   };
-  const char *const read = "is read by this command", *const form = "is there and not replaced, for it is not";
+  const char *const read = "is read by this command", *const form = "exists and is not replaced, because it is not";
   const std::vector<std::string> predict{"predict", archive(), "--data.inputs", log, "--samples", "5", "-o"};
   refuses(predict, log, read);
   refuses(predict, archive(), read);

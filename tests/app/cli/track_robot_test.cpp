@@ -102,7 +102,7 @@ TEST_F(TrackRobot, Finding_D6_EstimatesLeaveBeforeAFailure) {
 TEST_F(TrackRobot, Finding_D7_TellsOfAMeasurementThatCountsAsMissing) {
   const ProgramResult result = shell("sed '5s/^\\([^,]*\\),[^,]*/\\1,1e50/' run_01.csv | $M track out.h5");
   EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(result.err, "modebank: line 5: wz = 1e+50 is beyond 1e+30, and taken as missing\n");
+  EXPECT_EQ(result.err, "modebank: line 5: wz = 1e+50 is beyond 1e+30, and counts as missing\n");
 }
 
 /// Each kill is at another distance from the last checkpoint, and some inputs are missing. The output of the processes,

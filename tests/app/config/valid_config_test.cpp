@@ -48,12 +48,12 @@ TEST_F(ValidConfig, TheAdviceHelps) {
 }
 
 TEST_F(ValidConfig, AFileThatContradictsItselfGetsNoAdvice) {
-  EXPECT_THAT(objection("[window]\nmodel = linear\nstate_lags = 3\n", {}), Not(HasSubstr("too, since")));
+  EXPECT_THAT(objection("[window]\nmodel = linear\nstate_lags = 3\n", {}), Not(HasSubstr("too, because")));
 }
 
 TEST_F(ValidConfig, WhatNoDefaultMendsGetsNoAdvice) {
   EXPECT_THAT(objection("[window]\nlength = 30\n", {{"window.model", "icr"}, {"window.state_lags", "3"}}),
-              Not(HasSubstr("too, since")));
+              Not(HasSubstr("too, because")));
 }
 
 }  // namespace

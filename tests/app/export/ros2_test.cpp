@@ -131,7 +131,7 @@ TEST(ExportedRos2, SaysWhatIsMissing) {
   nothing.measurements[0] = {"temperature", "K"};
   const std::string empty = to_ros2(nothing, {}).at(0).second;
   EXPECT_TRUE(read_yaml(empty).is_null()) << empty;
-  EXPECT_THAT(empty, HasSubstr("no state is known to be the yaw rate"));
+  EXPECT_THAT(empty, HasSubstr("no state is the yaw rate"));
   const std::string spinning = to_ros2(bank_of(robot, false, 0.165), {}).at(0).second;
   EXPECT_THAT(spinning, HasSubstr("give --wheel_radius_m"));
 }

@@ -56,7 +56,7 @@ TEST_F(InitCommand, AsksOnATerminal) {
   EXPECT_THAT(read_file(ini), HasSubstr("input = wz, right"));
   const ProgramResult quiet = on_terminal("", {"--yes"});
   ASSERT_EQ(quiet.status, 0) << quiet.out;
-  EXPECT_EQ(quiet.out.find("state, which is measured"), std::string::npos);
+  EXPECT_EQ(quiet.out.find("state (measured)"), std::string::npos);
   EXPECT_THAT(read_file(ini), HasSubstr("state = wz"));
 }
 

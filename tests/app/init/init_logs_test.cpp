@@ -257,7 +257,7 @@ TEST_F(InitLogs, SaysWhyTextIsNotTaken) {
               return fmt::format("{:.3f},{}{:.5f}", d.t, d.rate < 0 ? "\u2212" : "", std::abs(d.rate));
             }));
   EXPECT_THAT([&] { init({minus}); },
-              ThrowsMessage<DataError>(HasSubstr("nothing can be a state; column wz: \"\u2212")));
+              ThrowsMessage<DataError>(HasSubstr("no column has numbers that change; column wz: \"\u2212")));
 }
 
 TEST_F(InitLogs, NamesChannelsThatAConfigurationCannotName) {
@@ -342,7 +342,7 @@ TEST_F(InitLogs, DatesOfSeveralFiles) {
   };
   for (const auto& [first, second] : {std::pair{"02/02", "01/02"}, {"01/02", "02/02"}})
     EXPECT_THAT(init({dated("run_1.csv", first), dated("run_2.csv", second)}).text,
-                AllOf(HasSubstr("allow two readings: %d/%m/%Y"), HasSubstr("time_format = %d/%m/%Y")))
+                AllOf(HasSubstr("can be read in two ways: %d/%m/%Y"), HasSubstr("time_format = %d/%m/%Y")))
         << first;
 }
 

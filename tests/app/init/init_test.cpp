@@ -246,7 +246,7 @@ TEST_F(Init, SaysWhatKeepsAColumnFromBeingNumbers) {
 TEST_F(Init, KnowsHuskysBag) {
   MODEBANK_NEEDS_SHARED_DATA();
   const std::string text = write(shared("bags/husky_outdoor_test1.bag"));
-  EXPECT_THAT(text, HasSubstr("gravity lies along +y of this instrument (9.79 m/s^2)"));
+  EXPECT_THAT(text, HasSubstr("gravity acts along +y of this instrument (9.79 m/s^2)"));
   EXPECT_THAT(text, HasSubstr("split = blocks 10"));
   EXPECT_THAT(config.data.state, ElementsAre("yaw_rate"));
   EXPECT_THAT(config.data.input, ElementsAre("linear_x", "angular_z"));
@@ -295,7 +295,7 @@ TEST_F(Init, NamesAPlaceWhereNamesSayNothing) {
   std::string text = "c1,c2\n";
   for (int k = 0; k < 50; ++k) text += fmt::format("{},{}\n", std::sin(k), std::cos(2 * k));
   write_file(folder.path() / "log.csv", text);
-  EXPECT_THAT(write({path("log.csv")}), HasSubstr("names say nothing"));
+  EXPECT_THAT(write({path("log.csv")}), HasSubstr("no name indicates the state"));
   EXPECT_THAT(config.data.state, ElementsAre("c2"));
   EXPECT_THAT(config.data.input, ElementsAre("c1"));
   EXPECT_EQ(config.data.rate_hz, 1.0);

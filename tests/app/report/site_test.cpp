@@ -167,14 +167,14 @@ TEST_F(Site, AFolderOfOtherFilesIsRefused) {
   write("site_of_others/index.html", "<!DOCTYPE html>");
   const ProgramResult others = modebank({"report", results.string(), "-o", file("site_of_others").string()});
   EXPECT_EQ(others.status, 2);
-  EXPECT_THAT(others.err, HasSubstr("holds files that report did not write"));
+  EXPECT_THAT(others.err, HasSubstr("has files that report did not write"));
   EXPECT_TRUE(read_file(file("site_of_others/index.html")) == "<!DOCTYPE html>");
   const ProgramResult itself = modebank({"report", results.string(), "-o", results.string()});
   EXPECT_EQ(itself.status, 2);
   fs::create_directories(file("empty"));
   const ProgramResult empty = modebank({"report", file("empty").string(), "-o", site.string()});
   EXPECT_EQ(empty.status, 2);
-  EXPECT_THAT(empty.err, HasSubstr("holds no archive"));
+  EXPECT_THAT(empty.err, HasSubstr("has no archive"));
   EXPECT_FALSE(fs::exists(site));
 }
 

@@ -104,7 +104,7 @@ TEST_F(ReportKinds, AFolderThatIsNoStudysAndTooManyFilesAreRefused) {
   const std::string page = file("page.html").string();
   const ProgramResult folder = modebank({"report", file("").string(), "-o", page});
   EXPECT_EQ(folder.status, 2);
-  EXPECT_NE(folder.err.find("holds no archive (*.h5) and no study"), std::string::npos) << folder.err;
+  EXPECT_NE(folder.err.find("has no archive (*.h5) and no study"), std::string::npos) << folder.err;
   EXPECT_EQ(modebank({"report", "a", "b", "c"}).status, 2);
   EXPECT_EQ(modebank({"report"}).status, 2);
   EXPECT_FALSE(std::filesystem::exists(page));

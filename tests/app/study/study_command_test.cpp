@@ -199,7 +199,7 @@ TEST_F(StudyCommands, AnArchiveUnderAnothersNameIsFound) {
   std::filesystem::copy_file(trials()[0], trials()[1], std::filesystem::copy_options::overwrite_existing);
   const ProgramResult found = modebank({"verify", file("s").string()});
   EXPECT_EQ(found.status, 1);
-  EXPECT_NE(found.out.find("not that of its name"), std::string::npos) << found.out;
+  EXPECT_NE(found.out.find("does not match its name"), std::string::npos) << found.out;
 }
 
 TEST_F(StudyCommands, PlansComputeNothing) {

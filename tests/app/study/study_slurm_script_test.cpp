@@ -65,7 +65,7 @@ TEST(StudySlurmScript, AbsentSbatchIsSaid) {
     submit_to_slurm(wanted);
     ADD_FAILURE() << "submitted without sbatch";
   } catch (const ConfigurationError& error) {
-    EXPECT_NE(std::string(error.what()).find("no sbatch in PATH"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("PATH has no sbatch"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("--study.shard"), std::string::npos) << error.what();
   }
   setenv("PATH", path.c_str(), 1);

@@ -172,7 +172,7 @@ TEST_F(StudySlurmPaths, AFolderWithALineBreakIsRefusedBeforeAnythingIsWritten) {
   ASSERT_EQ(commands.size(), 2U);
   const ProgramResult submitted = typed_in(folder, commands[0]);
   EXPECT_EQ(submitted.status, 2) << submitted.out << submitted.err;
-  EXPECT_NE(submitted.err.find("holds a control character"), std::string::npos) << submitted.err;
+  EXPECT_NE(submitted.err.find("contains a control character"), std::string::npos) << submitted.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "study_ice.study"));
 }
 

@@ -74,8 +74,8 @@ TEST(VaryText, ErrorsSayWhatIsWrong) {
                                                  {"bank.stay = {0.5", "one pair of braces"},
                                                  {"bank.stay = {0.1..0.5} | 0.9", "add a number of values"},
                                                  {"mixture.restarts = {1.5..3}", "whole number"},
-                                                 {"job.threads = 1 | 2", "decides no number"},
-                                                 {"study.repeats = 1 | 2", "decides no number"}};
+                                                 {"job.threads = 1 | 2", "changes no number"},
+                                                 {"study.repeats = 1 | 2", "changes no number"}};
   for (const auto& [line, part] : cases) EXPECT_NE(reason(line).find(part), std::string::npos) << reason(line);
 }
 

@@ -140,15 +140,15 @@ TEST_F(ArchiveDamage, HostileContentIsAnErrorAndNeverMore) {
     expect_unreadable(reason);
   };
   const unsigned long long huge = 1ull << 40;
-  refuses("/windows/parameters", {huge, 8}, test::Kind::real, "declares more content than the file holds");
-  refuses("/windows/parameters", {0, huge}, test::Kind::real, "declares more content than the file holds");
+  refuses("/windows/parameters", {huge, 8}, test::Kind::real, "declares more content than the file has");
+  refuses("/windows/parameters", {0, huge}, test::Kind::real, "declares more content than the file has");
   refuses("/windows/parameters", {9}, test::Kind::real, "must have the dimensions");
-  refuses("/windows/parameters", {9, 8}, test::Kind::integer, "another kind");
+  refuses("/windows/parameters", {9, 8}, test::Kind::integer, "another type");
   refuses("/windows/run", {9}, test::Kind::real, "fixed-length strings");
   refuses("/bank/B", {3, 2, 2}, test::Kind::real, "inputs");
   refuses("/baseline/parameters", {1, 7}, test::Kind::real, "do not fit");
   refuses("/mixture/candidates", {2}, test::Kind::real, "not a table");
-  refuses("/bank/weight", {3}, test::Kind::text, "another kind");
+  refuses("/bank/weight", {3}, test::Kind::text, "another type");
 }
 
 /// Invalid weights of transitions in an archive never become a bank.
@@ -159,7 +159,7 @@ TEST(StoredSwitches, OfOtherSizesOrNoNumbersAreRefused) {
     change(stored);
     EXPECT_THAT([&] { restore_bank(stored, Bank()); }, ThrowsMessage<std::exception>(HasSubstr(reason)));
   };
-  refuses([](StoredBank& s) { s.transition_weights(0, 0) = std::nan(""); }, "differ by the mode before");
+  refuses([](StoredBank& s) { s.transition_weights(0, 0) = std::nan(""); }, "depend on the previous mode");
   refuses([](StoredBank& s) { s.transition_weights.row(0).setConstant(HUGE_VAL); }, "not finite");
   refuses([](StoredBank& s) { s.transition_reference(1) = std::nan(""); }, "not finite");
   refuses([](StoredBank& s) { s.transition_reference.conservativeResize(1); }, "number of features");
@@ -171,8 +171,8 @@ TEST(StoredSwitches, OfOtherSizesOrNoNumbersAreRefused) {
         s.transition_reference.setZero(more);
       },
       "weights of the transition");
-  refuses([](StoredBank& s) { s.transition_weights(0, 1) += 1.0; }, "differ by the mode before");
-  refuses([](StoredBank& s) { s.transition_weights.resize(0, 0); }, "without transition weights");
+  refuses([](StoredBank& s) { s.transition_weights(0, 1) += 1.0; }, "depend on the previous mode");
+  refuses([](StoredBank& s) { s.transition_weights.resize(0, 0); }, "no transition weights");
   StoredBank huge = store_bank(bank);  // valid because finite: log odds are bounded elsewhere
   huge.transition_weights.setConstant(1e300);
   EXPECT_NO_THROW(restore_bank(huge, Bank()));
@@ -180,7 +180,7 @@ TEST(StoredSwitches, OfOtherSizesOrNoNumbersAreRefused) {
 
 TEST_F(ArchiveDamage, ContentElsewhereIsRefused) {
   test::replace_by_external(path, "/windows/condition", "/etc/hostname");
-  expect_unreadable("keeps its content in another file");
+  expect_unreadable("has its content in another file");
 }
 
 /// Reads, inspects and verifies the archive, with one part of its metadata damaged after the other.

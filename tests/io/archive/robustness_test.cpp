@@ -105,7 +105,7 @@ TEST_F(Robustness, D2MatricesThatAreNoCovariances) {
 
 TEST_F(Robustness, D2ProbabilitiesThatDoNotSumToOne) {
   finds_number("/bank/transition", 0, 2.0, "/bank/transition: holds 2");
-  finds_number("/bank/transition", 0, 0.5, "/bank/transition: has probabilities that sum to 0.8");
+  finds_number("/bank/transition", 0, 0.5, "/bank/transition: holds probabilities that sum to 0.8");
   finds_number("/bank/initial_probability", 0, 0.0, "/bank/initial_probability: holds probabilities");
   finds_number("/mixture/weights", 0, 0.1, "the weights sum to");
   finds_number("/mixture/responsibilities", 0, 1.5, "/mixture/responsibilities: holds 1.5");
@@ -168,8 +168,8 @@ TEST_F(Robustness, CountsOfMoreThanThereIs) {
   finds([&] { patch_number_attribute(path, "/windows", "audit_ceres_windows", 1e9); },
         "the audit counts 1000000000 of");
   finds_number("/windows/transitions", 0, 6, "/windows/transitions: holds 6 at (0), must lie in 0 .. 5");
-  finds([&] { patch_number_attribute(path, "/evaluation/evidence", "runs", 4); }, "speaks of 4 runs, there are 3");
-  finds([&] { patch_number_attribute(path, "/evaluation/evidence", "modes", 4); }, "speaks of 4 modes, there are 3");
+  finds([&] { patch_number_attribute(path, "/evaluation/evidence", "runs", 4); }, "is about 4 runs, there are 3");
+  finds([&] { patch_number_attribute(path, "/evaluation/evidence", "modes", 4); }, "is about 4 modes, there are 3");
 }
 
 TEST_F(Robustness, AModeIsOneOfItsOwnFilter) {
@@ -217,7 +217,7 @@ TEST_F(Robustness, ArraysInChunksAreRead) {
 }
 
 TEST_F(Robustness, ArraysInOtherFilesAndOtherHdf5AreRefused) {
-  refuses([&] { replace_by_external(path, "/bank/A", "elsewhere"); }, "keeps its content in another file");
+  refuses([&] { replace_by_external(path, "/bank/A", "elsewhere"); }, "has its content in another file");
   write_foreign_hdf5(path, 512);
   sign(path);
   expect_unreadable("not a modebank archive (root attribute format is '')");

@@ -137,12 +137,12 @@ TEST(Expression, SaysWhereItIsNone) {
   EXPECT_THAT(error("atan2(a)"), HasSubstr("too few arguments"));
   EXPECT_THAT(error("sine(a)"), HasSubstr("at character 1 (\"sine(a)\"): no function sine, did you mean"));
   EXPECT_THAT(error("a = 2"), HasSubstr("a comparison is =="));
-  EXPECT_THAT(error("a ? 1"), HasSubstr("lacks its : B"));
+  EXPECT_THAT(error("a ? 1"), HasSubstr("needs its : B"));
   EXPECT_THAT(error("'a"), HasSubstr("does not end"));
   EXPECT_THAT(error("2v"), HasSubstr("at character 1 (\"2v\"): a number and a name need an operator"));
   EXPECT_THAT(error("diff()"), HasSubstr("diff needs an argument"));
   EXPECT_THAT(error("1 + diff(a, b)"), HasSubstr("at character 11 (\", b)\"): a comma"));
-  EXPECT_THAT(error("1e999"), HasSubstr("fits a double"));
+  EXPECT_THAT(error("1e999"), HasSubstr("fit a double"));
   EXPECT_THAT(error("\"text\""), HasSubstr("neither number"));
   EXPECT_THAT(error("a; system(1)"), HasSubstr("neither number"));
 }

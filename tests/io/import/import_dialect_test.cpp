@@ -409,7 +409,7 @@ TEST_F(ImportDialect, AStampFarOutIsNamed) {
             return fmt::format("{},{},{}", k == out ? 0 : epoch_ns + stamp_ns(k), x_of(k), u_of(k));
           }));
     EXPECT_THAT(error<DataError>(), AllOf(HasSubstr(fmt::format("log.csv:{}: column time: 0 s", out + 2)),
-                                          HasSubstr("out by orders of magnitude")));
+                                          HasSubstr("differs by orders of magnitude")));
   }
   write("log.csv", table("time,x,u\n", [&](int k) {
           return fmt::format("{},{},{}", (k < 22 ? 0 : epoch_ns) + stamp_ns(k), x_of(k), u_of(k));

@@ -50,7 +50,7 @@ TEST_F(ImportError, EmptyFile) {
 
 TEST_F(ImportError, HeaderOnly) {
   write("imu_1.csv", "time,x\n");
-  EXPECT_EQ(error<DataError>(), path("imu_1.csv") + ": a header, but no rows");
+  EXPECT_EQ(error<DataError>(), path("imu_1.csv") + ": there is a header, but no rows");
 }
 
 TEST_F(ImportError, NoMatchingFile) {

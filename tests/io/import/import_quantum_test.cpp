@@ -59,7 +59,7 @@ TEST_F(ImportQuantum, GivenOnesAreOnePerStateOrOneForAll) {
   options.quantum = {0.25};
   EXPECT_EQ(import().recording.quantum(0), 0.25);
   options.quantum = {0.25, 0.5};
-  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("data.quantum has 2 values, data.state 1"));
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("data.quantum has 2 values, but data.state 1"));
 }
 
 TEST_F(ImportQuantum, InterpolatedStatesAreExemptAndSaidToBe) {

@@ -23,7 +23,7 @@ TEST(DamagedRecordings, AreNamed) {
               HasSubstr("this bag has format 1.2, but only 2.0 is supported"));
   EXPECT_THAT(error_of(written("b.bag", "#ROSBAG V2.0\n")), HasSubstr("damaged at byte 13"));
   EXPECT_THAT(error_of(written("c.mcap", "\x89MCAP0\r\n")), HasSubstr("damaged at byte"));
-  EXPECT_THAT(error_of(written("d.mcap", "time,x\n0,1\n")), HasSubstr("no recording of ROS"));
+  EXPECT_THAT(error_of(written("d.mcap", "time,x\n0,1\n")), HasSubstr("not a recording of ROS"));
   EXPECT_THAT(error_of(written("e.db3", std::string("SQLite format 3\0", 16) + "abc")), HasSubstr("SQLite: "));
   EXPECT_THAT(error_of(written("f.db3.zstd", "\x28\xb5\x2f\xfd abc")), HasSubstr("`zstd -d "));
   const std::string op{"op=\x03", 4}, encryptor = "encryptor=rosbag/AesCbcEncryptor";
@@ -47,7 +47,7 @@ TEST(DamagedRecordings, DatabasesOfOtherTablesAreRefused) {
     return path;
   };
   EXPECT_THAT(error_of(database("a.db3", "CREATE TABLE x(y)")),
-              HasSubstr("no recording of rosbag2 (it has no table topics)"));
+              HasSubstr("not a recording of rosbag2 (it has no table topics)"));
   const std::string topics =
       "CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format, offered_qos_profiles);";
   EXPECT_THAT(error_of(database(

@@ -151,8 +151,8 @@ TEST(MessageFormat, WhatDoesNotFitSaysWhere) {
   const auto error = [](const std::string& definition, const std::string& payload) {
     return message_of<PayloadError>([&] { columns_of(*schema_of(definition), payload, 4); });
   };
-  EXPECT_THAT(error("int32 a\n", little + bytes({1, 2})), HasSubstr("it ends at byte 2, but 4 more are to come"));
-  EXPECT_THAT(error("int32 a\n", little + bytes({1, 0, 0, 0, 1, 0, 0, 0})), HasSubstr("it goes on at byte 4"));
+  EXPECT_THAT(error("int32 a\n", little + bytes({1, 2})), HasSubstr("it ends at byte 2, but needs 4 more"));
+  EXPECT_THAT(error("int32 a\n", little + bytes({1, 0, 0, 0, 1, 0, 0, 0})), HasSubstr("it continues at byte 4"));
   EXPECT_THAT(error("int32[] a\n", little + bytes({255, 255, 255, 255})), HasSubstr("an array of 4294967295 elements"));
   EXPECT_THAT(message_of<PayloadError>([&] {
                 value_of("string a\n", little + bytes({2, 0, 0, 0, 'a', 'b'}), "a");
@@ -170,7 +170,7 @@ TEST(MessageFormat, DefinitionsThatCannotBeAreRefused) {
   EXPECT_THAT(error("Self x\n===\nMSG: p/Self\nSelf y\n"), HasSubstr("p/Self contains itself"));
   EXPECT_THAT(error("q/Missing x\n"), HasSubstr("no definition of q/Missing"));
   EXPECT_THAT(error("int32[99999999999999999999] x\n"), HasSubstr("is not the size of an array"));
-  EXPECT_THAT(error("int32 9x-y\n"), HasSubstr("is no field"));
+  EXPECT_THAT(error("int32 9x-y\n"), HasSubstr("is not a field"));
   std::string deep = "A0 x\n";
   for (int i = 0; i < 40; ++i) deep += "===\nMSG: p/A" + std::to_string(i) + "\nA" + std::to_string(i + 1) + " x\n";
   EXPECT_THAT(error(deep), HasSubstr("nested more than 32 deep"));

@@ -121,7 +121,7 @@ TEST_F(SameDrive, WithoutIndexIsReadWhole) {
   ASSERT_EQ(blanked.status, 0) << blanked.err;
   const RosLog log(copy, KnownDefinitions());
   ASSERT_EQ(log.notes().size(), 1u);
-  EXPECT_THAT(log.notes().front(), ::testing::HasSubstr("no sound index"));
+  EXPECT_THAT(log.notes().front(), ::testing::HasSubstr("index is missing or damaged"));
   for (const LogTopic& topic : whole.topics())
     expect_same_topic(read_topic(whole, topic.name), read_topic(log, topic.name));
 }

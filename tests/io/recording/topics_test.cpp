@@ -82,7 +82,7 @@ TEST_F(Topics, OfADb3WithItsJournalAreThoseOfBoth) {
   for (int visit = 0; visit < 2; ++visit) expect_reference(log, expected, "killed.db3");
   std::filesystem::remove(file("killed.db3-wal"));
   EXPECT_THAT(message_of<DataError>([&] { RosLog(file("killed.db3"), KnownDefinitions()); }),
-              HasSubstr("no recording of rosbag2"));
+              HasSubstr("not a recording of rosbag2"));
 }
 
 /// A reassigned number belongs to another channel from there on, whatever the summary contains.
@@ -127,7 +127,7 @@ TEST_F(Topics, ARecordingWithoutMessagesIsNamed) {
   const std::string end("\x0f\x04\0\0\0\0\0\0\0\0\0\0\0\x02\x14\0\0\0\0\0\0\0", 22);
   write_file(file("empty.mcap"), "\x89MCAP0\r\n" + end + std::string(20, '\0') + "\x89MCAP0\r\n");
   EXPECT_THAT(message_of<DataError>([&] { RosLog(file("empty.mcap"), KnownDefinitions()); }),
-              HasSubstr("empty.mcap: holds no messages"));
+              HasSubstr("empty.mcap: the recording has no messages"));
 }
 
 TEST_F(Topics, AlternatingFramesAreSaidWithTheKeyThatTakesThemApart) {

@@ -92,6 +92,6 @@ export function cloudFigure(cloud, pick) {
   return figure(
       'The local models in two parameters at a time, with the ellipses of the mixture components',
       () => ({panels: pairsOf(cloud.axes).map((pair) => panelOf(cloud, pair, pick)), height: 290, wide: 300}),
-      `Ellipses hold ${100 * cloud.windows.level} % of a mixture component, or of the covariance of a mode’s windows. ` +
+      `Ellipses hold ${100 * cloud.windows.level} % of a mixture component, or of the windows of a mode. ` +
           'Diamonds are the modes of the bank. The tables of modes have the numbers.');
 }

@@ -1,5 +1,5 @@
-// A small picture of the data, on a plain canvas so that it appears early. It shows the first state in the colours of the most
-// probable modes, the modes as a strip, and labels below.
+// A small picture of the data, on a plain canvas so that it appears early. It shows the first state in the colours of
+// the most probable modes, the modes as a strip, and labels below.
 import {endOf} from './chart_layout.js';
 import {mixed} from './colour.js';
 import {h, legend} from './elements.js';

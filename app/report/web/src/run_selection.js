@@ -72,7 +72,7 @@ const columns = [
 
 export function drawSelection(selection) {
   const title = 'How many components';
-  if (!selection) return section('selection', title, note('This archive has no mixture, because nothing was clustered.'));
+  if (!selection) return section('selection', title, note('This archive has no mixture: nothing was clustered.'));
   const rows = selection.candidates;
   const one = 'Only one number of components was configured, so there was no choice.';
   return section(
