@@ -44,7 +44,7 @@ void fill_criteria(Candidate& candidate, double total_weight, double cost) {
   candidate.bic_naive = -2.0 * candidate.log_likelihood + q * std::log(total_weight);
 }
 
-double badness(const Candidate& candidate, Criterion criterion) {
+double criterion_value(const Candidate& candidate, Criterion criterion) {
   switch (criterion) {
     case Criterion::bic:
       return candidate.bic;
@@ -62,10 +62,10 @@ Index best_candidate(const std::vector<Candidate>& candidates, Criterion criteri
   Index best = -1;
   const auto better = [&](const Candidate& a, const Candidate& b) {
     if (a.floor_active != b.floor_active) return b.floor_active;
-    return badness(a, criterion) < badness(b, criterion);
+    return criterion_value(a, criterion) < criterion_value(b, criterion);
   };
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (std::isfinite(badness(candidates[i], criterion)) &&
+    if (std::isfinite(criterion_value(candidates[i], criterion)) &&
         (best < 0 || better(candidates[i], candidates[static_cast<std::size_t>(best)])))
       best = static_cast<Index>(i);
   return best;

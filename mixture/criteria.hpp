@@ -19,7 +19,7 @@ double classification_cost(const GaussianMixture& mixture, const PointSet& point
 void fill_criteria(Candidate& candidate, double total_weight, double cost);
 
 /// Value of a row under the criterion; lower is better for every criterion.
-double badness(const Candidate& candidate, Criterion criterion);
+double criterion_value(const Candidate& candidate, Criterion criterion);
 
 /// Position of the best row by the criterion: the first on a tie, ignoring rows that are not finite; -1 if none is
 /// left. Rows that rest on the covariance floor come after all others, because the floor determined their likelihood.

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mixture/straddling.hpp"
 #include "mixture/window_error.hpp"
+#include "mixture/window_over_switch.hpp"
 
 namespace modebank {
 
@@ -147,18 +147,18 @@ double central_variance(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::Inn
   return (drawn_in - drawn_in.mean()).square().mean();
 }
 
-std::vector<bool> left_out(const WindowFits& fits, StraddlingWindows straddling) {
-  return straddling != StraddlingWindows::keep ? straddling_windows(fits)
-                                               : std::vector<bool>(static_cast<std::size_t>(fits.count()), false);
+std::vector<bool> left_out(const WindowFits& fits, WindowsOverSwitch over_switch) {
+  return over_switch != WindowsOverSwitch::keep ? windows_over_switch(fits)
+                                                : std::vector<bool>(static_cast<std::size_t>(fits.count()), false);
 }
 
 }  // namespace
 
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
-                           const std::vector<Channel>& states, StraddlingWindows straddling, WindowErrors errors) {
+                           const std::vector<Channel>& states, WindowsOverSwitch over_switch, WindowErrors errors) {
   CloudBuilder builder(fits, features, states, errors);
   const bool all = resolved(fits, choice, errors, features_kept(features, builder.features())) == WindowChoice::all;
-  const std::vector<bool> out = left_out(fits, straddling);
+  const std::vector<bool> out = left_out(fits, over_switch);
   for (Index window = 0; window < fits.count(); ++window)
     if (!failed(fits, window) && !out[static_cast<std::size_t>(window)] && (all || full_rank(fits, window)))
       builder.add(window);
@@ -166,7 +166,7 @@ FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowCh
 }
 
 FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options) {
-  FeatureCloud cloud = make_features(fits, options.features, options.windows, states, options.straddling,
+  FeatureCloud cloud = make_features(fits, options.features, options.windows, states, options.over_switch,
                                      options.error_aware ? WindowErrors::include : WindowErrors::ignore);
   const Index kept = features_kept(options.features, cloud.points.rows());
   if (kept == cloud.points.rows()) return cloud;
@@ -224,7 +224,7 @@ FeatureCloud assigned_features(const WindowFits& fits, const std::vector<Channel
   const WindowErrors errors = options.error_aware ? WindowErrors::include : WindowErrors::ignore;
   const Index kept = features_kept(options.features, builder.features());
   if (fits.prior_sd.size() == 0 || resolved(fits, options.windows, errors, kept) == WindowChoice::all) return taken();
-  const std::vector<bool> out = left_out(fits, options.straddling);
+  const std::vector<bool> out = left_out(fits, options.over_switch);
   for (Index window = 0; window < fits.count(); ++window)
     if (!failed(fits, window) && !out[static_cast<std::size_t>(window)] && !full_rank(fits, window))
       builder.add(window);

@@ -34,7 +34,7 @@ enum class WindowErrors { ignore, include };
 /// noise). Windows with a non-finite covariance are left out: rank deficient and without a prior, their theta measures
 /// nothing.
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
-                           const std::vector<Channel>& states, StraddlingWindows straddling = StraddlingWindows::keep,
+                           const std::vector<Channel>& states, WindowsOverSwitch over_switch = WindowsOverSwitch::keep,
                            WindowErrors errors = WindowErrors::ignore);
 /// make_features with the choices of the options. FeatureSet::automatic gives at most most_features features.
 FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options);

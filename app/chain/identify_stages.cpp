@@ -17,14 +17,14 @@ bool streams_windows(const Recording& recording, const WindowInputs& inputs) {
 }
 
 WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const WindowInputs& inputs,
-                              const std::function<void(const WindowFits&)>& hears) {
+                              const std::function<void(const WindowFits&)>& report) {
   const Recording& recording = *before.recording;
   const auto produce = [&](const WindowSink& sink) {
-    const WindowSink hears_and_sinks = [&](const WindowFits& fits, Index first) {
-      hears(fits);
+    const WindowSink report_and_sink = [&](const WindowFits& fits, Index first) {
+      report(fits);
       sink(fits, first);
     };
-    return in_section("window", [&] { return stream_windows(recording, inputs.window, hears_and_sinks); });
+    return in_section("window", [&] { return stream_windows(recording, inputs.window, report_and_sink); });
   };
   return write_archive(path, before, count_windows(recording, inputs.window), produce);
 }

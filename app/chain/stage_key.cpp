@@ -67,9 +67,10 @@ MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, whee
 MODEBANK_KEY_FIELDS(EmOptions, covariance, restarts, split_merge, tolerance, max_iterations, covariance_floor,
                     noise_component)
 MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, em)
-MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, straddling, error_aware)
+MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, over_switch, error_aware)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, look_ahead, look_ahead_score, folds,
-                    measurement_noise, screen, guards, one_theta, noise_by_input, seed, drift, transitions)
+                    measurement_noise, screen, state_dependent_transition, one_theta, noise_by_input, seed, drift,
+                    transitions)
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, modes,
                     refine, em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant, noise)

@@ -17,10 +17,10 @@ namespace modebank {
 /// Whether there are so many windows that they are written to the file as they are fitted.
 bool streams_windows(const Recording& recording, const WindowInputs& inputs);
 
-/// Fits windows and writes them to an archive of `before` (data) and windows alone. `hears` is called with
+/// Fits windows and writes them to an archive of `before` (data) and windows alone. `report` is called with
 /// each part. Returns what all windows have in common.
 WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const WindowInputs& inputs,
-                              const std::function<void(const WindowFits&)>& hears);
+                              const std::function<void(const WindowFits&)>& report);
 
 /// Results and scores of one filter on every run.
 struct FilterScores {

@@ -16,7 +16,7 @@ class Watchdog {
   bool on() const { return period_s_ > 0.0; }
   /// Events: a line was read; a sample was used, with its stamp and the mode probabilities after it; its estimate was
   /// written so long after its arrival.
-  void heard() { ++lines_; }
+  void line_arrived() { ++lines_; }
   void took(double stamp_s, const Eigen::VectorXd& mode_probability);
   void answered(double latency_s);
   /// Time until the next status line; infinite if there is none.

@@ -108,7 +108,7 @@ LineStream::Got Tracker::next(std::string_view& line) {
   if (const std::string text = watchdog_.due(now_s()); !text.empty())
     messages_.say(fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), text));
   const LineStream::Got got = lines_->next(line, watchdog_.remaining_s(now_s()));
-  if (got == LineStream::Got::line || got == LineStream::Got::overlong) watchdog_.heard();
+  if (got == LineStream::Got::line || got == LineStream::Got::overlong) watchdog_.line_arrived();
   return got;
 }
 

@@ -90,7 +90,7 @@ ExportedBank exported_bank(const Archive& archive, const OpenArchive& file, cons
   exported.input_lag_s = input_lag_s;
   add_verdict(archive, exported);
   add_channels(archive.recording.value_or(Recording()), exported);
-  exported.open = open_parameters(archive, bank->structure);
+  exported.unidentifiable = unidentifiable_parameters(archive, bank->structure);
   if (filter == "bank") {
     exported.use.resize(bank->modes.size());
     for (const UsedMode& used : used_modes(archive)) exported.use[static_cast<std::size_t>(used.mode)] = used.use;

@@ -38,7 +38,7 @@ struct ExportedBank {
   std::vector<double> use;               ///< K, mean probability on judged runs; empty of competitors
   std::vector<std::string> parameter_names, parameter_units;  ///< p, of the modes' theta
   std::vector<ModeErrors> errors;                             ///< K
-  std::vector<bool> open;  ///< p, whether training runs leave the parameter unidentifiable; or empty
+  std::vector<bool> unidentifiable;  ///< p, whether training runs leave the parameter unidentifiable; or empty
 
   const LinearStructure& structure() const { return bank.structure; }
   Eigen::MatrixXd A(Eigen::Index mode) const { return bank.modes[static_cast<std::size_t>(mode)].model.full_form(); }

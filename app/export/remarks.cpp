@@ -48,12 +48,12 @@ void add_vague_of_mode(const ExportedBank& exported, Index k, std::vector<std::s
 }
 
 void add_open_parameters(const ExportedBank& exported, std::vector<std::string>& list) {
-  std::vector<std::string> open;
-  for (std::size_t i = 0; i < exported.open.size() && i < exported.parameter_names.size(); ++i)
-    if (exported.open[i]) open.push_back(exported.parameter_names[i]);
-  if (!open.empty())
+  std::vector<std::string> unidentifiable;
+  for (std::size_t i = 0; i < exported.unidentifiable.size() && i < exported.parameter_names.size(); ++i)
+    if (exported.unidentifiable[i]) unidentifiable.push_back(exported.parameter_names[i]);
+  if (!unidentifiable.empty())
     list.push_back(fmt::format("not identifiable from the training runs (other values describe these as well): {}",
-                               fmt::join(open, ", ")));
+                               fmt::join(unidentifiable, ", ")));
 }
 
 /// Adds modes in which a parameter has no error for another reason: learning that looks ahead gives none.
@@ -104,7 +104,7 @@ std::string doubt_about(double value, double standard_error) {
 
 std::string doubt_about_parameter(const ExportedBank& bank, Index mode, Index parameter) {
   const auto at = static_cast<std::size_t>(parameter);
-  if (at < bank.open.size() && bank.open[at]) return not_identifiable;
+  if (at < bank.unidentifiable.size() && bank.unidentifiable[at]) return not_identifiable;
   const Eigen::VectorXd& error = bank.bank.modes[static_cast<std::size_t>(mode)].standard_error;
   return doubt_about(bank.bank.theta(mode)(parameter), parameter < error.size() ? error(parameter) : NAN);
 }

@@ -69,9 +69,10 @@ Eigen::VectorXd numbers_of(const ModeDynamics& dynamics) {
 Eigen::MatrixXd covariance_of(const Mode& mode, Eigen::Index parameters) {
   if (mode.standard_error.size() != parameters) return {};
   Eigen::MatrixXd covariance = mode.standard_error.cwiseAbs2().asDiagonal();
-  if (mode.spread.rows() != parameters || !(mode.spread.diagonal().array() > 0.0).all()) return covariance;
-  const Eigen::VectorXd scale = mode.standard_error.cwiseQuotient(mode.spread.diagonal().cwiseSqrt());
-  return scale.asDiagonal() * mode.spread * scale.asDiagonal();
+  if (mode.parameter_covariance.rows() != parameters || !(mode.parameter_covariance.diagonal().array() > 0.0).all())
+    return covariance;
+  const Eigen::VectorXd scale = mode.standard_error.cwiseQuotient(mode.parameter_covariance.diagonal().cwiseSqrt());
+  return scale.asDiagonal() * mode.parameter_covariance * scale.asDiagonal();
 }
 
 using NumbersOf = std::function<Eigen::VectorXd(const LinearModel&)>;

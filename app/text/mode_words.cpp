@@ -29,14 +29,14 @@ std::string heading(const std::string& name) {
   return first_columns(name, longest_name - 2) + "..";
 }
 
-std::vector<std::string> gain_cells(const ModeDynamics& dynamics, const std::vector<bool>& open) {
+std::vector<std::string> gain_cells(const ModeDynamics& dynamics, const std::vector<bool>& unidentifiable) {
   std::vector<std::string> cells;
   const Eigen::VectorXd gains = dynamics.gain.transpose().reshaped(),
                         errors = dynamics.gain_error.transpose().reshaped();
   for (Index i = 0; i < gains.size(); ++i)
-    cells.push_back(open[static_cast<std::size_t>(i)] ? not_identifiable
-                    : std::isnan(gains(i))            ? "never settles"
-                                                      : estimate_text(gains(i), errors(i)));
+    cells.push_back(unidentifiable[static_cast<std::size_t>(i)] ? not_identifiable
+                    : std::isnan(gains(i))                      ? "never settles"
+                                                                : estimate_text(gains(i), errors(i)));
   return cells;
 }
 
@@ -48,8 +48,8 @@ std::vector<std::string> headings_of(const GainNames& gains) {
 
 /// With all decays of each, or the slowest alone.
 std::vector<ModeTable::Row> rows_of(const Archive& archive, const std::vector<UsedMode>& modes, bool all_decays) {
-  const std::vector<bool> open = open_gains(archive, archive.bank->structure);
-  const bool no_decays = open_decays(archive, archive.bank->structure);
+  const std::vector<bool> unidentifiable = unidentifiable_gains(archive, archive.bank->structure);
+  const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
   std::vector<ModeTable::Row> rows;
   for (const UsedMode& used : modes) {
     ModeDynamics dynamics = mode_dynamics(*archive.bank, used.mode);
@@ -60,7 +60,7 @@ std::vector<ModeTable::Row> rows_of(const Archive& archive, const std::vector<Us
                        {heading(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
                         stay_words(used), no_decays ? "-" : per_sample_words(dynamics.decays),
                         no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
-    const std::vector<std::string> gains = gain_cells(dynamics, open);
+    const std::vector<std::string> gains = gain_cells(dynamics, unidentifiable);
     row.cells.insert(row.cells.end(), gains.begin(), gains.end());
     rows.push_back(std::move(row));
   }
@@ -97,31 +97,32 @@ int widest_line(const std::string& text) {
 
 }  // namespace
 
-std::vector<bool> open_parameters(const Archive& archive, const LinearStructure& s) {
-  std::vector<bool> open(static_cast<std::size_t>(s.parameters()), false);
-  if (!archive.windows || !archive.windows->model_parameters.empty() || !(archive.windows->structure == s)) return open;
+std::vector<bool> unidentifiable_parameters(const Archive& archive, const LinearStructure& s) {
+  std::vector<bool> unidentifiable(static_cast<std::size_t>(s.parameters()), false);
+  if (!archive.windows || !archive.windows->model_parameters.empty() || !(archive.windows->structure == s))
+    return unidentifiable;
   const Eigen::ArrayXd variance = archive.windows->global.covariance.diagonal().array();
-  if (variance.size() != s.parameters() || variance.isNaN().all()) return open;
-  for (Index j = 0; j < variance.size(); ++j) open[static_cast<std::size_t>(j)] = std::isnan(variance(j));
-  return open;
+  if (variance.size() != s.parameters() || variance.isNaN().all()) return unidentifiable;
+  for (Index j = 0; j < variance.size(); ++j) unidentifiable[static_cast<std::size_t>(j)] = std::isnan(variance(j));
+  return unidentifiable;
 }
 
-bool open_decays(const Archive& archive, const LinearStructure& s) {
-  const std::vector<bool> parameters = open_parameters(archive, s);
+bool unidentifiable_decays(const Archive& archive, const LinearStructure& s) {
+  const std::vector<bool> parameters = unidentifiable_parameters(archive, s);
   for (Index i = 0; i < s.states; ++i)
     for (Index j = 0; j < s.dimension(); ++j)
       if (parameters[static_cast<std::size_t>(i * s.regressors() + j)]) return true;
   return false;
 }
 
-std::vector<bool> open_gains(const Archive& archive, const LinearStructure& s) {
-  const std::vector<bool> parameters = open_parameters(archive, s);
-  std::vector<bool> open(static_cast<std::size_t>(s.states * s.inputs), open_decays(archive, s));
+std::vector<bool> unidentifiable_gains(const Archive& archive, const LinearStructure& s) {
+  const std::vector<bool> parameters = unidentifiable_parameters(archive, s);
+  std::vector<bool> unidentifiable(static_cast<std::size_t>(s.states * s.inputs), unidentifiable_decays(archive, s));
   for (Index i = 0; i < s.states; ++i)
     for (Index j = 0; j < s.acting_inputs(); ++j)
       if (parameters[static_cast<std::size_t>(i * s.regressors() + s.dimension() + j)])
-        open[static_cast<std::size_t>(i * s.inputs + j % s.inputs)] = true;
-  return open;
+        unidentifiable[static_cast<std::size_t>(i * s.inputs + j % s.inputs)] = true;
+  return unidentifiable;
 }
 
 std::string decay_words(const Decay& decay, const char* plus_minus) {

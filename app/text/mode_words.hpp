@@ -33,11 +33,11 @@ std::vector<UsedMode> used_modes(const Archive& archive);
 /// Said of what the training runs leave open: an input that is always zero, inputs of which one is a sum of others.
 inline constexpr const char* not_identifiable = "not identifiable";
 /// Per parameter of a linear model of that structure whether they do: it has no standard error in the global model.
-std::vector<bool> open_parameters(const Archive& archive, const LinearStructure& structure);
+std::vector<bool> unidentifiable_parameters(const Archive& archive, const LinearStructure& structure);
 /// Whether how fast a mode decays is open: the effect of a state is. Every gain rests on it.
-bool open_decays(const Archive& archive, const LinearStructure& structure);
+bool unidentifiable_decays(const Archive& archive, const LinearStructure& structure);
 /// The same per gain (states x inputs, a state's in a row): some effect of the input on the state is open.
-std::vector<bool> open_gains(const Archive& archive, const LinearStructure& structure);
+std::vector<bool> unidentifiable_gains(const Archive& archive, const LinearStructure& structure);
 
 /// Which gains there are: "wz per velL", row by row; each with its unit where they do not share one.
 struct GainNames {

@@ -108,11 +108,11 @@ std::string window_parameters_text(const Archive& archive, int width) {
   const WindowFits& fits = *archive.windows;
   const std::vector<std::string> labels = window_labels(archive);
   const WindowSummary summary = summarize(fits);
-  const std::vector<bool> open = open_parameters(archive, fits.structure);
+  const std::vector<bool> unidentifiable = unidentifiable_parameters(archive, fits.structure);
   TextTable table({{"parameter", 9}, {"median", 12}, {"standard error", 16}, {"|t| > 2", 12}});
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto j = static_cast<Index>(i);
-    if (i < open.size() && open[i])
+    if (i < unidentifiable.size() && unidentifiable[i])
       table.add({labels[i], "", not_identifiable, ""});
     else
       table.add({labels[i], fmt::format("{:.4g}", summary.parameter(j)),
@@ -221,7 +221,7 @@ std::string modes_text(const Archive& archive, bool full_form, int width) {
   for (std::size_t i = 0; i < labels.size(); ++i)
     columns.push_back({labels[i] + (full_form && parameters[i][0] == 'A' ? " (full)" : ""), 20});
   columns.push_back({"sqrt diag Q", 12});
-  const std::vector<bool> open = open_parameters(archive, bank.structure);
+  const std::vector<bool> unidentifiable = unidentifiable_parameters(archive, bank.structure);
   TextTable table(std::move(columns));
   for (Index k = 0; k < bank.mode_count(); ++k) {
     const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
@@ -230,7 +230,7 @@ std::string modes_text(const Archive& archive, bool full_form, int width) {
     const Eigen::VectorXd theta = pack(bank.structure, model);
     std::vector<std::string> cells{mode_cell(names, k), fmt::format("{:.3f}", mode.weight)};
     for (Index i = 0; i < theta.size(); ++i)
-      cells.push_back(open[static_cast<std::size_t>(i)]
+      cells.push_back(unidentifiable[static_cast<std::size_t>(i)]
                           ? not_identifiable
                           : estimate(theta(i), mode.standard_error.size() > 0 ? mode.standard_error(i) : NAN));
     cells.push_back(fmt::format("{:.4g}", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " ")));

@@ -30,7 +30,9 @@ void check_mode(const Mode& mode, const LinearStructure& s, Index terms, const s
   expect_size(name + " c", mode.model.c.size(), 1, n, 1);
   expect_size(name + " Q", mode.Q.rows(), mode.Q.cols(), n, n);
   expect_size(name + " bend", mode.bend.rows(), mode.bend.cols(), terms > 0 ? s.states : 0, terms);
-  if (mode.spread.size() > 0) expect_size(name + " spread", mode.spread.rows(), mode.spread.cols(), p, p);
+  if (mode.parameter_covariance.size() > 0)
+    expect_size(name + " parameter covariance", mode.parameter_covariance.rows(), mode.parameter_covariance.cols(), p,
+                p);
   if (mode.standard_error.size() > 0) expect_size(name + " standard error", mode.standard_error.size(), 1, p, 1);
 }
 

@@ -36,11 +36,11 @@ class TransitionMatrix {
 /// One mode of motion in state space: x[k+1] = x + A x + B u + c + w, w ~ N(0, Q). With lags, z and v of
 /// LinearStructure replace x and u.
 struct Mode {
-  LinearModel model;               ///< A (n x n), B (n x m), c (n)
-  Eigen::MatrixXd Q;               ///< n x n process noise covariance per step
-  Eigen::MatrixXd spread;          ///< p x p, covariance of theta over the mode's windows
-  Eigen::VectorXd standard_error;  ///< p, standard error of theta
-  double weight = 1.0;             ///< share of the windows
+  LinearModel model;                     ///< A (n x n), B (n x m), c (n)
+  Eigen::MatrixXd Q;                     ///< n x n process noise covariance per step
+  Eigen::MatrixXd parameter_covariance;  ///< p x p, covariance of theta over the mode's windows
+  Eigen::VectorXd standard_error;        ///< p, standard error of theta
+  double weight = 1.0;                   ///< share of the windows
   /// Parameters of a motion model and their standard errors; the fields above are then its linearisation.
   Eigen::VectorXd motion_theta = {};
   Eigen::VectorXd motion_standard_error = {};

@@ -117,8 +117,9 @@ void CombinedFilter::mix(const std::vector<double>& share, FilterEstimate& mixed
                                       .array()
                                       .isNaN()
                                       .select(Eigen::VectorXd::Zero(n), said.innovation - mixed.innovation);
-    small::add_spread(mixed.innovation_covariance, weight, said.innovation_covariance, apart);
-    small::add_spread(mixed.covariance, weight, said.covariance.topLeftCorner(n, n), said.state.head(n) - mixed.state);
+    small::add_about_mean(mixed.innovation_covariance, weight, said.innovation_covariance, apart);
+    small::add_about_mean(mixed.covariance, weight, said.covariance.topLeftCorner(n, n),
+                          said.state.head(n) - mixed.state);
   });
   const double together = mixed.innovation_covariance.trace();
   mixed.spread_share = together > 0.0 ? 1.0 - own / together : 0.0;

@@ -164,12 +164,14 @@ class DenseGradient {
       for (Index i = 0; i < K; ++i) {
         const Gaussian<any>& from = before.modes[static_cast<std::size_t>(i)];
         const ByGaussian& to = by_.modes[static_cast<std::size_t>(j)];
-        const VectorXd off = from.mean - step_.mixed[static_cast<std::size_t>(j)].mean, spread = to.covariance * off;
+        const VectorXd off = from.mean - step_.mixed[static_cast<std::size_t>(j)].mean,
+                       gradient_of_mean = to.covariance * off;
         const double weight = step_.mixing.matrix(i, j);
         ByGaussian& sum = by.modes[static_cast<std::size_t>(i)];
-        sum.mean += weight * (to.mean + 2.0 * spread);
+        sum.mean += weight * (to.mean + 2.0 * gradient_of_mean);
         sum.covariance += weight * to.covariance;
-        by_weight(i, j) = to.mean.dot(from.mean) + to.covariance.cwiseProduct(from.covariance).sum() + off.dot(spread);
+        by_weight(i, j) =
+            to.mean.dot(from.mean) + to.covariance.cwiseProduct(from.covariance).sum() + off.dot(gradient_of_mean);
       }
     const VectorXd mean_by_weight = by_weight.cwiseProduct(step_.mixing.matrix).colwise().sum();
     const VectorXd& prior = step_.predicted_probability;

@@ -79,7 +79,7 @@ class BankForecast {
     covariance.setZero();
     each([&](double weight, const Gaussian<N>& mode) {
       const Eigen::Matrix<double, N, 1> apart = mode.mean - mean;
-      small::add_spread(covariance, weight, mode.covariance, apart);
+      small::add_about_mean(covariance, weight, mode.covariance, apart);
     });
   }
 

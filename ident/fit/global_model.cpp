@@ -7,25 +7,25 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/stacked_triangle.hpp"
 #include "ident/fit/motion_fit.hpp"
-#include "ident/fit/open_regressors.hpp"
+#include "ident/fit/unidentifiable_regressors.hpp"
 #include "ident/model/transitions.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
 
-std::vector<Index> open_columns(const Eigen::MatrixXd& X, const Decomposition& d) {
+std::vector<Index> unidentifiable_columns(const Eigen::MatrixXd& X, const Decomposition& d) {
   constexpr double rounding = 1e-6;  // of a squared length; far below any real dependence
   const Index q = d.basis.rows();
-  std::vector<Index> open;
-  if (d.rank() == q) return open;
+  std::vector<Index> unidentifiable;
+  if (d.rank() == q) return unidentifiable;
   Eigen::MatrixXd rows(q, 0);
   if (d.rank() > 0) {
     const Eigen::VectorXd norms = X.colwise().stableNorm().transpose();
     rows = thin_qr((norms.array() > 0.0).select(norms, 1.0).cwiseInverse().asDiagonal() * d.basis).Q;
   }
   for (Index j = 0; j < q; ++j)
-    if (1.0 - rows.row(j).squaredNorm() > rounding) open.push_back(j);
-  return open;
+    if (1.0 - rows.row(j).squaredNorm() > rounding) unidentifiable.push_back(j);
+  return unidentifiable;
 }
 
 namespace {
@@ -36,7 +36,7 @@ Eigen::MatrixXd least_squares_covariance(const Eigen::MatrixXd& X, const Decompo
   const Index q = d.basis.rows(), n = residual_square_sum.rows(), rank = d.rank();
   if (N <= rank) return Eigen::MatrixXd::Constant(n * q, n * q, not_a_number);
   Eigen::MatrixXd gram_inverse = d.basis * d.basis.transpose();
-  for (const Index j : open_columns(X, d)) {
+  for (const Index j : unidentifiable_columns(X, d)) {
     gram_inverse.row(j).setConstant(not_a_number);
     gram_inverse.col(j).setConstant(not_a_number);
   }
@@ -103,10 +103,10 @@ GlobalModel fit_global(const Recording& recording, const LinearStructure& struct
   return global;
 }
 
-std::vector<Index> open_regressors(const Recording& recording, const LinearStructure& structure) {
+std::vector<Index> unidentifiable_regressors(const Recording& recording, const LinearStructure& structure) {
   const auto [transitions, N] = reduce(recording, structure);
   if (N == 0) return {};
-  return open_columns(transitions.regressors, decompose(transitions.regressors, excitation_tolerance));
+  return unidentifiable_columns(transitions.regressors, decompose(transitions.regressors, excitation_tolerance));
 }
 
 GlobalModel fit_global(const Recording& recording, const MotionModel& model) {

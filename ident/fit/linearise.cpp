@@ -34,7 +34,7 @@ OperatingPoint operating_point(const Recording& recording, const Eigen::VectorXd
                        recording.median_period_s()};
   double sum = 0.0;
   Index position = 0;
-  for (const Stretch& s : training_stretches(recording))
+  for (const TransitionRange& s : training_stretches(recording))
     for (Index k = s.start; k < s.start + s.length; ++k, ++position) {
       const double weight = weights.size() > 0 ? weights(position) : 1.0;
       if (!s.run->state.col(k).allFinite() || !s.run->input.col(k).allFinite() || !(weight > 0.0)) continue;

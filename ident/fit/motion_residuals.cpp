@@ -23,22 +23,22 @@ double sample_weight(const Trajectory& run, Index k) { return run.weight.size() 
 
 }  // namespace
 
-std::vector<Stretch> training_stretches(const Recording& recording) {
-  std::vector<Stretch> stretches;
+std::vector<TransitionRange> training_stretches(const Recording& recording) {
+  std::vector<TransitionRange> stretches;
   for (const Trajectory& run : recording.runs)
     if (run.role == Role::train) stretches.push_back({&run, 0, run.transitions()});
   return stretches;
 }
 
-ModelResiduals::ModelResiduals(const MotionModel& model, const std::vector<Stretch>& stretches,
+ModelResiduals::ModelResiduals(const MotionModel& model, const std::vector<TransitionRange>& stretches,
                                const Eigen::VectorXd& weights)
     : model_(model) {
   std::vector<double> kept;
   Index position = 0, all = 0;
-  for (const Stretch& s : stretches) all += s.length;
+  for (const TransitionRange& s : stretches) all += s.length;
   kept.reserve(static_cast<std::size_t>(all));
   transitions_.reserve(static_cast<std::size_t>(all));
-  for (const Stretch& s : stretches)
+  for (const TransitionRange& s : stretches)
     for (Index k = s.start; k < s.start + s.length; ++k, ++position) {
       const double weight = weights.size() > 0 ? weights(position) : sample_weight(*s.run, k + 1);
       if (!finite_transition(*s.run, k) || weight == 0.0) continue;

@@ -9,14 +9,14 @@
 namespace modebank {
 
 /// Consecutive transitions of one run.
-struct Stretch {
+struct TransitionRange {
   const Trajectory* run = nullptr;
   Index start = 0;
   Index length = 0;
 };
 
 /// All transitions of the training runs.
-std::vector<Stretch> training_stretches(const Recording& recording);
+std::vector<TransitionRange> training_stretches(const Recording& recording);
 
 using RowMajorJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -27,7 +27,8 @@ class ModelResiduals {
  public:
   /// `weights`: factors of each transition's loss, in the order of the stretches. Empty: the runs' sample weights
   /// divided by their mean, or one for all. Samples of weight zero are skipped.
-  ModelResiduals(const MotionModel& model, const std::vector<Stretch>& stretches, const Eigen::VectorXd& weights = {});
+  ModelResiduals(const MotionModel& model, const std::vector<TransitionRange>& stretches,
+                 const Eigen::VectorXd& weights = {});
 
   const MotionModel& model() const { return model_; }
   Index states() const { return model_.states(); }

@@ -34,10 +34,10 @@ Eigen::VectorXd default_prior_sd(const Eigen::MatrixXd& all, const GlobalModel& 
   const double windows_worth = static_cast<double>(global.transitions) / static_cast<double>(length);
   Eigen::VectorXd sd(global.theta.size());
   for (Index j = 0; j < sd.size(); ++j) {
-    double spread = parameters.cols() > 0 ? normalised_mad(parameters.row(j).transpose()) : 0.0;
-    if (!usable(spread) && parameters.cols() > 0) spread = sample_sd(parameters.row(j).transpose());
-    if (!usable(spread)) spread = std::sqrt(global.covariance(j, j) * windows_worth);
-    sd(j) = usable(spread) ? widening * spread : 1.0;
+    double window_sd = parameters.cols() > 0 ? normalised_mad(parameters.row(j).transpose()) : 0.0;
+    if (!usable(window_sd) && parameters.cols() > 0) window_sd = sample_sd(parameters.row(j).transpose());
+    if (!usable(window_sd)) window_sd = std::sqrt(global.covariance(j, j) * windows_worth);
+    sd(j) = usable(window_sd) ? widening * window_sd : 1.0;
   }
   return sd;
 }

@@ -10,8 +10,8 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/covariance.hpp"
 #include "ident/fit/minimise.hpp"
-#include "ident/fit/open_regressors.hpp"
 #include "ident/fit/scale.hpp"
+#include "ident/fit/unidentifiable_regressors.hpp"
 
 namespace modebank {
 namespace {
@@ -83,14 +83,14 @@ RobustRegression huber_regression(const Transitions& transitions) {
   if (transitions.count() == 0) throw std::invalid_argument("a regression needs at least one transition");
   if (!transitions.finite()) throw std::invalid_argument("a regression needs finite transitions");
   const Decomposition design = decompose(transitions.regressors, excitation_tolerance);
-  const std::vector<Index> open = open_columns(transitions.regressors, design);
+  const std::vector<Index> unidentifiable = unidentifiable_columns(transitions.regressors, design);
   const Index q = transitions.regressors.cols(), n = transitions.increments.cols();
   RobustRegression result{MatrixXd(q, n), MatrixXd(q, n), VectorXd(n), true};
   for (Index i = 0; i < n; ++i) {
     const ResponseFit fit = fit_response(one_response(transitions, i), design);
     result.coefficients.col(i) = fit.coefficients;
     result.standard_error.col(i) = fit.standard_error;
-    for (const Index j : open) result.standard_error(j, i) = not_a_number;
+    for (const Index j : unidentifiable) result.standard_error(j, i) = not_a_number;
     result.scale(i) = fit.scale;
     result.converged = result.converged && fit.converged;
   }

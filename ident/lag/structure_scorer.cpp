@@ -22,8 +22,8 @@ constexpr double least_share_of_rms = 1e-3;
 constexpr double least_normal_scale = 1e-150;  // its square is still a normal floating-point number
 
 /// Rows of one response except rows first .. first + count - 1.
-Transitions outside(const LaggedRows& rows, const std::vector<Index>& columns, Index response, Index first,
-                    Index count) {
+Transitions rows_without(const LaggedRows& rows, const std::vector<Index>& columns, Index response, Index first,
+                         Index count) {
   const Index N = rows.count(), after = N - first - count;
   const auto without = [&](const auto& from, auto to) {
     to.topRows(first) = from.topRows(first);
@@ -106,7 +106,7 @@ MatrixXd StructureScorer::robust_errors(const LinearStructure& structure, const 
     if (count == 0 || count == rows_.count()) continue;
     const MatrixXd X = rows_.X.middleRows(first, count)(Eigen::all, columns);
     for (Index i = 0; i < rows_.states; ++i) {
-      const VectorXd theta = robust_coefficients(outside(rows_, columns, i, first, count), options);
+      const VectorXd theta = robust_coefficients(rows_without(rows_, columns, i, first, count), options);
       if (theta.size() > 0) errors.col(i).segment(first, count) = rows_.Y.col(i).segment(first, count) - X * theta;
     }
   }

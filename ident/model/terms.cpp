@@ -66,10 +66,10 @@ void TermValues::evaluate(const MotionTerms& terms, const Eigen::Ref<const Vecto
   by_variable_.resize(T, V);
   slope_.resize(T, terms.direction.rows());
   variable_.noalias() = terms.direction.transpose() * regressors;
-  outside_ = false;
+  clipped_ = false;
   for (Index v = 0; v < V; ++v) {
     const bool clipped = !(variable_(v) >= terms.low(v) && variable_(v) <= terms.high(v));
-    outside_ = outside_ || clipped;
+    clipped_ = clipped_ || clipped;
     variable_(v) = std::min(std::max(variable_(v), terms.low(v)), terms.high(v)) / terms.unit(v);
     per_unit_(v) = clipped ? 0.0 : 1.0 / terms.unit(v);
   }

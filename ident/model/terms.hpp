@@ -51,12 +51,12 @@ class TermValues {
   void evaluate(const MotionTerms& terms, const Eigen::Ref<const Eigen::VectorXd>& regressors);
   const Eigen::VectorXd& value() const { return value_; }  ///< T
   const Eigen::MatrixXd& slope() const { return slope_; }  ///< T x q, derivatives; 0 for a clipped variable
-  bool outside() const { return outside_; }                ///< whether some variable is clipped
+  bool is_clipped() const { return clipped_; }             ///< whether some variable is clipped
 
  private:
   Eigen::VectorXd variable_, per_unit_, value_;
   Eigen::MatrixXd by_variable_, slope_;
-  bool outside_ = false;
+  bool clipped_ = false;
 };
 
 /// Terms of many rows of regressors (N x q), N x T.

@@ -24,8 +24,8 @@ template <class Io, class G>
 void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& states) {
   io.attribute("transitions", global.transitions, rule::count_of("samples"));
   io.field("parameters", global.theta, {"p"}, parameters, rule::finite_or_missing);
-  io.field("covariance", global.covariance, {"p", "p"}, outer(parameters), rule::spreads);
-  io.field("residual_covariance", global.residual_covariance, {"n", "n"}, outer(states), rule::spreads);
+  io.field("covariance", global.covariance, {"p", "p"}, outer(parameters), rule::computed_covariances);
+  io.field("residual_covariance", global.residual_covariance, {"n", "n"}, outer(states), rule::computed_covariances);
   const Eigen::VectorXd noise_variance = Io::reads ? Eigen::VectorXd() : global.noise_variance();
   io.derived_field("noise_variance", noise_variance, {"n"}, squared(states), rule::not_negative_or_missing);
 }
@@ -88,7 +88,7 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
         io.field("start", stored.start, {"M"}, {}, rule::not_negative);
       });
   io.field("parameters", fits.parameters, {"M", "p"}, parameters);
-  io.field("covariance", fits.covariance, {"M", "p", "p"}, outer(parameters), rule::spreads);
+  io.field("covariance", fits.covariance, {"M", "p", "p"}, outer(parameters), rule::computed_covariances);
   io.field("noise_variance", fits.noise_variance, {"M", "n"}, squared(units.states()), rule::not_negative_or_missing);
   io.field("condition", fits.condition, {"M"}, {}, rule::not_negative_or_missing);
   io.field("rank", fits.rank, {"M"}, {}, rule::count_of("p"));

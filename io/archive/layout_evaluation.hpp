@@ -58,9 +58,9 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("prediction", evaluation.prediction, {"S", "n_y"}, states);
   io.field("innovation", evaluation.innovation, {"S", "n_y"}, states);
   io.field("innovation_covariance", evaluation.innovation_covariance, {"S", "n_y", "n_y"}, outer(states),
-           rule::spreads);
+           rule::computed_covariances);
   io.field("state", evaluation.state, {"S", "n_y"}, states);
-  io.field("covariance", evaluation.covariance, {"S", "n_y", "n_y"}, outer(states), rule::spreads);
+  io.field("covariance", evaluation.covariance, {"S", "n_y", "n_y"}, outer(states), rule::computed_covariances);
   io.field("nis", evaluation.nis, {"S"}, {}, rule::not_negative_or_missing);
   io.field("pit", evaluation.pit, {"S", "n_y"}, {}, rule::share_or_missing);
   io.field("log_density", evaluation.log_density, {"S"}, {"nat"});
@@ -70,7 +70,7 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.optional_field("spread_share", evaluation.spread_share, {"S"}, {}, rule::share_or_missing);
   io.optional_field("smoothed_state", evaluation.smoothed_state, {"S", "n_y"}, states);
   io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"S", "n_y", "n_y"}, outer(states),
-                    rule::spreads);
+                    rule::computed_covariances);
   io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"S"}, {}, rule::position_or_none("K"));
   if constexpr (Io::reads)
     io.finish([&] {

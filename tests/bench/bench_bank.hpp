@@ -14,7 +14,7 @@ inline Bank make_bank(Eigen::Index modes) {
     mode.model = {Eigen::MatrixXd::Constant(1, 1, -0.6 * t), Eigen::RowVector2d(-0.7 * t, 0.7 * t),
                   Eigen::VectorXd::Zero(1)};
     mode.Q = Eigen::MatrixXd::Constant(1, 1, 4e-4 * t);
-    mode.spread = Eigen::MatrixXd::Zero(3, 3);
+    mode.parameter_covariance = Eigen::MatrixXd::Zero(3, 3);
     mode.standard_error = Eigen::VectorXd::Zero(3);
     mode.weight = 1.0 / static_cast<double>(modes);
     bank.modes.push_back(mode);

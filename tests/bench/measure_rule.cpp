@@ -112,8 +112,9 @@ Answer noise_by_input(const Recording& recording) {
   return {found.gain, found.standard_error, !found.factor.empty()};
 }
 
-Answer guards(const Recording& recording) {
-  const Refinement r = refined(recording, [](auto& o) { o.restarts = 2, o.most_modes = 2, o.guards = true; });
+Answer state_dependent_transition(const Recording& recording) {
+  const Refinement r =
+      refined(recording, [](auto& o) { o.restarts = 2, o.most_modes = 2, o.state_dependent_transition = true; });
   return {r.switching.gain, r.switching.gain_standard_error, !r.bank.transition_logit.empty()};
 }
 
@@ -155,7 +156,7 @@ std::vector<Question> questions() {
   return {{"modes", {0.081, 0.061}, of(two_modes), modes},
           {"measurement noise", {0.22, 0.155}, measured, measurement_noise},
           {"noise by input", {0.36, 0.235}, of(noise_follows), noise_by_input},
-          {"transitions by state", {0.069, 0.046}, of(border), guards},
+          {"transitions by state", {0.069, 0.046}, of(border), state_dependent_transition},
           {"drift", {0.08, 0.057}, of(wandering, 1.0), drift},
           {"look-ahead", {0.094, 0.065}, of(hidden, 1.0), look_ahead}};
 }

@@ -27,7 +27,7 @@ inline Bank example_bank(Eigen::Index n, Eigen::Index m, Eigen::Index K, double 
     if (m > 1) mode.model.B.col(0) *= -1.0;
     mode.model.c = Eigen::VectorXd::Constant(n, 0.01 * d);
     mode.Q = std::pow(10.0, -4.0 + d) * (Eigen::MatrixXd::Identity(n, n) + Eigen::MatrixXd::Constant(n, n, 0.3));
-    mode.spread = 1e-3 * (Eigen::MatrixXd::Identity(p, p) + Eigen::MatrixXd::Constant(p, p, 0.1));
+    mode.parameter_covariance = 1e-3 * (Eigen::MatrixXd::Identity(p, p) + Eigen::MatrixXd::Constant(p, p, 0.1));
     mode.weight = 1.0 / static_cast<double>(K);
     bank.modes.push_back(mode);
   }

@@ -66,7 +66,7 @@ TEST(Features, TheOthersAreAssignedWithTheirErrors) {
   fits.transitions = Eigen::VectorXi::Constant(5, 25);
   fits.covariance = Eigen::MatrixXd(0.2 * Eigen::Matrix3d::Identity()).reshaped(9, 1).replicate(1, 5);
   ClusterOptions options;
-  options.straddling = StraddlingWindows::keep;
+  options.over_switch = WindowsOverSwitch::keep;
   EXPECT_TRUE(assigned_features(fits, states, options).windows.empty()) << "no prior, no theta";
   fits.prior_sd = Eigen::Vector3d::Ones();
   fits.step = 3;  // for four features
@@ -85,7 +85,7 @@ TEST(Features, TypicalErrorsAreTheMedians) {
   fits.covariance = Eigen::MatrixXd::Zero(9, 5);
   fits.covariance.row(0) << 0.04, 0.09, 100.0, 100.0, 0.25;
   const FeatureCloud cloud =
-      make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::all, states, StraddlingWindows::keep);
+      make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::all, states, WindowsOverSwitch::keep);
   ASSERT_EQ(cloud.windows.size(), 3u);
   EXPECT_NEAR(cloud.typical_error(0), 0.3, 1e-15);
   EXPECT_EQ(cloud.typical_error(1), 0.0) << "not known";
@@ -151,7 +151,7 @@ TEST(Features, PartOfACloudKeepsItsErrors) {
 
 TEST(Features, AutomaticKeepsAllOfFewAndTwelveOfMany) {
   ClusterOptions options;
-  options.straddling = StraddlingWindows::keep;
+  options.over_switch = WindowsOverSwitch::keep;
   options.windows = WindowChoice::all;
   EXPECT_EQ(make_features(five_windows(), states, options).names.size(), 4u);
   WindowFits fits = five_windows();

@@ -51,7 +51,7 @@ TEST(Criteria, FormulasByHand) {
   EXPECT_DOUBLE_EQ(row.aic, 500.0 + 22.0);
   EXPECT_DOUBLE_EQ(row.icl, 500.0 + 11.0 * std::log(50.0) + 15.0);
   EXPECT_DOUBLE_EQ(row.bic_naive, 2000.0 + 11.0 * std::log(200.0));
-  EXPECT_EQ(badness(row, Criterion::bic_naive), row.bic_naive);
+  EXPECT_EQ(criterion_value(row, Criterion::bic_naive), row.bic_naive);
 }
 
 TEST(Criteria, TiesGoToTheFirstAndNonFiniteRowsAreSkipped) {

@@ -17,11 +17,11 @@ constexpr Index window_length = 25;
 
 /// Runs as long as a window. In each the parameters are drawn from one of two modes, and the inputs have their own
 /// amplitude, log-uniform from 0.03 to 1.
-struct Stretches {
+struct WindowRuns {
   GaussianMixture truth;
   Recording recording;
 
-  explicit Stretches(Index count) {
+  explicit WindowRuns(Index count) {
     truth.weights = Eigen::Vector2d(0.7, 0.3);
     truth.means = (Eigen::MatrixXd(3, 2) << -0.5, -0.5, -0.45, -0.3, 0.45, 0.3).finished();
     const Eigen::Matrix3d spread = (Eigen::Matrix3d() << 4e-4, 0.0, 0.0, 0.0, 9e-4, -3e-4, 0.0, -3e-4, 9e-4).finished();
@@ -60,7 +60,7 @@ struct Stretches {
 };
 
 FeatureCloud cloud_with(const WindowFits& fits, WindowErrors errors) {
-  return make_features(fits, FeatureSet::parameters, WindowChoice::all, {{"x", ""}}, StraddlingWindows::keep, errors);
+  return make_features(fits, FeatureSet::parameters, WindowChoice::all, {{"x", ""}}, WindowsOverSwitch::keep, errors);
 }
 
 /// Errors of the means and of the input parameters' covariances.
@@ -82,7 +82,7 @@ Misfit misfit(const GaussianMixture& fit, const GaussianMixture& truth) {
 }
 
 TEST(WindowErrors, RecoverModesOfUnequallyExcitedWindows) {
-  const Stretches stretches(1500);
+  const WindowRuns stretches(1500);
   for (const Prior prior : {Prior::none, Prior::global}) {
     const WindowFits fits = stretches.fits(prior);
     const FeatureCloud plain = cloud_with(fits, WindowErrors::ignore), aware = cloud_with(fits, WindowErrors::include);
@@ -97,7 +97,7 @@ TEST(WindowErrors, RecoverModesOfUnequallyExcitedWindows) {
 }
 
 TEST(WindowErrors, ThePriorIsTakenOffAgain) {
-  const Stretches stretches(100);
+  const WindowRuns stretches(100);
   const WindowFits free = stretches.fits(Prior::none), held = stretches.fits(Prior::global, 0.1);
   const FeatureCloud a = cloud_with(free, WindowErrors::include), b = cloud_with(held, WindowErrors::include);
   ASSERT_EQ(a.points.cols(), b.points.cols());
@@ -115,7 +115,7 @@ TEST(WindowErrors, ThePriorIsTakenOffAgain) {
 
 /// Robust losses weigh samples by their residuals, which depend on the prior's pull; only the mean weight is known.
 TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
-  const Stretches stretches(100);
+  const WindowRuns stretches(100);
   FitOptions options;
   options.length = window_length;
   options.prior = Prior::none;
@@ -159,7 +159,7 @@ TEST(WindowErrors, ThePriorIsTakenOffStateByState) {
 }
 
 TEST(WindowErrors, OfASandwichNothingIsTakenOff) {
-  const Stretches stretches(20);
+  const WindowRuns stretches(20);
   FitOptions options;
   options.length = window_length;
   options.covariance = CovarianceKind::sandwich;
@@ -181,7 +181,7 @@ TEST(WindowErrors, LogVarianceAndUnknownCovariances) {
   fits.status = (Eigen::VectorXi(3) << 0, 2, 0).finished();
   const auto make = [&](WindowErrors errors) {
     return make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::all, {{"x", ""}},
-                         StraddlingWindows::keep, errors);
+                         WindowsOverSwitch::keep, errors);
   };
   EXPECT_EQ(make(WindowErrors::ignore).windows.size(), 3u);
   const FeatureCloud cloud = make(WindowErrors::include);

@@ -274,7 +274,7 @@ DataCheck check_data(const CheckOptions& options) {
   const Recording training = training_of(material, check);
   advise(material, training, check);
   check.longest_stretch = longest_training_stretch(material);
-  check.open_effects = open_effects(training, material.structure);
+  check.unidentifiable_effects = unidentifiable_effects(training, material.structure);
   check.unusable = find_unusable(check, training);
   return check;
 }

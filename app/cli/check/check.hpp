@@ -53,8 +53,8 @@ struct DataCheck {
   Advice advice;
   Index longest_stretch = 0;            ///< longest sequence of transitions without a gap in the training runs
   std::vector<std::string> dominating;  ///< remarks on values that would dominate least squares
-  std::string open_effects;  ///< a remark on effects that the training runs leave unidentifiable; empty: none
-  std::string unusable;      ///< reason why nothing can be identified; empty if something can
+  std::string unidentifiable_effects;  ///< a remark on effects that the training runs leave unidentifiable; empty: none
+  std::string unusable;                ///< reason why nothing can be identified; empty if something can
 };
 
 /// The data to check, and the length of their windows.

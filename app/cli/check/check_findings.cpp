@@ -178,7 +178,7 @@ std::vector<std::string> findings_of(const DataCheck& check, const Config& confi
   channel_findings(check, found);
   rest_findings(check, found);
   excitation_findings(check, found);
-  if (!check.open_effects.empty()) found.push_back(check.open_effects);
+  if (!check.unidentifiable_effects.empty()) found.push_back(check.unidentifiable_effects);
   lag_findings(check, config, found);
   return found;
 }

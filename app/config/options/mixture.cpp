@@ -33,7 +33,7 @@ std::vector<Option> mixture_options() {
             MODEBANK_FIELD(mixture.windows))
           .touch("all, with mixture.error_aware, when few windows have full rank", mixture),
       words("mixture.straddling", "whether windows over a switch of mode are left out or kept",
-            MODEBANK_FIELD(mixture.straddling))
+            MODEBANK_FIELD(mixture.over_switch))
           .touch("rarely: to study how windows over a switch blur the components", mixture),
       numeric("mixture.restarts", between(1, 10'000), "",
               "random starts per number of components. bank.refine = em has three more for every ten of them, from "

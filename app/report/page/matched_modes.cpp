@@ -29,8 +29,8 @@ Estimates estimates_of(const Bank& bank, Index k) {
   for (Index i = 0; i < estimates.errors.size(); ++i) {
     if (i < stated.size() && usable(stated(i)))
       estimates.errors(i) = stated(i);
-    else if (!some && !motion && i < mode.spread.rows() && usable(mode.spread(i, i)))
-      estimates.errors(i) = std::sqrt(mode.spread(i, i));
+    else if (!some && !motion && i < mode.parameter_covariance.rows() && usable(mode.parameter_covariance(i, i)))
+      estimates.errors(i) = std::sqrt(mode.parameter_covariance(i, i));
   }
   return estimates;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/report/page/folded_transition.hpp"
-#include "app/report/page/guard_map.hpp"
+#include "app/report/page/mode_map.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
@@ -26,11 +26,14 @@ json decays_cell(const std::vector<Decay>& decays) {
 }
 
 /// `open`: marks values that the training runs leave unidentifiable; empty: none.
-json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors, const std::vector<bool>& open = {}) {
+json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors,
+               const std::vector<bool>& unidentifiable = {}) {
   json cells = json::array();
   for (Index i = 0; i < values.size(); ++i) {
-    const bool is_open = static_cast<std::size_t>(i) < open.size() && open[static_cast<std::size_t>(i)];
-    cells.push_back(is_open ? number(NAN, not_identifiable) : estimate(values(i), i < errors.size() ? errors(i) : NAN));
+    const bool is_unidentifiable =
+        static_cast<std::size_t>(i) < unidentifiable.size() && unidentifiable[static_cast<std::size_t>(i)];
+    cells.push_back(is_unidentifiable ? number(NAN, not_identifiable)
+                                      : estimate(values(i), i < errors.size() ? errors(i) : NAN));
   }
   return cells;
 }
@@ -55,10 +58,10 @@ json label_section(const Archive& archive, const std::vector<Index>& told) {
 }
 
 /// Adds the decay per sample of the slowest mode of motion, and all time constants.
-void add_decays(json& row, const std::vector<Decay>& decays, bool open) {
-  const double slowest = decays.empty() || open ? NAN : decays.front().per_sample;
-  row["per_sample"] = number(slowest, open ? "-" : per_sample_words(decays));
-  row["decays"] = open ? number(NAN, not_identifiable) : decays_cell(decays);
+void add_decays(json& row, const std::vector<Decay>& decays, bool unidentifiable) {
+  const double slowest = decays.empty() || unidentifiable ? NAN : decays.front().per_sample;
+  row["per_sample"] = number(slowest, unidentifiable ? "-" : per_sample_words(decays));
+  row["decays"] = unidentifiable ? number(NAN, not_identifiable) : decays_cell(decays);
 }
 
 json mode_row(const Archive& archive, const Bank& bank, Index k) {
@@ -66,13 +69,14 @@ json mode_row(const Archive& archive, const Bank& bank, Index k) {
   const ModeDynamics dynamics = mode_dynamics(bank, k);
   const Eigen::VectorXd gain = dynamics.gain.transpose().reshaped(), error = dynamics.gain_error.transpose().reshaped();
   const Index n_y = bank.C.rows();
-  json row{{"mode", k},
-           {"weight", number(mode.weight, fmt::format("{:.3f}", mode.weight))},
-           {"parameters", estimates(bank.theta(k), mode.standard_error, open_parameters(archive, bank.structure))},
-           {"motion", estimates(mode.motion_theta, mode.motion_standard_error)},
-           {"noise_sd", number_list(mode.Q.diagonal().head(std::min(n_y, mode.Q.rows())).cwiseSqrt())},
-           {"gains", estimates(gain, error, open_gains(archive, bank.structure))}};
-  add_decays(row, dynamics.decays, open_decays(archive, bank.structure));
+  json row{
+      {"mode", k},
+      {"weight", number(mode.weight, fmt::format("{:.3f}", mode.weight))},
+      {"parameters", estimates(bank.theta(k), mode.standard_error, unidentifiable_parameters(archive, bank.structure))},
+      {"motion", estimates(mode.motion_theta, mode.motion_standard_error)},
+      {"noise_sd", number_list(mode.Q.diagonal().head(std::min(n_y, mode.Q.rows())).cwiseSqrt())},
+      {"gains", estimates(gain, error, unidentifiable_gains(archive, bank.structure))}};
+  add_decays(row, dynamics.decays, unidentifiable_decays(archive, bank.structure));
   return row;
 }
 
@@ -216,7 +220,7 @@ nlohmann::json bank_section(const Archive& archive) {
           {"transition", transition_of(bank)},
           {"folded", folded_transition_of(bank, used, told)},
           {"switch_weights", switch_weights_of(bank)},
-          {"guard", guard_of(archive)},
+          {"modeMap", mode_map_of(archive)},
           {"confusion", label_section(archive, told)},
           {"screened", screened_of(bank)},
           {"merged", merging_of(archive, role)},

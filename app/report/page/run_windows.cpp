@@ -89,8 +89,10 @@ json modes_of(const Bank& bank) {
   for (const Mode& mode : bank.modes) {
     const bool linear = bank.motion_parameters.empty();
     const Eigen::VectorXd theta = linear ? pack(bank.structure, mode.model) : mode.motion_theta;
-    modes.push_back({{"mean", std::vector<double>(theta.begin(), theta.end())},
-                     {"covariance", linear && mode.spread.size() > 0 ? rows_of_matrix(mode.spread) : json()}});
+    modes.push_back(
+        {{"mean", std::vector<double>(theta.begin(), theta.end())},
+         {"covariance",
+          linear && mode.parameter_covariance.size() > 0 ? rows_of_matrix(mode.parameter_covariance) : json()}});
   }
   return modes;
 }

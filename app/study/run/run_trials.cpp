@@ -98,7 +98,7 @@ class StudyRun {
     while (!workers_.empty() && !stopping_) {
       wait();
       for (Worker& worker : workers_)
-        if (!stopping_) hear(file, worker);
+        if (!stopping_) handle_message(file, worker);
       std::erase_if(workers_, [](const Worker& worker) { return !worker.process; });
     }
     for (const Worker& worker : workers_) stop(worker);
@@ -168,7 +168,7 @@ class StudyRun {
 
   double timeout_s() const { return settings_.config.study.timeout_s; }
 
-  void hear(const TaskFile& file, Worker& worker) {
+  void handle_message(const TaskFile& file, Worker& worker) {
     const auto lines = worker.process->read_lines();
     if (!lines) return replace(file, worker);
     for (const std::string& line : *lines) take(worker, unpack_report(line));

@@ -73,7 +73,7 @@ class Collector {
 
   void add_scores(const RunEvaluation& e, Index k, const RunScores& scores, OutputSeries& z) {
     ++sums.samples;
-    if (e.spread_share.size() > 0) sums.spread += e.spread_share(k);
+    if (e.spread_share.size() > 0) sums.differences += e.spread_share(k);
     for (Index i = 0; i < e.pit.rows(); ++i) {
       if (std::isnan(e.pit(i, k))) continue;
       const double score = scores.z(i, k);

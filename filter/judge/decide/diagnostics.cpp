@@ -88,15 +88,15 @@ DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);
-  row.spread_share = c.spread / N;
+  row.spread_share = c.differences / N;
   row.verdict = calibration_of(c.counts, time);
   return row;
 }
 
-constexpr double takes_all = 0.99;         // smallest usage of one mode for the flag
-constexpr double unused = 1e-3;            // usage
-constexpr double flat_entropy = 0.95;      // of log K
-constexpr double dominating_spread = 0.5;  // share of trace S
+constexpr double takes_all = 0.99;              // smallest usage of one mode for the flag
+constexpr double unused = 1e-3;                 // usage
+constexpr double flat_entropy = 0.95;           // of log K
+constexpr double dominating_differences = 0.5;  // share of trace S
 
 void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
 
@@ -123,7 +123,7 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
     if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
   if (const std::string list = unused_modes(modes); !list.empty()) add_flag(flags, list);
   if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
-  if (all.spread_share > dominating_spread) add_flag(flags, "spread dominates S");
+  if (all.spread_share > dominating_differences) add_flag(flags, "spread dominates S");
   if (all.too_far_lower > largest_close && all.too_close_lower > largest_close) add_flag(flags, "heavy tails");
   if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above a true filter's");
   if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below a true filter's");

@@ -142,7 +142,7 @@ class BackwardPass {
   const FilteredHistory<N, NY>& history_;
   double negligible_;
   KalmanStep<N, NY> kalman_;
-  small::Cholesky<N> cholesky_;
+  small::Ldl<N> cholesky_;
   Eigen::Matrix<double, N, N> gain_, product_, closed_loop_;
   Gaussian<N> filtered_;
   std::vector<Gaussian<N>> pairs_;

@@ -31,12 +31,12 @@ FreeRun sized_free_run(Index n_y, Index samples) {
 }
 
 /// Samples [first, end) of a run between gaps at which filters restart.
-struct Stretch {
+struct SampleRange {
   Index first = 0, end = 0;
 };
 
-std::vector<Stretch> stretches_of(const Trajectory& run, double dt_s) {
-  std::vector<Stretch> stretches;
+std::vector<SampleRange> stretches_of(const Trajectory& run, double dt_s) {
+  std::vector<SampleRange> stretches;
   for (Index k = 0; k < run.samples(); ++k) {
     const bool gap =
         k > 0 && SampleFeed::steps_between(sample_time_s(run, k - 1), sample_time_s(run, k), dt_s) > longest_gap_steps;
@@ -66,7 +66,7 @@ class Given {
   /// last measured sample, and the end of the predictions. Notes the reason for other stretches.
   template <class From>
   void for_each(FreeRun& out, From from) const {
-    for (const Stretch& stretch : stretches_) {
+    for (const SampleRange& stretch : stretches_) {
       const Index last = stretch.first + options_.samples - 1;
       const std::string where = stretches_.size() > 1 ? " from sample " + std::to_string(stretch.first) + " on" : "";
       if (last + 1 >= stretch.end) {
@@ -88,11 +88,11 @@ class Given {
  private:
   const FreeRunOptions& options_;
   Trajectory run_;
-  std::vector<Stretch> stretches_;
+  std::vector<SampleRange> stretches_;
   std::optional<RunInstants> instants_;
 
   void see_only_the_last(Index lags) {
-    for (const Stretch& stretch : stretches_) {
+    for (const SampleRange& stretch : stretches_) {
       const Index unseen = std::min(options_.samples - lags, stretch.end - stretch.first);
       run_.state.middleCols(stretch.first, unseen).setConstant(not_a_number);
     }

@@ -106,7 +106,7 @@ class BestHistories {
   Eigen::Matrix<Index, Eigen::Dynamic, 1> best_;
   KalmanStep<N, NY> kalman_;
   PartialSensor<N, NY> partial_;
-  small::Cholesky<NY> least_;
+  small::Ldl<NY> least_;
   Eigen::VectorXd score_;                        ///< score of every mode's best history
   std::vector<Gaussian<N>> modes_, next_modes_;  ///< states that these histories have reached
 

@@ -37,7 +37,7 @@ class CombinedHorizon {
     Eigen::MatrixXd known(std::ssize(said_), N);  // weights after each sample
     std::vector<double> weights(said_.size());
     for (Index k = 0; k < N; ++k) {
-      hear(k);
+      add_sample(k);
       if (!std::isnan(said_.front())) {
         Eigen::VectorXd::Map(weights.data(), known.rows()) = known.col(k - h);
         combine(k, weights, out);
@@ -52,7 +52,7 @@ class CombinedHorizon {
   std::size_t horizon_;
   std::vector<double> start_, said_;
 
-  void hear(Index k) {
+  void add_sample(Index k) {
     for (std::size_t i = 0; i < members_.size(); ++i)
       said_[i] = members_[i]->log_density(static_cast<Index>(horizon_), k);
   }

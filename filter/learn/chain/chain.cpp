@@ -25,7 +25,8 @@ class Run {
   void identify(const LearningInputs& inputs) {
     provide(Stage::windows, inputs, [&] {
       const FitOptions& window = inputs.windows.window;
-      if (const std::string open = open_effects(recording_, window); !open.empty()) progress_.warning(open);
+      if (const std::string unidentifiable = unidentifiable_effects(recording_, window); !unidentifiable.empty())
+        progress_.warning(unidentifiable);
       const Stopwatch watch;
       learned_.windows =
           hooks_.motion ? fit_windows(recording_, window, *hooks_.motion) : fit_windows(recording_, window);

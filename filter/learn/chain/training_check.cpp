@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "ident/fit/fit_windows.hpp"
-#include "ident/fit/open_regressors.hpp"
+#include "ident/fit/unidentifiable_regressors.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "modebank/base/error.hpp"
 
@@ -53,13 +53,13 @@ void refuse_unreached_horizons(const Recording& recording, const std::vector<Ind
           horizon, held_out ? "held-out" : "training", longest->run, longest->samples(), longest->transitions()));
 }
 
-std::string open_effects(const Recording& recording, const LinearStructure& structure) {
-  const std::vector<Index> open = open_regressors(recording, structure);
-  if (open.empty()) return {};
+std::string unidentifiable_effects(const Recording& recording, const LinearStructure& structure) {
+  const std::vector<Index> unidentifiable = unidentifiable_regressors(recording, structure);
+  if (unidentifiable.empty()) return {};
   std::vector<std::string> labels = regressor_labels(structure, names_of(recording.states), names_of(recording.inputs));
   labels.emplace_back("the intercept");
   std::vector<std::string> named;
-  for (const Index j : open)
+  for (const Index j : unidentifiable)
     named.push_back((j < structure.dimension() ? "the state " : "") + labels[static_cast<std::size_t>(j)]);
   return fmt::format(
       "not identifiable from the training runs: the effect of {}, which {} throughout; the other parameters keep their "
@@ -67,9 +67,9 @@ std::string open_effects(const Recording& recording, const LinearStructure& stru
       fmt::join(named, ", "), named.size() == 1 ? "is zero" : "are zero or sums of multiples of each other");
 }
 
-std::string open_effects(const Recording& recording, const FitOptions& options) {
+std::string unidentifiable_effects(const Recording& recording, const FitOptions& options) {
   if (!is_linear(options)) return {};
-  return open_effects(recording, linear_structure(recording.state_count(), recording.input_count(), options));
+  return unidentifiable_effects(recording, linear_structure(recording.state_count(), recording.input_count(), options));
 }
 
 }  // namespace modebank

@@ -18,8 +18,8 @@ void refuse_constant_states(const Recording& recording);
 void refuse_unreached_horizons(const Recording& recording, const std::vector<Index>& horizons);
 
 /// A message about regressors of the linear model that the training runs do not determine; empty if there is none.
-std::string open_effects(const Recording& recording, const LinearStructure& structure);
-/// open_effects for the fitted model.
-std::string open_effects(const Recording& recording, const FitOptions& options);
+std::string unidentifiable_effects(const Recording& recording, const LinearStructure& structure);
+/// unidentifiable_effects for the fitted model.
+std::string unidentifiable_effects(const Recording& recording, const FitOptions& options);
 
 }  // namespace modebank

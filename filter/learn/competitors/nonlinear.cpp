@@ -163,7 +163,7 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   frame.global = fit_global(known, frame.structure);
   RefineOptions em = options;
   em.one_theta = true;
-  em.guards = false;
+  em.state_dependent_transition = false;
   em.drift = {};
   em.restarts = 0;
   em.look_ahead = 1;

@@ -51,7 +51,7 @@ Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, 
                             const FilterOptions& filter) {
   RefineOptions em = options.em;
   em.one_theta = true;
-  em.guards = options.transition == TransitionSource::logit;
+  em.state_dependent_transition = options.transition == TransitionSource::logit;
   em.restarts = 0;  // random stretches differ in theta, but this model has only one
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   std::vector<Bank> starts =
@@ -63,7 +63,7 @@ Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, 
                    em.noise_by_input ? fit_noise_factor(recording, fits.structure) : NoiseFactor());
   if (rival.mode_count() > 1) starts.push_back(with_noises_of(rival, starts.front(), global));
   Refinement learned = refine_bank(recording, linear_frame(fits, global), starts, em, filter);
-  leave_open(learned.bank, global.covariance);
+  clear_unidentifiable(learned.bank, global.covariance);
   return learned;
 }
 

@@ -49,13 +49,13 @@ Bank bank_frame(const Recording& recording, const LinearStructure& structure, co
 }
 
 Mode make_mode(const LinearStructure& structure, const Eigen::VectorXd& theta, const Eigen::MatrixXd& Q,
-               const Eigen::MatrixXd& spread, const Eigen::VectorXd& standard_error, double weight) {
+               const Eigen::MatrixXd& parameter_covariance, const Eigen::VectorXd& standard_error, double weight) {
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(structure.dimension(), structure.dimension());
   whole.topLeftCorner(structure.states, structure.states) = Q;
-  return {unpack(structure, theta), whole, spread, standard_error, weight};
+  return {unpack(structure, theta), whole, parameter_covariance, standard_error, weight};
 }
 
-void leave_open(Bank& bank, const Eigen::MatrixXd& global_covariance) {
+void clear_unidentifiable(Bank& bank, const Eigen::MatrixXd& global_covariance) {
   const Eigen::VectorXd variance = global_covariance.diagonal();
   if (variance.array().isNaN().all()) return;
   for (Mode& mode : bank.modes)

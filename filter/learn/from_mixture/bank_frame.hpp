@@ -20,11 +20,11 @@ std::vector<std::string> input_names(const Recording& recording, const LinearStr
 
 /// The mode with theta and process noise `Q` of the measured states; lagged samples have no noise.
 Mode make_mode(const LinearStructure& structure, const Eigen::VectorXd& theta, const Eigen::MatrixXd& Q,
-               const Eigen::MatrixXd& spread, const Eigen::VectorXd& standard_error, double weight);
+               const Eigen::MatrixXd& parameter_covariance, const Eigen::VectorXd& standard_error, double weight);
 
 /// Removes the standard errors of parameters that the training runs do not determine. They are recognised by a missing
 /// value in the covariance of the global model, where others have one. A prior does not change this.
-void leave_open(Bank& bank, const Eigen::MatrixXd& global_covariance);
+void clear_unidentifiable(Bank& bank, const Eigen::MatrixXd& global_covariance);
 
 /// Sets the transition matrix, with uniform initial probabilities.
 void set_mode_sequence(Bank& bank, const TransitionMatrix& transition);

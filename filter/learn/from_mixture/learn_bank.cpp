@@ -129,7 +129,7 @@ void set_process_noise(std::vector<ComponentEstimate>& modes, const BankOptions&
 
 /// Covariance of the windows' parameters in component k, p x p: the component's own block. If the component has other
 /// features, it is the covariance of the windows weighted by their responsibilities.
-Eigen::MatrixXd spread_of(const WindowFits& fits, const MixtureResult& mixture, Index k) {
+Eigen::MatrixXd parameter_covariance_of(const WindowFits& fits, const MixtureResult& mixture, Index k) {
   const Index p = fits.parameter_count();
   if (mixture.features.size() == 0) return mixture.mixture.covariances[static_cast<std::size_t>(k)].topLeftCorner(p, p);
   Eigen::VectorXd weights = mixture.responsibilities.all().row(k).transpose();
@@ -139,13 +139,13 @@ Eigen::MatrixXd spread_of(const WindowFits& fits, const MixtureResult& mixture, 
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(p);
   for (Index i = 0; i < weights.size(); ++i)
     if (weights(i) > 0.0) mean += weights(i) / total * fits.parameters.col(i);
-  Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(p, p);
+  Eigen::MatrixXd parameter_covariance = Eigen::MatrixXd::Zero(p, p);
   for (Index i = 0; i < weights.size(); ++i) {
     if (!(weights(i) > 0.0)) continue;
     const Eigen::VectorXd offset = fits.parameters.col(i) - mean;
-    spread += weights(i) / total * offset * offset.transpose();
+    parameter_covariance += weights(i) / total * offset * offset.transpose();
   }
-  return spread;
+  return parameter_covariance;
 }
 
 TransitionMatrix learn_transition(const WindowFits& fits, const Eigen::VectorXi& labels, const std::vector<Index>& kept,
@@ -155,13 +155,15 @@ TransitionMatrix learn_transition(const WindowFits& fits, const Eigen::VectorXi&
 }
 
 /// The bank's mode. For a motion model the windows' parameter covariance is propagated to the linear parameters.
-Mode bank_mode(const LinearStructure& structure, const ComponentEstimate& estimate, const Eigen::MatrixXd& spread,
-               double weight) {
+Mode bank_mode(const LinearStructure& structure, const ComponentEstimate& estimate,
+               const Eigen::MatrixXd& parameter_covariance, double weight) {
   const ModeEstimate& linear = estimate.linear;
-  if (!estimate.motion) return make_mode(structure, linear.theta, linear.Q, spread, linear.standard_error, weight);
+  if (!estimate.motion)
+    return make_mode(structure, linear.theta, linear.Q, parameter_covariance, linear.standard_error, weight);
   const MotionMode& motion = *estimate.motion;
-  Mode mode = make_mode(structure, linear.theta, linear.Q, motion.by_motion * spread * motion.by_motion.transpose(),
-                        linear.standard_error, weight);
+  Mode mode =
+      make_mode(structure, linear.theta, linear.Q,
+                motion.by_motion * parameter_covariance * motion.by_motion.transpose(), linear.standard_error, weight);
   mode.motion_theta = motion.theta;
   mode.motion_standard_error = motion.standard_error;
   return mode;
@@ -209,7 +211,7 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
 
   const double kept_weight = components.weights(kept).sum();
   for (Index j = 0; j < std::ssize(kept); ++j)
-    bank.modes.push_back(bank_mode(fits.structure, modes[j], spread_of(fits, mixture, kept[j]),
+    bank.modes.push_back(bank_mode(fits.structure, modes[j], parameter_covariance_of(fits, mixture, kept[j]),
                                    components.weights(kept[j]) / kept_weight));
   set_mode_sequence(bank, learn_transition(fits, mixture.labels, kept, options));
   return bank;
@@ -242,7 +244,7 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   }
   RefineOptions em = options.em;
   em.screen = options.screen;
-  em.guards = options.transition == TransitionSource::logit;
+  em.state_dependent_transition = options.transition == TransitionSource::logit;
   if (options.modes > 0) em.most_modes = std::min(em.most_modes, options.modes);
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   const std::optional<Recording> part = learning_part(recording, em.transitions, em.seed);
@@ -275,8 +277,8 @@ Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, co
   Refinement learned = refined ? learn_refined_bank(recording, fits, mixture, options, R, filter.value())
                                : Refinement{learn_bank(recording, fits, mixture, options, R, motion), {}, {}, {}, {}};
   if (motion) return learned;
-  leave_open(learned.bank, fits.global.covariance);
-  leave_open(learned.start, fits.global.covariance);
+  clear_unidentifiable(learned.bank, fits.global.covariance);
+  clear_unidentifiable(learned.start, fits.global.covariance);
   return learned;
 }
 

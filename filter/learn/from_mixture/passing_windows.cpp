@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "mixture/straddling.hpp"
+#include "mixture/window_over_switch.hpp"
 
 namespace modebank {
 namespace {
@@ -51,14 +51,14 @@ class LabelStretches {
 }  // namespace
 
 Eigen::VectorXd passing_shares(const WindowFits& fits, const MixtureResult& mixture) {
-  const std::vector<bool> straddling = straddling_windows(fits);
+  const std::vector<bool> over_switch = windows_over_switch(fits);
   const LabelStretches runs(fits, mixture.labels);
   Eigen::VectorXd passing = Eigen::VectorXd::Zero(mixture.mixture.components()), all = passing;
   for (const SameLabel& stretch : runs.stretches()) {
     const bool passes = runs.passes(stretch);
     for (std::size_t at = stretch.first; at < stretch.end; ++at) {
       all(runs.label(at)) += 1.0;
-      if (passes || straddling[static_cast<std::size_t>(runs.windows()[at])]) passing(runs.label(at)) += 1.0;
+      if (passes || over_switch[static_cast<std::size_t>(runs.windows()[at])]) passing(runs.label(at)) += 1.0;
     }
   }
   return passing.cwiseQuotient(all.cwiseMax(1.0));

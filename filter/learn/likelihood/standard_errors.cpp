@@ -97,8 +97,8 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
   for (std::size_t j = 0; j < bank.modes.size(); ++j) {
     Mode& mode = bank.modes[j];
     const double weight = std::max(sums.modes[j].weight, std::numeric_limits<double>::min());
-    mode.spread = covariances[j];
-    mode.standard_error = mode.spread.diagonal().cwiseSqrt();
+    mode.parameter_covariance = covariances[j];
+    mode.standard_error = mode.parameter_covariance.diagonal().cwiseSqrt();
     const Eigen::VectorXd variance = mode.Q.diagonal();
     mode.Q_standard_error =
         ((variance * variance.transpose()).array() + mode.Q.array().square()).sqrt() / std::sqrt(weight);
@@ -140,7 +140,7 @@ void set_observed_errors(const ParameterPlaces& at, const Observed& observed, co
   const Eigen::VectorXd error = covariance.diagonal().cwiseSqrt();
   for (Index j = 0; j < at.modes; ++j) {
     Mode& mode = bank.modes[static_cast<std::size_t>(j)];
-    mode.spread = covariance.block(at.theta(j), at.theta(j), at.parameters, at.parameters);
+    mode.parameter_covariance = covariance.block(at.theta(j), at.theta(j), at.parameters, at.parameters);
     mode.standard_error = error.segment(at.theta(j), at.parameters);
     Index next = at.Q(j);
     for (Index b = 0; b < n; ++b)

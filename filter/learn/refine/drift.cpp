@@ -59,11 +59,11 @@ Fit climbed(const RefineInput& in, const CrossValidation& validation, const Fit&
 }
 
 /// The chosen fit, and the best fit of every other number of modes.
-std::vector<Fit> fits_to_try(const CrossValidation& validation, const Fit& steady, bool other_sizes) {
-  std::vector<Fit> fits{steady};
+std::vector<Fit> fits_to_try(const CrossValidation& validation, const Fit& constant, bool other_sizes) {
+  std::vector<Fit> fits{constant};
   if (!other_sizes) return fits;
   for (Fit& fit : validation.best_of_each_size())
-    if (fit.model.modes() != steady.model.modes()) fits.push_back(std::move(fit));
+    if (fit.model.modes() != constant.model.modes()) fits.push_back(std::move(fit));
   return fits;
 }
 
@@ -76,8 +76,8 @@ Fit start_of(Fit fit, const Eigen::VectorXd& scale) {
 }
 
 /// Scores of the runs without drift, with the best noise adaptation for that case.
-Eigen::VectorXd scores_without(const CrossValidation& validation, const Fit& steady) {
-  std::vector<Bank> banks = steady.of_splits;
+Eigen::VectorXd scores_without(const CrossValidation& validation, const Fit& constant) {
+  std::vector<Bank> banks = constant.of_splits;
   const NoiseAdaptation adaptation = validation.adaptation(banks);
   for (Bank& bank : banks) bank.noise_adaptation = adaptation;
   return validation.scores(banks).log_likelihood;
@@ -85,18 +85,18 @@ Eigen::VectorXd scores_without(const CrossValidation& validation, const Fit& ste
 
 }  // namespace
 
-std::optional<Fit> choose_drift(const RefineInput& in, const CrossValidation& validation, const Fit& steady,
+std::optional<Fit> choose_drift(const RefineInput& in, const CrossValidation& validation, const Fit& constant,
                                 bool other_sizes, DriftStage& stage) {
   if (!validation.possible()) return std::nullopt;
   const Eigen::VectorXd scale = regressor_scale(in.recording, in.frame.structure);
   std::vector<Fit> sizes;
   std::vector<LeftOutScores> scores;
-  for (const Fit& fit : fits_to_try(validation, steady, other_sizes)) {
+  for (const Fit& fit : fits_to_try(validation, constant, other_sizes)) {
     sizes.push_back(climbed(in, validation, start_of(fit, scale)));
     scores.push_back(sizes.back().scores);
   }
   const Fit& best = sizes[fewest_modes_as_good(scores, validation.samples(), refine_tuning)];
-  const Eigen::VectorXd without = scores_without(validation, steady);
+  const Eigen::VectorXd without = scores_without(validation, constant);
   const PairedLoss gain = paired_loss(best.scores.log_likelihood, without, validation.samples());
   const DriftRates& rates = best.drift.rates;
   stage.taken = is_worth_it(gain, validation.samples());

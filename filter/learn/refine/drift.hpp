@@ -16,7 +16,7 @@ namespace modebank {
 /// chosen (fewest_modes_as_good).
 /// Empty if the gain over the chosen fit without drift is not worth it (is_worth_it), or nothing can be left out.
 /// `stage` records the result.
-std::optional<Fit> choose_drift(const RefineInput& in, const CrossValidation& validation, const Fit& steady,
+std::optional<Fit> choose_drift(const RefineInput& in, const CrossValidation& validation, const Fit& constant,
                                 bool other_sizes, DriftStage& stage);
 
 /// The bank with the fit's drift; R is then zero.

@@ -24,7 +24,7 @@ struct RefineStart {
 struct Fit {
   RefineStart start;
   SwitchingRegression model;         ///< start of expectation-maximisation, or a model with a logit
-  GuardPrior guard = {};             ///< prior of the logit
+  LogitPrior logit_prior = {};       ///< prior of the logit
   std::size_t row = 0;               ///< row of the start in the table
   Eigen::Index iterations = 0;       ///< iterations of expectation-maximisation that score best on left-out runs
   LeftOutScores scores = {};         ///< scores on the left-out runs

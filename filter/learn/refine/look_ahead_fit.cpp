@@ -49,7 +49,7 @@ struct LookAheadFit {
 
   /// Densities fit all parameters. Errors fit theta only; the likelihood then determines noise and transitions for that
   /// theta.
-  Bank taken_on(const Recording& recording, const SwitchingPrior& prior, const Bank& bank) const {
+  Bank continued(const Recording& recording, const SwitchingPrior& prior, const Bank& bank) const {
     const FreeParameters all = free_parameters(in, recording, prior, R_estimated, bank);
     if (!look.counts_errors()) return climbed(recording, prior, look, all, bank);
     FreeParameters rest = all;
@@ -102,8 +102,8 @@ bool gains(const LookAheadFit& search, const CrossValidation& validation, LookAh
     const SplitData& split = validation.splits()[s];
     SwitchingPrior of_split = prior_of_split(
         search.in, split, {"", switching_model(banks[s]), fit.start.noise_transitions, fit.start.theta_transitions});
-    of_split = with_guard(std::move(of_split), split.transitions, fit.guard);
-    banks[s] = search.taken_on(split.runs.training, of_split, banks[s]);
+    of_split = with_logit_prior(std::move(of_split), split.transitions, fit.logit_prior);
+    banks[s] = search.continued(split.runs.training, of_split, banks[s]);
   });
   const LeftOutScores after = validation.scores(banks, search.look);
   stage.score_before = validation.mean_score(before);
@@ -130,7 +130,7 @@ std::optional<Fit> fit_looking_ahead(const RefineInput& in, const CrossValidatio
   stage.of_errors = look->counts_errors();
   stage.taken = !validation.possible() || gains(search, validation, stage, ahead);
   if (!stage.taken) return std::nullopt;
-  ahead.bank = without_errors(search.taken_on(in.recording, fit.prior, fit.bank));
+  ahead.bank = without_errors(search.continued(in.recording, fit.prior, fit.bank));
   return ahead;
 }
 

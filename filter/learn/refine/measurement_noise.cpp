@@ -161,7 +161,7 @@ class MeasuredSplits {
       SwitchingPrior exact = prior_of_split(in_, split, exact_.start.noise_transitions);
       exact = towards_one_motion(std::move(exact), split.transitions, switching_model(bank),
                                  exact_.start.theta_transitions, refine_tuning);
-      exact = with_guard(std::move(exact), split.transitions, exact_.guard);
+      exact = with_logit_prior(std::move(exact), split.transitions, exact_.logit_prior);
       const LikelihoodTarget target{split.runs.training, learning_filter(in_.filter),
                                     prior_with_states_unknown(exact, bank, refine_tuning), in_.options.one_theta};
       bank = maximise_everything(target, in_, split.transitions, bank, with_R).bank;

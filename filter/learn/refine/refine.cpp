@@ -7,9 +7,9 @@
 
 #include "filter/learn/refine/cross_validation.hpp"
 #include "filter/learn/refine/drift.hpp"
-#include "filter/learn/refine/guards.hpp"
 #include "filter/learn/refine/look_ahead_fit.hpp"
 #include "filter/learn/refine/measurement_noise.hpp"
+#include "filter/learn/refine/state_dependent_transition.hpp"
 #include "filter/learn/refine/training_fit.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "filter/learn/tuning.hpp"
@@ -108,12 +108,13 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   Refinement result;
   result.start = banks.front();
   Fit chosen = validation.chosen();
-  if (options.guards)
-    if (std::optional<Fit> guarded = choose_guards(in, validation, result.switching)) chosen = std::move(*guarded);
+  if (options.state_dependent_transition)
+    if (std::optional<Fit> with_logit = choose_state_dependent_transition(in, validation, result.switching))
+      chosen = std::move(*with_logit);
   if (options.drift != Drift::none)
-    if (std::optional<Fit> drifts = choose_drift(in, validation, chosen, chosen.guard.width == 0.0, result.drift))
+    if (std::optional<Fit> drifts = choose_drift(in, validation, chosen, chosen.logit_prior.width == 0.0, result.drift))
       chosen = std::move(*drifts);
-  chosen.prior = with_guard(in.prior(chosen.start), transitions, chosen.guard);
+  chosen.prior = with_logit_prior(in.prior(chosen.start), transitions, chosen.logit_prior);
   const TrainingFit fit = fit_exactly(in, chosen, chosen.prior);
   result.candidates = validation.table(chosen.row);
   result.objective = fit.objective;

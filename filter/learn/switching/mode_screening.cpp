@@ -38,7 +38,7 @@ std::vector<RegressionSums> sums_of_modes(const TrainingTransitions& transitions
   return modes;
 }
 
-struct Twins {
+struct DuplicateModes {
   Index kept = 0, dropped = 0;
 };
 
@@ -48,17 +48,17 @@ Index free_parameters(const LinearStructure& structure, bool one_theta) {
 }
 
 /// The pair of modes whose pooling loses least, if it loses less than `least` nats.
-std::optional<Twins> closest_twins(const std::vector<RegressionSums>& modes, double least) {
-  std::optional<Twins> twins;
+std::optional<DuplicateModes> closest_duplicates(const std::vector<RegressionSums>& modes, double least) {
+  std::optional<DuplicateModes> duplicates;
   for (std::size_t i = 0; i < modes.size(); ++i)
     for (std::size_t j = i + 1; j < modes.size(); ++j) {
       const double loss = cost(modes[i] + modes[j]) - cost(modes[i]) - cost(modes[j]);
       if (!(loss < least)) continue;
       least = loss;
       const bool first = modes[i].weight >= modes[j].weight;
-      twins = {static_cast<Index>(first ? i : j), static_cast<Index>(first ? j : i)};
+      duplicates = {static_cast<Index>(first ? i : j), static_cast<Index>(first ? j : i)};
     }
-  return twins;
+  return duplicates;
 }
 
 Eigen::MatrixXd without(const Eigen::MatrixXd& columns, Index drop) {
@@ -80,16 +80,18 @@ void drop_mode(Index mode, SwitchingRegression& model) {
 }
 
 /// Adds the dropped mode's data to the remaining mode of the pair, weighted as the modes are.
-void merge(const Twins& twins, const std::vector<RegressionSums>& modes, SwitchingRegression& model) {
-  const double kept = modes[static_cast<std::size_t>(twins.kept)].weight;
-  const double dropped = modes[static_cast<std::size_t>(twins.dropped)].weight;
+void merge(const DuplicateModes& duplicates, const std::vector<RegressionSums>& modes, SwitchingRegression& model) {
+  const double kept = modes[static_cast<std::size_t>(duplicates.kept)].weight;
+  const double dropped = modes[static_cast<std::size_t>(duplicates.dropped)].weight;
   Eigen::MatrixXd& T = model.transition;
-  T.row(twins.kept) = ((kept * T.row(twins.kept) + dropped * T.row(twins.dropped)) / (kept + dropped)).eval();
-  T.col(twins.kept) += T.col(twins.dropped);
+  T.row(duplicates.kept) =
+      ((kept * T.row(duplicates.kept) + dropped * T.row(duplicates.dropped)) / (kept + dropped)).eval();
+  T.col(duplicates.kept) += T.col(duplicates.dropped);
   if (Eigen::MatrixXd& w = model.logit.weights; !model.logit.empty())
-    w.row(twins.kept) = ((kept * w.row(twins.kept) + dropped * w.row(twins.dropped)) / (kept + dropped)).eval();
-  model.initial(twins.kept) += model.initial(twins.dropped);
-  drop_mode(twins.dropped, model);
+    w.row(duplicates.kept) =
+        ((kept * w.row(duplicates.kept) + dropped * w.row(duplicates.dropped)) / (kept + dropped)).eval();
+  model.initial(duplicates.kept) += model.initial(duplicates.dropped);
+  drop_mode(duplicates.dropped, model);
 }
 
 double radius(const LinearStructure& structure, const SwitchingRegression& model, Index j) {
@@ -138,11 +140,11 @@ std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& trans
     return rest;
   }
   const auto freedom = static_cast<double>(free_parameters(structure, one_theta));
-  const std::optional<Twins> twins =
-      closest_twins(modes, 0.5 * chi_square_quantile(tuning.duplicate_significance, freedom));
-  if (!twins) return std::nullopt;
-  ScreenedModel rest = without_mode(twins->dropped, fmt::format("duplicate of mode {}", twins->kept));
-  merge(*twins, modes, rest.model);
+  const std::optional<DuplicateModes> duplicates =
+      closest_duplicates(modes, 0.5 * chi_square_quantile(tuning.duplicate_significance, freedom));
+  if (!duplicates) return std::nullopt;
+  ScreenedModel rest = without_mode(duplicates->dropped, fmt::format("duplicate of mode {}", duplicates->kept));
+  merge(*duplicates, modes, rest.model);
   return rest;
 }
 
@@ -150,7 +152,8 @@ SwitchingRegression with_closest_pair_merged(const TrainingTransitions& transiti
                                              const SwitchingRegression& model) {
   const std::vector<RegressionSums> modes = sums_of_modes(transitions, posterior, model);
   SwitchingRegression rest = model;
-  if (const auto twins = closest_twins(modes, std::numeric_limits<double>::infinity())) merge(*twins, modes, rest);
+  if (const auto duplicates = closest_duplicates(modes, std::numeric_limits<double>::infinity()))
+    merge(*duplicates, modes, rest);
   return rest;
 }
 

@@ -162,24 +162,25 @@ TransitionLogit no_effect(const TrainingTransitions& transitions, Index modes) {
           transitions.data.regressors.leftCols(d).transpose() * transitions.usable / transitions.usable.sum()};
 }
 
-Eigen::VectorXd regressor_spread(const TrainingTransitions& transitions) {
+Eigen::VectorXd regressor_sd(const TrainingTransitions& transitions) {
   const Index d = regressor_count(transitions.structure);
   const auto z = transitions.data.regressors.leftCols(d);
   const double N = transitions.usable.sum();
   const Eigen::VectorXd mean = z.transpose() * transitions.usable / N;
-  Eigen::VectorXd spread(d);
+  Eigen::VectorXd sd(d);
   for (Index a = 0; a < d; ++a) {
     const double square = transitions.usable.dot((z.col(a).array() - mean(a)).square().matrix()) / N;
     const double rounding = 1e-12 * std::abs(mean(a));
-    spread(a) = std::sqrt(square) > rounding ? std::sqrt(square) : 1.0;
+    sd(a) = std::sqrt(square) > rounding ? std::sqrt(square) : 1.0;
   }
-  return spread;
+  return sd;
 }
 
-SwitchingPrior with_guard(SwitchingPrior prior, const TrainingTransitions& transitions, const GuardPrior& guard) {
-  if (guard.width == 0.0) return prior;
-  prior.weight_sd = guard.width * regressor_spread(transitions).cwiseInverse();
-  prior.memory_sd = guard.memory_sd;
+SwitchingPrior with_logit_prior(SwitchingPrior prior, const TrainingTransitions& transitions,
+                                const LogitPrior& logit_prior) {
+  if (logit_prior.width == 0.0) return prior;
+  prior.weight_sd = logit_prior.width * regressor_sd(transitions).cwiseInverse();
+  prior.memory_sd = logit_prior.memory_sd;
   return prior;
 }
 

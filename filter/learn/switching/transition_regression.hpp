@@ -13,17 +13,18 @@ TransitionLogit no_effect(const TrainingTransitions& transitions, Index modes);
 
 /// Standard deviations of the regressors (x, v) over the usable transitions, d. One for a regressor that is constant up
 /// to rounding, whose weight has no effect.
-Eigen::VectorXd regressor_spread(const TrainingTransitions& transitions);
+Eigen::VectorXd regressor_sd(const TrainingTransitions& transitions);
 
 /// Prior of state-dependent transition probabilities.
-struct GuardPrior {
+struct LogitPrior {
   double width = 0.0;  ///< standard deviation of the weights in units of the regressors' standard deviation; 0:
                        ///< constant T
   double memory_sd = std::numeric_limits<double>::infinity();  ///< SwitchingPrior::memory_sd
 };
 
 /// The prior extended by that of the logit's weights and memory.
-SwitchingPrior with_guard(SwitchingPrior prior, const TrainingTransitions& transitions, const GuardPrior& guard);
+SwitchingPrior with_logit_prior(SwitchingPrior prior, const TrainingTransitions& transitions,
+                                const LogitPrior& logit_prior);
 
 /// Raises the expected log posterior of the switches over T and the logit's weights together: the sum over transitions
 /// of posterior.pairs log P(j | i, z), with prior.counts on every log T_ij and normal priors on weights and memory. It

@@ -107,7 +107,7 @@ void add_symmetric_product(Out& out, const A& a, const B& b) {
 
 /// out += weight (P + d d'), all symmetric.
 template <class Out, class Matrix, class D>
-void add_spread(Out& out, double weight, const Matrix& P, const D& d) {
+void add_about_mean(Out& out, double weight, const Matrix& P, const D& d) {
   for (Index j = 0; j < d.size(); ++j)
     for (Index i = j; i < d.size(); ++i) {
       out(i, j) += weight * (P(i, j) + d(i) * d(j));
@@ -117,12 +117,12 @@ void add_spread(Out& out, double weight, const Matrix& P, const D& d) {
 
 /// Root-free Cholesky factorisation S = L D L', L unit lower triangular.
 template <int Size>
-struct Cholesky {
+struct Ldl {
   Eigen::Matrix<double, Size, Size> L;       ///< strictly lower part used
   Eigen::Matrix<double, Size, 1> D;          ///< pivots, all positive
   Eigen::Matrix<double, Size, 1> D_inverse;  ///< 1 / D
 
-  explicit Cholesky(Index size) : L(size, size), D(size), D_inverse(size) {}
+  explicit Ldl(Index size) : L(size, size), D(size), D_inverse(size) {}
 
   template <class Matrix>
   void factorise(const Matrix& S) {

@@ -135,14 +135,14 @@ void match(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step) {
   small::multiply(at.move, at.gain, kalman.innovation);
 }
 
-/// P + weight (spread move move' - gain G'); call after match.
+/// P + weight (scatter move move' - gain G'); call after match.
 template <int N, int NY>
-void learn_covariance(const DriftWorkspace<N, NY>& at, double weight, double spread, Eigen::MatrixXd& P) {
+void learn_covariance(const DriftWorkspace<N, NY>& at, double weight, double scatter, Eigen::MatrixXd& P) {
   for (Eigen::Index b = 0; b < P.cols(); ++b)
     for (Eigen::Index a = b; a < P.rows(); ++a) {
       double known = 0.0;
       for (Eigen::Index i = 0; i < at.G.cols(); ++i) known += at.gain(a, i) * at.G(b, i);
-      P(a, b) += weight * (spread * at.move(a) * at.move(b) - known);
+      P(a, b) += weight * (scatter * at.move(a) * at.move(b) - known);
       P(b, a) = P(a, b);
     }
 }

@@ -37,7 +37,7 @@ struct KalmanStep {
   Eigen::Matrix<double, NY, 1> innovation;              ///< e = y - C x
   Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e, with variance cholesky.D
   Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S = C P C' + R
-  small::Cholesky<NY> cholesky;                         ///< of S; a singular S is regularised
+  small::Ldl<NY> cholesky;                              ///< of S; a singular S is regularised
   double log_density = 0.0;                             ///< log N(e; 0, S)
   // For quantised measurements only (interval.hpp).
   Eigen::Matrix<double, NY, 1> signal_log_density;  ///< of each signal given the previous ones

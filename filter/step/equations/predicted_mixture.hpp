@@ -25,18 +25,18 @@ double combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&&
   for (std::size_t j = 0; j < step.kalman.size(); ++j)
     x += c(static_cast<Eigen::Index>(j)) * step.kalman[j].predicted.mean;
   S.setZero();
-  double spread = 0.0;
+  double scatter = 0.0;
   for (std::size_t j = 0; j < step.kalman.size(); ++j) {
     const double weight = c(static_cast<Eigen::Index>(j));
     step.difference = step.kalman[j].predicted.mean - x;
     small::multiply(step.residual, model.C, step.difference);
-    small::add_spread(S, weight, step.kalman[j].innovation_covariance, step.residual);
-    for (Eigen::Index i = 0; i < step.residual.size(); ++i) spread += weight * step.residual(i) * step.residual(i);
+    small::add_about_mean(S, weight, step.kalman[j].innovation_covariance, step.residual);
+    for (Eigen::Index i = 0; i < step.residual.size(); ++i) scatter += weight * step.residual(i) * step.residual(i);
   }
   // covariance of the recorded value
   if (model.quantised) S.diagonal().array() += model.quantum.array().square() / 12.0;
   const double total = S.diagonal().sum();
-  return total > 0.0 ? std::min(1.0, spread / total) : 0.0;
+  return total > 0.0 ? std::min(1.0, scatter / total) : 0.0;
 }
 
 /// The innovation of a predicted mixture, and its normalised square; sized once.
@@ -71,7 +71,7 @@ struct CombinedInnovation {
  private:
   Eigen::MatrixXd covariance_;
   Eigen::VectorXd residual_;
-  small::Cholesky<Eigen::Dynamic> cholesky_;
+  small::Ldl<Eigen::Dynamic> cholesky_;
 };
 
 /// Phi(x), with a small relative error far into the lower tail.

@@ -105,7 +105,8 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.field("B", stored.B, {"K", "n", "m"}, ratios(states, inputs), rule::finite);
   io.field("Q", stored.Q, {"K", "n", "n"}, outer(states), rule::covariances);
   io.field("parameters", stored.parameters, {"K", "p"}, parameters, rule::finite_or_missing);
-  io.optional_field("parameter_covariance", stored.spread, {"K", "p", "p"}, outer(parameters), rule::spreads);
+  io.optional_field("parameter_covariance", stored.parameter_covariance, {"K", "p", "p"}, outer(parameters),
+                    rule::computed_covariances);
   io.optional_field("parameter_standard_error", stored.standard_error, {"K", "p"}, parameters, error);
   io.optional_field("Q_standard_error", stored.Q_standard_error, {"K", "n", "n"}, outer(states), error);
   io.optional_field("R_standard_error", stored.R_standard_error, {"n_y", "n_y"}, measured ? outer(outputs) : Unit(),

@@ -73,7 +73,8 @@ void for_each_mode_array(const LinearStructure& s, Index p_motion, Index terms, 
   visit(
       &StoredBank::Q, "Q", n, n, [](auto& mode) -> auto& { return mode.Q; }, always);
   visit(
-      &StoredBank::spread, "parameter covariance", p, p, [](auto& mode) -> auto& { return mode.spread; }, if_any);
+      &StoredBank::parameter_covariance, "parameter covariance", p, p,
+      [](auto& mode) -> auto& { return mode.parameter_covariance; }, if_any);
   visit(
       &StoredBank::standard_error, "parameter standard error", p, Index{1},
       [](auto& mode) -> auto& { return mode.standard_error; }, if_any);

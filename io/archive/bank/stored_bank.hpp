@@ -63,7 +63,7 @@ struct StoredBank {
   Eigen::MatrixXd B;                          ///< n*m x K
   Eigen::MatrixXd Q;                          ///< n*n x K
   Eigen::MatrixXd parameters;                 ///< p x K
-  Eigen::MatrixXd spread;                     ///< p*p x K, empty without
+  Eigen::MatrixXd parameter_covariance;       ///< p*p x K, empty without
   Eigen::MatrixXd standard_error;             ///< p x K, empty without
   Eigen::MatrixXd Q_standard_error;           ///< n*n x K, empty without
   Eigen::MatrixXd R_standard_error;           ///< transposed, empty without

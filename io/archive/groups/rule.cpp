@@ -25,13 +25,13 @@ std::string number_text(double value) {
 }
 
 /// Some rows of an array, and the index of the first.
-struct Stretch {
+struct RowRange {
   const hdf5::Shape& shape;
   hsize_t first_row;
 };
 
 /// Position of the i-th value: "(3, 0)"; empty for a scalar.
-std::string place(const Stretch& rows, std::size_t i) {
+std::string place(const RowRange& rows, std::size_t i) {
   const hdf5::Shape& shape = rows.shape;
   if (shape.empty()) return {};
   std::string text;
@@ -76,7 +76,7 @@ std::size_t values_in(const hdf5::Shape& shape, std::size_t dimensions) {
   return count;
 }
 
-std::string not_increasing(const Stretch& rows, std::span<const double> values) {
+std::string not_increasing(const RowRange& rows, std::span<const double> values) {
   for (std::size_t i = 1; i < values.size(); ++i)
     if (!(values[i] > values[i - 1]))
       return "does not increase" + place(rows, i) + ": " + number_text(values[i]) + " after " +
@@ -84,7 +84,7 @@ std::string not_increasing(const Stretch& rows, std::span<const double> values) 
   return {};
 }
 
-std::string broken_sums(Rule::Form form, const Stretch& rows, std::span<const double> values) {
+std::string broken_sums(Rule::Form form, const RowRange& rows, std::span<const double> values) {
   constexpr double tolerance = 1e-6;
   const std::size_t row = values_in(rows.shape, 1);
   for (std::size_t begin = 0; row > 0 && begin < values.size(); begin += row) {
@@ -101,7 +101,7 @@ using MatrixOfFile = Eigen::Map<const RowMajor>;
 
 /// Whether a matrix may be a covariance, up to rounding and missing entries. Used for computed values that are only
 /// shown.
-bool is_spread(const MatrixOfFile& matrix) {
+bool is_computed_covariance(const MatrixOfFile& matrix) {
   constexpr double rounding = 1e-6;
   double largest = 0.0;
   for (Eigen::Index i = 0; i < matrix.size(); ++i)
@@ -114,20 +114,20 @@ bool is_spread(const MatrixOfFile& matrix) {
   return true;
 }
 
-std::string broken_matrices(Rule::Form form, const Stretch& rows, std::span<const double> values) {
+std::string broken_matrices(Rule::Form form, const RowRange& rows, std::span<const double> values) {
   const std::size_t matrix = values_in(rows.shape, 2);
   const auto side = static_cast<Eigen::Index>(rows.shape.empty() ? 1 : rows.shape.back());
   for (std::size_t begin = 0; matrix > 0 && begin + matrix <= values.size(); begin += matrix) {
     const MatrixOfFile here(values.data() + begin, side, side);
     const bool square = static_cast<std::size_t>(side * side) == matrix;
-    if (!square || !(form == Rule::Form::covariances ? is_covariance(here) : is_spread(here)))
+    if (!square || !(form == Rule::Form::covariances ? is_covariance(here) : is_computed_covariance(here)))
       return "holds a matrix" + place(rows, begin) +
              " that is not a covariance: not symmetric or not positive semidefinite";
   }
   return {};
 }
 
-std::string broken_form(Rule::Form form, const Stretch& rows, std::span<const double> values) {
+std::string broken_form(Rule::Form form, const RowRange& rows, std::span<const double> values) {
   switch (form) {
     case Rule::Form::none:
       return {};
@@ -137,7 +137,7 @@ std::string broken_form(Rule::Form form, const Stretch& rows, std::span<const do
     case Rule::Form::parts:
       return broken_sums(form, rows, values);
     case Rule::Form::covariances:
-    case Rule::Form::spreads:
+    case Rule::Form::computed_covariances:
       return broken_matrices(form, rows, values);
   }
   return {};
@@ -149,7 +149,7 @@ template <class Number>
 std::string broken(const Rule& given, const Sizes& sizes, const hdf5::Shape& shape, const Number* values,
                    hsize_t first_row) {
   const Rule rule = bound(given, sizes);
-  const Stretch rows{shape, first_row};
+  const RowRange rows{shape, first_row};
   const auto count = static_cast<std::size_t>(hdf5::element_count(shape));
   for (std::size_t i = 0; i < count; ++i)
     if (!holds(rule, static_cast<double>(values[i])))

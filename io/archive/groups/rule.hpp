@@ -16,11 +16,11 @@ struct Rule {
   /// Rules on all numbers of a member together.
   enum class Form {
     none,
-    increasing,     ///< each above the one before
-    probabilities,  ///< each slice along the last extent sums to 1, unless a value is missing
-    parts,          ///< each slice along the last extent sums to at most 1
-    covariances,    ///< each slice along the last two extents is a symmetric, positive semidefinite matrix
-    spreads         ///< the same for computed values: symmetric, with variances >= 0, missing entries allowed
+    increasing,           ///< each above the one before
+    probabilities,        ///< each slice along the last extent sums to 1, unless a value is missing
+    parts,                ///< each slice along the last extent sums to at most 1
+    covariances,          ///< each slice along the last two extents is a symmetric, positive semidefinite matrix
+    computed_covariances  ///< the same for computed values: symmetric, with variances >= 0, missing entries allowed
   };
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
@@ -55,7 +55,8 @@ inline const Rule probabilities_or_missing{
     .least = 0.0, .most = one, .may_be_missing = true, .form = Rule::Form::probabilities};
 inline const Rule parts_or_missing{.least = 0.0, .most = one, .may_be_missing = true, .form = Rule::Form::parts};
 inline const Rule covariances{.form = Rule::Form::covariances};
-inline const Rule spreads{.finite = false, .may_be_missing = true, .form = Rule::Form::spreads};
+inline const Rule computed_covariances{
+    .finite = false, .may_be_missing = true, .form = Rule::Form::computed_covariances};
 
 /// Numbers of lags and channels: beyond any use, but small enough that products of sizes do not overflow.
 inline const Rule lags{.least = 1.0, .most = 1000.0, .index = true};

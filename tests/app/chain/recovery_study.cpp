@@ -53,7 +53,7 @@ RecoveredSize recover_size(const RecoveryCase& recovery, int seed) {
   options.em.noise_component = recovery.noise_component;
   const FeatureCloud cloud =
       make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::automatic, recording.states,
-                    StraddlingWindows::leave_out, recovery.error_aware ? WindowErrors::include : WindowErrors::ignore);
+                    WindowsOverSwitch::leave_out, recovery.error_aware ? WindowErrors::include : WindowErrors::ignore);
   const MixtureResult result = select_mixture(fits, cloud, options, static_cast<std::uint64_t>(seed));
   const Index naive = best_candidate(result.candidates, Criterion::bic_naive);
   return {static_cast<Index>(system.modes.size()), result.mixture.components(),

@@ -40,7 +40,7 @@ MixtureResult cluster(const Recording& recording, const WindowFits& fits, std::v
   SelectionOptions options;
   options.components = std::move(components);
   const FeatureCloud cloud = make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::automatic,
-                                           recording.states, StraddlingWindows::leave_out);
+                                           recording.states, WindowsOverSwitch::leave_out);
   return select_mixture(fits, cloud, options, static_cast<std::uint64_t>(seed));
 }
 

@@ -8,7 +8,7 @@
 #include "filter/step/equations/bounds.hpp"
 #include "ident/data/streams.hpp"
 #include "ident/fit/global_model.hpp"
-#include "ident/fit/open_regressors.hpp"
+#include "ident/fit/unidentifiable_regressors.hpp"
 #include "ident/lag/track.hpp"
 
 namespace modebank::test {
@@ -80,8 +80,8 @@ TEST(ClocksAndNumbersGlobal, Finding_D9_AnOpenRegressorDoesNotChangeTheOthers) {
   EXPECT_NEAR(open.covariance(2, 2) / whole.covariance(1, 1), 1.0, 1e-9);
   EXPECT_NEAR(open.covariance(0, 2) / whole.covariance(0, 1), 1.0, 1e-6);
   EXPECT_TRUE(std::isnan(open.covariance(1, 1)));
-  EXPECT_EQ(open_regressors(recording(true), {1, 2}), std::vector<Index>{1});
-  EXPECT_EQ(open_regressors(recording(false), {1, 1}), std::vector<Index>{});
+  EXPECT_EQ(unidentifiable_regressors(recording(true), {1, 2}), std::vector<Index>{1});
+  EXPECT_EQ(unidentifiable_regressors(recording(false), {1, 1}), std::vector<Index>{});
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "filter/step/equations/bounds.hpp"
 #include "ident/data/streams.hpp"
 #include "ident/fit/global_model.hpp"
-#include "ident/fit/open_regressors.hpp"
+#include "ident/fit/unidentifiable_regressors.hpp"
 #include "ident/lag/track.hpp"
 #include "io/archive/archive.hpp"
 #include "io/import/value_check.hpp"

@@ -195,9 +195,9 @@ TEST(Watchdog, SaysWhatCameInItsPeriod) {
   EXPECT_EQ(watchdog.due(109.0), "");
   EXPECT_DOUBLE_EQ(watchdog.remaining_s(109.0), 1.0);
   EXPECT_EQ(watchdog.due(110.0), "no input for 10 s");
-  watchdog.heard();
+  watchdog.line_arrived();
   EXPECT_EQ(watchdog.due(120.0), "no sample in the 1 lines of 10 s");
-  watchdog.heard();
+  watchdog.line_arrived();
   watchdog.took(0.5, Eigen::Vector2d(0.25, 0.75));
   watchdog.answered(0.002);
   watchdog.answered(0.001);

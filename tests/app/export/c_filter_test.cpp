@@ -49,7 +49,7 @@ Bank lagged_bank(Index input_delay) {
     mode.model = unpack(bank.structure, theta);
     mode.Q = Eigen::MatrixXd::Zero(n, n);
     mode.Q.topLeftCorner(2, 2) = Q;
-    mode.spread.resize(0, 0);
+    mode.parameter_covariance.resize(0, 0);
   }
   bank.C = Eigen::MatrixXd::Identity(2, n);
   return bank;
@@ -91,9 +91,9 @@ TEST(ExportedC, HasOneModeOrOnesThatNeverChange) {
   FilterOptions kf;
   kf.variant = FilterVariant::kf;
   expect_same(with_clock(example_bank(2, 2, 1)), kf);
-  Bank steady = example_bank(2, 2, 3);
-  steady.transition = TransitionMatrix::sticky(3, 1.0);
-  expect_same(with_clock(steady), adaptive());
+  Bank constant = example_bank(2, 2, 3);
+  constant.transition = TransitionMatrix::sticky(3, 1.0);
+  expect_same(with_clock(constant), adaptive());
 }
 
 TEST(ExportedC, NeedsNeitherInputsNorAllStatesNorAClock) {

@@ -34,7 +34,7 @@ ExportedBank small_bank() {
   const double Q[] = {0.0009765625, 0.0078125};
   for (std::size_t k = 0; k < 2; ++k) {
     bank.modes[k].Q = Eigen::Matrix2d{{Q[k], 0.0}, {0.0, 0.0}};
-    bank.modes[k].spread.resize(0, 0);
+    bank.modes[k].parameter_covariance.resize(0, 0);
   }
   bank.C = Eigen::MatrixXd::Identity(1, 2);
   bank.R = Eigen::MatrixXd::Constant(1, 1, 0.0001220703125);

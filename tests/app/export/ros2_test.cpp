@@ -58,7 +58,7 @@ ExportedBank bank_of(const Robot& robot, bool forward, double radius_m = 1.0) {
           n, n);
   mode.model.c.setZero();
   mode.standard_error = Eigen::VectorXd::Constant(bank.structure.parameters(), 1e-3);
-  mode.spread.resize(0, 0);
+  mode.parameter_covariance.resize(0, 0);
   ExportedBank exported = as_exported(bank);
   exported.measurements[0] = {"wz", "rad/s"};
   if (forward) exported.measurements[1] = {"vx", "m/s"};

@@ -7,8 +7,8 @@
 
 #include "app/config/config_file.hpp"
 #include "app/report/page/folded_transition.hpp"
-#include "app/report/page/guard_map.hpp"
 #include "app/report/page/html_page.hpp"
+#include "app/report/page/mode_map.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/run_sections.hpp"
@@ -281,7 +281,8 @@ TEST_F(Report, BeginsWithWhatTheFirstScreenSaysAndAPicture) {
   }
 }
 
-/// The first of three modes is listed, the other two are merged. Transitions out of the merged ones are weighted by use.
+/// The first of three modes is listed, the other two are merged. Transitions out of the merged ones are weighted by
+/// use.
 TEST(ReportFolding, TransitionsOfTheOthersAreTheirMean) {
   const Eigen::MatrixXd T{{0.9, 0.06, 0.04}, {0.2, 0.7, 0.1}, {0.5, 0.1, 0.4}};
   const Eigen::MatrixXd folded = folded_transition(T, {0}, Eigen::Vector3d(0.7, 0.2, 0.1));
@@ -313,7 +314,7 @@ TEST(ReportGuard, SharesAreThoseThatStandStill) {
 TEST_F(Report, DrawsTheGuardOfSwitchesThatSeeStateAndInput) {
   ASSERT_EQ(run().status, 0);
   Archive stored = read_archive(archive());
-  EXPECT_TRUE(app::report::guard_of(stored).is_null());
+  EXPECT_TRUE(app::report::mode_map_of(stored).is_null());
   ASSERT_GT(stored.noise_only->mode_count(), 1);
   stored.bank = stored.noise_only;  // a filter with several modes
   std::vector<FilterEvaluation> evaluations;
@@ -328,15 +329,15 @@ TEST_F(Report, DrawsTheGuardOfSwitchesThatSeeStateAndInput) {
     bank.transition_logit = {Eigen::MatrixXd::Zero(K, d), Eigen::VectorXd::Zero(d)};
     bank.transition_logit.weights(0, 0) = 10.0;
     if (!one) bank.transition_logit.weights(1, d - 1) = -10.0;
-    const json guard = app::report::guard_of(stored);
-    ASSERT_FALSE(guard.is_null());
-    EXPECT_EQ(guard["one"], one);
-    ASSERT_EQ(guard["axes"].size(), one ? 1u : 2u);
-    EXPECT_EQ(guard["samples"]["at"][0].size(), guard["samples"]["mode"].size());
-    EXPECT_GT(guard["samples"]["mode"].size(), 100u);
-    const json& grid = guard[one ? "lines" : "modes"];
-    EXPECT_EQ(grid.size(), one ? static_cast<std::size_t>(K) : guard["axes"][1]["values"].size());
-    EXPECT_EQ(grid[0].size(), guard["axes"][0]["values"].size());
+    const json map = app::report::mode_map_of(stored);
+    ASSERT_FALSE(map.is_null());
+    EXPECT_EQ(map["one"], one);
+    ASSERT_EQ(map["axes"].size(), one ? 1u : 2u);
+    EXPECT_EQ(map["samples"]["at"][0].size(), map["samples"]["mode"].size());
+    EXPECT_GT(map["samples"]["mode"].size(), 100u);
+    const json& grid = map[one ? "lines" : "modes"];
+    EXPECT_EQ(grid.size(), one ? static_cast<std::size_t>(K) : map["axes"][1]["values"].size());
+    EXPECT_EQ(grid[0].size(), map["axes"][0]["values"].size());
   }
 }
 

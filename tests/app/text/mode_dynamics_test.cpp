@@ -107,7 +107,7 @@ TEST(ModeDynamics, StandardErrorsAreTheDeltaMethods) {
   EXPECT_NEAR(apart.decays[0].per_sample, 0.6, dynamics_rounding);
   EXPECT_NEAR(apart.decays[0].time_constant_error_s, 0.02 * of_tau, rounding);
   EXPECT_NEAR(apart.gain_error(0, 0), error_of_gain(covariance.diagonal().asDiagonal()), rounding);
-  mode.spread = 25.0 * covariance;  // of windows, which is larger than that of their mean
+  mode.parameter_covariance = 25.0 * covariance;  // of windows, which is larger than that of their mean
   EXPECT_NEAR(mode_dynamics(bank, 0).gain_error(0, 0), error_of_gain(covariance), rounding);
 }
 

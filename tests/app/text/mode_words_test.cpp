@@ -37,7 +37,7 @@ TEST(ModeWords, AScalarModeInClosedForm) {
   mode.model.A << -0.4;
   mode.model.B << 0.32;
   mode.standard_error = Eigen::Vector2d(0.02, 0.0);
-  mode.spread.resize(0, 0);
+  mode.parameter_covariance.resize(0, 0);
   const double error = 0.02 * 0.1 / (0.6 * std::log(0.6) * std::log(0.6));
   EXPECT_NEAR(error, 0.012774, 1e-6);
   const std::string text = app::modes_in_words(archive);

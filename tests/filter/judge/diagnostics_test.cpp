@@ -169,9 +169,10 @@ TEST(Diagnostics, FlagsWhatStandsOut) {
   EXPECT_THAT(one, testing::AllOf(testing::HasSubstr("one mode takes all (0)"), testing::HasSubstr("mode 1 unused"),
                                   testing::Not(testing::HasSubstr("flat"))));
   // Modes with equal predictions.
-  Bank twins = bank;
-  twins.modes[1] = twins.modes[0];
-  EXPECT_THAT(flags(twins, truth_runs(test::single_mode(bank, 0), 1, 600)), testing::HasSubstr("probabilities flat"));
+  Bank duplicates = bank;
+  duplicates.modes[1] = duplicates.modes[0];
+  EXPECT_THAT(flags(duplicates, truth_runs(test::single_mode(bank, 0), 1, 600)),
+              testing::HasSubstr("probabilities flat"));
   // Modes without process noise that differ in c, on a run that stays in neither for long.
   Bank apart = bank;
   for (Mode& mode : apart.modes) mode.Q.setConstant(1e-6);

@@ -168,9 +168,9 @@ TEST(SamplePaths, ModesMayFollowStateAndInput) {
   bank.modes[1].model.c(0) = 0.1;
   bank.modes[0].model.c(0) = 0.1;
   const Trajectory run = simulate_bank(two_modes(), 40, 9);
-  const auto guard = [](double x, double u) { return x + u > 0.5 ? 1 : 0; };
+  const auto ruling = [](double x, double u) { return x + u > 0.5 ? 1 : 0; };
   SamplePaths paths(bank, 5, 1, [&](Index, const auto& x, const auto& u, Eigen::VectorXd& row) {
-    row.setZero()(guard(x(0), u(0))) = 1.0;
+    row.setZero()(ruling(x(0), u(0))) = 1.0;
   });
   FilterMemory origin{Eigen::MatrixXd::Constant(1, 2, 0.4), Eigen::MatrixXd::Zero(1, 2), bank.initial_probability, 1.0,
                       0.0};
@@ -178,7 +178,7 @@ TEST(SamplePaths, ModesMayFollowStateAndInput) {
   double x = 0.4;
   std::array<int, 2> visits{};
   for (Index k = 0; k < run.samples(); ++k) {
-    const int mode = guard(x, run.input(0, k));
+    const int mode = ruling(x, run.input(0, k));
     ++visits[static_cast<std::size_t>(mode)];
     x = bank.modes[static_cast<std::size_t>(mode)].model.next(Eigen::VectorXd::Constant(1, x), run.input.col(k))(0);
     paths.step(run.input.col(k));

@@ -141,7 +141,7 @@ Bank lagged_bank(double R, double rounding = 0.0) {
     Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(6, 6);
     Q.topLeftCorner(one_lag.states, one_lag.states) = mode.Q;
     mode.Q = Q;
-    mode.spread = {};
+    mode.parameter_covariance = {};
   }
   return bank;
 }

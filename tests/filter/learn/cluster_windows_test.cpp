@@ -97,7 +97,7 @@ TEST(ClusterWindows, StartModesOfAllCoefficients) {
     const Eigen::MatrixXd theta = c.fits.parameters(Eigen::all, own);
     const Eigen::MatrixXd offset = theta.colwise() - theta.rowwise().mean();
     const Eigen::VectorXd variance = offset.rowwise().squaredNorm() / static_cast<double>(own.size());
-    EXPECT_TRUE(near(bank.modes[static_cast<std::size_t>(k)].spread.diagonal(), variance, 1e-6))
+    EXPECT_TRUE(near(bank.modes[static_cast<std::size_t>(k)].parameter_covariance.diagonal(), variance, 1e-6))
         << "memberships are all but certain";
   }
 }

@@ -77,7 +77,7 @@ TEST(LearnBank, EachModeIsTheRegressionOfItsRun) {
   for (Index j = 0; j < 3; ++j) {
     EXPECT_TRUE(near(bank.theta(j), data.alone(j).theta, bank_exact));
     EXPECT_TRUE(near(bank.modes[j].Q, data.alone(j).residual_covariance, bank_exact));
-    EXPECT_TRUE(near(bank.modes[j].spread, data.mixture.mixture.covariances[j], 0.0));
+    EXPECT_TRUE(near(bank.modes[j].parameter_covariance, data.mixture.mixture.covariances[j], 0.0));
     EXPECT_NEAR(bank.modes[j].weight, 1.0 / 3.0, bank_exact);
   }
   EXPECT_NO_THROW(check_sizes(bank));

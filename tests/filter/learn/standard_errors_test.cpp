@@ -31,7 +31,7 @@ class StandardErrors : public testing::Test {
 
   static void expect_same(const Bank& a, const Bank& b, double tolerance) {
     for (std::size_t j = 0; j < 2; ++j) {
-      EXPECT_TRUE(near(a.modes[j].spread, b.modes[j].spread, tolerance));
+      EXPECT_TRUE(near(a.modes[j].parameter_covariance, b.modes[j].parameter_covariance, tolerance));
       EXPECT_TRUE(near(a.modes[j].Q_standard_error, b.modes[j].Q_standard_error, tolerance));
     }
     EXPECT_TRUE(near(a.R_standard_error, b.R_standard_error, tolerance));
@@ -62,7 +62,7 @@ TEST_F(StandardErrors, AreThoseOfTheFilterThatRuns) {
   for (Trajectory& run : gaps.runs)
     for (Index k = 0; k < run.samples(); ++k)
       run.time_s(k) += 3.0 * truth.dt_s * std::floor(static_cast<double>(k) / 10.0);
-  EXPECT_FALSE(errors_in(gaps, {}).modes[0].spread.isApprox(plain.modes[0].spread, 0.05));
+  EXPECT_FALSE(errors_in(gaps, {}).modes[0].parameter_covariance.isApprox(plain.modes[0].parameter_covariance, 0.05));
 }
 
 /// A mode that only a later run has, after more samples than errors are computed from. Closed form: least squares' Q

@@ -13,17 +13,17 @@
 #include "filter/learn/switching/mode_screening.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "filter/step/bank_filter.hpp"
-#include "tests/filter/learn/guarded_runs.hpp"
+#include "tests/filter/learn/state_dependent_runs.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
 namespace {
 
 using test::bank_of;
-using test::Guard;
-using test::guarded_runs;
+using test::LogOdds;
 using test::near;
 using test::soft;
+using test::state_dependent_runs;
 using test::true_model;
 
 TEST(TransitionLogit, IsTheLogisticFunctionForTwoModes) {
@@ -48,7 +48,7 @@ TEST(TransitionLogit, IsTWithoutWeightsAndWhereTheStateIsNotKnown) {
 }
 
 TEST(TransitionRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
-  const Recording recording = guarded_runs(soft, 2, 150, 1);
+  const Recording recording = state_dependent_runs(soft, 2, 150, 1);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   const SwitchingRegression model = true_model(soft);
   double expected = 0.0;
@@ -57,7 +57,7 @@ TEST(TransitionRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
 }
 
 TEST(TransitionRegression, NoEffectIsTheConstantTransitionMatrix) {
-  const Recording recording = guarded_runs(soft, 2, 100, 2);
+  const Recording recording = state_dependent_runs(soft, 2, 100, 2);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   SwitchingRegression model = true_model(soft);
   model.logit = {};
@@ -71,8 +71,8 @@ TEST(TransitionRegression, NoEffectIsTheConstantTransitionMatrix) {
 
 constexpr double any = std::numeric_limits<double>::infinity();
 
-SwitchingPrior prior_of(const Recording& recording, const TrainingTransitions& t, const GuardPrior& guard) {
-  return with_guard(switching_prior(t, fit_global(recording, t.structure), {}, 4.0), t, guard);
+SwitchingPrior prior_of(const Recording& recording, const TrainingTransitions& t, const LogitPrior& logit_prior) {
+  return with_logit_prior(switching_prior(t, fit_global(recording, t.structure), {}, 4.0), t, logit_prior);
 }
 
 /// For two modes the memory is a quarter of the difference of the log odds after the two modes.
@@ -89,7 +89,7 @@ TEST(TransitionRegression, MemoryIsWhatRowsAndColumnsDoNotExplain) {
 
 /// The prior's information about T is the curvature of its log density along rows of T.
 TEST(TransitionRegression, InformationOfMemoryIsTheCurvatureOfItsPrior) {
-  const Recording recording = guarded_runs(soft, 2, 100, 2);
+  const Recording recording = state_dependent_runs(soft, 2, 100, 2);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   SwitchingPrior prior = prior_of(recording, t, {1.0, any});
   SwitchingRegression model = true_model(soft);
@@ -112,10 +112,10 @@ TEST(TransitionRegression, InformationOfMemoryIsTheCurvatureOfItsPrior) {
 }
 
 TEST(TransitionRegression, EveryIterationRaisesThePenalisedLikelihood) {
-  for (const GuardPrior& guard : {GuardPrior{1.0, any}, GuardPrior{300.0, any}, GuardPrior{300.0, 0.1}}) {
-    const Recording recording = guarded_runs({{-20.0, -20.0}, 100.0}, 3, 200, 3);
+  for (const LogitPrior& logit_prior : {LogitPrior{1.0, any}, LogitPrior{300.0, any}, LogitPrior{300.0, 0.1}}) {
+    const Recording recording = state_dependent_runs({{-20.0, -20.0}, 100.0}, 3, 200, 3);
     const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
-    const SwitchingPrior prior = prior_of(recording, t, guard);
+    const SwitchingPrior prior = prior_of(recording, t, logit_prior);
     SwitchingRegression start = true_model(soft);
     start.logit = no_effect(t, 2);
     ExpectationMaximisation em(t, prior, {}, start);
@@ -123,14 +123,14 @@ TEST(TransitionRegression, EveryIterationRaisesThePenalisedLikelihood) {
     const std::vector<double>& objective = em.objective();
     for (std::size_t i = 1; i < objective.size(); ++i)
       EXPECT_GE(objective[i], objective[i - 1] - 1e-9 * std::abs(objective[i - 1]))
-          << guard.width << ", " << guard.memory_sd << ", iteration " << i;
+          << logit_prior.width << ", " << logit_prior.memory_sd << ", iteration " << i;
     EXPECT_GT(objective.back(), objective.front() + 50.0);
   }
 }
 
 /// At the maximum a Newton step gains nothing. Near it the objective, recomputed here, falls in every direction.
 TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
-  const Recording recording = guarded_runs(soft, 2, 300, 4);
+  const Recording recording = state_dependent_runs(soft, 2, 300, 4);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   const SwitchingPrior prior = prior_of(recording, t, {3.0, 0.7});
   SwitchingRegression model = true_model(soft);
@@ -170,7 +170,7 @@ TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
 
 /// Mode 1 twice, slightly different: the closest pair becomes one mode again, with the probabilities of both.
 TEST(TransitionRegression, TheClosestPairIsMerged) {
-  const Recording recording = guarded_runs(soft, 4, 300, 11);
+  const Recording recording = state_dependent_runs(soft, 4, 300, 11);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   const SwitchingRegression two = true_model(soft);
   SwitchingRegression three = two;

@@ -219,7 +219,7 @@ TEST(Sizes, LaggedBanksToo) {
     for (Mode& mode : bank.modes) {
       const Eigen::VectorXd theta = Eigen::VectorXd::Constant(bank.structure.parameters(), -0.1);
       mode.model = unpack(bank.structure, theta);
-      mode.spread.resize(0, 0);
+      mode.parameter_covariance.resize(0, 0);
       const double q = mode.Q(0, 0);
       mode.Q = Eigen::MatrixXd::Zero(lags, lags);
       mode.Q(0, 0) = q;

@@ -67,7 +67,7 @@ TEST(TermValues, AreTheFunctions) {
   EXPECT_NEAR(values.value()(0), 0.4 * 0.4 * -0.6, 1e-15);
   EXPECT_NEAR(values.value()(1), 0.6, 1e-15);
   EXPECT_NEAR(values.value()(2), 0.6 / 0.5 - 0.5, 1e-15);
-  EXPECT_FALSE(values.outside());
+  EXPECT_FALSE(values.is_clipped());
   EXPECT_LT((term_columns(example_terms(), phi.transpose()) - values.value().transpose()).norm(), 1e-15);
 }
 
@@ -88,8 +88,8 @@ TEST(TermValues, AreClippedToTheTrainingRange) {
   TermValues values, at_edge;
   values.evaluate(example_terms(), Eigen::Vector3d(5.0, 1.0, 0.0));
   at_edge.evaluate(example_terms(), Eigen::Vector3d(1.0, 1.0, 0.0));
-  EXPECT_TRUE(values.outside());
-  EXPECT_FALSE(at_edge.outside());
+  EXPECT_TRUE(values.is_clipped());
+  EXPECT_FALSE(at_edge.is_clipped());
   EXPECT_EQ(values.value(), at_edge.value());
   EXPECT_EQ(values.slope()(0, 0), 0.0);
   MatrixXd rows(2, 3);

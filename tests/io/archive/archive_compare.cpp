@@ -222,7 +222,7 @@ void expect_same(const Bank& actual, const Bank& expected) {
     EXPECT_TRUE(same_bits(a.model.B, e.model.B));
     EXPECT_TRUE(same_bits(a.model.c, e.model.c));
     EXPECT_TRUE(same_bits(a.Q, e.Q));
-    EXPECT_TRUE(same_bits(a.spread, e.spread));
+    EXPECT_TRUE(same_bits(a.parameter_covariance, e.parameter_covariance));
     EXPECT_TRUE(same_bits(a.standard_error, e.standard_error));
     EXPECT_TRUE(same_bits(a.Q_standard_error, e.Q_standard_error));
     EXPECT_TRUE(same_bits(a.bend, e.bend));

@@ -134,7 +134,7 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
     mode.Q = scale * Eigen::MatrixXd::Identity(n, n);
     mode.Q(0, n - 1) += 0.125;
     mode.Q(n - 1, 0) += 0.125;
-    if (uncertain) mode.spread = pattern(p, p, 50.0).selfadjointView<Eigen::Upper>();
+    if (uncertain) mode.parameter_covariance = pattern(p, p, 50.0).selfadjointView<Eigen::Upper>();
     if (uncertain) mode.standard_error = pattern(p, 1, 60.0 + scale);
     if (uncertain) mode.Q_standard_error = pattern(n, n, 70.0 + scale);
     mode.weight = 1.0 / scale;

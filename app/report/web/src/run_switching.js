@@ -2,7 +2,7 @@
 import {details, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {transitionGraph} from './graph.js';
-import {guardFigure} from './guard.js';
+import {modeMapFigure} from './mode_map.js';
 import {modeColour, palette} from './look.js';
 import {modeCell, modeTitle} from './mode_names.js';
 import {byUse, othersName} from './modes.js';
@@ -54,9 +54,9 @@ function switchWeights(weights) {
   return table(columns, rows, {caption: 'Log odds per unit of state and input'});
 }
 
-function guard(bank) {
-  if (!bank.guard) return null;
-  return [h('h3', {}, 'Which states and inputs belong to which mode'), guardFigure(bank)];
+function switchMap(bank) {
+  if (!bank.modeMap) return null;
+  return [h('h3', {}, 'Which states and inputs belong to which mode'), modeMapFigure(bank)];
 }
 
 export function switching(bank) {
@@ -64,7 +64,7 @@ export function switching(bank) {
   const nodes = nodesOf(bank), stays = bank.modes.some((row) => row.stay_seen);
   const folded = bank.order.length > bank.told;
   return [
-    guard(bank),
+    switchMap(bank),
     h('h3', {}, 'How modes follow each other'),
     folded ? h('p', {class: 'caption'}, 'Modes that are hardly used are taken as one; the matrix has each.') : null,
     bank.switch_weights ? movedSwitches() : null,

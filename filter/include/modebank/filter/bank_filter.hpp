@@ -83,8 +83,8 @@ class BankFilter {
 
  private:
   void check_sizes(std::ptrdiff_t inputs, std::ptrdiff_t measurements) const;
-  struct Inside;
-  std::unique_ptr<Inside> inside_;
+  struct Internal;
+  std::unique_ptr<Internal> internal_;
 };
 
 }  // namespace modebank::filter

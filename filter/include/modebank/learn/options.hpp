@@ -79,13 +79,13 @@ struct RefineOptions {
   bool measurement_noise = true;  ///< true: R by maximum likelihood of the filter on the training runs; false: R of the
                                   ///< start
   bool screen = true;             ///< whether unstable, starved and duplicate modes are removed
-  bool guards = false;            ///< whether transition probabilities may depend on state and input
-                                  ///< (TransitionSource::logit)
-  bool one_theta = false;         ///< all modes share theta and differ in Q: the competitor with one motion
-  bool noise_by_input = false;    ///< whether every Q has one factor that follows state and input; R then stays
-                                  ///< negligible
-  std::uint64_t seed = 1;         ///< of the random starts
-  Drift drift = Drift::none;      ///< whether each mode's theta drifts within a run
+  bool state_dependent_transition = false;  ///< whether transition probabilities may depend on state and input
+                                            ///< (TransitionSource::logit)
+  bool one_theta = false;                   ///< all modes share theta and differ in Q: the competitor with one motion
+  bool noise_by_input = false;         ///< whether every Q has one factor that follows state and input; R then stays
+                                       ///< negligible
+  std::uint64_t seed = 1;              ///< of the random starts
+  Drift drift = Drift::none;           ///< whether each mode's theta drifts within a run
   std::ptrdiff_t transitions = 20000;  ///< largest number of transitions to learn from, in stretches drawn with the
                                        ///< seed; 0: all
 

@@ -29,7 +29,7 @@ HWY_NOINLINE void look_at_signal(const ModeRows& p, double quantum, std::size_t 
 
 /// Element `which` of SignalLikelihood.
 template <std::size_t NY>
-HWY_INLINE V said_of_signal(const ModeRows& p, std::size_t which, std::size_t i, std::size_t r) {
+HWY_INLINE V signal_moment(const ModeRows& p, std::size_t which, std::size_t i, std::size_t r) {
   return load(p.signal + (which * NY + i) * p.stride + r);
 }
 
@@ -78,7 +78,7 @@ HWY_INLINE Moments<N> look_at(const ModeRows& p, const Sensor& sensor, const dou
     store(c.innovation(sensor, y, i), p.decorrelated + i * p.stride + r);
     store(c.s, p.D + i * p.stride + r);
     look_at_signal<NY>(p, sensor.quantum[i], i, r);
-    c.take(said_of_signal<NY>(p, 1, i, r), said_of_signal<NY>(p, 2, i, r));
+    c.take(signal_moment<NY>(p, 1, i, r), signal_moment<NY>(p, 2, i, r));
   }
   return c.m;
 }
@@ -91,7 +91,7 @@ HWY_NOINLINE V correct_intervals(const ModeRows& p, const Sensor& sensor, const 
     const Prediction<N, NY> q = load_prediction<N, NY>(p, r);
     const Moments<N> posterior = usable<N>(q.m, look_at<N, NY>(p, sensor, y, r, q.m));
     V log_density = splat(0.5 * static_cast<double>(NY) * log_two_pi);
-    for (std::size_t i = 0; i < NY; ++i) log_density = hn::Add(log_density, said_of_signal<NY>(p, 0, i, r));
+    for (std::size_t i = 0; i < NY; ++i) log_density = hn::Add(log_density, signal_moment<NY>(p, 0, i, r));
     const M possible = hn::And(hn::Ge(q.prior, splat(impossible_probability)), hn::Gt(log_density, splat(-far)));
     const V exponent = hn::IfThenElse(possible, hn::Mul(splat(log2_e), log_density), splat(-far));
     largest = hn::Max(largest, exponent);
@@ -116,8 +116,8 @@ HWY_INLINE V along_signal(const Sensor& sensor, std::size_t i, const V (&P)[pack
 /// E[e^2 / s | interval] for signal i.
 template <std::size_t NY>
 HWY_INLINE V second_moment(const ModeRows& p, std::size_t i, std::size_t r) {
-  const V mean = said_of_signal<NY>(p, 1, i, r);
-  return hn::MulAdd(mean, mean, said_of_signal<NY>(p, 2, i, r));
+  const V mean = signal_moment<NY>(p, 1, i, r);
+  return hn::MulAdd(mean, mean, signal_moment<NY>(p, 2, i, r));
 }
 
 /// Like interval_sums of interval.hpp.

@@ -29,7 +29,7 @@ class IntervalUncorrection {
     for (std::size_t i = 0; i < NY; ++i) {
       c.expect(sensor, i);
       for (std::size_t a = 0; a < N; ++a) column_[i][a] = c.column[a];
-      c.take(said_of_signal<NY>(p, 1, i, r), said_of_signal<NY>(p, 2, i, r));
+      c.take(signal_moment<NY>(p, 1, i, r), signal_moment<NY>(p, 2, i, r));
     }
   }
 
@@ -40,7 +40,7 @@ class IntervalUncorrection {
     for (std::size_t i = NY; i-- > 0;) {
       const V inverse = hn::Div(splat(1.0), load(p_.D + i * p_.stride + r_));
       const V root = hn::Sqrt(load(p_.D + i * p_.stride + r_));
-      const V mean = said(1, i), variance = said(2, i), third = said(3, i), fourth = said(4, i);
+      const V mean = moment(1, i), variance = moment(2, i), third = moment(3, i), fourth = moment(4, i);
       const V(&column)[N] = column_[i];
       // The correction is x + column M / s, P - column column' (s - V) / s^2.
       V by_column[N], by_step = zero(), by_shrink = zero();
@@ -76,7 +76,7 @@ class IntervalUncorrection {
   std::size_t r_;
   V column_[NY][N];
 
-  HWY_INLINE V said(std::size_t which, std::size_t i) const { return said_of_signal<NY>(p_, which, i, r_); }
+  HWY_INLINE V moment(std::size_t which, std::size_t i) const { return signal_moment<NY>(p_, which, i, r_); }
 
   /// Adjoint of C_i Q C_i' / s (share + square (M^2 + V) / s), with the last factor limited (interval_sums).
   HWY_INLINE void explained(std::size_t i, V share, V square, const V (&Q)[packed_size(N)], V root, BySignal& to,
@@ -91,7 +91,7 @@ class IntervalUncorrection {
     const V uncut = hn::IfThenElseZero(hn::Lt(moment, most), hn::Mul(hn::Mul(square, of_signal), inverse));
     to.s = hn::NegMulAdd(weight, of_signal, to.s);
     to.s = hn::NegMulAdd(uncut, moment, to.s);
-    to.mean = hn::MulAdd(hn::Mul(splat(2.0), uncut), hn::Mul(root, said(1, i)), to.mean);
+    to.mean = hn::MulAdd(hn::Mul(splat(2.0), uncut), hn::Mul(root, moment(1, i)), to.mean);
     to.variance = hn::Add(to.variance, uncut);
   }
 

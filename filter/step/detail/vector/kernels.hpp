@@ -52,11 +52,11 @@ struct CombinedMoments {
 
 struct CombinedExpectation {
   double *state, *innovation_covariance;  ///< n, packed n_y
-  double spread = 0.0;                    ///< sum_j c_j |C x_j - C x|^2
+  double differences = 0.0;               ///< sum_j c_j |C x_j - C x|^2
 };
 
 /// Complete samples, each one step after the previous one.
-struct Stretch {
+struct CompleteSamples {
   const double *inputs = nullptr, *measurements = nullptr;  ///< acting inputs and n_y numbers per sample
   std::size_t samples = 0;
   double* log_density = nullptr;  ///< one number per sample, the result
@@ -73,7 +73,7 @@ struct Kernels {
   /// The state after y; for noise_scale > 0 also share and square.
   UpdateResult (*update)(const ModeRows&, const Sensor&, const double* y, double noise_scale) = nullptr;
   /// predict and update for a stretch, at noise scale one. Of a step's results only the state is valid afterwards.
-  void (*follow)(const ModeRows&, const Sensor&, const Stretch&) = nullptr;
+  void (*follow)(const ModeRows&, const Sensor&, const CompleteSamples&) = nullptr;
   /// Without a measurement the prediction becomes the state.
   void (*skip)(const ModeRows&) = nullptr;
   void (*merge)(const ModeRows&, CombinedMoments) = nullptr;

@@ -148,7 +148,7 @@ HWY_INLINE double step(const ModeRows& p, const Sensor& sensor, const double* v,
 
 /// Predicts and updates through a stretch; logarithms are computed for many samples at once.
 template <std::size_t N, std::size_t NY, std::size_t R>
-void follow_registers(const ModeRows& p, const Sensor& sensor, const Stretch& stretch) {
+void follow_registers(const ModeRows& p, const Sensor& sensor, const CompleteSamples& stretch) {
   constexpr std::size_t block = 64;
   HWY_ALIGN double sum[block], reference[block];
   for (std::size_t first = 0; first < stretch.samples; first += block) {
@@ -163,7 +163,7 @@ void follow_registers(const ModeRows& p, const Sensor& sensor, const Stretch& st
 }
 
 template <std::size_t N, std::size_t NY>
-void follow(const ModeRows& p, const Sensor& sensor, const Stretch& stretch) {
+void follow(const ModeRows& p, const Sensor& sensor, const CompleteSamples& stretch) {
   constexpr std::size_t L = hn::MaxLanes(D());
   if constexpr (L == row_multiple)
     if (p.stride == L) return follow_registers<N, NY, 1>(p, sensor, stretch);

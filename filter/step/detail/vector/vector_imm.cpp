@@ -228,7 +228,7 @@ double VectorImm::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::M
   unpack_symmetric(packed_, innovation_covariance);
   if (sensor_.quantum) innovation_covariance.diagonal().array() += quantum_.array().square() / 12.0;
   const double total = innovation_covariance.diagonal().sum();
-  return total > 0.0 ? std::min(1.0, to.spread / total) : 0.0;
+  return total > 0.0 ? std::min(1.0, to.differences / total) : 0.0;
 }
 
 void VectorImm::transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) {

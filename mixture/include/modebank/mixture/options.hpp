@@ -81,19 +81,19 @@ struct EnumNames<WindowChoice> {
 
 /// Treatment of windows that contain a switch of mode. Such windows follow no single model and would claim a component
 /// of their own. `leave_out` removes those that their residuals reveal; `keep` clusters them like the others.
-enum class StraddlingWindows { leave_out, keep };
+enum class WindowsOverSwitch { leave_out, keep };
 
 template <>
-struct EnumNames<StraddlingWindows> {
+struct EnumNames<WindowsOverSwitch> {
   static constexpr Names<2> values{"leave_out", "keep"};
 };
 
 /// Which windows are clustered, in which features, and how.
 struct ClusterOptions {
-  SelectionOptions selection;                                   ///< how the mixture is chosen
-  FeatureSet features = FeatureSet::automatic;                  ///< which numbers of a window are clustered
-  WindowChoice windows = WindowChoice::automatic;               ///< which windows are clustered
-  StraddlingWindows straddling = StraddlingWindows::leave_out;  ///< treatment of windows that contain a switch
+  SelectionOptions selection;                                    ///< how the mixture is chosen
+  FeatureSet features = FeatureSet::automatic;                   ///< which numbers of a window are clustered
+  WindowChoice windows = WindowChoice::automatic;                ///< which windows are clustered
+  WindowsOverSwitch over_switch = WindowsOverSwitch::leave_out;  ///< treatment of windows that contain a switch
   bool error_aware = false;  ///< components describe the windows without their errors (Bovy, Hogg & Roweis 2011)
 };
 

@@ -14,6 +14,6 @@ Eigen::VectorXd settled_shares(const Bank& bank, const Eigen::VectorXd& z);
 
 /// Map of the modes over the one or two features with the largest effect on the transitions; other features are at
 /// their training mean. With the samples on which the bank ran. Null for a constant T.
-nlohmann::json guard_of(const Archive& archive);
+nlohmann::json mode_map_of(const Archive& archive);
 
 }  // namespace modebank::app::report

@@ -1,4 +1,4 @@
-#include "mixture/straddling.hpp"
+#include "mixture/window_over_switch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,35 +27,35 @@ WindowFits fits_with_a_loud_stretch(double ratio, Index step = 1) {
 }
 
 // The 99 % quantile of F(22, 22) is 2.785 (scipy: f.ppf(0.99, 22, 22)).
-TEST(Straddling, LouderThanBothDisjointNeighbours) {
-  const std::vector<bool> flags = straddling_windows(fits_with_a_loud_stretch(2.8));
+TEST(WindowOverSwitch, LouderThanBothDisjointNeighbours) {
+  const std::vector<bool> flags = windows_over_switch(fits_with_a_loud_stretch(2.8));
   for (std::size_t i = 0; i < flags.size(); ++i) EXPECT_EQ(flags[i], i >= 40 && i <= 60) << i;
 }
 
-TEST(Straddling, NotBelowTheQuantile) {
-  const std::vector<bool> flags = straddling_windows(fits_with_a_loud_stretch(2.77));
+TEST(WindowOverSwitch, NotBelowTheQuantile) {
+  const std::vector<bool> flags = windows_over_switch(fits_with_a_loud_stretch(2.77));
   EXPECT_EQ(std::count(flags.begin(), flags.end(), true), 0);
 }
 
-TEST(Straddling, AModeThatLastsIsNotStraddling) {
+TEST(WindowOverSwitch, AModeThatLastsHasNone) {
   // At step 5 the stretch of larger variance lasts 100 transitions, so every window in it has a neighbour with equal
   // variance.
-  const std::vector<bool> flags = straddling_windows(fits_with_a_loud_stretch(100.0, 5));
+  const std::vector<bool> flags = windows_over_switch(fits_with_a_loud_stretch(100.0, 5));
   EXPECT_EQ(std::count(flags.begin(), flags.end(), true), 0);
 }
 
-TEST(Straddling, NeighboursAreOfTheSameRun) {
+TEST(WindowOverSwitch, NeighboursAreOfTheSameRun) {
   WindowFits fits = fits_with_a_loud_stretch(100.0);
   for (std::size_t i = 50; i < 100; ++i) fits.windows[i].run = 1;
-  const std::vector<bool> flags = straddling_windows(fits);
+  const std::vector<bool> flags = windows_over_switch(fits);
   EXPECT_EQ(std::count(flags.begin(), flags.end(), true), 0);
 }
 
-TEST(Straddling, WindowsAreLeftOutOfTheCloudOnlyOnRequest) {
+TEST(WindowOverSwitch, WindowsAreLeftOutOfTheCloudOnlyOnRequest) {
   const WindowFits fits = fits_with_a_loud_stretch(10.0);
   const std::vector<Channel> states{{"wz", "rad/s"}};
   EXPECT_EQ(make_features(fits, FeatureSet::parameters, WindowChoice::all, states).windows.size(), 100u);
-  EXPECT_EQ(make_features(fits, FeatureSet::parameters, WindowChoice::all, states, StraddlingWindows::leave_out)
+  EXPECT_EQ(make_features(fits, FeatureSet::parameters, WindowChoice::all, states, WindowsOverSwitch::leave_out)
                 .windows.size(),
             79u);
 }

@@ -1,4 +1,4 @@
-#include "filter/learn/refine/guards.hpp"
+#include "filter/learn/refine/state_dependent_transition.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -16,42 +16,42 @@ namespace modebank {
 namespace {
 
 /// A model with a logit, fitted to all training runs.
-struct GuardStart {
+struct LogitStart {
   const Fit* constant;  ///< the fit with constant T that it started from, whose priors it keeps
   SwitchingRegression model;
   double log_likelihood;
 };
 
-GuardStart gone_on(const RefineInput& in, const Fit& constant, SwitchingRegression model) {
-  const SwitchingPrior prior = with_guard(in.prior(constant.start), in.transitions, {refine_tuning.weight_width});
+LogitStart gone_on(const RefineInput& in, const Fit& constant, SwitchingRegression model) {
+  const SwitchingPrior prior = with_logit_prior(in.prior(constant.start), in.transitions, {refine_tuning.weight_width});
   ExpectationMaximisation em(in.transitions, prior, em_options(in.options), std::move(model));
   for (Index i = 0; i < in.options.max_iterations && !em.converged(); ++i) em.step();
   return {&constant, em.model(), em.posterior().log_likelihood};
 }
 
 /// Continues every start's fit with constant T as a logit; empty for one mode, which does not switch.
-std::vector<GuardStart> from_constant_fits(const RefineInput& in, const std::vector<Fit>& fits) {
-  std::vector<std::optional<GuardStart>> all(fits.size());
+std::vector<LogitStart> from_constant_fits(const RefineInput& in, const std::vector<Fit>& fits) {
+  std::vector<std::optional<LogitStart>> all(fits.size());
   tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t f) {
     SwitchingRegression model = fit_training_runs(in, fits[f].model, in.prior(fits[f].start), fits[f].iterations).model;
     if (model.modes() == 1) return;
     model.logit = no_effect(in.transitions, model.modes());
     all[f] = gone_on(in, fits[f], std::move(model));
   });
-  std::vector<GuardStart> starts;
-  for (std::optional<GuardStart>& start : all)
+  std::vector<LogitStart> starts;
+  for (std::optional<LogitStart>& start : all)
     if (start) starts.push_back(std::move(*start));
   return starts;
 }
 
-bool likelier(const GuardStart& a, const GuardStart& b) { return a.log_likelihood > b.log_likelihood; }
+bool likelier(const LogitStart& a, const LogitStart& b) { return a.log_likelihood > b.log_likelihood; }
 
 /// The most likely model of each number of modes, the most modes first. Candidates are the continued constant fits, and
 /// the best of these with one pair of modes after another merged.
-std::vector<GuardStart> guard_starts(const RefineInput& in, const std::vector<Fit>& fits) {
-  std::vector<GuardStart> all = from_constant_fits(in, fits);
+std::vector<LogitStart> logit_starts(const RefineInput& in, const std::vector<Fit>& fits) {
+  std::vector<LogitStart> all = from_constant_fits(in, fits);
   if (all.empty()) return all;
-  GuardStart last = *std::min_element(all.begin(), all.end(), likelier);
+  LogitStart last = *std::min_element(all.begin(), all.end(), likelier);
   while (last.model.modes() > 2) {
     const ModePosterior posterior = smooth_modes(in.transitions, last.model);
     last = gone_on(in, *last.constant, with_closest_pair_merged(in.transitions, posterior, last.model));
@@ -66,11 +66,11 @@ std::vector<GuardStart> guard_starts(const RefineInput& in, const std::vector<Fi
 }
 
 /// Continues from a start on every split; chooses the best number of iterations.
-Fit scored(const RefineInput& in, const CrossValidation& validation, const GuardStart& start, const GuardPrior& prior) {
+Fit scored(const RefineInput& in, const CrossValidation& validation, const LogitStart& start, const LogitPrior& prior) {
   const std::vector<SplitData>& splits = validation.splits();
   std::vector<SwitchingPrior> priors;
   for (const SplitData& split : splits)
-    priors.push_back(with_guard(prior_of_split(in, split, start.constant->start), split.transitions, prior));
+    priors.push_back(with_logit_prior(prior_of_split(in, split, start.constant->start), split.transitions, prior));
   SplitFits fits(in, splits, std::move(priors), std::vector<SwitchingRegression>(splits.size(), start.model));
   Fit best = *start.constant;
   best.model = start.model;
@@ -95,14 +95,15 @@ bool higher(const Fit& a, const Fit& b) { return a.scores.log_likelihood.sum() >
 
 }  // namespace
 
-std::optional<Fit> choose_guards(const RefineInput& in, const CrossValidation& validation, SwitchingStage& stage) {
+std::optional<Fit> choose_state_dependent_transition(const RefineInput& in, const CrossValidation& validation,
+                                                     SwitchingStage& stage) {
   if (!validation.possible()) return std::nullopt;
   const RefineTuning& tuning = refine_tuning;
   std::vector<Fit> sizes;
   std::vector<LeftOutScores> scores;
   const std::vector<Fit> constant = validation.best_of_starts();
-  const std::vector<GuardStart> starts = guard_starts(in, constant);
-  for (const GuardStart& start : starts) {
+  const std::vector<LogitStart> starts = logit_starts(in, constant);
+  for (const LogitStart& start : starts) {
     sizes.push_back(scored(in, validation, start, {tuning.weight_width}));
     scores.push_back(sizes.back().scores);
   }
@@ -111,7 +112,7 @@ std::optional<Fit> choose_guards(const RefineInput& in, const CrossValidation& v
   Fit best = sizes[size];
   for (const double width : tuning.other_weight_widths)
     if (Fit other = scored(in, validation, starts[size], {width}); higher(other, best)) best = std::move(other);
-  Fit memoryless = scored(in, validation, starts[size], {best.guard.width, tuning.little_memory_sd});
+  Fit memoryless = scored(in, validation, starts[size], {best.logit_prior.width, tuning.little_memory_sd});
   if (as_good(memoryless.scores, best.scores, validation.samples(), tuning)) best = std::move(memoryless);
 
   const LeftOutScores& without = validation.chosen().scores;
@@ -120,8 +121,8 @@ std::optional<Fit> choose_guards(const RefineInput& in, const CrossValidation& v
   stage.gain = gain.mean;
   stage.gain_standard_error = gain.standard_error;
   if (!is_worth_it(gain, validation.samples())) return std::nullopt;
-  stage.width = best.guard.width;
-  stage.memory_sd = best.guard.memory_sd;
+  stage.width = best.logit_prior.width;
+  stage.memory_sd = best.logit_prior.memory_sd;
   return best;
 }
 

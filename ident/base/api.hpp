@@ -11,7 +11,7 @@ namespace modebank {
 
 /// Converts every rejected argument into std::invalid_argument, the exception of the public API.
 template <class Call>
-auto at_the_door(Call&& call) {
+auto api_call(Call&& call) {
   try {
     return std::forward<Call>(call)();
   } catch (const ConfigurationError& error) {

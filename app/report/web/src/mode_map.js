@@ -19,7 +19,7 @@ function groupsOf(bank) {
 
 // The data's samples in the colours of their modes. `y(i, row)`: the height of sample i in group `row`.
 function sampleMarks(bank, x, y) {
-  const {samples} = bank.guard;
+  const {samples} = bank.modeMap;
   return groupsOf(bank).map(({name, colour, holds}, row) => {
     const own = samples.mode.map((mode, i) => i).filter((i) => holds(samples.mode[i]));
     return {kind: 'points', name, x: own.map(x), y: own.map((i) => y(i, row)), colour, opacity: 0.8, tip: () => name};
@@ -37,34 +37,34 @@ function groundMark({axes, modes, shares}) {
 }
 
 function map(bank) {
-  const {guard} = bank, [x, y] = guard.samples.at;
+  const {modeMap} = bank, [x, y] = modeMap.samples.at;
   return {
-    x: {title: titleOf(guard.axes[0])},
-    y: {title: titleOf(guard.axes[1])},
-    marks: [groundMark(guard), ...sampleMarks(bank, (i) => x[i], (i) => y[i])],
+    x: {title: titleOf(modeMap.axes[0])},
+    y: {title: titleOf(modeMap.axes[1])},
+    marks: [groundMark(modeMap), ...sampleMarks(bank, (i) => x[i], (i) => y[i])],
   };
 }
 
 // Samples are below the lines, one row per mode. The most used modes come last, or the others would hide them.
 function lines(bank) {
-  const {guard} = bank, {values} = guard.axes[0];
-  const rows = sampleMarks(bank, (i) => guard.samples.at[0][i], (i, row) => -0.05 - 0.05 * row);
+  const {modeMap} = bank, {values} = modeMap.axes[0];
+  const rows = sampleMarks(bank, (i) => modeMap.samples.at[0][i], (i, row) => -0.05 - 0.05 * row);
   const curves = [...bank.order].reverse().map(
-      (k) => ({kind: 'line', name: modeTitle(k), x: values, y: guard.lines[k], colour: modeColour(k), width: 2}));
-  return {x: {title: titleOf(guard.axes[0])}, y: {title: 'share of the time'}, marks: [...curves, ...rows]};
+      (k) => ({kind: 'line', name: modeTitle(k), x: values, y: modeMap.lines[k], colour: modeColour(k), width: 2}));
+  return {x: {title: titleOf(modeMap.axes[0])}, y: {title: 'share of the time'}, marks: [...curves, ...rows]};
 }
 
 /** `bank`: with state-dependent transitions. */
-export function guardFigure(bank) {
-  const {guard} = bank;
-  const rest = guard.others ? ' Other states and inputs are at their training mean.' : '';
+export function modeMapFigure(bank) {
+  const {modeMap} = bank;
+  const rest = modeMap.others ? ' Other states and inputs are at their training mean.' : '';
   const points = 'Points: samples of all runs, at the state and input before their step, in ' +
       'the colour of their most probable mode.';
-  const means = guard.one ?
+  const means = modeMap.one ?
       'Lines: share of the time in each mode if state and input stayed there.' :
       'Background: the mode with the largest share of the time if state and input stayed there.';
   const keys = groupsOf(bank).map(({name, colour}) => [colour, name]);
   return figure(
       'Which states and inputs belong to which mode',
-      () => ({panels: [guard.one ? lines(bank) : map(bank)], height: 340, legend: keys}), `${means}${rest} ${points}`);
+      () => ({panels: [modeMap.one ? lines(bank) : map(bank)], height: 340, legend: keys}), `${means}${rest} ${points}`);
 }

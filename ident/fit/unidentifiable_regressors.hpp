@@ -11,10 +11,10 @@ namespace modebank {
 /// Regressors whose coefficients the training runs do not determine: always zero, or linearly dependent. Their
 /// parameters have NaN covariances in fit_global's model; all others keep theirs. Empty if there is none, or no
 /// transition.
-std::vector<Index> open_regressors(const Recording& recording, const LinearStructure& structure);
+std::vector<Index> unidentifiable_regressors(const Recording& recording, const LinearStructure& structure);
 
 /// The undetermined columns of a matrix of regressors, from its decomposition: with columns scaled to unit norm, their
 /// unit vectors lie outside the row space.
-std::vector<Index> open_columns(const Eigen::MatrixXd& X, const Decomposition& d);
+std::vector<Index> unidentifiable_columns(const Eigen::MatrixXd& X, const Decomposition& d);
 
 }  // namespace modebank

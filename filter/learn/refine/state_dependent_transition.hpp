@@ -17,6 +17,7 @@ namespace modebank {
 /// of the weights. The fewest modes that are as good as the best are chosen (fewest_modes_as_good), then their width.
 /// Empty if the gain over the chosen fit with constant T is not worth it (is_worth_it), or nothing can be left out.
 /// `stage` records the result.
-std::optional<Fit> choose_guards(const RefineInput& in, const CrossValidation& validation, SwitchingStage& stage);
+std::optional<Fit> choose_state_dependent_transition(const RefineInput& in, const CrossValidation& validation,
+                                                     SwitchingStage& stage);
 
 }  // namespace modebank

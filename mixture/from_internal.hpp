@@ -7,7 +7,7 @@ namespace modebank {
 
 /// Converts a mixture to the public API's type. The reverse conversion throws std::invalid_argument if its parts do not
 /// fit.
-mixture::Mixture outside(const GaussianMixture& mixture);
-GaussianMixture inside(const mixture::Mixture& mixture);
+mixture::Mixture from_internal(const GaussianMixture& mixture);
+GaussianMixture to_internal(const mixture::Mixture& mixture);
 
 }  // namespace modebank

@@ -17,11 +17,11 @@ namespace {
 
 using Eigen::Index;
 
-modebank::Mode inside(const Mode& mode, Index n, Index m) {
+modebank::Mode to_internal(const Mode& mode, Index n, Index m) {
   modebank::Mode result;
   result.model = {view(mode.A), view(mode.B), view(mode.c)};
   result.Q = view(mode.Q);
-  result.spread = view(mode.parameter_covariance);
+  result.parameter_covariance = view(mode.parameter_covariance);
   result.weight = mode.weight;
   // Omitted fields mean zero: no constant, no input.
   if (result.model.c.size() == 0) result.model.c.setZero(n);
@@ -37,7 +37,7 @@ LinearStructure structure_of(const BankDescription& d) {
   return {d.modes.front().A.rows / d.state_lags, d.inputs, d.intercept, d.state_lags, d.input_lags, d.input_delay};
 }
 
-modebank::RunningNoise inside(const RunningNoise& noise) {
+modebank::RunningNoise to_internal(const RunningNoise& noise) {
   modebank::RunningNoise result{noise.forgetting, noise.degrees_of_freedom, view(noise.floor)};
   if (noise.horizon.size() != noise.factor.size())
     throw std::invalid_argument("running noise needs one factor per horizon");
@@ -45,7 +45,7 @@ modebank::RunningNoise inside(const RunningNoise& noise) {
     result.horizon_factor.emplace_back(static_cast<Index>(noise.horizon[i]), noise.factor[i]);
   return result;
 }
-RunningNoise outside(const modebank::RunningNoise& noise) {
+RunningNoise from_internal(const modebank::RunningNoise& noise) {
   RunningNoise result{to_vector(noise.floor), noise.lam, noise.nu};
   for (const auto& [horizon, factor] : noise.horizon_factor) {
     result.horizon.push_back(static_cast<double>(horizon));
@@ -54,11 +54,11 @@ RunningNoise outside(const modebank::RunningNoise& noise) {
   return result;
 }
 
-std::shared_ptr<const modebank::Bank> inside(const BankDescription& d) {
+std::shared_ptr<const modebank::Bank> to_internal(const BankDescription& d) {
   modebank::Bank bank;
   bank.structure = structure_of(d);
   const Index n = bank.structure.dimension(), K = static_cast<Index>(d.modes.size());
-  for (const Mode& mode : d.modes) bank.modes.push_back(inside(mode, n, bank.structure.acting_inputs()));
+  for (const Mode& mode : d.modes) bank.modes.push_back(to_internal(mode, n, bank.structure.acting_inputs()));
   bank.C = d.C.values.empty() ? Eigen::MatrixXd::Identity(bank.structure.states, n) : Eigen::MatrixXd(view(d.C));
   bank.R = view(d.R);
   bank.quantum = view(d.quantum);
@@ -74,7 +74,7 @@ std::shared_ptr<const modebank::Bank> inside(const BankDescription& d) {
   if (const NoiseByState& noise = d.noise_by_state; !noise.weights.empty())
     bank.noise_factor = {view(noise.directions), view(noise.weights), noise.offset};
   bank.drift = {{d.drift.rate, d.drift.start, d.drift.leak}, view(d.drift.scale), d.drift.wandering};
-  bank.running_noise = inside(d.running_noise);
+  bank.running_noise = to_internal(d.running_noise);
   validate(bank);
   return std::make_shared<const modebank::Bank>(std::move(bank));
 }
@@ -108,7 +108,7 @@ void assign(const FilterEstimate& source, Estimate& target) {
 
 }  // namespace
 
-Bank::Bank(const BankDescription& description) : bank_(inside(description)) {}
+Bank::Bank(const BankDescription& description) : bank_(to_internal(description)) {}
 Bank::Bank(std::shared_ptr<const modebank::Bank> bank) : bank_(std::move(bank)) {}
 
 std::ptrdiff_t Bank::modes() const { return bank_->mode_count(); }
@@ -121,7 +121,7 @@ BankDescription Bank::description() const {
   BankDescription d;
   for (const modebank::Mode& mode : bank_->modes)
     d.modes.push_back({to_matrix(mode.model.A), to_matrix(mode.model.B), to_vector(mode.model.c), to_matrix(mode.Q),
-                       to_matrix(mode.spread), mode.weight});
+                       to_matrix(mode.parameter_covariance), mode.weight});
   d.C = to_matrix(bank_->C);
   d.R = to_matrix(bank_->R);
   d.quantum = to_vector(bank_->quantum);
@@ -142,11 +142,11 @@ BankDescription Bank::description() const {
                       bank_->noise_factor.offset};
   d.drift = {to_vector(bank_->drift.scale), bank_->drift.rates.q, bank_->drift.rates.p0, bank_->drift.rates.leak,
              bank_->drift.wandering};
-  d.running_noise = outside(bank_->running_noise);
+  d.running_noise = from_internal(bank_->running_noise);
   return d;
 }
 
-struct BankFilter::Inside {
+struct BankFilter::Internal {
   Bank bank;
   FilterOptions options;
   modebank::BankFilter filter;
@@ -156,7 +156,7 @@ struct BankFilter::Inside {
   std::uint64_t seed = pit_seed(1, "");
   Index samples = 0;  ///< number of samples taken in
 
-  Inside(const Bank& stepped, const FilterOptions& how)
+  Internal(const Bank& stepped, const FilterOptions& how)
       : bank(stepped),
         options(how),
         filter(bank.internal(), options),
@@ -167,43 +167,43 @@ struct BankFilter::Inside {
 };
 
 BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
-    : inside_(std::make_unique<Inside>(bank, options)) {}
+    : internal_(std::make_unique<Internal>(bank, options)) {}
 BankFilter::~BankFilter() = default;
 BankFilter::BankFilter(BankFilter&&) noexcept = default;
 BankFilter& BankFilter::operator=(BankFilter&&) noexcept = default;
 
 void BankFilter::check_sizes(std::ptrdiff_t inputs, std::ptrdiff_t measurements) const {
-  if (inputs != inside_->inputs || measurements != inside_->measurements)
-    throw std::invalid_argument("a step takes " + std::to_string(inside_->inputs) + " inputs and " +
-                                std::to_string(inside_->measurements) + " measurements, not " + std::to_string(inputs) +
-                                " and " + std::to_string(measurements));
+  if (inputs != internal_->inputs || measurements != internal_->measurements)
+    throw std::invalid_argument("a step takes " + std::to_string(internal_->inputs) + " inputs and " +
+                                std::to_string(internal_->measurements) + " measurements, not " +
+                                std::to_string(inputs) + " and " + std::to_string(measurements));
 }
 
 const Estimate& BankFilter::step(double time_s, const double* input, const double* measurement) {
   using Numbers = Eigen::Map<const Eigen::VectorXd>;
   const FilterEstimate& said =
-      inside_->filter.step(time_s, Numbers(input, inside_->inputs), Numbers(measurement, inside_->measurements));
-  assign(said, inside_->estimate);
+      internal_->filter.step(time_s, Numbers(input, internal_->inputs), Numbers(measurement, internal_->measurements));
+  assign(said, internal_->estimate);
   if ((said.pit_width.array() > 0.0).any())
-    draw_pit(inside_->seed, inside_->samples, said.pit_width,
-             Eigen::Map<Eigen::VectorXd>(inside_->estimate.pit.data(), inside_->measurements));
-  ++inside_->samples;
-  return inside_->estimate;
+    draw_pit(internal_->seed, internal_->samples, said.pit_width,
+             Eigen::Map<Eigen::VectorXd>(internal_->estimate.pit.data(), internal_->measurements));
+  ++internal_->samples;
+  return internal_->estimate;
 }
 
-const Estimate& BankFilter::estimate() const { return inside_->estimate; }
+const Estimate& BankFilter::estimate() const { return internal_->estimate; }
 
 std::vector<Forecast> BankFilter::forecast(const Matrix& inputs, std::ptrdiff_t steps) const {
-  if (!inside_->forecaster) inside_->forecaster.emplace(inside_->bank.internal(), inside_->options);
+  if (!internal_->forecaster) internal_->forecaster.emplace(internal_->bank.internal(), internal_->options);
   std::vector<Forecast> result;
-  for (const StateForecast& ahead : inside_->forecaster->ahead(inside_->filter.snapshot(), view(inputs), steps))
+  for (const StateForecast& ahead : internal_->forecaster->ahead(internal_->filter.snapshot(), view(inputs), steps))
     result.push_back({to_vector(ahead.state), to_matrix(ahead.covariance), to_vector(ahead.mode_probability)});
   return result;
 }
 
 std::vector<double> BankFilter::snapshot() const {
-  std::vector<double> numbers = to_numbers(inside_->filter.snapshot());
-  numbers.push_back(static_cast<double>(inside_->samples));  // the draws of the transform depend on it
+  std::vector<double> numbers = to_numbers(internal_->filter.snapshot());
+  numbers.push_back(static_cast<double>(internal_->samples));  // the draws of the transform depend on it
   return numbers;
 }
 
@@ -211,11 +211,11 @@ void BankFilter::restore(const std::vector<double>& snapshot) {
   constexpr double most_samples = 9007199254740992.0;  // 2^53
   if (snapshot.empty() || !(snapshot.back() >= 0.0 && snapshot.back() <= most_samples))
     throw std::invalid_argument("the snapshot is damaged: its last number is not a number of samples");
-  inside_->filter.restore(snapshot_of({snapshot.begin(), snapshot.end() - 1}));
-  inside_->samples = static_cast<Index>(snapshot.back());
+  internal_->filter.restore(snapshot_of({snapshot.begin(), snapshot.end() - 1}));
+  internal_->samples = static_cast<Index>(snapshot.back());
 }
 
-void BankFilter::restart() { inside_->filter.restart(); }
-bool BankFilter::started() const { return inside_->filter.started(); }
+void BankFilter::restart() { internal_->filter.restart(); }
+bool BankFilter::started() const { return internal_->filter.started(); }
 
 }  // namespace modebank::filter

@@ -24,24 +24,24 @@ TEST(MixtureDoor, GivesTheSameBits) {
     options.em.restarts = 2;
     options.em.noise_component = noise;
     const PointSet set(points, weights, errors);
-    const Selection inside = select(set, design, options, 7);
-    const mixture::Clusters outside = mixture::select(
+    const Selection internal = select(set, design, options, 7);
+    const mixture::Clusters converted = mixture::select(
         {to_matrix(points), to_vector(weights), to_matrix(errors), design.runs, design.effective_samples}, options, 7);
-    EXPECT_TRUE(test::same_bits(outside.mixture.weights, to_vector(inside.mixture.weights)));
-    EXPECT_TRUE(test::same_bits(outside.mixture.means, to_matrix(inside.mixture.means)));
-    ASSERT_EQ(outside.mixture.covariances.size(), inside.mixture.covariances.size());
-    for (std::size_t k = 0; k < inside.mixture.covariances.size(); ++k)
-      EXPECT_TRUE(test::same_bits(outside.mixture.covariances[k], to_matrix(inside.mixture.covariances[k])));
-    EXPECT_EQ(outside.mixture.noise_weight, inside.mixture.noise.weight);
-    EXPECT_TRUE(test::same_bits(outside.mixture.noise_lower, to_vector(inside.mixture.noise.lower)));
-    EXPECT_TRUE(test::same_bits(outside.responsibilities, to_matrix(responsibilities(inside.mixture, set))));
-    ASSERT_EQ(outside.candidates.size(), 3u);
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(outside.candidates[i].bic, inside.candidates[i].bic);
+    EXPECT_TRUE(test::same_bits(converted.mixture.weights, to_vector(internal.mixture.weights)));
+    EXPECT_TRUE(test::same_bits(converted.mixture.means, to_matrix(internal.mixture.means)));
+    ASSERT_EQ(converted.mixture.covariances.size(), internal.mixture.covariances.size());
+    for (std::size_t k = 0; k < internal.mixture.covariances.size(); ++k)
+      EXPECT_TRUE(test::same_bits(converted.mixture.covariances[k], to_matrix(internal.mixture.covariances[k])));
+    EXPECT_EQ(converted.mixture.noise_weight, internal.mixture.noise.weight);
+    EXPECT_TRUE(test::same_bits(converted.mixture.noise_lower, to_vector(internal.mixture.noise.lower)));
+    EXPECT_TRUE(test::same_bits(converted.responsibilities, to_matrix(responsibilities(internal.mixture, set))));
+    ASSERT_EQ(converted.candidates.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(converted.candidates[i].bic, internal.candidates[i].bic);
     // Conversion to the public type and back.
-    EXPECT_TRUE(test::same_bits(mixture::responsibilities(outside.mixture, to_matrix(points)),
-                                to_matrix(responsibilities(inside.mixture, points))));
-    EXPECT_TRUE(test::same_bits(mixture::log_density(outside.mixture, to_matrix(points)),
-                                to_vector(log_density(inside.mixture, points))));
+    EXPECT_TRUE(test::same_bits(mixture::responsibilities(converted.mixture, to_matrix(points)),
+                                to_matrix(responsibilities(internal.mixture, points))));
+    EXPECT_TRUE(test::same_bits(mixture::log_density(converted.mixture, to_matrix(points)),
+                                to_vector(log_density(internal.mixture, points))));
   }
 }
 

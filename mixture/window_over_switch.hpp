@@ -11,6 +11,6 @@ namespace modebank {
 /// run that share no transition with it. Significant: ratio above the 99 % quantile of F(L - q, L - q), in any state.
 /// Windows that lack a neighbour on one side, and windows of L <= q, are never flagged. Assumes that modes last at
 /// least two windows.
-std::vector<bool> straddling_windows(const WindowFits& fits);
+std::vector<bool> windows_over_switch(const WindowFits& fits);
 
 }  // namespace modebank

@@ -23,26 +23,26 @@ Recording skid_recording() {
   return test::make_recording(runs);
 }
 
-void expect_same(const ident::Windows& outside, const WindowFits& inside) {
-  ASSERT_EQ(std::ssize(outside.run), inside.count());
-  EXPECT_EQ(outside.parameter_names, inside.parameter_names());
-  EXPECT_TRUE(test::same_bits(outside.theta, to_matrix(inside.parameters)));
-  EXPECT_TRUE(test::same_bits(outside.covariance, to_matrix(inside.covariance)));
-  EXPECT_TRUE(test::same_bits(outside.residual_sd, to_matrix(inside.noise_variance.cwiseSqrt())));
-  EXPECT_TRUE(test::same_bits(outside.prior_sd, to_vector(inside.prior_sd)));
-  EXPECT_TRUE(test::same_bits(outside.global_theta, to_vector(inside.global.theta)));
-  for (std::size_t i = 0; i < outside.run.size(); ++i) {
+void expect_same(const ident::Windows& converted, const WindowFits& internal) {
+  ASSERT_EQ(std::ssize(converted.run), internal.count());
+  EXPECT_EQ(converted.parameter_names, internal.parameter_names());
+  EXPECT_TRUE(test::same_bits(converted.theta, to_matrix(internal.parameters)));
+  EXPECT_TRUE(test::same_bits(converted.covariance, to_matrix(internal.covariance)));
+  EXPECT_TRUE(test::same_bits(converted.residual_sd, to_matrix(internal.noise_variance.cwiseSqrt())));
+  EXPECT_TRUE(test::same_bits(converted.prior_sd, to_vector(internal.prior_sd)));
+  EXPECT_TRUE(test::same_bits(converted.global_theta, to_vector(internal.global.theta)));
+  for (std::size_t i = 0; i < converted.run.size(); ++i) {
     const auto w = static_cast<Index>(i);
-    EXPECT_EQ(outside.run[i], inside.windows[i].run);
-    EXPECT_EQ(outside.begin[i], inside.windows[i].start);
-    EXPECT_EQ(outside.end[i], inside.windows[i].start + inside.length);
-    EXPECT_EQ(outside.rank[i], inside.rank(w));
-    EXPECT_EQ(static_cast<int>(outside.status[i]), inside.status(w));
+    EXPECT_EQ(converted.run[i], internal.windows[i].run);
+    EXPECT_EQ(converted.begin[i], internal.windows[i].start);
+    EXPECT_EQ(converted.end[i], internal.windows[i].start + internal.length);
+    EXPECT_EQ(converted.rank[i], internal.rank(w));
+    EXPECT_EQ(static_cast<int>(converted.status[i]), internal.status(w));
   }
-  EXPECT_EQ(std::ranges::count(outside.solver, WindowSolver::batch), inside.audit.batch);
-  EXPECT_EQ(outside.audit.batch, inside.audit.batch);
-  EXPECT_EQ(outside.audit.ceres, inside.audit.ceres);
-  EXPECT_EQ(outside.audit.ceres_method, inside.audit.ceres_method);
+  EXPECT_EQ(std::ranges::count(converted.solver, WindowSolver::batch), internal.audit.batch);
+  EXPECT_EQ(converted.audit.batch, internal.audit.batch);
+  EXPECT_EQ(converted.audit.ceres, internal.audit.ceres);
+  EXPECT_EQ(converted.audit.ceres_method, internal.audit.ceres_method);
 }
 
 TEST(IdentDoor, GivesTheSameBits) {

@@ -1,5 +1,5 @@
 // The public API of learning, from runs to a bank: converts between plain vectors and Eigen.
-#include "ident/base/door.hpp"
+#include "ident/base/api.hpp"
 
 #include <memory>
 #include <utility>
@@ -9,7 +9,7 @@
 #include "ident/data/public_recording.hpp"
 #include "ident/data/streams.hpp"
 #include "ident/fit/fit_windows.hpp"
-#include "mixture/outside.hpp"
+#include "mixture/from_internal.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/learn/learn.hpp"
 
@@ -84,7 +84,7 @@ Learned learn_from(const Recording& recording, const LearnOptions& options, cons
   learn_all(recording, learning, Stage::bank, step_scatter(times) > most_step_scatter, hooks, Progress(), learned);
   origin.windows = learned.windows->audit;
   origin.features = learned.mixture->feature_names;
-  origin.mixture = outside(learned.mixture->mixture);
+  origin.mixture = from_internal(learned.mixture->mixture);
   origin.candidates = learned.mixture->candidates;
   origin.labels.assign(learned.mixture->labels.begin(), learned.mixture->labels.end());
   origin.screened = learned.bank->screened;
@@ -102,11 +102,11 @@ Learned learn_from(const Recording& recording, const LearnOptions& options, cons
 }  // namespace
 
 Learned learn_bank(const RecordedRuns& runs, const LearnOptions& options) {
-  return at_the_door([&] { return learn_from(to_recording(runs), options, nullptr); });
+  return api_call([&] { return learn_from(to_recording(runs), options, nullptr); });
 }
 
 Learned learn_bank(const RecordedRuns& runs, const LearnOptions& options, const MotionModel& model) {
-  return at_the_door([&] {
+  return api_call([&] {
     const Recording recording = to_recording(runs);
     LearnOptions fitting = options;
     fitting.window = options_for(model, recording, std::move(fitting.window));

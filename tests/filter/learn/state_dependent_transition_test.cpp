@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "filter/learn/refine/refine.hpp"
-#include "tests/filter/learn/guarded_runs.hpp"
+#include "tests/filter/learn/state_dependent_runs.hpp"
 
 namespace modebank {
 namespace {
 
 using test::bank_of;
-using test::Guard;
-using test::guarded_runs;
+using test::LogOdds;
 using test::soft;
+using test::state_dependent_runs;
 using test::true_model;
 
 RefineOptions quick_transition() {
@@ -21,11 +21,11 @@ RefineOptions quick_transition() {
   options.restarts = 0;
   options.folds = 4;
   options.measurement_noise = false;
-  options.guards = true;
+  options.state_dependent_transition = true;
   return options;
 }
 
-Refinement refined(const Recording& recording, const Guard& start) {
+Refinement refined(const Recording& recording, const LogOdds& start) {
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   SwitchingRegression constant = true_model(start);
   constant.logit = {};
@@ -33,8 +33,8 @@ Refinement refined(const Recording& recording, const Guard& start) {
   return refine_bank(recording, fits, {bank_of(recording, t, constant)}, quick_transition(), {});
 }
 
-TEST(Guards, ASoftGuardIsFoundWithinItsErrors) {
-  const Recording recording = guarded_runs(soft, 8, 500, 5);
+TEST(StateDependentTransition, ASoftBorderIsFoundWithinItsErrors) {
+  const Recording recording = state_dependent_runs(soft, 8, 500, 5);
   const Refinement result = refined(recording, soft);
   ASSERT_GT(result.switching.width, 0.0);
   EXPECT_GT(result.switching.gain, result.switching.gain_standard_error);
@@ -52,26 +52,26 @@ double log_odds_of_staying(const Bank& bank) {
 }
 
 /// If the input alone determines the mode, borders do not depend on the previous mode; otherwise they do.
-TEST(Guards, TheModeBeforeCountsWhereItMatters) {
-  const Refinement without = refined(guarded_runs({{-0.4e6, -0.4e6}, 1e6}, 8, 400, 7), {{-3.0, 3.0}, 0.0});
+TEST(StateDependentTransition, TheModeBeforeCountsWhereItMatters) {
+  const Refinement without = refined(state_dependent_runs({{-0.4e6, -0.4e6}, 1e6}, 8, 400, 7), {{-3.0, 3.0}, 0.0});
   EXPECT_LT(without.switching.memory_sd, 1.0);
   EXPECT_LT(std::abs(log_odds_of_staying(without.bank)), 0.5);
-  const Refinement with = refined(guarded_runs(soft, 8, 500, 5), soft);
+  const Refinement with = refined(state_dependent_runs(soft, 8, 500, 5), soft);
   EXPECT_TRUE(std::isinf(with.switching.memory_sd));
   EXPECT_NEAR(log_odds_of_staying(with.bank), 3.0, 1.0);
 }
 
-TEST(Guards, AMarkovChainKeepsItsTransitionMatrix) {
-  const Recording recording = guarded_runs({{-3.0, 3.0}, 0.0}, 8, 400, 6);
+TEST(StateDependentTransition, AMarkovChainKeepsItsTransitionMatrix) {
+  const Recording recording = state_dependent_runs({{-3.0, 3.0}, 0.0}, 8, 400, 6);
   const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
   EXPECT_EQ(result.switching.width, 0.0);
   EXPECT_FALSE(std::isnan(result.switching.gain));
   EXPECT_TRUE(result.bank.transition_logit.empty());
 }
 
-TEST(Guards, OfAHardGuardNoErrorIsStatedAndTheBorderLiesInTheGap) {
+TEST(StateDependentTransition, OfAHardBorderNoErrorIsStatedAndTheBorderLiesInTheGap) {
   const double border = 0.4;
-  const Recording recording = guarded_runs({{-1e6 * border, -1e6 * border}, 1e6}, 8, 400, 7);
+  const Recording recording = state_dependent_runs({{-1e6 * border, -1e6 * border}, 1e6}, 8, 400, 7);
   const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
   ASSERT_GT(result.switching.width, 0.0);
   EXPECT_TRUE(result.bank.transition_weight_error.array().isNaN().all());
@@ -84,10 +84,10 @@ TEST(Guards, OfAHardGuardNoErrorIsStatedAndTheBorderLiesInTheGap) {
 }
 
 /// In such a gap only the prior curves the likelihood, so no standard error may be stated.
-TEST(Guards, OfAHardGuardNoErrorIsStatedWhereInputsLeaveAGap) {
+TEST(StateDependentTransition, OfAHardBorderNoErrorIsStatedWhereInputsLeaveAGap) {
   const double border = 0.4, gap = 0.1;
   for (const std::uint64_t seed : {8, 9, 10}) {
-    const Recording recording = guarded_runs({{-1e6 * border, -1e6 * border}, 1e6}, 4, 500, seed, border, gap);
+    const Recording recording = state_dependent_runs({{-1e6 * border, -1e6 * border}, 1e6}, 4, 500, seed, border, gap);
     const Refinement result = refined(recording, {{-3.0, 3.0}, 0.0});
     ASSERT_GT(result.switching.width, 0.0);
     EXPECT_TRUE(result.bank.transition_weight_error.array().isNaN().all()) << seed;

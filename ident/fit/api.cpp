@@ -1,5 +1,5 @@
 // The public API of window fits: converts between plain vectors and Eigen.
-#include "ident/base/door.hpp"
+#include "ident/base/api.hpp"
 
 #include "ident/data/public_recording.hpp"
 #include "ident/fit/fit_windows.hpp"
@@ -10,7 +10,7 @@ namespace modebank::ident {
 
 namespace {
 
-Windows outside(const WindowFits& fits) {
+Windows from_internal(const WindowFits& fits) {
   Windows windows;
   windows.parameter_names = fits.parameter_names();
   for (const Window& window : fits.windows) {
@@ -35,13 +35,13 @@ Windows outside(const WindowFits& fits) {
 std::vector<std::string> model_names() { return modebank::model_names(); }
 
 Windows fit_windows(const RecordedRuns& runs, const FitOptions& options) {
-  return at_the_door([&] { return outside(modebank::fit_windows(to_recording(runs), options)); });
+  return api_call([&] { return from_internal(modebank::fit_windows(to_recording(runs), options)); });
 }
 
 Windows fit_windows(const RecordedRuns& runs, const FitOptions& options, const MotionModel& model) {
-  return at_the_door([&] {
+  return api_call([&] {
     const Recording recording = to_recording(runs);
-    return outside(modebank::fit_windows(recording, options_for(model, recording, options), model));
+    return from_internal(modebank::fit_windows(recording, options_for(model, recording, options), model));
   });
 }
 

@@ -1,16 +1,16 @@
 // The public API of clustering: converts between plain vectors and Eigen.
-#include "ident/base/door.hpp"
+#include "ident/base/api.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "mixture/outside.hpp"
+#include "mixture/from_internal.hpp"
 #include "mixture/select.hpp"
 #include "modebank/base/eigen.hpp"
 
 namespace modebank {
 
-mixture::Mixture outside(const GaussianMixture& given) {
+mixture::Mixture from_internal(const GaussianMixture& given) {
   mixture::Mixture result{to_vector(given.weights), to_matrix(given.means), {}, given.noise.weight, {}, {}};
   for (const Eigen::MatrixXd& covariance : given.covariances) result.covariances.push_back(to_matrix(covariance));
   result.noise_lower = to_vector(given.noise.lower);
@@ -18,7 +18,7 @@ mixture::Mixture outside(const GaussianMixture& given) {
   return result;
 }
 
-GaussianMixture inside(const mixture::Mixture& given) {
+GaussianMixture to_internal(const mixture::Mixture& given) {
   GaussianMixture result;
   check_filled(given.means, "means");
   result.weights = view(given.weights);
@@ -44,22 +44,23 @@ Eigen::MatrixXd filled(const Matrix& matrix, const char* name) {
 }  // namespace
 
 Clusters select(const Points& points, const SelectionOptions& options, std::uint64_t seed) {
-  return at_the_door([&] {
+  return api_call([&] {
     const Eigen::MatrixXd values = filled(points.values, "values"), errors = filled(points.errors, "errors");
     const Eigen::VectorXd weights = view(points.weights), typical_error = view(points.typical_error);
     const PointSet set(values, weights, errors, typical_error);
     const Selection found = modebank::select(set, {points.effective_samples, points.runs}, options, seed);
-    return Clusters{outside(found.mixture), found.candidates,
+    return Clusters{from_internal(found.mixture), found.candidates,
                     to_matrix(modebank::responsibilities(found.mixture, set))};
   });
 }
 
 Matrix responsibilities(const Mixture& mixture, const Matrix& points) {
-  return at_the_door([&] { return to_matrix(modebank::responsibilities(inside(mixture), filled(points, "points"))); });
+  return api_call(
+      [&] { return to_matrix(modebank::responsibilities(to_internal(mixture), filled(points, "points"))); });
 }
 
 std::vector<double> log_density(const Mixture& mixture, const Matrix& points) {
-  return at_the_door([&] { return to_vector(modebank::log_density(inside(mixture), filled(points, "points"))); });
+  return api_call([&] { return to_vector(modebank::log_density(to_internal(mixture), filled(points, "points"))); });
 }
 
 }  // namespace mixture

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "app/report/page/guard_map.hpp"
+#include "app/report/page/mode_map.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
 #include "app/text/judged_runs.hpp"
@@ -179,14 +179,14 @@ Eigen::VectorXd settled_shares(const Bank& bank, const Eigen::VectorXd& z) {
   return p / p.sum();
 }
 
-nlohmann::json guard_of(const Archive& archive) {
+nlohmann::json mode_map_of(const Archive& archive) {
   if (!archive.bank || !archive.recording || archive.bank->transition_logit.empty()) return nullptr;
   const Bank& bank = *archive.bank;
   const SeenSamples seen = seen_samples(archive);
   if (seen.z.size() < 2) return nullptr;
   const std::vector<Index> features = drawn_features(effects(bank.transition_logit, seen));
   const bool one = features.size() == 1;
-  json guard = {{"one", one}, {"others", bank.transition_logit.weights.cols() > std::ssize(features)}};
+  json map = {{"one", one}, {"others", bank.transition_logit.weights.cols() > std::ssize(features)}};
   std::array<Eigen::VectorXd, 2> axis;
   json axes = json::array(), samples = json::array();
   for (std::size_t a = 0; a < features.size(); ++a) {
@@ -195,13 +195,13 @@ nlohmann::json guard_of(const Archive& archive) {
     axes.push_back({{"name", feature_name(bank, *archive.recording, features[a])}, {"values", numbers(axis[a])}});
     samples.push_back(numbers(values));
   }
-  guard["axes"] = axes;
-  guard["samples"] = {{"at", samples}, {"mode", seen.mode}};
+  map["axes"] = axes;
+  map["samples"] = {{"at", samples}, {"mode", seen.mode}};
   if (one)
-    guard["lines"] = lines(bank, features[0], axis[0]);
+    map["lines"] = lines(bank, features[0], axis[0]);
   else
-    add_map(bank, features, axis[0], axis[1], guard);
-  return guard;
+    add_map(bank, features, axis[0], axis[1], modeMap);
+  return map;
 }
 
 }  // namespace modebank::app::report

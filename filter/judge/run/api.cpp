@@ -9,7 +9,7 @@ namespace modebank::judge {
 
 namespace {
 
-Trajectory inside(const filter::Bank& bank, const RecordedRun& run) {
+Trajectory to_internal(const filter::Bank& bank, const RecordedRun& run) {
   return to_trajectory(run, bank.measurements(), bank.inputs());
 }
 
@@ -17,7 +17,7 @@ Trajectory inside(const filter::Bank& bank, const RecordedRun& run) {
 
 Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options,
                         std::uint64_t seed) {
-  const Trajectory trajectory = inside(bank, run);
+  const Trajectory trajectory = to_internal(bank, run);
   RunEvaluation e = modebank::evaluate_run(bank.internal(), trajectory, options);
   draw_pit(trajectory, seed, e);
   return {to_matrix(e.prediction), to_matrix(e.innovation),  to_matrix(e.innovation_covariance),
@@ -26,11 +26,11 @@ Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const 
 }
 
 double log_likelihood(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options) {
-  return modebank::log_likelihood(bank.internal(), inside(bank, run), options);
+  return modebank::log_likelihood(bank.internal(), to_internal(bank, run), options);
 }
 
 Smoothed smooth_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options) {
-  const Trajectory trajectory = inside(bank, run);
+  const Trajectory trajectory = to_internal(bank, run);
   RunEvaluation e = modebank::evaluate_run(bank.internal(), trajectory, options);
   modebank::smooth_run(bank.internal(), trajectory, options, e);
   return {to_matrix(e.smoothed_state),
