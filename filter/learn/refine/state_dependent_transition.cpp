@@ -74,7 +74,7 @@ Fit scored(const RefineInput& in, const CrossValidation& validation, const Logit
   SplitFits fits(in, splits, std::move(priors), std::vector<SwitchingRegression>(splits.size(), start.model));
   Fit best = *start.constant;
   best.model = start.model;
-  best.guard = prior;
+  best.logit_prior = prior;
   best.iterations = 0;
   for (const Index checkpoint : refine_tuning.checkpoints) {
     if (checkpoint > in.options.max_iterations) break;
