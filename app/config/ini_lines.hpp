@@ -20,8 +20,8 @@ std::vector<FileEntry> parse_lines(std::string_view text, const std::string& pat
 
 /// Whether a key's value is a single path, which may contain any character.
 bool is_path(const std::string& key);
-/// Whether a key's value may be in double quotes, with \" \\
-///  and \x1b inside: paths, and column names, which may contain a #. In other keys quotes are part of the value.
+/// Whether a key's value may be in double quotes, where \" \\ \n and \x1b have their usual meaning: paths, and column
+/// names, which may contain a #. In other keys quotes are part of the value.
 bool takes_quotes(const std::string& key);
 
 }  // namespace modebank::app

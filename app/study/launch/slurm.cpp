@@ -68,8 +68,7 @@ std::vector<std::string> sbatch_words(const SlurmRequest& request, const std::st
   return words;
 }
 
-/// A path for a message, with control characters as
-///  and the like.
+/// A path for a message, in quotes, with escaped control characters.
 std::string quoted_path(const fs::path& path) {
   return nlohmann::json(path.string()).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
