@@ -81,16 +81,16 @@ class IntervalUncorrection {
   /// Adjoint of C_i Q C_i' / s (share + square (M^2 + V) / s), with the last factor limited (interval_sums).
   HWY_INLINE void explained(std::size_t i, V share, V square, const V (&Q)[packed_size(N)], V root, BySignal& to,
                             V (&by_Q)[packed_size(N)]) const {
-    const V moment = second_moment<NY>(p_, i, r_), most = splat(largest_standardised * largest_standardised);
+    const V second = second_moment<NY>(p_, i, r_), most = splat(largest_standardised * largest_standardised);
     const V inverse = hn::Div(splat(1.0), hn::Mul(root, root));
-    const V weight = hn::Mul(hn::MulAdd(square, hn::Min(moment, most), share), inverse);
+    const V weight = hn::Mul(hn::MulAdd(square, hn::Min(second, most), share), inverse);
     for (std::size_t a = 0; a < N; ++a)
       for (std::size_t b = 0; b <= a; ++b)
         by_Q[packed(a, b)] = hn::MulAdd(splat(sensor_.C[i * N + a] * sensor_.C[i * N + b]), weight, by_Q[packed(a, b)]);
     const V of_signal = hn::Mul(along_signal<N>(sensor_, i, Q), inverse);
-    const V uncut = hn::IfThenElseZero(hn::Lt(moment, most), hn::Mul(hn::Mul(square, of_signal), inverse));
+    const V uncut = hn::IfThenElseZero(hn::Lt(second, most), hn::Mul(hn::Mul(square, of_signal), inverse));
     to.s = hn::NegMulAdd(weight, of_signal, to.s);
-    to.s = hn::NegMulAdd(uncut, moment, to.s);
+    to.s = hn::NegMulAdd(uncut, second, to.s);
     to.mean = hn::MulAdd(hn::Mul(splat(2.0), uncut), hn::Mul(root, moment(1, i)), to.mean);
     to.variance = hn::Add(to.variance, uncut);
   }
