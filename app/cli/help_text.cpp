@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <boost/algorithm/string/case_conv.hpp>
+#include <boost/algorithm/string/predicate.hpp>
 #include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/trim.hpp>
 #include <cctype>
@@ -15,6 +15,7 @@
 #include "app/config/config.hpp"
 #include "app/config/option_table.hpp"
 #include "app/report/page/assets.hpp"
+#include "app/text/screen_labels.hpp"
 #include "app/text/terminal.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "modebank/base/error.hpp"
@@ -103,18 +104,49 @@ std::string section_text(const std::string& section) {
   return text.empty() ? "" : fmt::format("[{}]\n{}", section, text);
 }
 
-/// The term's definition, or nothing; adds the terms to `known`.
-std::string term_text(const std::string& name, std::vector<std::string>& known) {
-  const std::string wanted = boost::algorithm::to_lower_copy(name);
-  for (const nlohmann::json& entry : nlohmann::json::parse(assets::terms_json())) {
-    std::vector<std::string> names = entry.at("also");
-    names.push_back(entry.at("term"));
-    for (std::string& other : names) boost::algorithm::to_lower(other);
-    if (std::find(names.begin(), names.end(), wanted) != names.end())
-      return fmt::format("{}: {}\n", entry.at("term").get<std::string>(), entry.at("means").get<std::string>());
-    known.push_back(entry.at("term"));
-  }
+/// "read: what the data are ...", of a label of the screen; else nothing.
+std::string label_text(const std::string& name) {
+  for (const ScreenLabel& label : screen_labels())
+    if (label.name == name) return fmt::format("{} (a line of the screen): {}\n", label.name, label.means);
   return "";
+}
+
+using Terms = std::vector<nlohmann::json>;
+
+/// The names by which a term is known, or (`not`) those that are not used for it.
+std::vector<std::string> names_of_term(const nlohmann::json& entry, const char* member) {
+  std::vector<std::string> names = entry.at(member);
+  if (member == std::string("also")) names.push_back(entry.at("term"));
+  return names;
+}
+
+/// The entry one of whose names `is` the one that is sought; null without.
+template <class Is>
+const nlohmann::json* find_term(const Terms& terms, const char* member, Is is) {
+  for (const nlohmann::json& entry : terms)
+    for (const std::string& name : names_of_term(entry, member))
+      if (is(name)) return &entry;
+  return nullptr;
+}
+
+std::string definition(const nlohmann::json& entry) {
+  const std::vector<std::string> avoided = names_of_term(entry, "not");
+  return fmt::format("{}: {}{}\n", entry.at("term").get<std::string>(), entry.at("means").get<std::string>(),
+                     avoided.empty() ? "" : fmt::format(" Not called: {}.", fmt::join(avoided, ", ")));
+}
+
+/// The definition of a term or of a word that is not used for it, or nothing. Q and q are two terms: case matters
+/// where a name is spelt just so.
+std::string term_text(const Terms& terms, const std::string& name) {
+  const auto exactly = [&](const std::string& other) { return other == name; };
+  const auto loosely = [&](const std::string& other) { return boost::algorithm::iequals(other, name); };
+  const nlohmann::json* entry = find_term(terms, "also", exactly);
+  if (!entry) entry = find_term(terms, "also", loosely);
+  if (entry) return definition(*entry);
+  entry = find_term(terms, "not", loosely);
+  return entry ? fmt::format("\"{}\" is called {} here.\n{}", name, entry->at("term").get<std::string>(),
+                             definition(*entry))
+               : "";
 }
 
 }  // namespace
@@ -130,22 +162,26 @@ std::string help_overview() {
   text += "\nEvery command has\n";
   for (const CommandOption& option : common_options()) text += row(option.typed(), option.help, 13);
   return text +
-         "\n`modebank help X` says what a command, a section of the configuration, a key or a word of the summary is.\n"
+         "\n`modebank help X` explains a command, a section of the configuration, a key, a label of the screen or a "
+         "term.\n"
          "Exit status: 0 done; 1 the content or the run failed; 2 usage, configuration or path.\n";
 }
 
 std::string help_on(const std::string& name) {
-  if (const Command* command = find_command(name)) return command_text(*command);
+  const Terms terms = nlohmann::json::parse(assets::terms_json());
+  const std::string words = label_text(name) + term_text(terms, name);
+  if (const Command* command = find_command(name)) return command_text(*command) + (words.empty() ? "" : "\n" + words);
   refuse_gone_command(name);
-  if (const std::string section = section_text(name); !section.empty()) return section;
-  std::vector<std::string> known;
-  if (const std::string term = term_text(name, known); !term.empty()) return term;
+  if (const std::string text = words + section_text(name); !text.empty()) return text;
   if (const Option* option = find_option(name)) return option_text(*option) + when_text(*option);
-  const std::string terms = fmt::format("{}", fmt::join(known.begin(), known.begin() + 8, ", "));
+  std::vector<std::string> known;
+  for (const nlohmann::json& entry : terms) known.push_back(entry.at("term"));
+  const std::string first = fmt::format("{}", fmt::join(known.begin(), known.begin() + 8, ", "));
+  for (const ScreenLabel& label : screen_labels()) known.push_back(label.name);
   for (const Command& command : command_table()) known.push_back(command.name);
   for (const Option& option : option_table()) known.push_back(option.key);
   throw ConfigurationError(fmt::format("{} is no command, section, key or term{}; terms are {}, ...", name,
-                                       did_you_mean(name, known), terms));
+                                       did_you_mean(name, known), first));
 }
 
 std::string option_markdown() {

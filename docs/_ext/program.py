@@ -97,9 +97,10 @@ def terms_page():
         words, columns = [entry["term"]], []
         for name in entry["also"]:
             if name.lower() not in [known.lower() for known in words]:
-                (words if re.fullmatch(r"[A-Za-z +-]+", name) and not name.startswith("in ") else columns).append(name)
+                (words if re.fullmatch(r"[A-Za-z +-]{2,}", name) and not name.startswith("in ") else columns).append(name)
         also = f" Columns: {', '.join(f'`{name}`' for name in columns)}." if columns else ""
-        lines += [*words, f"  {entry['means']}{also}", ""]
+        avoided = f" *Not used for it: {', '.join(entry['not'])}.*" if entry["not"] else ""
+        lines += [*words, f"  {entry['means']}{also}{avoided}", ""]
     return "\n".join([*lines, "```", ""])
 
 

@@ -23,6 +23,7 @@
 #include "app/init/survey_set.hpp"
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/write_page.hpp"
+#include "app/text/screen_labels.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -135,8 +136,8 @@ void write_page_of(const Archive& archive, const LogOutputs& outputs, const Comm
 }
 
 std::string written_text(const LogOutputs& outputs) {
-  return fmt::format("{:<10}{} opens in a browser; {} has every decision, and `modebank run` repeats it\n", "files",
-                     outputs.page.string(), outputs.configuration.string());
+  return fmt::format("{}{} opens in a browser; {} has every decision, and `modebank run` repeats it\n",
+                     padded_label("files"), outputs.page.string(), outputs.configuration.string());
 }
 
 }  // namespace

@@ -5,10 +5,14 @@
 #include <variant>
 
 #include "app/cli/command_table.hpp"
+#include "app/cli/help_text.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
+#include "app/report/page/assets.hpp"
+#include "app/text/screen_labels.hpp"
 #include "app/text/terminal.hpp"
 #include "tests/app/cli_fixture.hpp"
+#include "tests/app/labels_of.hpp"
 
 namespace modebank::test {
 namespace {
@@ -30,6 +34,38 @@ TEST_F(Help, OfEveryCommandFitsAScreenAndIsTheSameBothWays) {
     for (const app::CommandOption& option : command.options)
       EXPECT_NE(help.out.find("--" + option.long_name()), std::string::npos) << option.name;
   }
+}
+
+/// The labels of `run` and `show`; run_log_test has those of `run LOG`.
+TEST_F(Help, ExplainsEveryLabelOfTheScreen) {
+  const ProgramResult made = run();
+  ASSERT_EQ(made.status, 0) << made.err;
+  std::set<std::string> labels = labels_of(made.out);
+  EXPECT_GE(labels.size(), 7u) << made.out;
+  labels.merge(labels_of(modebank({"show", archive()}).out));
+  EXPECT_GE(labels.size(), 16u);
+  for (const std::string& label : labels)
+    EXPECT_NE(app::help_on(label).find(label + " (a line of the screen): "), std::string::npos) << label;
+  for (const app::ScreenLabel& label : app::screen_labels())
+    EXPECT_NE(app::help_on(label.name).find(label.means), std::string::npos) << label.name;
+}
+
+/// Every name of a term leads to it, and so does every word that is not used for it.
+TEST_F(Help, AnswersEveryWordOfTheGlossary) {
+  for (const nlohmann::json& term : nlohmann::json::parse(app::assets::terms_json())) {
+    std::vector<std::string> names{term.at("term")};
+    for (const char* member : {"also", "not"})
+      for (const std::string name : term.at(member)) names.push_back(name);
+    for (const std::string& name : names)
+      EXPECT_NE(app::help_on(name).find(term.at("means").get<std::string>()), std::string::npos) << name;
+  }
+  EXPECT_EQ(app::help_on("regime").find("\"regime\" is called mode here.\nmode: "), 0u) << app::help_on("regime");
+}
+
+TEST_F(Help, CaseMattersWhereTwoTermsDifferByIt) {
+  EXPECT_EQ(app::help_on("Q").find("process noise: Q: covariance of what a mode's model does not predict"), 0u);
+  EXPECT_EQ(app::help_on("q").find("q: Number of free parameters of a mixture"), 0u);
+  EXPECT_EQ(app::help_on("rmse"), app::help_on("RMSE"));
 }
 
 TEST_F(Help, KnowsSectionsAndKeys) {

@@ -6,9 +6,11 @@
 #include <random>
 #include <sstream>
 
+#include "app/cli/help_text.hpp"
 #include "io/archive/archive.hpp"
 #include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
+#include "tests/app/labels_of.hpp"
 #include "tests/support/archive_text.hpp"
 
 namespace modebank::test {
@@ -127,6 +129,10 @@ TEST_F(RunLog, LateInputsOfAnotherInstrumentAreFoundAndNamed) {
   EXPECT_NEAR(archive.lag->lag.mean, -0.5, 0.1);  // within a period of the inputs
   EXPECT_THAT(read_file(ini()), ::testing::ContainsRegex("\nlag_s = auto +# inputs act -0\\.[45]"));
   EXPECT_THAT(result.out, HasSubstr("robot     the stamps of left, right are 0."));
+  std::set<std::string> labels = labels_of(result.out);
+  EXPECT_THAT(labels, ::testing::IsSupersetOf({"log", "time", "state", "inputs", "runs", "robot", "files"}));
+  for (const std::string& label : labels)
+    EXPECT_THAT(app::help_on(label), HasSubstr(label + " (a line of the screen): "));
 }
 
 /// The variance at rest, tried as R, is measured_sd^2. The training half rests for about 150 samples, whose variance

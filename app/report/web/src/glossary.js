@@ -14,16 +14,17 @@ function anyOf(names) {
 /** `terms`: [{term, also, means}]. */
 export class Glossary {
   constructor(terms) {
-    const named = terms.flatMap(({term, also, means}) => [term, ...also].map((name) => [name.toLowerCase(), means]));
-    this.meanings = new Map(named);
-    this.anyTerm = anyOf([...this.meanings.keys()]);
+    const named = terms.flatMap(({term, also, means}) => [term, ...also].map((name) => [name, means]));
+    const lower = named.map(([name, means]) => [name.toLowerCase(), means]);
+    this.meanings = new Map([...lower, ...named]);  // Q and q are two terms
+    this.anyTerm = anyOf(lower.map(([name]) => name));
   }
 
   /** The meaning of a heading, apart from its unit and its object; null for words without a definition. */
   meaningOf(heading) {
-    const name = String(heading).toLowerCase(), bare = name.replace(/ \[[^\]]*\]$/, '');
+    const spelt = String(heading), name = spelt.toLowerCase(), bare = name.replace(/ \[[^\]]*\]$/, '');
     const general = bare.replace(/^(steady gain|rmse|log noise variance) .*/, '$1');
-    return [name, bare, general].map((text) => this.meanings.get(text)).find(Boolean) || null;
+    return [spelt, name, bare, general].map((text) => this.meanings.get(text)).find(Boolean) || null;
   }
 
   /** The parts of a sentence as {part, meaning}; meaning is null except at the first mention of a term. */

@@ -28,6 +28,11 @@ test('a sentence tells each meaning once, at the longest name', () => {
   assert.deepEqual(small.termsIn(''), []);
 });
 
+test('case matters where two terms differ by it', () => {
+  assert.match(program.meaningOf('Q'), /covariance/);
+  assert.match(program.meaningOf('q'), /parameters/);
+});
+
 test('the words of the first screen have meanings', () => {
   for (const text of ['RMSE one step ahead', 'In the 95 % band', 'Gain over drifting', 'FIT of the free run']) {
     assert.ok(program.termsIn(text).some(({meaning}) => meaning), text);

@@ -1,0 +1,85 @@
+#include "app/text/screen_labels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace modebank::app {
+
+const std::vector<ScreenLabel>& screen_labels() {
+  static const std::vector<ScreenLabel> labels{
+      {"read",
+       "what the data are: training runs, held-out runs and their steps, the states that the models predict, "
+       "the inputs that they predict them from, and by how much stamps are late."},
+      {"structure",
+       "how many past samples of the states (state lags) and of the inputs (input lags) the models predict "
+       "from, and how many samples an input waits before it acts (delay)."},
+      {"finding",
+       "whether switching between several linear models predicts the held-out runs better than the best "
+       "single model does, by how much, and the standard error of that gain. A gain counts from 0.02 nats "
+       "per sample on; beyond chance is more than about two standard errors."},
+      {"modes",
+       "one line per mode, the most used first: how much it is used, how long it lasts, how fast it answers and "
+       "how far it follows each input."},
+      {"band",
+       "how many of the samples lie in the 95 % band that the bank predicts. 92.5 to 97.5 % passes: then you can "
+       "rely on the band. The first brackets hold the 95 % interval of the share; the shares of the 50, 90 and 99 % "
+       "bands follow."},
+      {"mean",
+       "how far the predicted mean is off (RMSE), one and several steps ahead. FIT of 100 % is perfect, 0 % is "
+       "as good as the mean of the measurements. Brackets: the same of the best competitor, which the finding "
+       "names, and of all filters combined."},
+      {"warning", "a fact that limits what the result is worth. `modebank show ARCHIVE` prints all warnings."},
+      {"next", "what to do now, with the command to type. It begins with ready where nothing has to be settled first."},
+      {"use",
+       "the model that explains the motion, and the filter that predicts best (chosen by training runs), with the "
+       "name to give to --track.filter. Brackets: its gain over the finding's best competitor on the held-out "
+       "runs, and the best filter that `export --to c` takes."},
+      {"archive", "the HDF5 file that holds the whole result; `modebank show` and `modebank report` read it."},
+      {"log", "the files that `run LOG` reads."},
+      {"time", "the column of times, the sampling rate and the duration."},
+      {"state", "the columns that the models predict, with their unit."},
+      {"inputs",
+       "the columns that act on the states, with their unit; at the end of `show`, the number of files read."},
+      {"runs", "how the log is cut into runs, and which of them are held out."},
+      {"doubt",
+       "a choice that the log does not settle: check it, and state the key in the configuration if it is wrong."},
+      {"decided", "a setting that `run LOG` has chosen on training runs, with its gain."},
+      {"robot", "what a filter on the robot must do as the result was learned with it: turn a sensor, or delay one."},
+      {"files", "the page and the configuration that `run LOG` writes beside the archive."},
+      {"data", "the number of runs and steps and the sample period; at the top of `show`, the hash of the data."},
+      {"lag",
+       "by how much inputs act later or earlier than their stamps state, per run and on average, with standard "
+       "errors, and which correction is applied. See also the term State lags."},
+      {"windows", "how many windows were fitted, and how their fits ended."},
+      {"solved", "how the windows were solved and how long it took."},
+      {"audit", "how far the fast solver's windows differ from those that Ceres solves alone."},
+      {"global", "the linear model that is fitted to all training runs at once."},
+      {"mixture",
+       "the Gaussian mixture that the windows' parameters are clustered by: its components, BIC, and how many "
+       "restarts agree."},
+      {"merged",
+       "how many components were merged because bank.modes limits the modes, and what that costs in log score."},
+      {"bank", "the modes, how many of the components became one, and the measurement noise R."},
+      {"learned", "how many of the training steps the bank was learned from."},
+      {"residuals",
+       "how many autocorrelations and input correlations of the errors lie outside their bands: 5 % of a "
+       "true model's do."},
+      {"modebank", "the version that wrote the archive, and when."},
+      {"command", "the command line that made the archive."},
+      {"config", "the hash of the configuration, which the archive holds whole."},
+      {"built", "the versions of the libraries that the program was built with."},
+      {"reads", "a file that the command would read (--dry-run)."},
+      {"writes", "a file that the command would write (--dry-run)."}};
+  return labels;
+}
+
+std::string padded_label(const std::string& name) {
+  const std::vector<ScreenLabel>& labels = screen_labels();
+  if (std::none_of(labels.begin(), labels.end(), [&](const ScreenLabel& label) { return label.name == name; }))
+    throw std::logic_error("screen_labels has no " + name);
+  return fmt::format("{:<10}", name);
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace modebank::test {
+
+/// The labels of a screen's lines, which stand in the first ten columns: read, structure, ... Tables, which begin with
+/// a column filter, have none.
+inline std::set<std::string> labels_of(const std::string& screen) {
+  const std::regex label("^([a-z]+) +(?=\\S)");
+  std::set<std::string> labels;
+  std::istringstream lines(screen);
+  std::smatch found;
+  for (std::string line; std::getline(lines, line) && !line.starts_with("filter ");)
+    if (std::regex_search(line, found, label) && found.length() == 10) labels.insert(found[1]);
+  return labels;
+}
+
+}  // namespace modebank::test
