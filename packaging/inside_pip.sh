@@ -15,4 +15,4 @@ tail -n 1 /tmp/pip.log
 echo "pip install took $(($(date +%s) - begin)) s"
 as_user "env/bin/pip show --files modebank | grep modebank/ && du -h env/lib/python3*/site-packages/modebank/*.so"
 awk "/^\`\`\`/ { block = /python/; next } block" /home/robot/source/README.md >/tmp/readme.py
-as_user 'env/bin/python3 /tmp/readme.py >readme.txt && grep "^finding .*show evidence for modes of motion" readme.txt'
+as_user 'env/bin/python3 /tmp/readme.py >readme.txt && grep "^finding .*Switching between .* linear models predicts" readme.txt'

@@ -16,7 +16,8 @@ json errors_json(const std::vector<ErrorAhead>& errors) {
     list.push_back({{"steps", error.steps},
                     {"bank", json_numbers(error.bank)},
                     {"other", json_numbers(error.other)},
-                    {"combined", json_numbers(error.combined)}});
+                    {"combined", json_numbers(error.combined)},
+                    {"fit_percent", json_numbers(error.fit_percent)}});
   return list;
 }
 

@@ -8,95 +8,128 @@
 #include <vector>
 
 #include "app/text/judged_runs.hpp"
+#include "app/text/number_text.hpp"
+#include "ident/data/streams.hpp"
 
 namespace modebank {
 namespace {
+
+using app::likelihood_words;
 
 std::string counted(Eigen::Index count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-std::string where(const Finding& finding) {
-  return fmt::format("{} {} run{}", finding.runs, words_for(finding.role), finding.runs == 1 ? "" : "s");
+/// "6 held-out runs", "held-out run".
+std::string judged(const Finding& finding) {
+  const std::string runs = fmt::format("{} run{}", words_for(finding.role), finding.runs == 1 ? "" : "s");
+  return finding.runs == 1 ? runs : fmt::format("{} {}", finding.runs, runs);
 }
 
-std::string shows(const Finding& finding) { return where(finding) + (finding.runs == 1 ? " shows" : " show"); }
-
-/// " (error from 12 blocks of the one run)", where runs are too few to be what the error is clustered by.
+/// "; error from 12 blocks of the one run", where there are fewer runs than an error needs.
 std::string blocks_words(const Finding& finding) {
   for (const PairedGain& gain : finding.gains)
     if (gain.competitor == finding.best_competitor && gain.by_blocks && std::isfinite(gain.standard_error))
-      return fmt::format(" (error from {:.0f} blocks of the {})", gain.degrees_of_freedom + 1.0,
+      return fmt::format("; error from {:.0f} blocks of the {}", gain.degrees_of_freedom + 1.0,
                          finding.runs == 1 ? "one run" : fmt::format("{} runs", finding.runs));
   return "";
 }
 
-/// " The bank of 5 modes gains +0.134 +- 0.040 nats per sample over one_motion (...), its best competitor."
-std::string least_gain_words(const Finding& finding) {
-  if (finding.best_competitor.empty()) return "";
-  const std::string error =
-      std::isfinite(finding.standard_error) ? fmt::format(" +- {:.3f}", finding.standard_error) : " (of unknown error)";
-  return fmt::format(" The bank of {} gains {:+.3f}{} nats per sample over {} ({}), its best competitor{}.",
-                     counted(finding.modes, "mode"), finding.gain, error, finding.best_competitor,
-                     description_of(finding.best_competitor, finding.one_motion_drifts), blocks_words(finding));
+/// "`drifting`: one linear model whose parameters wander"
+std::string described(const Finding& finding, const std::string& competitor) {
+  return fmt::format("`{}`: {}", competitor, description_of(competitor, finding.one_motion_drifts));
 }
 
-/// What describes the runs instead, better or as well.
+std::string gain_words(double gain, double error) {
+  const std::string plus_minus = std::isfinite(error) ? fmt::format(" +- {:.3f}", error) : " of unknown error";
+  return fmt::format("{:+.3f}{} nats per sample", gain, plus_minus);
+}
+
+const PairedGain* gain_over(const Finding& finding, const std::string& competitor) {
+  const auto found = std::find_if(finding.gains.begin(), finding.gains.end(),
+                                  [&](const PairedGain& gain) { return gain.competitor == competitor; });
+  return found == finding.gains.end() ? nullptr : &*found;
+}
+
+bool falls_short_of(const Finding& finding, const std::string& competitor) {
+  const PairedGain* const gain = gain_over(finding, competitor);
+  return gain && gain->falls_short();
+}
+
+/// "; more than 0.103 passes": what the gain is judged by where it decides.
+std::string passing_gain(const Finding& finding) {
+  const PairedGain* const gain = gain_over(finding, finding.best_competitor);
+  const bool decides = finding.answer == Answer::evidence || finding.answer == Answer::no_evidence;
+  if (!decides || !gain || !std::isfinite(gain->margin)) return "";
+  return fmt::format("; more than {:.3f} passes", std::max(gain->margin, negligible_gain));
+}
+
+/// "switching between 5 linear models predicts the 6 held-out runs better than the best single model (`one_motion`:
+/// one linear model with changing noise): each sample is 14.4 % more likely (+0.134 +- 0.040 nats per sample; more than
+/// 0.103 passes)."
+std::string gain_sentence(const Finding& finding, const char* start) {
+  if (finding.best_competitor.empty()) return "";
+  const char* const than = falls_short_of(finding, finding.best_competitor) ? "worse than"
+                           : finding.gain < negligible_gain                 ? "no better than"
+                                                                            : "better than";
+  return fmt::format("{}witching between {} predicts the {} {} the best single model ({}): each sample is {} ({}{}{}).",
+                     start, counted(finding.modes, "linear model"), judged(finding), than,
+                     described(finding, finding.best_competitor), likelihood_words(finding.gain),
+                     gain_words(finding.gain, finding.standard_error), passing_gain(finding), blocks_words(finding));
+}
+
+/// Which single model describes the runs instead, better or as well.
 std::string instead_words(const Finding& finding) {
-  if (finding.better_description.empty()) return "";
-  const bool better = std::any_of(finding.gains.begin(), finding.gains.end(), [&](const PairedGain& gain) {
-    return gain.competitor == finding.better_description && gain.falls_short();
-  });
-  // The best one was named before; a simpler one that is as good states what it costs.
-  const std::string loss = finding.better_description == finding.best_competitor
-                               ? ""
-                               : fmt::format(", the simplest about as good as {} ({:+.3g} nats per sample)",
-                                             finding.best_competitor, -finding.description_loss);
+  const std::string& simpler = finding.better_description;
+  if (simpler.empty()) return "";
   // Only a gain beyond its margin is known: what cannot be told apart may be as good, or not.
-  return fmt::format(" These runs {} by {} ({}){}.",
-                     !better                                 ? "may be described as well"
-                     : finding.answer == Answer::cannot_tell ? "may be described better"
-                                                             : "are described better",
-                     description_of(finding.better_description, finding.one_motion_drifts), finding.better_description,
-                     loss);
+  const char* const how = !falls_short_of(finding, simpler)       ? "may describe these runs as well"
+                          : finding.answer == Answer::cannot_tell ? "may describe these runs better"
+                                                                  : "describes these runs better";
+  // The best one is described in the sentence on the gain, which states that the bank is worse.
+  if (simpler == finding.best_competitor && falls_short_of(finding, simpler) && finding.answer != Answer::cannot_tell)
+    return "";
+  if (simpler == finding.best_competitor) return fmt::format(" The single model `{}` {}.", simpler, how);
+  return fmt::format(" The simpler model ({}) {}, and is about as good as `{}` ({:+.3f} nats per sample).",
+                     described(finding, simpler), how, finding.best_competitor, -finding.description_loss);
 }
 
 std::string gain_words(const PairedGain& gain) {
-  return fmt::format("the gain over {}, {:+.3f} +- {:.3f} nats per sample,", gain.competitor, gain.gain,
-                     gain.standard_error);
+  return fmt::format("the gain over `{}`, {},", gain.competitor, gain_words(gain.gain, gain.standard_error));
 }
 
-/// "the gain over one_motion, +0.849 +- 0.388 nats per sample, does not exceed what chance makes of 5 runs (0.911)"
+/// "the gain over `one_motion`, +0.849 +- 0.388 nats per sample, may be chance (with 5 runs more than
+/// 0.911 passes)"
 std::string within_chance_words(const PairedGain& gain, Eigen::Index runs) {
   const std::string clusters =
       gain.by_blocks ? counted(static_cast<Eigen::Index>(gain.degrees_of_freedom) + 1, "block") : counted(runs, "run");
   if (!gain.exceeds())
-    return fmt::format("{} does not exceed what chance makes of {} ({:.3f})", gain_words(gain), clusters, gain.margin);
+    return fmt::format("{} may be chance (with {} more than {:.3f} passes)", gain_words(gain), clusters, gain.margin);
   return fmt::format(
-      "{} rests on few of the {}: ranks as high come by chance in {:.0f} % (signed-rank test, 5 % asked)",
+      "{} rests on few of the {}: chance gives ranks as high in {:.0f} % of cases (signed-rank test, "
+      "at most 5 % passes)",
       gain_words(gain), clusters, 100.0 * gain.rank_p);
 }
 
 std::string why_not_told(const Finding& finding) {
   switch (doubt_of(finding)) {
     case Doubt::nothing_held_out:
-      return "nothing was held out";
+      return "no run was held out";
     case Doubt::no_competitor:
       return "no competitor was scored";
     case Doubt::few_samples:
-      return fmt::format("there are too few independent samples to know the error of the gain over {}",
+      return fmt::format("too few independent samples leave the error of the gain over `{}` unknown",
                          std::find_if(finding.gains.begin(), finding.gains.end(), [](const PairedGain& gain) {
                            return !std::isfinite(gain.margin);
                          })->competitor);
     case Doubt::errors_unknown:
-      return "the standard errors of the modes' parameters are not known, so that the modes may be alike";
+      return "the standard errors of the modes' parameters are unknown, so the modes may be alike";
     case Doubt::small_gain:
       return fmt::format("{} is less than the {:g} that counts", gain_words(*least_beaten(finding)), negligible_gain);
     case Doubt::short_stays:
       return fmt::format(
-          "modes stay {:.3g} samples in the mean, and noisy inputs or a delay that differs between runs look like "
-          "modes "
-          "that stay fewer than {:.0f}",
+          "modes last {:.3g} samples on average ({:.0f} or more passes), and noisy inputs or a delay that differs "
+          "between runs look like shorter ones",
           finding.stay, finding.stay_asked);
     case Doubt::within_chance:
       break;
@@ -108,57 +141,65 @@ std::string why_not_told(const Finding& finding) {
 std::string coarse_reasons(const Finding& finding) {
   std::vector<std::string> reasons;
   for (const Resolution& state : finding.coarse)
-    reasons.push_back(
-        state.repeated > repeated_share
-            ? fmt::format("{:.0f} % of the samples of {} repeat the one before", 100 * state.repeated, state.state)
-            : fmt::format("{} comes in steps of {:.3g}, predictions are uncertain by {:.3g}", state.state,
-                          state.quantum, state.innovation_sd));
+    reasons.push_back(state.repeated > repeated_share
+                          ? fmt::format("{:.0f} % of the samples of {} repeat the one before (at most {:.0f} % passes)",
+                                        100 * state.repeated, state.state, 100 * repeated_share)
+                          : fmt::format("{} comes in steps of {:.3g}, and predictions are uncertain by {:.3g}",
+                                        state.state, state.quantum, state.innovation_sd));
   return fmt::format("{}", fmt::join(reasons, "; "));
 }
 
 std::string coarse_words(const Finding& finding) {
   return fmt::format(
-      "Whether {} modes of motion is not judged by log score: {}, so that a density says more about the "
-      "measurement than about the motion.",
-      shows(finding), coarse_reasons(finding));
+      "The log scores of the {} measure rounding rather than motion, so modes of motion are not judged: {}.",
+      judged(finding), coarse_reasons(finding));
 }
 
-/// "One linear model describes the 2 held-out runs without noise: ..."
+/// "One linear model predicts the 2 held-out runs up to rounding: ..."
 std::string without_noise_words(const Finding& finding) {
   std::vector<std::string> coefficients;
   for (const auto& [name, value] : finding.coefficients) coefficients.push_back(fmt::format("{} {:.6g}", name, value));
   return fmt::format(
-      "One linear model describes the {} without noise: what it leaves is rounding, so that scores, bands and modes "
-      "have "
-      "no meaning. Its coefficients, of the change per sample: {}.",
-      where(finding), fmt::join(coefficients, ", "));
+      "One linear model predicts the {} up to rounding, so scores, bands and modes have no meaning. Its coefficients, "
+      "of the change per sample: {}.",
+      judged(finding), fmt::join(coefficients, ", "));
 }
 
 std::string one_mode_words(const Finding& finding) {
   if (finding.without_noise) return without_noise_words(finding);
-  std::string text = "The bank has one mode, so modes of motion are not in question.";
+  std::string text = "The bank has one mode: it does not switch.";
   if (finding.coarse.empty()) return text + instead_words(finding);
-  return text + fmt::format(" Its log scores say little: {}.", coarse_reasons(finding));
+  return text + fmt::format(" Its log scores measure rounding rather than motion: {}.", coarse_reasons(finding));
 }
 
-/// "Over noise_only one nonlinear motion gains +0.210 nats per sample, the bank +0.450."
+/// " Over `noise_only` one nonlinear model gains +0.210 nats per sample, the bank +0.450."
 std::string both_words(const Finding& finding) {
   if (finding.over_linear.empty()) return "";
-  return fmt::format(" Over {} one nonlinear motion gains {:+.3f} nats per sample, the bank of {} {:+.3f}.",
-                     finding.over_linear, finding.nonlinear_over_linear, counted(finding.modes, "mode"),
+  return fmt::format(" Over `{}` one nonlinear model gains {:+.3f} nats per sample, and the {} gain {:+.3f}.",
+                     finding.over_linear, finding.nonlinear_over_linear, counted(finding.modes, "linear model"),
                      finding.bank_over_linear);
 }
 
 std::string not_yet_words(const Finding& finding) {
   if (finding.pattern.told())
     return fmt::format(
-        "Modes of motion are not judged yet: the bank's errors follow a pattern. Lags would gain {:.3g} +- {:.2g} nats "
-        "per sample on training runs; `--window.model auto` looks for them.",
-        finding.pattern.gain, finding.pattern.standard_error);
+        "Modes of motion are not judged yet: the bank's errors follow a pattern. Lags would gain {} on training runs; "
+        "`--window.model auto` searches for them.",
+        gain_words(finding.pattern.gain, finding.pattern.standard_error));
   return fmt::format(
-      "Modes of motion are not judged yet: steps scatter by {:.0f} % of their median, and the model holds for one step "
-      "length.",
-      100 * finding.step_scatter);
+      "Modes of motion are not judged yet: time steps scatter by {:.0f} % of their median (at most {:.0f} % passes), "
+      "and a model holds for one step length.",
+      100 * finding.step_scatter, 100 * most_step_scatter);
+}
+
+std::string no_evidence_words(const Finding& finding) {
+  if (finding.best_competitor.empty()) return "No evidence for modes of motion.";
+  if (finding.modes_differ || !finding.errors_known)
+    return "No evidence for modes of motion:" + gain_sentence(finding, " s") + instead_words(finding);
+  const std::string alike =
+      "No evidence for modes of motion: the parameters of the modes differ by no more than their "
+      "errors.";
+  return alike + gain_sentence(finding, " S") + instead_words(finding);
 }
 
 std::string answer_words(const Finding& finding) {
@@ -168,45 +209,25 @@ std::string answer_words(const Finding& finding) {
     case Answer::not_comparable:
       return coarse_words(finding);
     case Answer::cannot_tell:
-      return fmt::format("Whether {} modes of motion cannot be told: {}.", shows(finding), why_not_told(finding)) +
-             least_gain_words(finding) + instead_words(finding);
+      return fmt::format("Cannot tell whether the {} {} modes of motion: {}.", judged(finding),
+                         finding.runs == 1 ? "has" : "have", why_not_told(finding)) +
+             gain_sentence(finding, " S") + instead_words(finding);
     case Answer::no_evidence:
-      return fmt::format("{}{} no evidence for modes of motion.",
-                         finding.modes_differ || !finding.errors_known
-                             ? ""
-                             : "The modes do not differ in their parameters beyond their errors: ",
-                         shows(finding)) +
-             least_gain_words(finding) + instead_words(finding);
+      return no_evidence_words(finding);
     case Answer::evidence:
-      return fmt::format("{} evidence for modes of motion: several linear models describe them better than one does.{}",
-                         shows(finding), finding.terms_asked ? "" : " A single nonlinear motion would look the same.") +
-             least_gain_words(finding);
+      return gain_sentence(finding, "S") +
+             (finding.terms_asked ? "" : " A single nonlinear model would look the same.");
     case Answer::not_yet:
       return not_yet_words(finding);
   }
   return "";
 }
 
-std::string mean_words(const BetterMean& mean) {
-  const std::string when = mean.horizon == 0   ? "in free run"
-                           : mean.horizon == 1 ? "one step ahead"
-                                               : fmt::format("{} samples ahead", mean.horizon);
-  return fmt::format("{}{} (RMSE {:.4g}, the bank {:.4g}; {})", when, mean.state.empty() ? "" : " in " + mean.state,
-                     mean.rmse, mean.rmse_bank, mean.competitor);
-}
-
-std::string better_means_words(const Finding& finding) {
-  if (finding.better_means.empty()) return "";
-  std::vector<std::string> means;
-  for (const BetterMean& mean : finding.better_means) means.push_back(mean_words(mean));
-  return fmt::format(" A competitor predicts the mean better {}.", fmt::join(means, ", "));
-}
-
 }  // namespace
 
 std::string finding_text(const Finding& finding) {
   const std::string equation = finding.equations.empty() ? "" : " `modebank show ARCHIVE` prints its equation.";
-  return answer_words(finding) + both_words(finding) + equation + better_means_words(finding);
+  return answer_words(finding) + both_words(finding) + equation;
 }
 
 }  // namespace modebank

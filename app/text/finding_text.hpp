@@ -6,8 +6,8 @@
 
 namespace modebank {
 
-/// A finding in plain sentences: the answer with the gain and its standard error, what describes the runs instead, and
-/// where a competitor predicts the mean better.
+/// A finding in plain sentences: the answer with the gain over the best competitor and its standard error, and the
+/// single model that describes the runs instead.
 std::string finding_text(const Finding& finding);
 
 }  // namespace modebank

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "app/text/judged_runs.hpp"
+#include "app/text/screen_labels.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/warnings.hpp"
 #include "ident/base/characters.hpp"
@@ -17,7 +18,8 @@
 namespace modebank::app {
 namespace {
 
-constexpr int finding_lines = 6;
+constexpr int finding_lines = 5;
+constexpr int least_mode_lines = 4;  // two of them headings
 constexpr int least_columns = 40;
 
 int line_count(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
@@ -34,7 +36,7 @@ std::string narrowed(std::string text, int columns) {
 /// A labelled paragraph of at most `most` lines; longer text ends in "..." (`show` prints all of it).
 std::string section(const char* label, const std::string& text, int most, int columns) {
   if (text.empty()) return "";
-  std::vector<std::string> lines = lines_of(wrapped(fmt::format("{:<10}{}", label, text), columns));
+  std::vector<std::string> lines = lines_of(wrapped(padded_label(label) + text, columns));
   if (static_cast<int>(lines.size()) > most) {
     lines.resize(static_cast<std::size_t>(most));
     lines.back() = first_columns(lines.back(), columns - 4) + " ...";
@@ -43,7 +45,7 @@ std::string section(const char* label, const std::string& text, int most, int co
 }
 
 std::string file_line(const std::string& file, int columns) {
-  const std::string line = fmt::format("{:<10}{}", "archive", file), rest = "  (`modebank show` prints the rest)";
+  const std::string line = padded_label("archive") + file, rest = "  (`modebank show` prints the rest)";
   return (columns_of(line + rest) <= columns ? line + rest : line) + "\n";
 }
 
@@ -64,15 +66,42 @@ std::string modes_section(const Archive& archive, const FirstScreen& screen, int
   return section("modes", head, 1, columns) + narrowed(indent + table, columns) + "\n";
 }
 
-/// What to type, as it can be typed: the program as it was called, the archive's own name unless it is long.
-std::string typed(std::string next, const std::string& program, const std::string& file) {
+/// A name that is short, and that every shell reads as it stands.
+bool is_plain(const std::string& name) {
   constexpr std::size_t short_name = 32;
-  boost::replace_all(next, "`modebank ", "`" + program + " ");
-  const auto plain = [](char c) {
+  return !name.empty() && name.size() <= short_name && std::all_of(name.begin(), name.end(), [](char c) {
     return is_letter(c) || is_digit(c) || std::string_view("_-./").find(c) != std::string_view::npos;
-  };
-  if (file.size() <= short_name && std::all_of(file.begin(), file.end(), plain))  // a shell reads others otherwise
-    boost::replace_all(next, " ARCHIVE", " " + file);
+  });
+}
+
+/// The configuration of the command that made the archive, or the one that `run LOG` wrote beside it; empty where it is
+/// not known.
+std::string configuration_of(const Archive& archive, const std::string& file) {
+  std::vector<std::string> words;
+  boost::algorithm::split(words, archive.provenance.command_line, boost::is_any_of(" "));
+  if (words.size() < 3 || words[1] != "run") return "";
+  if (words[2].ends_with(".ini")) return words[2];
+  return file.ends_with(".h5") && !words[2].starts_with("-") ? file.substr(0, file.size() - 3) + ".ini" : "";
+}
+
+/// The command that made the archive, with its options, where it is short; else the command without options.
+std::string run_command(const Archive& archive, const std::string& program, const std::string& configuration) {
+  constexpr std::size_t short_command = 64;
+  const std::string& typed = archive.provenance.command_line;
+  const std::size_t options = typed.find(configuration) + configuration.size();
+  const bool as_typed = typed.find(" run " + configuration) != std::string::npos && typed.size() <= short_command;
+  return program + " run " + configuration + (as_typed ? typed.substr(options) : "");
+}
+
+/// Commands as they can be typed: the program as it was called, the archive's and the configuration's own names unless
+/// they are long.
+std::string as_typed(std::string next, const Archive& archive, const std::string& program, const std::string& file) {
+  if (const std::string configuration = configuration_of(archive, file); is_plain(configuration)) {
+    boost::replace_all(next, "`modebank run CONFIG", "`" + run_command(archive, program, configuration));
+    boost::replace_all(next, " CONFIG", " " + configuration);
+  }
+  boost::replace_all(next, "`modebank ", "`" + program + " ");
+  if (is_plain(file)) boost::replace_all(next, " ARCHIVE", " " + file);
   return next;
 }
 
@@ -82,18 +111,17 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
                          const std::string& program) {
   const FirstScreen screen = make_first_screen(archive, settings);
   const int columns = width > 0 ? std::clamp(width, least_columns, screen_columns) : screen_columns;
-  const auto part = [columns](const char* label, const std::string& text, int most) {
-    return section(label, text, most, columns);
+  const auto part = [&](const char* label, const std::string& text, int most) {
+    return section(label, as_typed(text, archive, program, file), most, columns);
   };
   const std::string before = part("read", screen.read, screen.inputs_ahead ? 3 : 2) +
                              part("structure", screen.structure, 2) + part("finding", screen.finding, finding_lines);
   const std::string after = part("band", screen.band, 3) +
-                            part("mean", screen.mean, screen.free_run_start == 0 ? 2 : 3) +
-                            part("warning", screen.warning, 2) +
-                            part("next", typed(screen.next, program, file), program == "modebank" ? 2 : 3) +
+                            part("mean", screen.mean, screen.free_run_start == 0 ? 3 : 4) +
+                            part("warning", screen.warning, 2) + part("next", screen.next, 3) +
                             part("use", screen.use, 3) + file_line(file, columns);
-  return before + modes_section(archive, screen, screen_lines - line_count(before) - line_count(after), columns) +
-         after;
+  const int mode_lines = std::max(screen_lines - line_count(before) - line_count(after), least_mode_lines);
+  return before + modes_section(archive, screen, mode_lines, columns) + after;
 }
 
 }  // namespace modebank::app

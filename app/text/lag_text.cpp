@@ -65,8 +65,7 @@ std::string lag_text(const LagReport& report, bool done) {
         report.lag.standard_error, report.lag.count,
         report.lag.between_sd > 0.0 ? fmt::format("{:.3f} s", report.lag.between_sd) : "no more than their errors");
   if (report.lag.count > 0 && report.lag.mean < 0.0 && report.correction != LagCorrection::none)
-    text += fmt::format("; that is earlier than recorded: a filter needs them {:.3f} s ahead of the states",
-                        -report.lag.mean);
+    text += fmt::format("; their stamps are late: when filtering live, delay the states by {:.3f} s", -report.lag.mean);
   if (report.drift.count > 0)
     text += fmt::format("; clock drift {:+.2f} +- {:.2f} ms/s", per_mille * report.drift.mean,
                         per_mille * report.drift.standard_error);

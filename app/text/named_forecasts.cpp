@@ -1,6 +1,7 @@
 #include "app/text/named_forecasts.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <set>
 
 #include "app/text/judged_runs.hpp"
+#include "app/text/number_text.hpp"
 #include "filter/judge/decide/finding.hpp"
 #include "ident/base/clustered_error.hpp"
 
@@ -179,37 +181,44 @@ NamedForecast named(const Archive& archive, const std::vector<Reached>& all, con
 
 std::string understanding(const Archive& archive) {
   const Finding& finding = *archive.finding;
-  if (finding.answer == Answer::evidence) return fmt::format("the bank of {} modes", archive.bank->mode_count());
-  if (!finding.better_description.empty())
-    return fmt::format("`--track.filter {}` ({})", finding.better_description,
-                       description_of(finding.better_description, finding.one_motion_drifts));
-  return archive.bank->mode_count() == 1 ? "the one mode of the bank" : "the bank, with care";
+  if (finding.answer == Answer::evidence) return fmt::format("the {} modes", archive.bank->mode_count());
+  if (!finding.better_description.empty()) return fmt::format("`{}`", finding.better_description);
+  return archive.bank->mode_count() == 1 ? "the one mode" : "the modes, with care";
 }
 
-/// ", +0.041 +- 0.012 nats per sample over bank; in C bank loses 0.041"
-std::string worth(const NamedForecast& forecast) {
-  std::string text;
-  if (!std::isnan(forecast.gain)) {
-    const std::string error = std::isnan(forecast.error) ? "" : fmt::format(" +- {:.3f}", forecast.error);
-    text = fmt::format(", {:+.3f}{} nats over {}", forecast.gain, error, forecast.other);
-    if (!std::isnan(forecast.error) && std::abs(forecast.gain) <= forecast.error) text += " (within its error)";
+/// The finding's best competitor, or the bank where that is the forecast itself.
+std::string reference_of(const NamedForecast& forecast, const Finding& finding) {
+  const std::string& competitor = finding.best_competitor;
+  return competitor.empty() || competitor == forecast.filter ? "bank" : competitor;
+}
+
+/// " (against `drifting` each sample is 4.2 % more likely, +0.041 +- 0.012 nats; in C `bank`, -0.041)"
+std::string worth(const Archive& archive, const NamedForecast& forecast) {
+  std::vector<std::string> parts;
+  const std::string other = reference_of(forecast, *archive.finding);
+  const Gain gain = other == forecast.filter ? Gain{} : gain_over(archive, forecast.filter, other, forecast.steps);
+  if (!std::isnan(gain.mean)) {
+    const std::string error = std::isnan(gain.error) ? "" : fmt::format(" +- {:.3f}", gain.error);
+    const bool chance = !std::isnan(gain.error) && std::abs(gain.mean) <= gain.error;
+    parts.push_back(fmt::format("against `{}` each sample is {}, {:+.3f}{} nats{}", other, likelihood_words(gain.mean),
+                                gain.mean, error, chance ? ", within its error" : ""));
   }
   if (!forecast.c_filter.empty())
-    text += std::isnan(forecast.c_loss) ? fmt::format(", in C {}", forecast.c_filter)
-                                        : fmt::format(", in C {} ({:+.3f})", forecast.c_filter, -forecast.c_loss);
-  return text;
+    parts.push_back("in C `" + forecast.c_filter + "`" +
+                    (std::isnan(forecast.c_loss) ? "" : fmt::format(", {:+.3f}", -forecast.c_loss)));
+  return parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, "; "));
 }
 
-std::string steps_words(Index steps) { return fmt::format("{} step{}", steps, steps == 1 ? "" : "s"); }
+std::string steps_words(Index steps) { return fmt::format("{} step{} ahead", steps, steps == 1 ? "" : "s"); }
 
-/// "; least error 10 steps: baseline (-4 %)"
+/// "; least error 10 steps ahead: `baseline` (4 % less)"
 std::string least_errors(const std::vector<NamedForecast>& forecasts) {
   constexpr double worth_a_line = 0.05;  // share of an error; a line on the screen replaces one of a mode
   std::string text;
   for (const NamedForecast& forecast : forecasts)
     if (forecast.point_gain > worth_a_line)
-      text += fmt::format("{} {}: {} (-{:.0f} %)", text.empty() ? "; least error" : ",", steps_words(forecast.steps),
-                          forecast.point_filter, 100.0 * forecast.point_gain);
+      text += fmt::format("{} {}: `{}` ({:.0f} % less)", text.empty() ? "; least error" : ",",
+                          steps_words(forecast.steps), forecast.point_filter, 100.0 * forecast.point_gain);
   return text;
 }
 
@@ -229,14 +238,13 @@ std::vector<NamedForecast> named_forecasts(const Archive& archive) {
 std::string use_words(const Archive& archive) {
   if (!archive.finding || !archive.bank) return "";
   const std::vector<NamedForecast> forecasts = named_forecasts(archive);
-  std::string text = "to understand: " + understanding(archive);
+  std::string text = "to understand the motion: " + understanding(archive);
   const bool alike = std::all_of(forecasts.begin(), forecasts.end(),
                                  [&](const NamedForecast& f) { return f.filter == forecasts.front().filter; });
   for (const NamedForecast& forecast : forecasts) {
-    const bool first = &forecast == &forecasts.front();
-    text += first ? "; to predict" : ";";
-    if (!alike) text += fmt::format(" {}", steps_words(forecast.steps));
-    text += fmt::format("{} `--track.filter {}`{}", first || !alike ? ":" : "", forecast.filter, worth(forecast));
+    text += &forecast == &forecasts.front() ? "; to predict" : ";";
+    if (!alike) text += " " + steps_words(forecast.steps);
+    text += fmt::format(": `--track.filter {}`{}", forecast.filter, worth(archive, forecast));
     if (alike) break;
   }
   return text + least_errors(forecasts);

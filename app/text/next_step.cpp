@@ -63,47 +63,52 @@ bool has_few_agreeing_restarts(const Situation& s) {
                      [](const Candidate& c) { return c.selected && 2 * c.agreeing_restarts < c.restarts; });
 }
 
-/// "record more: about 9 more runs like these": errors and margins fall with the root of the number of runs.
+std::string counted_runs(Index runs) { return fmt::format("{} run{}", runs, runs == 1 ? "" : "s"); }
+
+/// "ready: use the simpler one_motion (one linear model with changing noise): `modebank track ARCHIVE ...`"
+std::string use_simpler(const Situation& s, const std::string& simpler, const std::string& why) {
+  return fmt::format("ready: use the simpler {0} ({1}){2}: `modebank track ARCHIVE --track.filter {0}`", simpler,
+                     description_of(simpler, s.archive.one_motion_drifts()), why);
+}
+
+/// "record about 9 more runs like these": errors and margins fall with the root of the number of runs.
 std::string more_runs(const Finding& finding) {
   constexpr double too_many = 20.0;  // times as many
-  const char* const name_them = ", or name more held-out ones with --data.test";
+  const char* const and_repeat = ", and repeat with them: `modebank run CONFIG`; --data.test holds out more";
   const PairedGain* const least = least_beaten(finding);
-  if (!least) return fmt::format("record more: longer runs, and more than {}{}", finding.runs, name_them);
+  if (!least) return fmt::format("record longer runs, and more than {}{}", counted_runs(finding.runs), and_repeat);
   const double times = std::pow(std::max(least->margin / least->gain, 1.0), 2.0);
   if (times > too_many)
     return fmt::format(
-        "the data cannot tell: a gain so small asks for more than {:.0f} times as many runs; to predict, "
-        "{} is as good (`modebank track ARCHIVE --track.filter {}`)",
-        too_many, least->competitor, least->competitor);
+        "the data cannot tell, for a gain so small takes more than {:.0f} times as many runs; to predict, "
+        "`modebank track ARCHIVE --track.filter {}` is as good",
+        too_many, least->competitor);
   const double runs = std::ceil((times - 1.0) * static_cast<double>(finding.runs));
-  return fmt::format("record more: {} like these, by which the gain over {} would be told{}",
+  return fmt::format("record {} like these, enough to confirm the gain over {}{}",
                      runs > 1.0 ? fmt::format("about {:.0f} more runs", runs) : "one more run", least->competitor,
-                     name_them);
+                     and_repeat);
 }
 
 std::string advice_on_doubt(const Situation& s) {
   const Doubt doubt = doubt_of(s.finding);
-  if (doubt == Doubt::small_gain)
-    return fmt::format(
-        "ready: use the simpler {0} ({1}), which is as good: `modebank track ARCHIVE --track.filter {0}`",
-        least_beaten(s.finding)->competitor,
-        description_of(least_beaten(s.finding)->competitor, s.archive.one_motion_drifts()));
+  if (doubt == Doubt::small_gain) return use_simpler(s, least_beaten(s.finding)->competitor, ", which is as good");
   if (doubt == Doubt::short_stays)
-    return "the data cannot tell: modes so short are those of noisy inputs, too; to predict, use it (`modebank track "
-           "ARCHIVE`)";
+    return "the data cannot tell modes this short from noisy inputs; to predict, use them all the same: `modebank "
+           "track "
+           "ARCHIVE`";
   if (doubt != Doubt::errors_unknown) return more_runs(s.finding);
   if (std::atoi(s.setting("bank.look_ahead").c_str()) > 1)
-    return "learn with standard errors, by which modes are told apart: repeat with --bank.look_ahead 1";
-  return "leave out inputs that hardly vary, which leave modes without standard errors: `modebank check CONFIG` names "
-         "them";
+    return "compute standard errors, by which modes are told apart: `modebank run CONFIG --bank.look_ahead 1`";
+  return "leave out inputs that hardly vary, since they leave modes without standard errors: `modebank check CONFIG` "
+         "names them";
 }
 
 /// A pattern that remains although lags were searched for.
 std::string left_pattern(const Situation& s) {
   const std::vector<NamedForecast> named = named_forecasts(s.archive);
   return fmt::format(
-      "ready: to predict, use `modebank track ARCHIVE --track.filter {}`; a pattern is left in the errors, which more "
-      "lags do not take away",
+      "ready: to predict, use `modebank track ARCHIVE --track.filter {}`; more lags do not remove the pattern that is "
+      "left in the errors",
       named.empty() ? "bank" : named.front().filter);
 }
 
@@ -111,85 +116,89 @@ std::string left_pattern(const Situation& s) {
 const Rule rules[] = {
     {[](const Situation& s) { return warns(s, WarningKind::failed_windows); },
      [](const Situation&) -> std::string {
-       return "some windows have no finite fit: `modebank check CONFIG` says which samples are wild";
+       return "find the wild samples, for some windows have no finite fit: `modebank check CONFIG` names them";
      }},
     {[](const Situation& s) { return s.answers(Answer::not_yet) && !s.finding.pattern.told(); },
      [](const Situation&) -> std::string {
-       return "log at even steps: a model holds for one step length, and steps that scatter look like modes";
+       return "log at even steps, for steps that scatter look like modes: `modebank check CONFIG` shows the steps";
      }},
     {[](const Situation& s) { return s.finding.without_noise; },
      [](const Situation&) -> std::string {
-       return "ready: take the coefficients (`modebank export ARCHIVE --to json --track.filter baseline`)";
+       return "ready: write the coefficients by `modebank export ARCHIVE --to json --track.filter baseline`";
      }},
     {[](const Situation& s) { return s.answers(Answer::not_comparable); },
      [](const Situation& s) -> std::string {
        const bool by_intervals = !s.setting("data.quantum").empty() && s.setting("data.quantum") != "none";
        return std::string(
-                  "measure more finely, or go by the RMSE: `modebank check CONFIG` says what repeats or comes "
-                  "in steps, and which data.rate_hz leaves it out") +
-              (by_intervals ? "" : "; of rounded values --data.quantum auto compares the intervals");
+                  "measure more finely, or compare the RMSE: `modebank check CONFIG` names what repeats or is rounded, "
+                  "and the data.rate_hz that leaves it out") +
+              (by_intervals ? "" : "; for rounded values `modebank run CONFIG --data.quantum auto` compares intervals");
      }},
     {[](const Situation& s) { return !s.finding.held_out(); },
-     [](const Situation& s) -> std::string {
+     [](const Situation& s) {
        if (s.archive.recording && s.archive.recording->runs.size() == 1)
-         return fmt::format("hold a part of the run out, for only that can be evidence: repeat with --data.split '{}'",
-                            proposed_split(s.archive.recording->runs.front().samples(), window_and_lags(s)));
-       return "hold runs out, for only they can be evidence: record another, or name some with --data.test";
+         return fmt::format(
+             "hold out a part of the run, for only that can be evidence: `modebank run CONFIG --data.split "
+             "'{}'`",
+             proposed_split(s.archive.recording->runs.front().samples(), window_and_lags(s)));
+       return std::string(
+           "hold out every other run, for only held-out runs can be evidence: `modebank run CONFIG "
+           "--data.train ''`");
      }},
     {[](const Situation& s) { return s.finding.pattern.told(); },
      [](const Situation& s) {
        if (s.setting("window.model") != "auto")
-         return std::string("errors follow a pattern, so the model lacks memory: repeat with --window.model auto");
+         return std::string("errors follow a pattern, so add lags: `modebank run CONFIG --window.model auto`");
        if (s.setting("data.lag_s") != "auto")
-         return std::string("errors follow a pattern: repeat with --data.lag_s auto");
+         return std::string("errors follow a pattern, so correct late stamps: `modebank run CONFIG --data.lag_s auto`");
        return left_pattern(s);
      }},
     {[](const Situation& s) { return s.answers(Answer::cannot_tell); }, advice_on_doubt},
     {[](const Situation& s) { return s.answers(Answer::no_evidence) && !s.finding.better_description.empty(); },
      [](const Situation& s) {
        const std::string& simpler = s.finding.better_description;
-       return fmt::format(
-           "ready: use the simpler {0} ({1}){2}: `modebank track ARCHIVE --track.filter {0}`", simpler,
-           description_of(simpler, s.archive.one_motion_drifts()),
+       return use_simpler(
+           s, simpler,
            simpler == s.finding.best_competitor ? "" : ", which is about as good as " + s.finding.best_competitor);
      }},
     {[](const Situation& s) { return errors_follow_a_pattern(s.bank) && s.setting("window.model") == "auto"; },
      left_pattern},
     {[](const Situation& s) { return errors_follow_a_pattern(s.bank); },
      [](const Situation&) -> std::string {
-       return "errors follow a pattern: `modebank check CONFIG` looks for a lag between inputs and states, and for "
-              "what "
-              "the model lacks";
+       return "errors follow a pattern: `modebank check CONFIG` looks for late stamps and for what the model lacks";
      }},
     {[](const Situation& s) { return is_uncertain_wrongly(s) && s.setting("filter.noise") != "adaptive"; },
      [](const Situation&) -> std::string {
-       return "let the noise follow the run: repeat with --filter.noise adaptive";
+       return "let the noise follow the run: `modebank run CONFIG --filter.noise adaptive`";
      }},
     {is_uncertain_wrongly,
      [](const Situation&) -> std::string {
-       return "train on runs like the held-out ones: `modebank check CONFIG` compares runs, --data.train names them";
+       return "train on runs like the held-out ones: `modebank check CONFIG` compares runs, and --data.train names "
+              "them";
      }},
     {[](const Situation& s) {
        return s.bank.verdict == Calibration::undecided && reason_of(s.bank) != CalibrationReason::close;
      },
      [](const Situation&) -> std::string {
-       return "record more: held-out samples, to know whether the band is false, or name more with --data.test";
+       return "record more held-out samples, for these are too few to judge the band, and repeat: `modebank run "
+              "CONFIG`";
      }},
     {has_few_agreeing_restarts,
      [](const Situation&) {
-       return fmt::format("look for a better mixture: repeat with --mixture.restarts {}", many_restarts);
+       return fmt::format("look for a better mixture: `modebank run CONFIG --mixture.restarts {}`", many_restarts);
      }},
     {[](const Situation& s) {
        return s.setting("bank.measurement_variance").empty() &&
               (warns(s, WarningKind::stalled) || warns(s, WarningKind::iteration_limit));
      },
      [](const Situation&) -> std::string {
-       return "state the measurement noise from the sensor's data sheet: repeat with --bank.measurement_variance "
-              "VARIANCE";
+       return "state the sensor's noise variance by its data sheet: `modebank run CONFIG --bank.measurement_variance "
+              "VARIANCE`";
      }},
     {[](const Situation& s) { return warns(s, WarningKind::no_stable_mode); },
      [](const Situation&) -> std::string {
-       return "leave out of --data.state what drifts or stays where it is: no mode is stable with it";
+       return "leave the state out that drifts or rests, for no mode is stable with it: `modebank run CONFIG "
+              "--data.state STATES`";
      }},
     {[](const Situation& s) { return warns(s, WarningKind::unscored); },
      [](const Situation&) -> std::string {
@@ -198,7 +207,7 @@ const Rule rules[] = {
      }},
     {[](const Situation& s) { return warns(s, WarningKind::mixture); },
      [](const Situation&) -> std::string {
-       return "see to the mixture first (`modebank show ARCHIVE` has its warning): widen --mixture.components";
+       return "widen --mixture.components: `modebank show ARCHIVE` prints the warning about it";
      }},
     {[](const Situation&) { return true; },
      [](const Situation&) -> std::string { return "ready: `modebank track ARCHIVE` filters samples as they come"; }},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace modebank::app {
 
@@ -28,6 +29,24 @@ std::string estimate_text(double value, double standard_error, const char* plus_
   if (decimals > most_decimals || decimals < 0)
     return fmt::format("{:.4g} {} {:.2g}", value, plus_minus, standard_error);
   return fmt::format("{:.{}f} {} {:.{}f}", value, decimals, plus_minus, standard_error, decimals);
+}
+
+std::string likelihood_words(double nats) {
+  constexpr double by_times = 1.2, most_times = 1000.0, most_digits = 10.0;
+  constexpr double least_percent = 0.05, most_percent = 99.0;
+  const double times = std::exp(nats), share = 100.0 * std::expm1(nats);
+  if (times > most_times) return fmt::format("over {:.0f} times as likely", most_times);
+  if (times >= most_digits) return fmt::format("{:.0f} times as likely", times);
+  if (times >= by_times) return fmt::format("{:.1f} times as likely", times);
+  if (std::abs(share) < least_percent) return "as likely";
+  if (-share > most_percent) return fmt::format("over {:.0f} % less likely", most_percent);
+  return fmt::format("{:.1f} % {} likely", std::abs(share), share > 0.0 ? "more" : "less");
+}
+
+std::string with_degrees(double value, const std::string& unit) {
+  const std::string text = fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
+  if (unit != "rad" && unit != "rad/s") return text;
+  return fmt::format("{} ({:.3g} deg{})", text, 180.0 / std::numbers::pi * value, unit.substr(3));
 }
 
 }  // namespace modebank::app

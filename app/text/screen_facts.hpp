@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/text/errors_ahead.hpp"
 #include "app/text/mode_words.hpp"
 #include "app/text/named_forecasts.hpp"
 #include "app/text/next_step.hpp"
@@ -17,21 +18,13 @@ namespace modebank::app {
 /// Whether the archive holds what the screen is about: a bank and its scores.
 bool has_first_screen(const Archive& archive);
 
-/// How far predictions are off, beside those of the competitor that predicts each state's mean best (as the finding's
-/// better_means have it) and of all filters combined.
-struct ErrorAhead {
-  Index steps = 1;
-  Eigen::VectorXd bank, other, combined;  ///< n_y, root mean square [state unit]; the last two: empty where not known
-  std::string bank_words, other_words, combined_words;  ///< the same with units; of the competitors with their names
-};
-
 /// What the screen says, computed once: first_screen prints it, the report's page shows it. Sentences are empty where
 /// there is nothing to say.
 struct FirstScreen {
   std::string read, structure, finding, band, mean, warning, next;
   std::string use;                       ///< which filter to understand the motion by, and which to predict with
   std::vector<NamedForecast> forecasts;  ///< the latter in numbers
-  bool inputs_ahead = false;             ///< the filter needs inputs earlier than the states they act on
+  bool inputs_ahead = false;             ///< the stamps of the inputs are late
   Role role = Role::test;                ///< of the judged runs
   std::string competitor;                ///< that of highest log score, which the gain is over; empty without
   std::optional<Answer> answer;
@@ -42,7 +35,7 @@ struct FirstScreen {
   std::vector<ErrorAhead> errors;  ///< one step ahead, and as far as filter.horizon looks
   Index free_run_start = 0;        ///< measured samples that free runs begin with; 0: there are none
   Eigen::VectorXd fit, other_fit;  ///< n_y, of the free runs [%], and the best of the competitors'
-  std::string other_fit_words;     ///< the latter with their names
+  std::string other_fit_words;     ///< that of the competitor with its name
   Index mode_count = 0;
   ModeTable modes;  ///< of a scored bank
 };
@@ -50,7 +43,5 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings);
 
 /// "evidence for modes of motion": the answer as a headline has it.
 std::string answer_words(Answer answer);
-/// "71.2 %", or of several states "71.2 %, 65.0 %".
-std::string fit_words(const Eigen::VectorXd& fit);
 
 }  // namespace modebank::app

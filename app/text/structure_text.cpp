@@ -19,16 +19,16 @@ std::string counted(std::ptrdiff_t count, const char* what) {
 
 std::string rmse_cell(const StructureScore& score) {
   std::vector<std::string> values;
-  for (const double value : score.rmse) values.push_back(fmt::format("{:.4g}", value));
+  for (const double value : score.rmse) values.push_back(fmt::format("{:.3g}", value));
   return fmt::format("{}", fmt::join(values, " "));
 }
 
 std::string left_out_words(const FoundStructure& found) {
-  return fmt::format("{} training {} left out", found.parts, found.by_runs ? "runs" : "stretches");
+  return fmt::format("{} left-out training {}", found.parts, found.by_runs ? "runs" : "stretches");
 }
 
 std::string feedback_words(const FoundStructure& found) {
-  return fmt::format("the inputs answer to the states (t = {:.1f}), so free runs hold for such inputs alone",
+  return fmt::format("the inputs react to the states (t = {:.1f}), so free runs are valid for such inputs only",
                      found.feedback_t);
 }
 
@@ -91,13 +91,12 @@ std::string structure_words(const FoundStructure& found, bool acted_on) {
 }
 
 std::string structure_sentence(const FoundStructure& found, bool acted_on) {
-  std::string text = structure_words(found, acted_on);
+  std::string text = "the modes take " + structure_words(found, acted_on);
   if (const StructureScore* linear = of_linear(found)) {
-    text += fmt::format("; {}: log score {:.3f}, RMSE {} on {}",
-                        linear->chosen ? "one linear motion with them"
-                                       : "one linear motion wants " + lag_words(linear->state_lags, linear->input_lags,
-                                                                                linear->input_delay, acted_on),
-                        linear->log_score, rmse_cell(*linear), left_out_words(found));
+    const std::string lags =
+        linear->chosen ? "the same" : lag_words(linear->state_lags, linear->input_lags, linear->input_delay, acted_on);
+    text += fmt::format("; a single linear model takes {} (RMSE {} on {})", lags, rmse_cell(*linear),
+                        left_out_words(found));
   }
   if (found.feedback()) text += "; " + feedback_words(found);
   if (!found.remark.empty()) text += "; " + found.remark;
@@ -108,7 +107,7 @@ std::string structure_text(const FoundStructure& found, bool acted_on, int width
   std::string text = fmt::format("structure {}", structure_words(found, acted_on));
   if (!found.scores.empty())
     text += fmt::format(
-        ". One linear motion has the fewest lags within one standard error of the best of {} structures, by {} ({} "
+        ". A single linear model has the fewest lags within one standard error of the best of {} structures, by {} ({} "
         "samples); the other stages choose among few of them by scores of their own on the training runs",
         found.structures, left_out_words(found), found.samples);
   text += "\n";

@@ -144,19 +144,21 @@ std::string verdicts_text(const Archive& archive) {
   }
   if (text.empty()) return "";
   return fmt::format(
-      "\nIs the stated uncertainty true, on {} runs? Percent of the samples inside the 50, 90, 95 and 99 % bands\n"
-      "(brackets: 95 % intervals; overconfident: too many outside the 95 % band; for NIS and NEES: where a true\n"
-      "filter's mean lies; entropy of the mode probabilities: 0 one mode at a time, 1 all alike)\n{}",
+      "\nStated uncertainty on {} runs: percent of the samples inside the 50, 90, 95 and 99 % bands (92.5 to 97.5 %\n"
+      "in the 95 % band passes). Brackets hold 95 % intervals, for NIS and NEES of a true filter's mean. Entropy of "
+      "the\n"
+      "mode probabilities: 0 one mode at a time, 1 all alike.\n{}",
       words_for(role), text);
 }
 
-/// "combined, 10 ahead: bank 2 %, drifting 56 %": what each filter counts on average, a line per horizon.
+/// "combined, 10 steps ahead: bank 2 %, drifting 56 %": what each filter counts on average, a line per horizon.
 std::string combination_text(const Archive& archive, Role role) {
   std::string text;
   Index horizon = 0;
   for (const CombinationRow& row : archive.combination) {
     if (row.role != role) continue;
-    text += row.horizon == horizon ? "," : fmt::format("{}combined, {} ahead:", horizon > 0 ? "\n" : "", row.horizon);
+    text +=
+        row.horizon == horizon ? "," : fmt::format("{}combined, {} steps ahead:", horizon > 0 ? "\n" : "", row.horizon);
     text += fmt::format(" {} {:.0f} %", row.filter, 100 * row.weight);
     horizon = row.horizon;
   }
@@ -167,8 +169,8 @@ std::string combination_text(const Archive& archive, Role role) {
 std::string horizon_text(const Archive& archive) {
   if (archive.horizons.empty()) return "";
   const Role role = judged_role(archive);
-  std::string text = fmt::format("\nPredictions ahead, {} runs\n{:<11} {:>8} {:>8} {:>10} {:>10}\n", words_for(role),
-                                 "filter", "samples", "scored", "log score", "rmse");
+  std::string text = fmt::format("\nPredictions several steps ahead, {} runs\n{:<11} {:>8} {:>8} {:>10} {:>10}\n",
+                                 words_for(role), "filter", "steps", "scored", "log score", "rmse");
   for (const HorizonRow& row : archive.horizons)
     if (row.run == "*" && row.role == role)
       text += fmt::format("{:<11} {:>8} {:>8} {:>10} {:>10}\n", row.filter, row.horizon, row.samples,
@@ -185,7 +187,7 @@ std::string data_text(const Recording& recording) {
     return std::count_if(recording.runs.begin(), recording.runs.end(),
                          [role](const Trajectory& t) { return t.role == role; });
   };
-  return fmt::format("data      {} train and {} test runs, {} and {} transitions, sample period {:.4g} s\n",
+  return fmt::format("data      {} training and {} held-out runs, {} and {} steps, sample period {:.4g} s\n",
                      count(Role::train), count(Role::test), recording.transitions(Role::train),
                      recording.transitions(Role::test), recording.median_period_s());
 }

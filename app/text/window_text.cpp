@@ -67,10 +67,10 @@ std::string features_origin(const Archive& archive) {
 }
 
 std::string windows_text(const WindowFits& fits, const WindowCounts& counts, const std::vector<std::string>& labels) {
-  std::string text = fmt::format(
-      "windows   {} of {} transitions: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
-      counts.total(), fits.length, counts.of(FitStatus::converged), counts.of(FitStatus::rank_deficient),
-      counts.of(FitStatus::iteration_limit), counts.of(FitStatus::failed));
+  std::string text =
+      fmt::format("windows   {} of {} steps: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
+                  counts.total(), fits.length, counts.of(FitStatus::converged), counts.of(FitStatus::rank_deficient),
+                  counts.of(FitStatus::iteration_limit), counts.of(FitStatus::failed));
   text += audit_text(fits.audit);
   for (const Warning& warning : window_warnings(fits, counts)) text += "warning   " + warning.text + "\n";
   text += "global    ";

@@ -76,7 +76,7 @@ class FirstScreen(PageTest):
         self.assertAlmostEqual(shown[f"Gain over {competitor}"][0], bank["log_score"] - best["log_score"], places=9)
         self.assertIn("±", shown[f"Gain over {competitor}"][1])
         self.assertEqual(shown["RMSE one step ahead"][0], float(bank["rmse"].ravel()[0]))
-        self.assertIn(f"{competitor}: {best['rmse'].ravel()[0]:.4g} rad/s", shown["RMSE one step ahead"][1])
+        self.assertIn(f"{competitor} {best['rmse'].ravel()[0]:.3g}", shown["RMSE one step ahead"][1])
         screen = session.modebank("show", session.made["demo"]).stdout
         told = session.browser.run("return document.querySelector('#next').textContent").removeprefix("Next: ")
         # A page may be opened in another folder than those of the archive and the program.

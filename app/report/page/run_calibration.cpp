@@ -66,8 +66,7 @@ json error_card(const ErrorAhead& error) {
   const std::string name = error.steps == 1 ? "RMSE one step ahead" : fmt::format("RMSE {} steps ahead", error.steps);
   json big = number_list(error.bank);
   big["t"] = error.bank_words;
-  const std::string combined = error.combined_words.empty() ? "" : "; combined: " + error.combined_words;
-  return card("error", name, big, "", competitor_words(error.other_words) + combined);
+  return card("error", name, big, "", competitor_words(error.other_words));
 }
 
 json fit_card(const FirstScreen& screen) {

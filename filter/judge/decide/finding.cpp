@@ -228,11 +228,11 @@ bool any_pair(const Bank& bank, Holds holds) {
 }  // namespace
 
 const char* description_of(const std::string& competitor, bool one_motion_drifts) {
-  if (competitor == "one_motion" && one_motion_drifts) return "one drifting motion with changing noise";
+  if (competitor == "one_motion" && one_motion_drifts) return "one linear model that wanders, with changing noise";
   if (competitor == "baseline") return "one linear model with constant noise";
-  if (competitor == "noise_only" || competitor == "one_motion") return "one motion with changing noise";
-  if (competitor == "drifting") return "one motion whose parameters drift";
-  if (competitor == "nonlinear") return "one nonlinear motion";
+  if (competitor == "noise_only" || competitor == "one_motion") return "one linear model with changing noise";
+  if (competitor == "drifting") return "one linear model whose parameters wander";
+  if (competitor == "nonlinear") return "one nonlinear model";
   return "";
 }
 

@@ -5,12 +5,15 @@
 
 #include <limits>
 
+#include "app/text/number_text.hpp"
+
 namespace modebank {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 Finding finding_of(Answer answer) {
   Finding finding;
@@ -28,11 +31,10 @@ Finding finding_of(Answer answer) {
 
 TEST(FindingText, EvidenceNamesGainErrorAndTheOtherExplanation) {
   Finding finding = finding_of(Answer::evidence);
-  EXPECT_THAT(finding_text(finding),
-              AllOf(HasSubstr("6 held-out runs show evidence for modes of motion"),
-                    HasSubstr("better than one does. A single nonlinear motion would look the same."),
-                    HasSubstr("The bank of 3 modes gains +0.134 +- 0.040 nats per sample over one_motion (one motion "
-                              "with changing noise), its best competitor.")));
+  EXPECT_EQ(finding_text(finding),
+            "Switching between 3 linear models predicts the 6 held-out runs better than the best single model "
+            "(`one_motion`: one linear model with changing noise): each sample is 14.4 % more likely (+0.134 +- 0.040 "
+            "nats per sample; more than 0.103 passes). A single nonlinear model would look the same.");
   finding.terms_asked = true;
   EXPECT_THAT(finding_text(finding), Not(HasSubstr("nonlinear"))) << "no term gained on the training runs";
 }
@@ -44,8 +46,8 @@ TEST(FindingText, ModesAndABendThatBothGainAreBothNamed) {
     finding.over_linear = "noise_only";
     finding.bank_over_linear = 0.45;
     finding.nonlinear_over_linear = 0.21;
-    EXPECT_THAT(finding_text(finding), HasSubstr(" Over noise_only one nonlinear motion gains +0.210 nats per sample, "
-                                                 "the bank of 3 modes +0.450."));
+    EXPECT_THAT(finding_text(finding), HasSubstr(" Over `noise_only` one nonlinear model gains +0.210 nats per sample, "
+                                                 "and the 3 linear models gain +0.450."));
   }
 }
 
@@ -53,28 +55,28 @@ TEST(FindingText, NoEvidenceNamesWhatDescribesTheRunsInstead) {
   Finding finding = finding_of(Answer::no_evidence);
   finding.better_description = "drifting";
   finding.description_loss = 0.012;
-  EXPECT_THAT(
-      finding_text(finding),
-      AllOf(HasSubstr("no evidence for modes of motion"),
-            HasSubstr("These runs may be described as well by one motion whose parameters drift (drifting), the "
-                      "simplest about as good as one_motion (-0.012 nats per sample).")));
+  EXPECT_THAT(finding_text(finding),
+              AllOf(StartsWith("No evidence for modes of motion: switching between 3 linear models"),
+                    HasSubstr(" The simpler model (`drifting`: one linear model whose parameters wander) may describe "
+                              "these runs as well, and is about as good as `one_motion` (-0.012 nats per sample).")));
   finding.better_description = "one_motion";
-  EXPECT_THAT(finding_text(finding), HasSubstr("as well by one motion with changing noise (one_motion)."));
-  finding.gains.front().gain = -0.2;
-  EXPECT_THAT(finding_text(finding), HasSubstr("These runs are described better by one motion with changing noise"));
+  EXPECT_THAT(finding_text(finding), HasSubstr(" The single model `one_motion` may describe these runs as well."));
+  finding.gains.front().gain = finding.gain = -0.2;  // e^-0.2 = 0.819
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("worse than the best single model"),
+                                           HasSubstr("each sample is 18.1 % less likely (-0.200 +- 0.040"),
+                                           Not(HasSubstr("describes these runs"))));
   finding.modes_differ = false;
-  EXPECT_THAT(finding_text(finding), HasSubstr("The modes do not differ in their parameters beyond their errors"));
+  EXPECT_THAT(finding_text(finding),
+              HasSubstr("the parameters of the modes differ by no more than their errors. Switching"));
   finding.errors_known = false;
-  EXPECT_THAT(finding_text(finding), Not(HasSubstr("beyond their errors")));
+  EXPECT_THAT(finding_text(finding), Not(HasSubstr("than their errors")));
 }
 
 TEST(FindingText, OneMotionThatDriftsIsCalledSo) {
   Finding finding = finding_of(Answer::no_evidence);
   finding.one_motion_drifts = true;
   finding.better_description = "one_motion";
-  EXPECT_THAT(finding_text(finding),
-              AllOf(HasSubstr("over one_motion (one drifting motion with changing noise), its best competitor."),
-                    HasSubstr("as well by one drifting motion with changing noise (one_motion).")));
+  EXPECT_THAT(finding_text(finding), HasSubstr("(`one_motion`: one linear model that wanders, with changing noise)"));
 }
 
 TEST(FindingText, WhatCannotBeToldSaysWhy) {
@@ -87,25 +89,28 @@ TEST(FindingText, WhatCannotBeToldSaysWhy) {
   finding.best_competitor = "drifting";
   finding.runs = 5;
   EXPECT_THAT(finding_text(finding),
-              AllOf(HasSubstr("cannot be told: the gain over one_motion, +0.849 +- 0.388 nats per sample, does not "
-                              "exceed what chance makes of 5 runs (1.077)."),
-                    HasSubstr("gains +0.717 +- 0.094 nats per sample over drifting")));
+              AllOf(StartsWith("Cannot tell whether the 5 held-out runs have modes of motion: the gain over "
+                               "`one_motion`, +0.849 +- 0.388 nats per sample, may be chance (with 5 runs more than "
+                               "1.077 passes)."),
+                    HasSubstr("`drifting`: one linear model whose parameters wander): each sample is 2.0 times as "
+                              "likely (+0.717 +- 0.094")));
   finding.gains.front() = {"one_motion", 700, 0.849, 0.388, 4.0, 0.8, false, 0.16};
   finding.gains.back().rank_p = 0.03;
-  EXPECT_THAT(finding_text(finding), HasSubstr("rests on few of the 5 runs: ranks as high come by chance in 16 %"));
+  EXPECT_THAT(finding_text(finding),
+              HasSubstr("rests on few of the 5 runs: chance gives ranks as high in 16 % of cases"));
   finding.gains.front() = {"one_motion", 700, 0.012, 0.002, 4.0, 0.006, false, 0.03};
   EXPECT_THAT(finding_text(finding), HasSubstr("+0.012 +- 0.002 nats per sample, is less than the 0.02 that counts"));
   finding.gains.front().gain = 0.12;
   finding.stay = 2.34;
   finding.stay_asked = 5.0;
-  EXPECT_THAT(finding_text(finding), HasSubstr("modes stay 2.34 samples in the mean"));
+  EXPECT_THAT(finding_text(finding), HasSubstr("modes last 2.34 samples on average (5 or more passes)"));
   finding.modes_differ = false;
-  EXPECT_THAT(finding_text(finding), HasSubstr("the standard errors of the modes' parameters are not known"));
+  EXPECT_THAT(finding_text(finding), HasSubstr("the standard errors of the modes' parameters are unknown"));
   finding.gains.front().margin = finding.standard_error = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("too few independent samples"), HasSubstr("of unknown error")));
   finding.runs = 6;
   finding.role = Role::train;
-  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("6 training runs"), HasSubstr("nothing was held out")));
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("6 training runs"), HasSubstr("no run was held out")));
 }
 
 TEST(FindingText, OneModeAndCoarseMeasurementsClaimNothing) {
@@ -113,36 +118,40 @@ TEST(FindingText, OneModeAndCoarseMeasurementsClaimNothing) {
   one.modes = 1;
   EXPECT_THAT(finding_text(one), AllOf(HasSubstr("one mode"), Not(HasSubstr("evidence"))));
   one.coarse = {{"y", 0.0, 1.0, 0.0}};
-  EXPECT_THAT(finding_text(one), HasSubstr("Its log scores say little: 100 % of the samples of y repeat"));
+  EXPECT_THAT(finding_text(one),
+              HasSubstr("Its log scores measure rounding rather than motion: 100 % of the samples of y repeat"));
   Finding coarse = finding_of(Answer::not_comparable);
   coarse.coarse = {{"wz", 0.2, 0.0, 0.12}, {"v", 0.0, 0.78, 0.1}};
   EXPECT_THAT(finding_text(coarse),
-              AllOf(HasSubstr("wz comes in steps of 0.2, predictions are uncertain by 0.12"),
-                    HasSubstr("78 % of the samples of v repeat the one before"), Not(HasSubstr("evidence"))));
+              AllOf(HasSubstr("wz comes in steps of 0.2, and predictions are uncertain by 0.12"),
+                    HasSubstr("78 % of the samples of v repeat the one before (at most 10 % passes)"),
+                    Not(HasSubstr("evidence"))));
 }
 
 TEST(FindingText, DataWithoutNoiseEndInCoefficients) {
   Finding finding = finding_of(Answer::one_mode);
   finding.without_noise = true;
   finding.coefficients = {{"y <- y", -0.1}, {"y <- u", 0.2}};
-  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("describes the 6 held-out runs without noise"),
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("predicts the 6 held-out runs up to rounding"),
                                            HasSubstr("y <- y -0.1, y <- u 0.2."), Not(HasSubstr("evidence"))));
 }
 
 TEST(FindingText, StepsThatScatterClaimNothing) {
   Finding finding = finding_of(Answer::not_yet);
   finding.step_scatter = 0.426;
-  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("not judged yet: steps scatter by 43 % of their median"),
-                                           Not(HasSubstr("evidence")), Not(HasSubstr("gains"))));
+  EXPECT_THAT(finding_text(finding),
+              AllOf(HasSubstr("not judged yet: time steps scatter by 43 % of their median (at most 10 % passes)"),
+                    Not(HasSubstr("evidence")), Not(HasSubstr("gains"))));
 }
 
 TEST(FindingText, APatternNamesTheKeyThatLooksForLags) {
   Finding finding = finding_of(Answer::not_yet);
   finding.pattern = {0.1213, 0.0149};
-  EXPECT_THAT(finding_text(finding),
-              AllOf(HasSubstr("not judged yet: the bank's errors follow a pattern. Lags would gain 0.121 +- 0.015 nats "
-                              "per sample on training runs; `--window.model auto` looks for them."),
-                    Not(HasSubstr("evidence")), Not(HasSubstr("scatter"))));
+  EXPECT_THAT(
+      finding_text(finding),
+      AllOf(HasSubstr("not judged yet: the bank's errors follow a pattern. Lags would gain +0.121 +- 0.015 nats "
+                      "per sample on training runs; `--window.model auto` searches for them."),
+            Not(HasSubstr("evidence")), Not(HasSubstr("scatter"))));
 }
 
 TEST(FindingText, AnErrorFromBlocksSaysSo) {
@@ -150,19 +159,35 @@ TEST(FindingText, AnErrorFromBlocksSaysSo) {
   EXPECT_THAT(finding_text(finding), Not(HasSubstr("blocks")));
   finding.gains = {{"one_motion", 700, 0.1344, 0.0402, 11.0, 0.1034, true}};
   finding.runs = 1;
-  EXPECT_THAT(finding_text(finding), HasSubstr("its best competitor (error from 12 blocks of the one run)."));
+  EXPECT_THAT(finding_text(finding),
+              HasSubstr("nats per sample; more than 0.103 passes; error from 12 blocks of the one run)."));
   finding.runs = 3;
-  EXPECT_THAT(finding_text(finding), HasSubstr("(error from 12 blocks of the 3 runs)."));
+  EXPECT_THAT(finding_text(finding), HasSubstr("; error from 12 blocks of the 3 runs)."));
 }
 
-TEST(FindingText, ABetterMeanIsTold) {
+/// One line, one competitor: the screen's mean states errors beside those of the same one.
+TEST(FindingText, NamesOneCompetitorAlone) {
   Finding finding = finding_of(Answer::evidence);
-  finding.better_means = {
-      {"noise_only", 1, "", 0.0145, 0.0141}, {"drifting", 10, "wz", 0.0504, 0.0237}, {"baseline", 0, "", 0.7, 0.6}};
-  EXPECT_THAT(finding_text(finding),
-              AllOf(HasSubstr("predicts the mean better one step ahead (RMSE 0.0141, the bank 0.0145; noise_only)"),
-                    HasSubstr("10 samples ahead in wz (RMSE 0.0237, the bank 0.0504; drifting)"),
-                    HasSubstr(", in free run (RMSE 0.6, the bank 0.7; baseline).")));
+  finding.better_means = {{"noise_only", 1, "", 0.0145, 0.0141}};
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("one_motion"), Not(HasSubstr("noise_only"))));
+}
+
+/// e^0.287 = 1.332, e^-0.035 = 0.9656, e^0.0198 = 1.02, e^5 = 148.4.
+TEST(FindingText, GainsAreLikelihoodsBeforeTheyAreNats) {
+  EXPECT_EQ(app::likelihood_words(0.287), "1.3 times as likely");
+  EXPECT_EQ(app::likelihood_words(-0.035), "3.4 % less likely");
+  EXPECT_EQ(app::likelihood_words(0.0198), "2.0 % more likely");
+  EXPECT_EQ(app::likelihood_words(5.0), "148 times as likely");
+  EXPECT_EQ(app::likelihood_words(50.0), "over 1000 times as likely");
+  EXPECT_EQ(app::likelihood_words(-50.0), "over 99 % less likely");
+  EXPECT_EQ(app::likelihood_words(0.0), "as likely");
+}
+
+TEST(FindingText, AnglesAreInDegreesToo) {
+  EXPECT_EQ(app::with_degrees(0.0301, "rad/s"), "0.0301 rad/s (1.72 deg/s)");  // 0.0301 * 57.29578
+  EXPECT_EQ(app::with_degrees(1.5, "rad"), "1.5 rad (85.9 deg)");
+  EXPECT_EQ(app::with_degrees(0.2, "m/s"), "0.2 m/s");
+  EXPECT_EQ(app::with_degrees(0.2, ""), "0.2");
 }
 
 }  // namespace

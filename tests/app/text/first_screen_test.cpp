@@ -45,13 +45,38 @@ TEST(FirstScreen, NextNamesTheProgramAsItWasCalled) {
               HasSubstr("ready: `build/modebank track demo.h5`"));
 }
 
-TEST(FirstScreen, SaysThatInputsAreNeededAhead) {
+std::string as_one_line(std::string text) {
+  std::string line;
+  for (const std::string& part : app::lines_of(text)) line += (line.empty() ? "" : " ") + part;
+  for (std::size_t at; (at = line.find("  ")) != std::string::npos;) line.erase(at, 1);
+  return line;
+}
+
+/// A command is typed as it stands: with the configuration that made the archive, and its options.
+TEST(FirstScreen, NextNamesTheConfiguration) {
+  Archive archive = screen_archive(1, 2, 3);
+  archive.diagnostics.front().verdict = Calibration::overconfident;
+  const auto next = [&](const std::string& command) {
+    archive.provenance.command_line = command;
+    return as_one_line(screen_of(archive));
+  };
+  EXPECT_THAT(next("modebank run my.ini --window.length 30"),
+              HasSubstr("`modebank run my.ini --window.length 30 --filter.noise adaptive`"));
+  EXPECT_THAT(next("modebank run my.ini " + std::string(80, 'x')),
+              HasSubstr("`modebank run my.ini --filter.noise adaptive`"));
+  EXPECT_THAT(next("modebank run husky.bag"), HasSubstr("`modebank run demo.ini --filter.noise adaptive`"));
+  EXPECT_THAT(next(""), HasSubstr("`modebank run CONFIG --filter.noise adaptive`"));
+}
+
+TEST(FirstScreen, SaysWhichStampsAreLate) {
   const Archive archive = screen_archive(1, 2, 3);
   app::Settings settings = defaults;
   settings["data.lag_s"] = "0.25";
-  EXPECT_THAT(first_screen(archive, settings, "demo.h5"), Not(HasSubstr("ahead of the states")));
+  EXPECT_THAT(as_one_line(first_screen(archive, settings, "demo.h5")),
+              AllOf(HasSubstr("inputs act 0.250 s after their stamps"), Not(HasSubstr("delay wz"))));
   settings["data.lag_s"] = "-0.25";
-  EXPECT_THAT(first_screen(archive, settings, "demo.h5"), HasSubstr("needs inputs 0.250 s ahead of the states"));
+  EXPECT_THAT(as_one_line(first_screen(archive, settings, "demo.h5")),
+              HasSubstr("the stamps of the inputs are 0.250 s late, so when filtering live delay wz by 0.250 s"));
 }
 
 /// Adds the longest finding and the longest warning.
@@ -88,29 +113,45 @@ TEST(FirstScreen, FitsWhateverTheArchiveHolds) {
 }
 
 TEST(FirstScreen, SaysWhatMatters) {
-  const std::string screen = screen_of(screen_archive(1, 2, 3));
-  EXPECT_THAT(screen, AllOf(HasSubstr("1 training and 1 held-out run, 4 and 4 steps of 0.1 s; wz from vel0, vel1"),
-                            HasSubstr("shows evidence for modes of motion"), HasSubstr("3 on held-out runs"),
-                            HasSubstr("gains in (rad/s)/(m/s)"), HasSubstr("wz per vel1"),
-                            HasSubstr("96.6 % [95.6, 97.4] of the held-out samples lie in the 95 % band: calibrated")));
+  const std::string screen = screen_of(screen_archive(1, 2, 3)), line = as_one_line(screen);
+  EXPECT_THAT(line,
+              AllOf(HasSubstr("1 training run (4 steps) and 1 held-out run (4 steps), steps of 0.1 s; the models "
+                              "predict wz [rad/s] from vel0 [m/s], vel1 [m/s]"),
+                    HasSubstr("3 on held-out runs"), HasSubstr("gains in (rad/s)/(m/s)"), HasSubstr("wz per vel1"),
+                    HasSubstr("96.6 % (95.6 to 97.4) of the held-out samples lie in the 95 % "
+                              "band: calibrated, you can rely on it (92.5 to 97.5 % passes)")));
+  // 0.03 rad/s are 1.72 deg/s.
+  EXPECT_THAT(line, HasSubstr("RMSE one step ahead 0.03 rad/s (1.72 deg/s) (drifting 0.04); 10 steps "
+                              "ahead 0.06 rad/s (3.44 deg/s) (drifting 0.08)"));
   EXPECT_THAT(screen,
-              AllOf(HasSubstr("RMSE one step ahead 0.03 rad/s (drifting: 0.04 rad/s); 10 steps ahead 0.06 rad/s\n"),
-                    HasSubstr("(drifting: 0.08 rad/s)\n"),
-                    HasSubstr("1.2 s"),  // 12 samples of 0.1 s
+              AllOf(HasSubstr("1.2 s"),  // 12 samples of 0.1 s
                     HasSubstr("ready: `modebank track"), HasSubstr("archive   demo.h5"), Not(HasSubstr("warning"))));
   EXPECT_THAT(screen_of(screen_archive(1, 2, 3, Role::train)), HasSubstr("none held out"));
 }
 
-/// The best of log score need not be the best of the mean: what stands beside the bank's error is what the finding
-/// names.
-TEST(FirstScreen, ErrorsStandBesideTheLeastOfTheCompetitors) {
+/// RMSE 0.03 about measurements of mean square 0.01 about their mean: 100 (1 - 0.03 / 0.1) = 70. The first sample of
+/// each run cannot be predicted and does not count, nor do training runs.
+TEST(FirstScreen, FitIsThatOfMatlab) {
+  Archive archive = screen_archive(1, 1, 2);
+  for (Trajectory& run : archive.recording->runs) run.state.row(0) << 9.0, 1.1, 0.9, 1.1, 0.9;
+  archive.recording->runs.front().state *= 7.0;
+  const app::FirstScreen screen = app::make_first_screen(archive, defaults);
+  ASSERT_EQ(screen.errors[0].fit_percent.size(), 1);
+  EXPECT_NEAR(screen.errors[0].fit_percent(0), 70.0, 1e-9);
+  EXPECT_THAT(screen.mean, HasSubstr("0.03 rad/s (1.72 deg/s), FIT 70.0 %"));
+  EXPECT_EQ(screen.errors[1].fit_percent.size(), 0) << "no sample is 10 steps from the beginning";
+}
+
+/// One competitor in every line: that of the finding, though another one predicts the mean better.
+TEST(FirstScreen, ErrorsStandBesideThoseOfTheFindingsCompetitor) {
   Archive archive = screen_archive(2, 1, 3);
   SummaryRow row = archive.summary.back();
   row.filter = "baseline";
   row.rmse = Eigen::Vector2d(0.035, 0.05);
   archive.summary.push_back(row);
-  EXPECT_THAT(app::make_first_screen(archive, defaults).mean,
-              HasSubstr("(wz 0.035 rad/s (baseline), v1 0.04 rad/s (drifting))"));
+  const app::FirstScreen screen = app::make_first_screen(archive, defaults);
+  EXPECT_THAT(screen.mean, AllOf(HasSubstr("(drifting 0.04, 0.04)"), Not(HasSubstr("baseline"))));
+  EXPECT_EQ(screen.errors[0].other(0), 0.035) << "the least of all competitors, for programs";
 }
 
 TEST(FirstScreen, StaysAreThoseOfTheTransitionMatrixWhereGapsCutRuns) {
@@ -126,8 +167,8 @@ TEST(FirstScreen, SaysWhatTheFiltersPredictTogether) {
   archive.summary.back().filter = "combined";
   archive.summary.back().rmse.setConstant(0.02);
   archive.horizons.push_back({"combined", Role::test, "*", 10, 100, 0.0, Eigen::VectorXd::Constant(1, 0.05)});
-  EXPECT_THAT(screen_of(archive), AllOf(HasSubstr("0.03 rad/s (drifting: 0.04 rad/s, combined: 0.02 rad/s)"),
-                                        HasSubstr("(drifting: 0.08 rad/s, combined: 0.05 rad/s)")));
+  EXPECT_THAT(as_one_line(screen_of(archive)), AllOf(HasSubstr("(1.72 deg/s) (drifting 0.04, combined 0.02)"),
+                                                     HasSubstr("(3.44 deg/s) (drifting 0.08, combined 0.05)")));
 }
 
 /// Training runs that were left out decide; judged runs give the gain.
@@ -159,9 +200,21 @@ TEST(FirstScreen, EndsInWhatToUnderstandAndWhatToPredictWith) {
   EXPECT_EQ(named[1].steps, 10);
   EXPECT_EQ(named[1].filter, "drifting");  // as good as combined, and a single filter
   EXPECT_THAT(app::use_words(archive),
-              testing::StartsWith("to understand: the bank of 3 modes; to predict 1 step: `--track.filter combined`, "
-                                  "+0.200 +- 0.100 nats over bank, in C bank (-0.200); 10 steps: "
+              testing::StartsWith("to understand the motion: the 3 modes; to predict 1 step ahead: "
+                                  "`--track.filter combined` (in C `bank`, -0.200); 10 steps ahead: "
                                   "`--track.filter drifting`"));
+  // Compared with the finding's competitor, as the other lines are: e^0.3 = 1.35.
+  for (const char* run : {"01", "02"}) {
+    SummaryRow row = archive.summary.front();
+    row.filter = "drifting";
+    row.run = run;
+    row.samples = 100;
+    row.log_score = 0.9;
+    archive.summary.push_back(row);
+  }
+  EXPECT_THAT(app::use_words(archive),
+              HasSubstr("`--track.filter combined` (against `drifting` each sample is 1.3 times as likely, +0.300 +- "
+                        "0.100 nats; in C `bank`, -0.200)"));
   // Any gain over all single filters makes it the combination; among these, where they differ by less than 0.02 nats,
   // the error chooses.
   archive.left_out[0].log_score = 1.04;
@@ -187,7 +240,7 @@ TEST(FirstScreen, NamesTheFilterOfLeastErrorWhereItIsAnother) {
   EXPECT_EQ(named.filter, "bank");
   EXPECT_EQ(named.point_filter, "nonlinear");
   EXPECT_NEAR(named.point_gain, 0.2, 1e-12);
-  EXPECT_THAT(app::use_words(archive), testing::EndsWith("; least error 1 step: nonlinear (-20 %)"));
+  EXPECT_THAT(app::use_words(archive), testing::EndsWith("; least error 1 step ahead: `nonlinear` (20 % less)"));
 }
 
 /// 0.5, 0.3, 0.18, ... falls below a hundredth after the eighth. Page and terminal both take their text from this
@@ -215,13 +268,10 @@ TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {
   EXPECT_EQ(screen.modes.gain_unit, "(rad/s)/(m/s)");
   ASSERT_EQ(screen.modes.rows.size(), 3u);
   EXPECT_EQ(screen.modes.rows[0].cells.size(), screen.modes.headings.size());
-  const std::string text = screen_of(archive);
-  std::string as_one_line = text;
-  std::replace(as_one_line.begin(), as_one_line.end(), '\n', ' ');
-  for (const std::string& said : {screen.finding, screen.modes.rows[0].cells[4]})
-    EXPECT_THAT(as_one_line, HasSubstr(said));
+  const std::string text = as_one_line(screen_of(archive));
+  for (const std::string& said : {screen.finding, screen.modes.rows[0].cells[4]}) EXPECT_THAT(text, HasSubstr(said));
   EXPECT_EQ(screen.next, "ready: `modebank track ARCHIVE` filters samples as they come");
-  EXPECT_THAT(as_one_line, HasSubstr("ready: `modebank track demo.h5` filters")) << "as it can be typed";
+  EXPECT_THAT(text, HasSubstr("ready: `modebank track demo.h5` filters")) << "as it can be typed";
 }
 
 TEST(FirstScreen, WhatIsNotKnownIsNoNumber) {
@@ -256,15 +306,19 @@ TEST(FirstScreen, FoldsModesThatAreHardlyUsed) {
 
 TEST(FirstScreen, WarningsAreCountedAndTheFirstIsTold) {
   const std::string screen = screen_of(talkative(screen_archive(1, 2, 3)));
-  EXPECT_THAT(screen, AllOf(HasSubstr("warning "), HasSubstr("the first: "), HasSubstr("0 of 5 restarts")));
+  EXPECT_THAT(screen, AllOf(HasSubstr("warning "), HasSubstr(" warnings ("), HasSubstr("the first: "),
+                            HasSubstr("0 of 5 restarts")));
 }
 
 /// Terms that the glossary of `help` and of the page must contain.
 TEST(FirstScreen, ItsTermsHaveAMeaning) {
   for (const char* term :
-       {"evidence", "mode",      "bank",       "drifting",      "competitor",    "nats",   "held-out",
-        "step",     "used",      "stay",       "decay/sample",  "time constant", "period", "steady gain",
-        "band",     "95 % band", "calibrated", "overconfident", "RMSE",          "+-"})
+       {"evidence",      "mode",        "bank",         "drifting",      "competitor",    "nats",        "held-out",
+        "step",          "used",        "stay",         "decay/sample",  "time constant", "period",      "steady gain",
+        "band",          "95 % band",   "calibrated",   "overconfident", "RMSE",          "FIT",         "+-",
+        "lag",           "train",       "training run", "held-out run",  "single model",  "steps ahead", "optimum",
+        "process noise", "whiteness",   "horizon",      "varx",          "cannot tell",   "no evidence", "not yet",
+        "dead time",     "track width", "FIT"})
     EXPECT_FALSE(app::help_on(term).empty()) << term;
 }
 
@@ -274,6 +328,19 @@ struct NextStep : testing::Test {
   DiagnosticsRow& row() { return archive.diagnostics.front(); }
   std::string advice() const { return app::next_step(archive, settings); }
 };
+
+/// Whatever is advised, there is a command in it.
+TEST_F(NextStep, CanBeTyped) {
+  for (const Answer answer : {Answer::one_mode, Answer::not_comparable, Answer::cannot_tell, Answer::no_evidence,
+                              Answer::evidence, Answer::not_yet})
+    for (const Calibration verdict : {Calibration::calibrated, Calibration::overconfident, Calibration::undecided})
+      for (const Role role : {Role::train, Role::test}) {
+        archive.finding->answer = answer;
+        archive.finding->role = role;
+        row().verdict = verdict;
+        EXPECT_THAT(advice(), HasSubstr("`modebank ")) << name_of(answer) << ", " << name_of(verdict);
+      }
+}
 
 TEST_F(NextStep, NothingIsLeft) { EXPECT_THAT(advice(), HasSubstr("ready: `modebank track")); }
 
@@ -295,9 +362,9 @@ TEST_F(NextStep, AnswersHaveTheirs) {
   archive.finding->answer = Answer::not_comparable;
   EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), HasSubstr("data.rate_hz")));
   archive.finding->answer = Answer::cannot_tell;
-  EXPECT_THAT(advice(), AllOf(HasSubstr("record more: longer runs, and more than 1"), HasSubstr("--data.test")));
+  EXPECT_THAT(advice(), AllOf(HasSubstr("record longer runs, and more than 1 run"), HasSubstr("--data.test")));
   archive.finding->role = Role::train;
-  EXPECT_THAT(advice(), HasSubstr("hold runs out"));
+  EXPECT_THAT(advice(), HasSubstr("--data.train ''"));
   archive.recording.emplace().runs.resize(1);
   archive.recording->runs.front().state = Eigen::MatrixXd::Zero(1, 4000);
   EXPECT_THAT(advice(), HasSubstr("--data.split 'blocks 10'")) << "one run alone";
@@ -305,9 +372,11 @@ TEST_F(NextStep, AnswersHaveTheirs) {
   archive.finding->answer = Answer::no_evidence;
   archive.finding->better_description = "one_motion";
   archive.finding->best_competitor = "one_motion";
-  EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion (one motion with changing noise): `modebank track"));
+  EXPECT_THAT(advice(),
+              HasSubstr("use the simpler one_motion (one linear model with changing noise): `modebank track"));
   archive.finding->best_competitor = "drifting";
-  EXPECT_THAT(advice(), HasSubstr("(one motion with changing noise), which is about as good as drifting: `modebank"));
+  EXPECT_THAT(advice(),
+              HasSubstr("(one linear model with changing noise), which is about as good as drifting: `modebank"));
 }
 
 TEST_F(NextStep, APatternInErrorsAsksForMemory) {
@@ -343,7 +412,7 @@ TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
   }
   row().verdict = Calibration::undecided;
   row().coverage_95_lower = 0.9, row().coverage_95_upper = 0.99;
-  EXPECT_THAT(advice(), HasSubstr("record more: held-out samples"));
+  EXPECT_THAT(advice(), HasSubstr("record more held-out samples"));
 }
 
 /// The numbers behind a flag decide, not its words.
@@ -366,7 +435,7 @@ TEST_F(NextStep, ADoubtfulGainAsksForSoManyRuns) {
   archive.finding->modes_differ = true;
   archive.finding->runs = 6;
   archive.finding->gains = {{"drifting", 700, 0.1, 0.08, 5.0, 0.2, false}};
-  EXPECT_THAT(advice(), HasSubstr("record more: about 18 more runs like these, by which the gain over drifting"));
+  EXPECT_THAT(advice(), HasSubstr("record about 18 more runs like these, enough to confirm the gain over drifting"));
   archive.finding->gains[0].margin = 0.5;
   EXPECT_THAT(advice(), HasSubstr("the data cannot tell"));
   archive.finding->gains[0] = {"drifting", 700, 0.01, 0.001, 5.0, 0.003, false, 0.01};
@@ -374,7 +443,7 @@ TEST_F(NextStep, ADoubtfulGainAsksForSoManyRuns) {
   archive.finding->gains[0].gain = 0.1;
   archive.finding->stay = 2.0;
   archive.finding->stay_asked = 5.0;
-  EXPECT_THAT(advice(), HasSubstr("the data cannot tell: modes so short"));
+  EXPECT_THAT(advice(), HasSubstr("the data cannot tell modes this short"));
 }
 
 TEST_F(NextStep, RoundedValuesAreNotAskedForTwice) {
@@ -395,7 +464,7 @@ TEST_F(NextStep, ABankWithoutAStableModeWarns) {
   EXPECT_THAT(app::archive_warnings(archive),
               ElementsAre(testing::Field(&app::Warning::text,
                                          HasSubstr("no mode of the bank is stable (spectral radius 1.01)"))));
-  EXPECT_THAT(advice(), HasSubstr("leave out of --data.state"));
+  EXPECT_THAT(advice(), HasSubstr("--data.state STATES"));
   archive.bank->modes.back().model.A(0, 0) = -0.2;
   EXPECT_THAT(app::archive_warnings(archive), IsEmpty());
 }

@@ -1,0 +1,117 @@
+#include "app/text/errors_ahead.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/algorithm/string/join.hpp>
+#include <cmath>
+#include <functional>
+
+#include "app/text/judged_runs.hpp"
+#include "app/text/number_text.hpp"
+#include "filter/judge/decide/finding.hpp"
+#include "filter/step/combined_filter.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank::app {
+namespace {
+
+const HorizonRow* horizon_row(const Archive& archive, const std::string& filter, Role role, Index horizon) {
+  const auto found = std::find_if(archive.horizons.begin(), archive.horizons.end(), [&](const HorizonRow& row) {
+    return row.filter == filter && row.role == role && row.run == "*" && row.horizon == horizon;
+  });
+  return found == archive.horizons.end() ? nullptr : &*found;
+}
+
+const HorizonRow* longest_horizon(const Archive& archive, const std::string& filter, Role role) {
+  const HorizonRow* longest = nullptr;
+  for (const HorizonRow& row : archive.horizons)
+    if (row.filter == filter && row.role == role && row.run == "*" && row.horizon > (longest ? longest->horizon : 1))
+      longest = &row;
+  return longest;
+}
+
+/// Root mean square of the judged measurements about their mean, of each state; NaN without any. The samples are those
+/// that are predicted so many steps ahead.
+Eigen::VectorXd standard_deviation_of_measurements(const Archive& archive, Role role, Index steps) {
+  if (!archive.recording || !archive.bank) return {};
+  const Recording& recording = *archive.recording;
+  const Index first = archive.bank->structure.first_transition() + steps;
+  Eigen::VectorXd deviation(recording.state_count());
+  for (Index i = 0; i < deviation.size(); ++i) {
+    std::vector<double> values;
+    for (const Trajectory& run : recording.runs)
+      for (Index k = first; run.role == role && k < run.state.cols(); ++k)
+        if (std::isfinite(run.state(i, k))) values.push_back(run.state(i, k));
+    const Eigen::Map<const Eigen::ArrayXd> y(values.data(), std::ssize(values));
+    deviation(i) = values.empty() ? not_a_number : std::sqrt((y - y.mean()).square().mean());
+  }
+  return deviation;
+}
+
+/// FIT as in `compare` of Ljung's System Identification Toolbox for MATLAB: 100 (1 - ||y - prediction|| / ||y - mean of
+/// y||) percent. Empty where it is not known.
+Eigen::VectorXd fit_percent(const Eigen::VectorXd& rmse, const Eigen::VectorXd& deviation) {
+  const bool known = rmse.size() == deviation.size() && (deviation.array() > 0.0).all();
+  return known ? Eigen::VectorXd(100.0 * (1.0 - rmse.array() / deviation.array())) : Eigen::VectorXd();
+}
+
+/// "0.0301 rad/s (1.72 deg/s), FIT 92.3 %", of several states each with its name.
+std::string error_words(const ErrorAhead& error, const std::vector<Channel>& states) {
+  std::vector<std::string> parts;
+  for (Index i = 0; i < error.bank.size(); ++i) {
+    const Channel state = static_cast<std::size_t>(i) < states.size() ? states[static_cast<std::size_t>(i)] : Channel{};
+    const std::string name = error.bank.size() > 1 ? state.name + " " : "";
+    parts.push_back(name + with_degrees(error.bank(i), state.unit) +
+                    (error.fit_percent.size() > i ? fmt::format(", FIT {:.1f} %", error.fit_percent(i)) : ""));
+  }
+  return boost::algorithm::join(parts, ", ");
+}
+
+/// "0.0301", or of several states "0.0301, 0.2".
+std::string digits(const Eigen::VectorXd& values) { return fmt::format("{:.3g}", fmt::join(values, ", ")); }
+
+/// The bank's row of a number of steps ahead with what is beside it. `row_of`: of a filter, null without.
+template <class RowOf>
+void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, const std::string& competitor,
+               std::vector<ErrorAhead>& errors) {
+  if (!row_of("bank")) return;
+  const auto rmse_of = [&](const std::string& name) { return row_of(name) ? row_of(name)->rmse : Eigen::VectorXd(); };
+  ErrorAhead error;
+  error.steps = steps;
+  error.bank = rmse_of("bank");
+  error.other = best_of_competitors([&](const char* name) { return row_of(name) ? &row_of(name)->rmse : nullptr; },
+                                    std::less<>());
+  error.competitor = competitor.empty() ? Eigen::VectorXd() : rmse_of(competitor);
+  error.combined = rmse_of(combined_name);
+  error.fit_percent = fit_percent(error.bank, standard_deviation_of_measurements(archive, role, steps));
+  error.bank_words = error_words(error, archive.recording ? archive.recording->states : std::vector<Channel>());
+  std::vector<std::string> others;
+  if (error.competitor.size() > 0) others.push_back(fmt::format("{} {}", competitor, digits(error.competitor)));
+  if (error.combined.size() > 0) others.push_back(fmt::format("combined {}", digits(error.combined)));
+  error.other_words = boost::algorithm::join(others, ", ");
+  errors.push_back(error);
+}
+
+}  // namespace
+
+std::vector<ErrorAhead> errors_ahead(const Archive& archive, Role role, const std::string& competitor) {
+  std::vector<ErrorAhead> errors;
+  add_error(
+      1, [&](const std::string& filter) { return pooled_row(archive, filter, role); }, archive, role, competitor,
+      errors);
+  if (const HorizonRow* far = longest_horizon(archive, "bank", role))
+    add_error(
+        far->horizon, [&](const std::string& filter) { return horizon_row(archive, filter, role, far->horizon); },
+        archive, role, competitor, errors);
+  return errors;
+}
+
+std::string fit_words(const Eigen::VectorXd& fit) {
+  std::vector<std::string> parts;
+  for (const double share : fit) parts.push_back(fmt::format("{:.1f} %", share));
+  return boost::algorithm::join(parts, ", ");
+}
+
+}  // namespace modebank::app
