@@ -209,7 +209,8 @@ std::vector<Command> commands_to_use() {
        "Every form is x[k+1] = A x[k] + B u[k] + c: json one page; regimes its Q, R, transitions and gates for a "
        "filter "
        "with a motion model of its own; mat for MATLAB and Octave; c a C99 filter without "
-       "heap; casadi Python text for MPC; ros2 parameter files, one per mode. Refused where the verdict on its "
+       "heap; casadi Python text for MPC; ros2 parameter files, one per family of modes. Refused where the verdict on "
+       "its "
        "uncertainty is overconfident or underconfident.",
        "modebank export robot.h5 --to c -o tracker.c",
        {"track.filter"},

@@ -8,7 +8,7 @@
 #include "app/config/config_file.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
-#include "app/text/mode_words.hpp"
+#include "app/text/mode_tables.hpp"
 #include "app/text/sparkline.hpp"
 #include "app/text/summary_tables.hpp"
 #include "app/text/summary_text.hpp"

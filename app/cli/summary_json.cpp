@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/json_number.hpp"
+#include "app/text/mode_families.hpp"
 #include "app/text/mode_names.hpp"
 
 namespace modebank::app {
@@ -36,13 +37,25 @@ json forecasts_json(const std::vector<NamedForecast>& forecasts) {
   return list;
 }
 
-json modes_json(const Archive& archive) {
+json modes_json(const Archive& archive, const std::vector<ModeFamily>& families) {
   json list = json::array();
+  const std::vector<Index> family = family_of_modes(families);
   for (const UsedMode& mode : used_modes(archive))
     list.push_back({{"mode", mode.mode},
                     {"name", mode_cell(archive.mode_names, mode.mode)},
+                    {"family", family[static_cast<std::size_t>(mode.mode)]},
                     {"use", json_number(mode.use)},
                     {"stay_s", json_number(mode.stay_s)}});
+  return list;
+}
+
+json summary_families(const std::vector<ModeFamily>& families) {
+  json list = json::array();
+  for (const ModeFamily& family : families)
+    list.push_back({{"title", family.title()},
+                    {"modes", family.modes},
+                    {"use", json_number(family.use)},
+                    {"stay_s", json_number(family.stay_s)}});
   return list;
 }
 
@@ -50,6 +63,7 @@ json modes_json(const Archive& archive) {
 
 json summary_json(const Archive& archive, const Settings& settings) {
   const FirstScreen screen = make_first_screen(archive, settings);
+  const std::vector<ModeFamily> families = mode_families(archive);
   json answer = nullptr;
   if (screen.answer) answer = name_of(*screen.answer);
   return {{"read", screen.read},
@@ -74,7 +88,8 @@ json summary_json(const Archive& archive, const Settings& settings) {
           {"free_run_start", screen.free_run_start},
           {"fit", json_numbers(screen.fit)},
           {"other_fit", json_numbers(screen.other_fit)},
-          {"modes", modes_json(archive)},
+          {"modes", modes_json(archive, families)},
+          {"families", summary_families(families)},
           {"role", name_of(screen.role)}};
 }
 

@@ -82,7 +82,10 @@ std::string python_bank(const ExportedBank& exported) {
   std::string text = python_channels("STATES", "STATE_UNITS", exported.states);
   text += python_channels("INPUTS", "INPUT_UNITS", exported.inputs);
   text += python_channels("MEASUREMENTS", "MEASUREMENT_UNITS", exported.measurements);
-  text += fmt::format("MODES = {}\n\n", python_texts(exported.mode_names));
+  text += fmt::format("MODES = {}\n", python_texts(exported.mode_names));
+  std::vector<std::string> titles;
+  for (const ModeFamily& family : exported.families) titles.push_back(family.title());
+  text += fmt::format("FAMILIES = {}  # of modes, most used first\n\n", python_texts(titles));
   text += python_per_mode("A", "Units of x[i] per x[j]; A = I + the archive's increment.", K,
                           [&](std::size_t k) { return MatrixXd(mode(k).model.full_form()); });
   text += python_per_mode("B", "Units of x[i] per u[j].", K, [&](std::size_t k) { return mode(k).model.B; });

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "app/text/calibration_text.hpp"
@@ -68,6 +69,35 @@ void add_channels(const Recording& recording, ExportedBank& exported) {
   exported.recorded_inputs.resize(static_cast<std::size_t>(bank.structure.inputs));
 }
 
+/// As used_modes has them, of a filter whose use nobody counted: by share of windows, and stays by T.
+std::vector<UsedMode> modes_by_windows(const Bank& bank) {
+  std::vector<UsedMode> modes;
+  for (Index k = 0; k < bank.mode_count(); ++k) {
+    const double leave = 1.0 - bank.transition.matrix()(k, k);
+    modes.push_back(
+        {k, bank.modes[static_cast<std::size_t>(k)].weight, leave > 0.0 ? bank.dt_s / leave : not_a_number, false});
+  }
+  std::stable_sort(modes.begin(), modes.end(), [](const UsedMode& a, const UsedMode& b) { return a.use > b.use; });
+  return modes;
+}
+
+void add_modes(const Archive& archive, ExportedBank& exported) {
+  const Bank& bank = exported.bank;
+  const bool learned = exported.filter == "bank";
+  const std::vector<std::string> names = learned ? archive.mode_names : std::vector<std::string>();
+  const std::vector<UsedMode> modes = learned ? used_modes(archive) : modes_by_windows(bank);
+  exported.families =
+      mode_families(bank, names, modes,
+                    {unidentifiable_decays(archive, bank.structure), unidentifiable_gains(archive, bank.structure)});
+  exported.use.resize(learned ? modes.size() : 0);
+  for (std::size_t j = 0; j < bank.modes.size(); ++j) {
+    if (learned) exported.use[static_cast<std::size_t>(modes[j].mode)] = modes[j].use;
+    const std::string name = name_of_mode(names, static_cast<Index>(j));
+    exported.mode_names.push_back(name.empty() ? fmt::format("mode {}", j) : name);
+    exported.errors.push_back(errors_of(bank, bank.modes[j]));
+  }
+}
+
 }  // namespace
 
 std::string ExportedBank::verdict_text() const {
@@ -91,15 +121,7 @@ ExportedBank exported_bank(const Archive& archive, const OpenArchive& file, cons
   add_verdict(archive, exported);
   add_channels(archive.recording.value_or(Recording()), exported);
   exported.unidentifiable = unidentifiable_parameters(archive, bank->structure);
-  if (filter == "bank") {
-    exported.use.resize(bank->modes.size());
-    for (const UsedMode& used : used_modes(archive)) exported.use[static_cast<std::size_t>(used.mode)] = used.use;
-  }
-  for (std::size_t j = 0; j < bank->modes.size(); ++j) {
-    const std::string name = filter == "bank" ? name_of_mode(archive.mode_names, static_cast<Index>(j)) : "";
-    exported.mode_names.push_back(name.empty() ? fmt::format("mode {}", j) : name);
-    exported.errors.push_back(errors_of(*bank, bank->modes[j]));
-  }
+  add_modes(archive, exported);
   return exported;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/text/mode_families.hpp"
 #include "filter/step/bank.hpp"
 #include "io/archive/archive.hpp"
 #include "modebank/filter/options.hpp"
@@ -36,6 +37,7 @@ struct ExportedBank {
   double input_lag_s = 0.0;              ///< inputs are shifted by this much against their stamps
   std::vector<std::string> mode_names;   ///< K
   std::vector<double> use;               ///< K, mean probability on judged runs; empty of competitors
+  std::vector<ModeFamily> families;      ///< of the modes, most used first; of competitors by share of windows
   std::vector<std::string> parameter_names, parameter_units;  ///< p, of the modes' theta
   std::vector<ModeErrors> errors;                             ///< K
   std::vector<bool> unidentifiable;  ///< p, whether training runs leave the parameter unidentifiable; or empty

@@ -6,18 +6,19 @@
 #include <vector>
 
 #include "app/export/exported_bank.hpp"
+#include "app/text/robot_numbers.hpp"
 #include "io/archive/inspect.hpp"
 
 /// One function per form of `modebank export`; docs/reference/export.md has their schemas.
 namespace modebank::app {
 
 /// Of the JSON page; its minor part grows with members, its major part with changes of what there is.
-inline constexpr const char* export_schema_version = "2.0";
+inline constexpr const char* export_schema_version = "2.1";
 
 std::string to_json(const ExportedBank& bank);
 
 /// Version of the regimes' page, counted like export_schema_version.
-inline constexpr const char* regimes_schema_version = "1.0";
+inline constexpr const char* regimes_schema_version = "1.1";
 
 /// Q and R of the measured states, transitions and gates, for a filter with its own motion model.
 std::string to_regimes(const ExportedBank& bank);
@@ -35,11 +36,7 @@ CFiles to_c(const ExportedBank& bank, const std::string& stem);
 /// A Python module that imports casadi alone.
 std::string to_casadi(const ExportedBank& bank);
 
-/// What of a robot the archive does not hold; 0: not known.
-struct RobotSizes {
-  double wheel_separation_m = 0.0, wheel_radius_m = 0.0;
-};
-/// Parameter files of ROS 2, one per mode: name and text.
+/// Parameter files of ROS 2, one per family of modes: name and text.
 std::vector<std::pair<std::string, std::string>> to_ros2(const ExportedBank& bank, const RobotSizes& sizes);
 
 /// A table or array of an archive, from the JSON of inspect. Throws ConfigurationError for other objects. `path`: for

@@ -30,7 +30,10 @@ OrderedJson mode_json(const ExportedBank& exported, Index k) {
   const Mode& mode = exported.bank.modes[at];
   const ModeErrors& errors = exported.errors[at];
   const Unit states = units_of(exported.states), inputs = units_of(exported.inputs);
-  OrderedJson result = {{"index", k}, {"name", exported.mode_names[at]}, {"share_of_windows", mode.weight}};
+  OrderedJson result = {{"index", k},
+                        {"name", exported.mode_names[at]},
+                        {"family", family_of(exported, k)},
+                        {"share_of_windows", mode.weight}};
   result["A"] = quantity(exported.A(k), errors.A, ratios(states, states));
   result["B"] = quantity(mode.model.B, errors.B, ratios(states, inputs));
   result["c"] = quantity(mode.model.c, errors.c, states);
@@ -124,6 +127,7 @@ std::string to_json(const ExportedBank& exported) {
   page["R"] = quantity(bank.R, bank.R_standard_error, outer(outputs));
   page["transition"] = transition_json(exported);
   page["filter"] = filter_json(exported);
+  page["families"] = families_json(exported);
   page["modes"] = OrderedJson::array();
   for (Index k = 0; k < bank.mode_count(); ++k) page["modes"].push_back(mode_json(exported, k));
   return page.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";

@@ -69,4 +69,26 @@ OrderedJson source_json(const ExportedBank& bank) {
           {"data_hash", bank.provenance.data_hash}};
 }
 
+OrderedJson families_json(const ExportedBank& bank) {
+  OrderedJson list = OrderedJson::array();
+  const Unit units = ratios(units_of(bank.measurements), units_of(bank.recorded_inputs));
+  for (std::size_t f = 0; f < bank.families.size(); ++f) {
+    const ModeFamily& family = bank.families[f];
+    list.push_back({{"family", f}, {"title", family.title()}, {"modes", family.modes}});
+    list.back()["used"] = bank.use.empty() ? OrderedJson(nullptr) : OrderedJson(family.use);
+    list.back()["stay_s"] = family.stay_s;
+    list.back()["time_constant_s"] = {{"value", family.slowest.time_constant_s},
+                                      {"standard_error", family.slowest.time_constant_error_s}};
+    list.back()["gain"] = quantity(family.gain, family.gain_error, units);
+  }
+  return list;
+}
+
+OrderedJson family_of(const ExportedBank& bank, Index mode) {
+  for (std::size_t f = 0; f < bank.families.size(); ++f)
+    for (const Index member : bank.families[f].modes)
+      if (member == mode) return f;
+  return nullptr;
+}
+
 }  // namespace modebank::app

@@ -25,5 +25,9 @@ OrderedJson quantity(const Eigen::MatrixXd& value, const Eigen::MatrixXd& error,
 
 OrderedJson verdict_json(const ExportedBank& bank);
 OrderedJson source_json(const ExportedBank& bank);
+/// The families of the modes: title, modes, use, stay, and the means of time constant and gains.
+OrderedJson families_json(const ExportedBank& bank);
+/// The place of a mode's family among them.
+OrderedJson family_of(const ExportedBank& bank, Eigen::Index mode);
 
 }  // namespace modebank::app

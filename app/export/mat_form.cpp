@@ -88,6 +88,18 @@ void add_channels(MatFile& file, const std::string& kind, const std::vector<Chan
   file.texts((kind + "_units").c_str(), units);
 }
 
+/// Which family each mode belongs to, counted from one as MATLAB does.
+void add_families(MatFile& file, const ExportedBank& exported) {
+  MatrixXd family = MatrixXd::Zero(1, exported.bank.mode_count());
+  std::vector<std::string> titles;
+  for (const ModeFamily& of : exported.families) {
+    titles.push_back(of.title());
+    for (const Index k : of.modes) family(0, k) = static_cast<double>(titles.size());
+  }
+  file.texts("family_names", titles);
+  file.matrix("mode_family", family);
+}
+
 /// Lines that make a model of Control System Toolbox, or of Octave's control package, of mode k. c enters by an input
 /// that is always one.
 std::string ss_lines(const ExportedBank& exported) {
@@ -152,6 +164,7 @@ void fill_mat(const ExportedBank& exported, const std::filesystem::path& path) {
   add_channels(file, "input", exported.inputs);
   add_channels(file, "measurement", exported.measurements);
   file.texts("mode_names", exported.mode_names);
+  add_families(file, exported);
   file.text("ss_lines", ss_lines(exported));
 }
 

@@ -31,7 +31,7 @@ OrderedJson regime_json(const ExportedBank& exported, Eigen::Index k) {
   const MatrixXd Q = bank.C * mode.Q * bank.C.transpose(), error = measured_error(exported, mode);
   const Unit unit = outer(units_of(exported.measurements));
   const double leaves = 1.0 - bank.transition.matrix()(k, k);
-  OrderedJson regime = {{"index", k}, {"name", exported.mode_names[at]}};
+  OrderedJson regime = {{"index", k}, {"name", exported.mode_names[at]}, {"family", family_of(exported, k)}};
   regime["used"] = exported.use.empty() ? OrderedJson(nullptr) : OrderedJson(exported.use[at]);
   regime["stay_s"] = leaves > 0.0 ? OrderedJson(bank.dt_s / leaves) : OrderedJson(nullptr);
   regime["Q"] = quantity(Q, error, unit);
@@ -61,6 +61,7 @@ std::string to_regimes(const ExportedBank& exported) {
   page["R"] = quantity(bank.R, bank.R_standard_error, outer(units_of(exported.measurements)));
   page["regimes"] = OrderedJson::array();
   for (Eigen::Index k = 0; k < bank.mode_count(); ++k) page["regimes"].push_back(regime_json(exported, k));
+  page["families"] = families_json(exported);
   page["transition"] = {{"meaning", transition_meaning},
                         {"T", matrix_json(bank.transition.matrix())},
                         {"initial_probability", vector_json(bank.initial_probability)}};

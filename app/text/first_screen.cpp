@@ -56,7 +56,11 @@ std::string modes_section(const Archive& archive, const FirstScreen& screen, int
   std::string& table = modes.text;
   boost::algorithm::trim_right(table);
   boost::replace_all(table, "\n", "\n" + indent);
-  std::string head = fmt::format("{} on {} runs", screen.mode_count, words_for(screen.role));
+  const Index families = screen.modes.families;
+  std::string head = families < screen.mode_count
+                         ? fmt::format("{} in {} famil{} on {} runs", screen.mode_count, families,
+                                       families == 1 ? "y" : "ies", words_for(screen.role))
+                         : fmt::format("{} on {} runs", screen.mode_count, words_for(screen.role));
   const bool units = !screen.modes.gain_unit.empty();
   if (units) head += fmt::format("; gains in {}", screen.modes.gain_unit);
   if (modes.gains_left_out > 0)

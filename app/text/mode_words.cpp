@@ -7,10 +7,8 @@
 #include <cmath>
 
 #include "app/text/judged_runs.hpp"
-#include "app/text/mode_names.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/terminal.hpp"
-#include "app/text/text_table.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "io/archive/bank/units.hpp"
 
@@ -18,69 +16,9 @@ namespace modebank::app {
 namespace {
 
 constexpr Index most_modes = 8;
-constexpr double least_use = 0.01;  // modes used less are "others" in a short table
-constexpr int longest_name = 16;    // columns of a channel's name in a heading
+constexpr double least_use = 0.01;  // what is used less is among the "others" of a short table
+constexpr int longest_name = 16;    // columns of a name in a table
 constexpr double standard_errors_95 = 1.96;
-
-/// A channel's name, its middle left out where it is long.
-std::string heading(const std::string& name) {
-  const int columns = columns_of(name);
-  if (columns <= longest_name) return name;
-  return first_columns(name, longest_name - 2) + "..";
-}
-
-std::vector<std::string> gain_cells(const ModeDynamics& dynamics, const std::vector<bool>& unidentifiable) {
-  std::vector<std::string> cells;
-  const Eigen::VectorXd gains = dynamics.gain.transpose().reshaped(),
-                        errors = dynamics.gain_error.transpose().reshaped();
-  for (Index i = 0; i < gains.size(); ++i)
-    cells.push_back(unidentifiable[static_cast<std::size_t>(i)] ? not_identifiable
-                    : std::isnan(gains(i))                      ? "never settles"
-                                                                : estimate_text(gains(i), errors(i)));
-  return cells;
-}
-
-std::vector<std::string> headings_of(const GainNames& gains) {
-  std::vector<std::string> headings{"mode", "used", "stay", "decay/sample", "time constant"};
-  headings.insert(headings.end(), gains.names.begin(), gains.names.end());
-  return headings;
-}
-
-/// With all decays of each, or the slowest alone.
-std::vector<ModeTable::Row> rows_of(const Archive& archive, const std::vector<UsedMode>& modes, bool all_decays) {
-  const std::vector<bool> unidentifiable = unidentifiable_gains(archive, archive.bank->structure);
-  const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
-  std::vector<ModeTable::Row> rows;
-  for (const UsedMode& used : modes) {
-    ModeDynamics dynamics = mode_dynamics(*archive.bank, used.mode);
-    if (!all_decays && dynamics.decays.size() > 1) dynamics.decays.resize(1);
-    std::vector<std::string> times;
-    for (const Decay& decay : dynamics.decays) times.push_back(decay_words(decay));
-    ModeTable::Row row{used.mode,
-                       {heading(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
-                        stay_words(used), no_decays ? "-" : per_sample_words(dynamics.decays),
-                        no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
-    const std::vector<std::string> gains = gain_cells(dynamics, unidentifiable);
-    row.cells.insert(row.cells.end(), gains.begin(), gains.end());
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-std::string text_of(const ModeTable& modes, bool named, int width) {
-  std::vector<TextTable::Column> columns;
-  for (const std::string& heading : modes.headings)
-    columns.push_back({heading, 0, named && columns.empty() ? TextTable::Align::left : TextTable::Align::right});
-  TextTable table(std::move(columns));
-  for (const ModeTable::Row& row : modes.rows) table.add(row.cells);
-  return table.text(width);
-}
-
-GainNames gains_of(const Archive& archive) {
-  const Recording none;
-  const Recording& recording = archive.recording ? *archive.recording : none;
-  return gain_names(*archive.bank, recording.states, recording.inputs);
-}
 
 /// The lower end of its 95 % interval where that is all that is known: where the interval of the rate 1 / tau, which is
 /// what the data tell, reaches a mode that never dies out; else zero.
@@ -89,13 +27,11 @@ double least_time_constant(const Decay& decay) {
   return time != 0.0 && std::abs(time) <= reach ? time * time / (time + reach) : 0.0;
 }
 
-int widest_line(const std::string& text) {
-  int widest = 0;
-  for (const std::string& line : lines_of(text)) widest = std::max(widest, columns_of(line));
-  return widest;
-}
-
 }  // namespace
+
+std::string shortened(const std::string& name) {
+  return columns_of(name) <= longest_name ? name : first_columns(name, longest_name - 2) + "..";
+}
 
 std::vector<bool> unidentifiable_parameters(const Archive& archive, const LinearStructure& s) {
   std::vector<bool> unidentifiable(static_cast<std::size_t>(s.parameters()), false);
@@ -187,7 +123,7 @@ GainNames gain_names(const Bank& bank, const std::vector<Channel>& states, const
   for (Index i = 0; i < bank.C.rows(); ++i)
     for (Index j = 0; j < bank.structure.inputs; ++j) {
       const Channel state = channel(states, i, 'x'), input = channel(inputs, j, 'u');
-      gains.names.push_back(heading(state.name) + " per " + heading(input.name));
+      gains.names.push_back(shortened(state.name) + " per " + shortened(input.name));
       units.push_back(unit_ratio(state.unit, input.unit));
     }
   const bool shared = std::adjacent_find(units.begin(), units.end(), std::not_equal_to<>()) == units.end();
@@ -197,49 +133,9 @@ GainNames gain_names(const Bank& bank, const std::vector<Channel>& states, const
   return gains;
 }
 
-Index told_modes(const std::vector<UsedMode>& modes) {
-  const Index worth =
-      std::count_if(modes.begin(), modes.end(), [](const UsedMode& mode) { return mode.use >= least_use; });
+Index told_of(const std::vector<double>& use) {
+  const Index worth = std::count_if(use.begin(), use.end(), [](double share) { return share >= least_use; });
   return std::min(most_modes, std::max<Index>(1, worth));
-}
-
-ModeTable mode_table(const Archive& archive, Index rows) {
-  std::vector<UsedMode> modes = used_modes(archive);
-  const auto all = static_cast<Index>(modes.size());
-  const Index told = told_modes(modes);
-  const bool fit = rows == 0 || (told == all ? all : told + 1) <= rows;
-  const Index shown = fit ? told : std::clamp<Index>(rows - 1, 1, told);
-  const GainNames gains = gains_of(archive);
-  ModeTable table{headings_of(gains), {}, all - shown, 0.0, gains.unit};
-  for (Index i = shown; i < all; ++i) table.others_use += modes[static_cast<std::size_t>(i)].use;
-  modes.resize(static_cast<std::size_t>(shown));
-  table.rows = rows_of(archive, modes, false);
-  return table;
-}
-
-ShortModes short_modes(const Archive& archive, Index rows, int width) {
-  ModeTable table = mode_table(archive, rows);
-  const bool named = !archive.mode_names.empty();
-  ShortModes result{text_of(table, named, 0), 0};
-  const auto without_gains = headings_of({}).size();
-  while (widest_line(result.text) > width && table.headings.size() > without_gains) {
-    table.headings.pop_back();
-    for (ModeTable::Row& row : table.rows) row.cells.pop_back();
-    ++result.gains_left_out;
-    result.text = text_of(table, named, 0);
-  }
-  if (table.others > 0)
-    result.text += fmt::format("and {} other{}, used {:.1f} %\n", table.others, table.others == 1 ? "" : "s",
-                               100 * table.others_use);
-  return result;
-}
-
-std::string modes_in_words(const Archive& archive, int width) {
-  if (!archive.bank) return "";
-  const GainNames gains = gains_of(archive);
-  const ModeTable table{headings_of(gains), rows_of(archive, used_modes(archive), true), 0, 0.0, gains.unit};
-  return fmt::format("\nmodes in words{}\n", gains.unit.empty() ? "" : fmt::format("; gains in {}", gains.unit)) +
-         text_of(table, !archive.mode_names.empty(), width);
 }
 
 }  // namespace modebank::app

@@ -7,7 +7,7 @@
 #include "io/archive/archive.hpp"
 
 /// The bank's modes as people speak of them: how much they are used, how long they last, how fast they decay, where
-/// they settle. app/text/summary_tables.hpp has their parameters.
+/// they settle. app/text/mode_tables.hpp has tables of them, app/text/summary_tables.hpp their parameters.
 namespace modebank::app {
 
 /// "0.163 +- 0.004 s", "integrates", "unstable: grows e-fold in 2 s", "over 3 s" where the standard error reaches a
@@ -39,6 +39,9 @@ bool unidentifiable_decays(const Archive& archive, const LinearStructure& struct
 /// The same per gain (states x inputs, a state's in a row): some effect of the input on the state is open.
 std::vector<bool> unidentifiable_gains(const Archive& archive, const LinearStructure& structure);
 
+/// A name for a heading or a cell: at most 16 columns, ".." in place of the rest.
+std::string shortened(const std::string& name);
+
 /// Which gains there are: "wz per velL", row by row; each with its unit where they do not share one.
 struct GainNames {
   std::vector<std::string> names;
@@ -46,33 +49,9 @@ struct GainNames {
 };
 GainNames gain_names(const Bank& bank, const std::vector<Channel>& states, const std::vector<Channel>& inputs);
 
-/// How many of them are told one by one: the most used, at most eight, none below 1 % (but at least one). The rest are
-/// "others".
-Index told_modes(const std::vector<UsedMode>& modes);
-
-/// The most used modes in words, a row each: name, use, stay, what is left per sample, slowest time constant, gains.
-struct ModeTable {
-  struct Row {
-    Index mode = 0;
-    std::vector<std::string> cells;
-  };
-  std::vector<std::string> headings;
-  std::vector<Row> rows;
-  Index others = 0;         ///< modes that are not among the rows
-  double others_use = 0.0;  ///< of all of them together
-  std::string gain_unit;    ///< that all gains have; empty where none or several are known
-};
-/// At most `rows` rows, that of the others being one of them; 0: as many as are told.
-ModeTable mode_table(const Archive& archive, Index rows = 0);
-
-/// The same as a text of at most `rows` lines below its heading, `width` columns wide: gains for which there is no room
-/// are left out.
-struct ShortModes {
-  std::string text;
-  Index gains_left_out = 0;
-};
-ShortModes short_modes(const Archive& archive, Index rows, int width);
-/// All modes with all of it, for `show`. 0: no limit.
-std::string modes_in_words(const Archive& archive, int width = 0);
+/// How many modes or families stand in a table one by one: the most used, at most eight, none below 1 % (but at least
+/// one). The rest are "others".
+/// `use`: of each, the most used first.
+Index told_of(const std::vector<double>& use);
 
 }  // namespace modebank::app

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/text/errors_ahead.hpp"
-#include "app/text/mode_words.hpp"
+#include "app/text/mode_tables.hpp"
 #include "app/text/named_forecasts.hpp"
 #include "app/text/next_step.hpp"
 #include "io/archive/archive.hpp"

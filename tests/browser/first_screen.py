@@ -1,5 +1,6 @@
 """The page of a run before any scrolling, and the explanations of its words."""
 import colorsys
+import re
 import subprocess
 
 import h5py
@@ -88,21 +89,31 @@ class FirstScreen(PageTest):
         first = session.browser.run("""
             const table = document.querySelector('#screen-modes table'), names = [...table.querySelectorAll('th')].map((th) => th.textContent);
             return [...table.querySelectorAll('tbody tr')].map((tr) => Object.fromEntries([...tr.children].map((td, i) => [names[i], td.textContent])));""")
-        rows = [row for row in self.table("Modes, most used first") if row["Mode"][0] != "baseline"]
-        told = [(row["Mode"][0], row["Used"][0], row["Stay"][0]) for row in rows]
-        self.assertEqual(told, [tuple(row[name].replace("\u00a0", " ") for name in ("mode", "used", "stay")) for row in first])
+        rows = self.table("Families of modes, most used first")[:len(first)]
+        told = [(row["Used"][0], row["Stay"][0], row["Time constant"][0].partition(", period")[0]) for row in rows]
+        self.assertEqual(told, [tuple(row[name].replace("\u00a0", " ") for name in ("used", "stay", "time constant")) for row in first])
+        modes = [re.findall(r"\d+", row["Family"][0].rpartition("mode")[2]) for row in rows]
+        for numbers, row in zip(modes, first):
+            shown = re.findall(r"\d+", row["family (modes)"])
+            self.assertEqual(numbers[:len(shown)], shown)
 
-    def test_modes_of_one_label_share_a_hue(self):
+    def test_modes_of_one_family_share_a_hue(self):
         self.open_run("many_modes")
+        session.browser.draw_all("#bank")
         shades = {}
         for name, colour in session.browser.run(session.BYTES + """
-                return [...document.querySelectorAll('#picture .legend li')].filter((li) => li.textContent.startsWith('mode'))
-                    .map((li) => [li.textContent.split(': ').at(-1), bytes(getComputedStyle(li.firstChild).backgroundColor)]);"""):
-            if not name.startswith("mode"):
-                shades.setdefault(name, []).append(colorsys.rgb_to_hls(*(byte / 255 for byte in colour))[0])
+                const table = [...document.querySelectorAll('#bank table')].find((it) => it.caption.textContent.startsWith('Modes, most used'));
+                return [...table.querySelectorAll('tbody tr td:first-child')].filter((td) => td.querySelector('.swatch'))
+                    .map((td) => [td.textContent.trim(), bytes(getComputedStyle(td.querySelector('.swatch')).backgroundColor)]);"""):
+            label = name.partition(" ")[2]
+            if label:
+                shades.setdefault(label, []).append(colorsys.rgb_to_hls(*(byte / 255 for byte in colour))[0])
         self.assertGreater(max(map(len, shades.values())), 1)
         for hues in shades.values():
             self.assertLess(max(hues) - min(hues), 0.02)
+        legend = session.browser.run("return [...document.querySelectorAll('#picture .legend li')].map((li) => li.textContent)")
+        for label in shades:
+            self.assertEqual(len([text for text in legend if label in text and "known" not in text]), 1, f"{label} in {legend}")
         firsts = sorted(hues[0] for hues in shades.values())
         self.assertGreater(min(b - a for a, b in zip(firsts, firsts[1:])), 0.05)
 
@@ -127,15 +138,18 @@ class FirstScreen(PageTest):
         with h5py.File(session.made["many_modes"]) as file:
             modes = len(file["bank/weight"])
             rows = [row for row in file["evaluation/diagnostics"][:] if row["filter"] == b"bank" and row["role"] == b"test" and row["mode"] >= 0]
-        order = [int(row["mode"]) for row in sorted(rows, key=lambda row: -row["usage"])]
-        told = min(8, sum(row["usage"] >= 0.01 for row in rows))
-        self.assertLess(told, modes)
+        usage = {int(row["mode"]): row["usage"] for row in rows}
         session.browser.draw_all("#bank")
-        first = session.browser.run("return [...document.querySelectorAll('#screen-modes tbody tr td:first-child')].map((td) => parseInt(td.textContent))")
-        self.assertEqual(first, order[:told])
+        families = [list(map(int, re.findall(r"\d+", row["Family"][0].rpartition("mode")[2]))) for row in self.table("Families of modes, most used first")]
+        self.assertEqual(sorted(sum(families, [])), list(range(modes)))
+        use = [sum(usage[k] for k in family) for family in families]
+        self.assertEqual(use, sorted(use, reverse=True))
+        told = min(8, sum(share >= 0.01 for share in use))
+        self.assertLess(told, modes)
+        self.assertEqual(session.browser.run("return document.querySelectorAll('#screen-modes tbody tr').length"), told)
         names = [list(row.values())[0][0] for row in self.table("Modes, most used first")]
-        self.assertEqual([int(name.split()[0]) for name in names if name != "baseline"], order[:told])
-        self.assertEqual(session.browser.run("return document.querySelectorAll('#bank svg.graph circle').length"), told + 1)
+        self.assertEqual([int(name.split()[0]) for name in names if name != "baseline"], sum(families[:told], []))
+        self.assertEqual(session.browser.run("return document.querySelectorAll('#bank svg.graph circle').length"), told + (told < len(families)))
         colours = session.browser.run("return [...document.querySelectorAll('#picture .legend .swatch')].map((s) => s.style.background)")
         self.assertEqual(len(set(colours)), len(colours))
         self.assertLessEqual(len(self.table("Parameters")), modes + 1)
@@ -154,7 +168,7 @@ class FirstScreen(PageTest):
         session.browser.move(box["x"] + 3, box["y"] + 3)
         session.browser.wait("return !document.getElementById('term-tip').hidden", what="the definition to show")
         bare = session.browser.run("return [...document.querySelectorAll('th')].filter((th) => !th.querySelector('.term')).map((th) => th.textContent)")
-        unexplained = {text for text in bare if text not in PLAIN and " <- " not in text and " per " not in text and not text.startswith("mode ")
+        unexplained = {text for text in bare if text not in PLAIN and " <- " not in text and " per " not in text and not re.search(r"\bmodes? \d", text)
                        and not text.split()[0].isdigit()}
         self.assertEqual(unexplained, set())
 

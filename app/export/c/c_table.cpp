@@ -42,7 +42,11 @@ std::string modes(const ExportedBank& exported, const std::string& prefix) {
   std::vector<std::string> names = identifiers(exported.mode_names, Language::c);
   for (std::size_t k = 0; k < names.size(); ++k)
     if (exported.mode_names[k] == fmt::format("mode {}", k)) names[k] = std::to_string(k);
-  return enumeration("Places in mode_probability", prefix, names, exported.mode_names);
+  std::vector<std::string> remarks = exported.mode_names;
+  for (const ModeFamily& family : exported.families)
+    for (const Index k : family.modes)
+      if (family.modes.size() > 1) remarks[static_cast<std::size_t>(k)] += ", one of the family " + family.title();
+  return enumeration("Places in mode_probability", prefix, names, remarks);
 }
 
 /// A double with all digits. A whole number keeps its point.

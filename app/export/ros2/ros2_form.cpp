@@ -1,11 +1,13 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
 #include <iterator>
 
+#include "app/export/forms.hpp"
 #include "app/export/names.hpp"
-#include "app/export/ros2/ros2_numbers.hpp"
+#include "app/text/robot_numbers.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank::app {
@@ -17,30 +19,39 @@ std::string yaml_number(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
+RobotBank robot_of(const ExportedBank& exported) {
+  return {exported.bank, exported.measurements, exported.recorded_inputs, exported.input_lag_s};
+}
+
 std::string error_text(const Estimate& estimate) {
   if (!std::isfinite(estimate.error)) return "standard error unknown";
   const std::string doubt = doubt_about(estimate.value, estimate.error);
   return fmt::format("+- {:.2g}{}", estimate.error, doubt.empty() ? "" : ": " + doubt);
 }
 
-/// Whether the standard error exceeds the value.
-bool is_vague(const Estimate& estimate) { return std::abs(estimate.value) < estimate.error; }
+/// Names the modes that count in a mean, where they are not the whole family.
+std::string of_modes_text(const Estimate& estimate) {
+  if (estimate.modes.empty()) return "";
+  return fmt::format(", of mode{} {} alone", estimate.modes.size() == 1 ? "" : "s", fmt::join(estimate.modes, ", "));
+}
 
 /// Whether a robot may be given the value.
-bool is_told(const Estimate& estimate) { return estimate.known() && !is_vague(estimate); }
+bool is_told(const Estimate& estimate) { return estimate.known() && !estimate.vague(); }
 
 /// A key where the bank determines its value; otherwise a comment with the reason.
 std::string key_line(const char* key, const Estimate& estimate, const std::string& unit, const std::string& reason) {
   if (!estimate.known()) return fmt::format("    # {}: not determined: {}\n", key, comment_text(reason));
-  if (is_vague(estimate))
-    return fmt::format("    # {}: not determined: {:.6g} {}{}\n", key, estimate.value, error_text(estimate), unit);
-  return fmt::format("    {}: {}  # {}{}\n", key, yaml_number(estimate.value), error_text(estimate), unit);
+  if (estimate.vague())
+    return fmt::format("    # {}: not determined: {:.6g} {}{}\n", key, estimate.value, error_text(estimate),
+                       unit + of_modes_text(estimate));
+  return fmt::format("    {}: {}  # {}{}{}\n", key, yaml_number(estimate.value), error_text(estimate), unit,
+                     of_modes_text(estimate));
 }
 
 std::string missing_text(const RobotChannels& channels) {
   std::string text;
   for (const std::string& missing : channels.missing) text += (text.empty() ? "" : "; ") + missing;
-  return text.empty() ? "this mode does not settle, or turns against its wheels" : text;
+  return text.empty() ? "no mode here settles and turns with its wheels" : text;
 }
 
 /// A list of six numbers; those that the bank does not determine keep ROS' default of 0.
@@ -78,13 +89,14 @@ std::string diff_drive(const RobotNumbers& numbers, const RobotChannels& channel
   const bool lacks_radius = channels.wheels_in_rad_s && sizes.wheel_radius_m == 0.0;
   if (separation.known() && sizes.wheel_separation_m > 0.0) {
     const double nominal = sizes.wheel_separation_m;
-    text += key_line("wheel_separation_multiplier", {separation.value / nominal, separation.error / nominal},
+    text += key_line("wheel_separation_multiplier",
+                     {separation.value / nominal, separation.error / nominal, separation.modes},
                      fmt::format(" of wheel_separation = {} m", nominal), "");
   } else if (separation.known()) {
     text += fmt::format(
-        "    # wheel_separation_multiplier: {:.6g} m {} m over your wheel_separation (give it as "
+        "    # wheel_separation_multiplier: {:.6g} m {} m{} over your wheel_separation (give it as "
         "--wheel_separation_m)\n",
-        separation.value, error_text(separation));
+        separation.value, error_text(separation), of_modes_text(separation));
   } else {
     text += key_line("wheel_separation_multiplier", separation, "",
                      lacks_radius ? "wheel speeds are rad/s: give --wheel_radius_m" : missing);
@@ -111,14 +123,12 @@ std::string noise_rows(const Eigen::MatrixXd& noise) {
   return text;
 }
 
-std::string process_noise(const ExportedBank& exported, Index mode, const RobotChannels& channels) {
+std::string process_noise(const ExportedBank& exported, const ModeFamily& family, const RobotChannels& channels) {
   std::string text =
       "# robot_localization of ROS 2 Humble to Jazzy, ekf_node and ukf_node.\nekf_filter_node:\n  ros__parameters:\n";
   if (channels.yaw_rate < 0 && channels.forward_speed < 0)
     return text + fmt::format("    # process_noise_covariance: not determined: {}\n\n", missing_text(channels));
-  const Mode& of = exported.bank.modes[static_cast<std::size_t>(mode)];
-  const Eigen::MatrixXd Q = exported.bank.C * of.Q * exported.bank.C.transpose();
-  const bool errors = of.Q_standard_error.size() > 0;
+  const FamilyNoise of = family_noise(robot_of(exported), family);
   Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(filter_states, filter_states);
   for (Index i = 0; i < filter_states; ++i) noise(i, i) = default_noise[static_cast<std::size_t>(i)];
   text +=
@@ -130,11 +140,15 @@ std::string process_noise(const ExportedBank& exported, Index mode, const RobotC
   /// Sets an entry, unless it is vague: then the default stays.
   const auto set = [&](Index a, Index b, Index of_a, Index of_b, const char* name) {
     if (of_a < 0 || of_b < 0) return false;
-    const Estimate entry{Q(of_a, of_b) / exported.bank.dt_s,
-                         errors ? of.Q_standard_error(of_a, of_b) / exported.bank.dt_s : not_a_number};
-    text += fmt::format("    # {}: Q {:.6g} / dt_s {:.6g} s = {:.6g} {}{}\n", name, Q(of_a, of_b), exported.bank.dt_s,
-                        entry.value, error_text(entry), is_vague(entry) ? ", and the default stays" : "");
-    if (is_vague(entry)) return false;
+    const double dt_s = exported.bank.dt_s, Q = of.Q(of_a, of_b);
+    const Estimate entry{Q / dt_s, of.error.size() > 0 ? of.error(of_a, of_b) / dt_s : not_a_number};
+    const std::string range =
+        family.modes.size() == 1
+            ? ""
+            : fmt::format(", its modes {:.3g} to {:.3g}", of.least(of_a, of_b) / dt_s, of.largest(of_a, of_b) / dt_s);
+    text += fmt::format("    # {}: Q {:.6g} / dt_s {:.6g} s = {:.6g} {}{}{}\n", name, Q, dt_s, entry.value,
+                        error_text(entry), range, entry.vague() ? ", and the default stays" : "");
+    if (entry.vague()) return false;
     noise(a, b) = noise(b, a) = entry.value;
     return true;
   };
@@ -178,30 +192,55 @@ std::string without_empty_mappings(const std::string& block) {
   return text;
 }
 
+/// "ice": the family's name; else "mode_4", "modes_2_7".
+std::vector<std::string> file_names(const ExportedBank& exported) {
+  std::vector<std::string> names;
+  for (const ModeFamily& family : exported.families)
+    names.push_back(family.modes.size() == 1 ? exported.mode_names[static_cast<std::size_t>(family.modes.front())]
+                    : family.name.empty()    ? family.title()
+                                             : family.name);
+  return identifiers(names, Language::c);
+}
+
+/// The family, how much it is used, and what its numbers are.
+std::string family_text(const ExportedBank& exported, const ModeFamily& family) {
+  const bool judged = !exported.use.empty();
+  std::string text = fmt::format("{}, {:.1f} % of the {}", comment_text(family.title()), 100.0 * family.use,
+                                 judged ? "judged samples" : "windows");
+  if (family.modes.size() == 1) return text;
+  std::string shares;
+  for (std::size_t i = 0; i < family.modes.size(); ++i)
+    shares += fmt::format("{}{} {:.1f} %", i > 0 ? ", " : "", family.modes[i], 100.0 * family.uses[i]);
+  return text +
+         fmt::format(
+             ".\n# Numbers are means over its modes by use ({}). Standard errors hold those of the modes and how "
+             "far\n# the modes are apart (law of total variance); those of variances and covariances are of the "
+             "mean alone",
+             shares);
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> to_ros2(const ExportedBank& exported, const RobotSizes& sizes) {
-  const RobotChannels channels = robot_channels(exported);
+  const RobotChannels channels = robot_channels(robot_of(exported));
   std::vector<std::pair<std::string, std::string>> files;
-  const std::vector<std::string> names = identifiers(exported.mode_names, Language::c);
+  const std::vector<std::string> names = file_names(exported);
   std::string remarks;
   for (const std::string& remark : exported.remarks()) remarks += "# " + comment_text(remark) + "\n";
-  for (Index k = 0; k < exported.bank.mode_count(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const RobotNumbers numbers = robot_numbers(exported, k, channels, sizes);
+  for (std::size_t f = 0; f < names.size(); ++f) {
+    const ModeFamily& family = exported.families[f];
+    const RobotNumbers numbers = family_numbers(robot_of(exported), family, channels, sizes);
     const std::string opening = fmt::format(
-        "# Calibration: {}\n# {}, {:.1f} % of the windows, of a bank made by modebank {} of {},\n# SHA-256 {}, filter "
-        "{}.\n"
+        "# Calibration: {}\n# {}.\n# Of a bank made by modebank {} of {},\n# SHA-256 {}, filter {}.\n"
         "# {}\n# dt_s = {} s. {}.\n{}# Keys are those that the bank determines; what it does not is a comment that "
         "says "
         "why.\n\n",
-        comment_text(exported.verdict_text()), comment_text(exported.mode_names[at]),
-        100.0 * exported.bank.modes[at].weight, comment_text(exported.provenance.modebank_version),
-        comment_text(exported.archive), exported.sha256, exported.filter, exported_equation,
-        yaml_number(exported.bank.dt_s), transition_meaning, remarks);
-    files.emplace_back(names[at] + ".yaml", opening + without_empty_mappings(diff_drive(numbers, channels, sizes)) +
-                                                without_empty_mappings(process_noise(exported, k, channels)) +
-                                                without_empty_mappings(model_delays(numbers, channels)));
+        comment_text(exported.verdict_text()), family_text(exported, family),
+        comment_text(exported.provenance.modebank_version), comment_text(exported.archive), exported.sha256,
+        exported.filter, exported_equation, yaml_number(exported.bank.dt_s), transition_meaning, remarks);
+    files.emplace_back(names[f] + ".yaml", opening + without_empty_mappings(diff_drive(numbers, channels, sizes)) +
+                                               without_empty_mappings(process_noise(exported, family, channels)) +
+                                               without_empty_mappings(model_delays(numbers, channels)));
   }
   return files;
 }

@@ -15,6 +15,7 @@
 #include "app/report/page/paired_runs.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/text/judged_runs.hpp"
+#include "app/text/mode_families.hpp"
 
 namespace modebank::app::report {
 namespace {
@@ -135,10 +136,46 @@ json z_cells(const MatchedMode& pair) {
   return cells;
 }
 
+/// Families of both banks that share time: each of the first's with that of the other it shares most with, and each of
+/// the other's that none has. Empty where no run is in both.
+json families_side_by_side(const Archive& first, const Archive& other) {
+  const std::vector<ModeFamily> one = mode_families(first), two = mode_families(other);
+  const Eigen::MatrixXd shared = time_in_common(first, other, family_of_modes(one), family_of_modes(two));
+  json pairs = json::array();
+  const auto add = [&](Index a, Index b) {
+    const ModeFamily &of_a = one[static_cast<std::size_t>(a)], &of_b = two[static_cast<std::size_t>(b)];
+    const auto used = [](const ModeFamily& family) { return percent(family.use); };
+    pairs.push_back({{"first", of_a.title()},
+                     {"second", of_b.title()},
+                     {"first_use", used(of_a)},
+                     {"second_use", used(of_b)},
+                     {"lead", {of_a.modes.front(), of_b.modes.front()}},
+                     {"shared", percent(shared(a, b))}});
+  };
+  std::vector<bool> found(two.size(), false);
+  for (Index a = 0; a < shared.rows(); ++a) {
+    Index b = 0;
+    shared.row(a).maxCoeff(&b);
+    found[static_cast<std::size_t>(b)] = true;
+    add(a, b);
+  }
+  for (Index b = 0; b < shared.cols(); ++b) {
+    if (found[static_cast<std::size_t>(b)]) continue;
+    Index a = 0;
+    shared.col(b).maxCoeff(&a);
+    add(a, b);
+  }
+  return pairs;
+}
+
 /// The modes of run k beside the first's.
 json match_of(const Runs& runs, std::size_t k) {
   const auto &first = runs[0].archive.bank, &other = runs[k].archive.bank;
-  if (!first || !other) return {{"difference", "not both hold a bank"}, {"by_time", false}, {"modes", json::array()}};
+  if (!first || !other)
+    return {{"difference", "not both hold a bank"},
+            {"by_time", false},
+            {"families", json::array()},
+            {"modes", json::array()}};
   const ModeMatch match = match_modes(*first, *other, time_in_common(runs[0].archive, runs[k].archive));
   json modes = json::array();
   for (const MatchedMode& pair : match.modes)
@@ -148,7 +185,10 @@ json match_of(const Runs& runs, std::size_t k) {
                      {"shared", percent(pair.shared)},
                      {"agree", pair.agree()},
                      {"z", z_cells(pair)}});
-  return {{"difference", match.difference}, {"by_time", match.by_time}, {"modes", modes}};
+  return {{"difference", match.difference},
+          {"by_time", match.by_time},
+          {"families", families_side_by_side(runs[0].archive, runs[k].archive)},
+          {"modes", modes}};
 }
 
 json matches_of(const Runs& runs) {

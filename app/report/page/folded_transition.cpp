@@ -1,21 +1,19 @@
 #include "app/report/page/folded_transition.hpp"
 
-#include <algorithm>
-
 namespace modebank {
 
-Eigen::MatrixXd folded_transition(const Eigen::MatrixXd& transition, const std::vector<Eigen::Index>& told,
-                                  const Eigen::VectorXd& use) {
-  const auto shown = static_cast<Eigen::Index>(told.size()), K = transition.rows();
-  const Eigen::Index groups = shown < K ? shown + 1 : shown;
-  // into: K x groups, which modes make up each group; share: of its use within the group.
-  Eigen::MatrixXd into = Eigen::MatrixXd::Zero(K, groups);
-  for (Eigen::Index k = 0; k < K; ++k) {
-    const auto place = std::find(told.begin(), told.end(), k) - told.begin();
-    into(k, place) = 1.0;
-  }
+Eigen::MatrixXd folded_transition(const Eigen::MatrixXd& transition,
+                                  const std::vector<std::vector<Eigen::Index>>& groups, const Eigen::VectorXd& use) {
+  const auto shown = static_cast<Eigen::Index>(groups.size()), K = transition.rows();
+  // into: K x groups, which modes make up each group, the last one what no other has; share: of its use within the
+  // group.
+  Eigen::MatrixXd into = Eigen::MatrixXd::Zero(K, shown + 1);
+  for (Eigen::Index g = 0; g < shown; ++g)
+    for (const Eigen::Index k : groups[static_cast<std::size_t>(g)]) into(k, g) = 1.0;
+  into.col(shown) = (1.0 - into.rowwise().sum().array()).matrix();
+  if (into.col(shown).sum() == 0.0) into.conservativeResize(K, shown);
   Eigen::MatrixXd share = into;
-  for (Eigen::Index g = 0; g < groups; ++g) {
+  for (Eigen::Index g = 0; g < into.cols(); ++g) {
     const double total = into.col(g).dot(use);
     share.col(g) = total > 0.0 ? Eigen::VectorXd(into.col(g).cwiseProduct(use) / total)
                                : Eigen::VectorXd(into.col(g) / into.col(g).sum());

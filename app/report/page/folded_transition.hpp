@@ -5,9 +5,10 @@
 
 namespace modebank {
 
-/// The transition matrix of the modes `told`, in that order, and of all others taken as one, which comes last (where
-/// there are any): into them goes the sum of their probabilities, out of them the mean of theirs, by `use`.
-Eigen::MatrixXd folded_transition(const Eigen::MatrixXd& transition, const std::vector<Eigen::Index>& told,
-                                  const Eigen::VectorXd& use);
+/// The transition matrix between groups of modes, and of all modes that are in none taken as one group, which comes
+/// last (where there are any): into a group goes the sum of its modes' probabilities, out of it the mean of theirs, by
+/// `use`.
+Eigen::MatrixXd folded_transition(const Eigen::MatrixXd& transition,
+                                  const std::vector<std::vector<Eigen::Index>>& groups, const Eigen::VectorXd& use);
 
 }  // namespace modebank

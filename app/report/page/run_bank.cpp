@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "app/report/page/folded_transition.hpp"
 #include "app/report/page/mode_map.hpp"
 #include "app/report/page/numbers.hpp"
+#include "app/report/page/run_families.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
 #include "app/text/judged_runs.hpp"
@@ -36,25 +36,6 @@ json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors,
                                       : estimate(values(i), i < errors.size() ? errors(i) : NAN));
   }
   return cells;
-}
-
-/// Which modes the bank took each label's samples for; null without labels.
-json label_section(const Archive& archive, const std::vector<Index>& told) {
-  if (archive.confusion.empty()) return nullptr;
-  json rows = json::array();
-  for (const ConfusionRow& row : archive.confusion) {
-    if (rows.empty() || rows.back()["label"] != row.label)
-      rows.push_back({{"label", row.label}, {"samples", 0}, {"shares", json::array()}, {"others", 0.0}});
-    rows.back()["samples"] = rows.back()["samples"].get<Index>() + row.samples;
-    rows.back()["shares"].push_back(percent(row.share));
-    if (std::find(told.begin(), told.end(), row.mode) == told.end())
-      rows.back()["others"] = rows.back()["others"].get<double>() + row.share;
-  }
-  for (json& row : rows) {
-    row["samples"] = count(row["samples"].get<Index>());
-    row["others"] = percent(row["others"].get<double>());
-  }
-  return {{"role", name_of(archive.confusion.front().role)}, {"rows", rows}};
 }
 
 /// Adds the decay per sample of the slowest mode of motion, and all time constants.
@@ -112,19 +93,6 @@ std::vector<std::string> motion_names(const Bank& bank) {
   for (const ModelParameter& parameter : bank.motion_parameters)
     names.push_back(parameter_words(parameter.name, parameter.unit));
   return names;
-}
-
-/// Between the modes that are told one by one and all others as one, which come last.
-json folded_transition_of(const Bank& bank, const std::vector<UsedMode>& modes, const std::vector<Index>& told) {
-  Eigen::VectorXd use(bank.mode_count());
-  for (const UsedMode& mode : modes) use(mode.mode) = mode.use;
-  const Eigen::MatrixXd folded = folded_transition(bank.transition.matrix(), told, use);
-  json rows = json::array();
-  for (Index i = 0; i < folded.rows(); ++i) {
-    rows.push_back(json::array());
-    for (const double probability : folded.row(i)) rows.back().push_back(number(probability));
-  }
-  return rows;
 }
 
 json transition_of(const Bank& bank) {
@@ -188,17 +156,21 @@ nlohmann::json bank_section(const Archive& archive) {
   const Recording& recording = *archive.recording;
   const Units units(recording);
   const Role role = diagnosis(archive, "bank", Role::test) ? Role::test : Role::train;
-  const std::vector<UsedMode> used = used_modes(archive);
+  const std::vector<ModeFamily> families = mode_families(archive);
+  const Index told = told_families(families);
   std::vector<Index> order;
-  for (const UsedMode& mode : used) order.push_back(mode.mode);
-  const std::vector<Index> told(order.begin(), order.begin() + told_modes(used));
+  for (const ModeFamily& family : families) order.insert(order.end(), family.modes.begin(), family.modes.end());
+  const auto others =
+      static_cast<Index>(std::count_if(order.begin(), order.end(), [of = family_of_modes(families), told](Index k) {
+        return of[static_cast<std::size_t>(k)] >= told;
+      }));
   json modes = json::array();
   for (Index k = 0; k < bank.mode_count(); ++k) {
     modes.push_back(mode_row(archive, bank, k));
     modes.back()["name"] = name_of_mode(archive.mode_names, k);
     if (const DiagnosticsRow* row = diagnosis(archive, "bank", role, k)) add_diagnosis(modes.back(), *row, bank.dt_s);
   }
-  for (const UsedMode& mode : used) {
+  for (const UsedMode& mode : used_modes(archive)) {
     json& row = modes[static_cast<std::size_t>(mode.mode)];
     row["use"] = number(mode.use, fmt::format("{:.1f} %", 100 * mode.use));
     row["stay"] = number(mode.stay_s, stay_words(mode));  // the same words as on the first screen
@@ -215,13 +187,15 @@ nlohmann::json bank_section(const Archive& archive) {
           {"noise_name", with_unit("step noise sd", common_unit(recording.states))},
           {"noise_variance_name", with_unit("Measurement noise variance R", square_of(common_unit(recording.states)))},
           {"R", number_list(bank.R.diagonal())},
+          {"families", families_of(archive, families)},
+          {"told_families", told},
           {"order", order},
-          {"told", std::ssize(told)},
+          {"told", std::ssize(order) - others},
           {"transition", transition_of(bank)},
-          {"folded", folded_transition_of(bank, used, told)},
+          {"folded", folded_transition_of(bank, families)},
           {"switch_weights", switch_weights_of(bank)},
           {"modeMap", mode_map_of(archive)},
-          {"confusion", label_section(archive, told)},
+          {"confusion", label_section(archive, families)},
           {"screened", screened_of(bank)},
           {"merged", merging_of(archive, role)},
           {"refined", archive.unrefined.has_value()}};

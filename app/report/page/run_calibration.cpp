@@ -92,17 +92,14 @@ json modes_of(const FirstScreen& screen) {
   for (const ModeTable::Row& row : screen.modes.rows) {
     json cells = json::array();
     for (const std::string& cell : row.cells) cells.push_back(with_signs(cell));
-    rows.push_back({{"mode", row.mode}, {"cells", cells}});
+    rows.push_back({{"modes", row.modes}, {"title", row.title}, {"cells", cells}});
   }
   const ModeTable& modes = screen.modes;
   const std::string others = modes.others == 0 ? ""
                                                : fmt::format("and {} other{}, used {:.1f} % together", modes.others,
                                                              modes.others == 1 ? "" : "s", 100 * modes.others_use);
-  return {{"count", screen.mode_count},
-          {"headings", modes.headings},
-          {"rows", rows},
-          {"others", others},
-          {"gain_unit", modes.gain_unit}};
+  return {{"count", screen.mode_count}, {"families", modes.families},  {"headings", modes.headings}, {"rows", rows},
+          {"others", others},           {"gain_unit", modes.gain_unit}};
 }
 
 /// true: evidence and a reliable band; null: undecided.

@@ -44,7 +44,7 @@ TEST_F(Export, JsonIsTheArchivesBank) {
   const json page = json::parse(result.out);
   const Archive stored = read_archive(archive());
   EXPECT_EQ(page.at("format"), "modebank export");
-  EXPECT_EQ(page.at("schema_version"), "2.0");
+  EXPECT_EQ(page.at("schema_version"), "2.1");
   EXPECT_EQ(page.at("verdict").at("answer"), "calibrated");
   EXPECT_LT(result.out.find("\"verdict\""), result.out.find("\"modes\""));
   EXPECT_EQ(page.at("dt_s"), stored.bank->dt_s);
@@ -108,6 +108,29 @@ TEST_F(Export, ModesHaveTheirNames) {
   const json modes = json::parse(exported("json").out).at("modes");
   EXPECT_EQ(modes.at(0).at("name"), "ice */ \"grit\"");
   for (std::size_t k = 1; k < modes.size(); ++k) EXPECT_EQ(modes.at(k).at("name"), "mode " + std::to_string(k));
+}
+
+/// Every mode is in the family that it names, families stand by use, and both pages have the same.
+TEST_F(Export, ModesHaveTheirFamily) {
+  judge(Calibration::calibrated);
+  Archive stored = read_archive(archive());
+  stored.mode_names.assign(static_cast<std::size_t>(stored.bank->mode_count()), "ice");
+  stored.mode_names.back() = "grip";
+  write_archive(archive(), stored);
+  const json page = json::parse(exported("json").out), regimes = json::parse(exported("regimes").out);
+  const json& families = page.at("families");
+  ASSERT_EQ(families.size(), 2u);
+  EXPECT_EQ(regimes.at("families"), families);
+  EXPECT_GE(families.at(0).at("used"), families.at(1).at("used"));
+  double used = 0.0;
+  for (const json& family : families) {
+    used += family.at("used").get<double>();
+    for (const json& mode : family.at("modes")) {
+      EXPECT_EQ(page.at("modes").at(mode.get<std::size_t>()).at("family"), family.at("family"));
+      EXPECT_EQ(regimes.at("regimes").at(mode.get<std::size_t>()).at("family"), family.at("family"));
+    }
+  }
+  EXPECT_NEAR(used, 1.0, 1e-9);
 }
 
 TEST_F(Export, CsvIsAnyTableAsItStands) {

@@ -16,7 +16,7 @@
 #include <random>
 #include <utility>
 
-#include "app/export/ros2/ros2_numbers.hpp"
+#include "app/text/robot_numbers.hpp"
 #include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "tests/app/export/exported.hpp"
@@ -105,7 +105,8 @@ Deviations deviations(int seed) {
   ExportedBank exported = as_exported(learned(recording));
   exported.measurements = recording.states;
   exported.recorded_inputs = recording.inputs;
-  const RobotNumbers said = robot_numbers(exported, 0, robot_channels(exported), {});
+  const RobotBank robot{exported.bank, exported.measurements, exported.recorded_inputs, exported.input_lag_s};
+  const RobotNumbers said = robot_numbers(robot, 0, robot_channels(robot), {});
   const Mode& mode = exported.bank.modes[0];
   const double dt_s = exported.bank.dt_s;
   const std::array<Estimate, names.size()> estimates{said.separation_m,

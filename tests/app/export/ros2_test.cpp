@@ -172,6 +172,61 @@ TEST(ExportedRos2, StatesErrorsByTheDeltaMethod) {
   EXPECT_THAT(text, HasSubstr(fmt::format("# +- {:.2g} of wheel_separation = 1 m", expected)));
 }
 
+/// Two widths of one family, used for 60 and 20 % of the time, and a third mode that is too vague to count.
+ExportedBank family_of_three() {
+  Robot wide;
+  wide.separation_m = 0.65;
+  wide.yaw_noise = 8e-4;
+  ExportedBank exported = bank_of(Robot(), true);
+  Bank bank = modebank::test::example_bank(2, 2, 3, 0.0);
+  bank.dt_s = exported.bank.dt_s;
+  bank.modes[0] = bank.modes[2] = exported.bank.modes[0];
+  bank.modes[1] = bank_of(wide, true).bank.modes[0];
+  for (Mode& mode : bank.modes) mode.Q_standard_error = Eigen::Matrix2d::Constant(1e-6);
+  bank.modes[2].standard_error.setConstant(10.0);
+  const std::vector<Channel> measurements = exported.measurements, inputs = exported.recorded_inputs;
+  exported = as_exported(bank);
+  exported.measurements = measurements;
+  exported.recorded_inputs = inputs;
+  exported.mode_names = {"ice", "ice", "ice"};
+  exported.use = {0.6, 0.2, 0.1};
+  ModeFamily family;
+  family.name = "ice";
+  family.modes = {0, 1, 2};
+  family.uses = exported.use;
+  family.use = 0.9;
+  exported.families = {family};
+  return exported;
+}
+
+TEST(ExportedRos2, AFamilyIsOneFileOfMeansByUse) {
+  MODEBANK_NEEDS_YAML();
+  const auto files = to_ros2(family_of_three(), {1.0, 0.0});
+  ASSERT_EQ(files.size(), 1u);
+  const auto& [name, text] = files[0];
+  EXPECT_EQ(name, "ice.yaml");
+  EXPECT_THAT(text, HasSubstr("# ice (modes 0, 1, 2), 90.0 % of the judged samples"));
+  EXPECT_THAT(text, HasSubstr("(0 60.0 %, 1 20.0 %, 2 10.0 %)"));
+  EXPECT_THAT(text, HasSubstr("of modes 0, 1 alone"));
+  const json drive = read_yaml(text).at("diff_drive_controller").at("ros__parameters");
+  EXPECT_NEAR(drive.at("wheel_separation_multiplier"), 1.0 / (0.75 / 0.55 + 0.25 / 0.65), 1e-9);
+  EXPECT_NEAR(drive.at("left_wheel_radius_multiplier"), Robot().left, 1e-9);
+  const json noise = read_yaml(text).at("ekf_filter_node").at("ros__parameters").at("process_noise_covariance");
+  EXPECT_NEAR(noise[11 * 15 + 11].get<double>() * Robot().dt_s, (0.7 * 4e-4 + 0.2 * 8e-4) / 0.9, 1e-12);
+  EXPECT_THAT(text, HasSubstr(", its modes 0.008 to 0.016"));  // Q / dt_s
+}
+
+/// Both modes are sure of their width; how far they are apart is the error. Of 1 / width it is
+/// (1 / 0.55 - 1 / 0.65) sqrt(0.75 0.25) per metre, of the width 0.5722^2 times that.
+TEST(ExportedRos2, TheErrorOfAFamilyHoldsHowFarItsModesAreApart) {
+  ExportedBank exported = family_of_three();
+  for (Mode& mode : exported.bank.modes) mode.standard_error.setConstant(1e-9);
+  exported.families[0].modes = {0, 1};
+  exported.families[0].uses = {0.6, 0.2};
+  const std::string text = to_ros2(exported, {1.0, 0.0}).at(0).second;
+  EXPECT_THAT(text, HasSubstr("# +- 0.04 of wheel_separation = 1 m\n"));
+}
+
 TEST(ExportedRos2, HoldsHostileNames) {
   MODEBANK_NEEDS_YAML();
   ExportedBank exported = bank_of(Robot(), true);

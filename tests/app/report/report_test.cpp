@@ -227,8 +227,10 @@ TEST_F(Report, NamesModesAndComparesThemWithLabels) {
   const json& row = bank["confusion"]["rows"][1];
   EXPECT_EQ(row["label"], hostile);
   EXPECT_EQ(row["samples"]["v"], 3 + stored.bank->mode_count() - 1);
-  ASSERT_EQ(std::ssize(row["shares"]), stored.bank->mode_count());
-  EXPECT_EQ(row["shares"][0]["v"], 0.75);
+  const json& families = bank["families"];
+  ASSERT_EQ(row["shares"].size(), bank["told_families"].get<std::size_t>() + 1) << "the last one: others";
+  for (std::size_t f = 0; f < bank["told_families"].get<std::size_t>(); ++f)
+    if (families[f]["modes"] == json{0}) EXPECT_EQ(row["shares"][f]["v"], 0.75);
 }
 
 TEST_F(Report, BeginsWithWhatTheFirstScreenSaysAndAPicture) {
@@ -247,7 +249,7 @@ TEST_F(Report, BeginsWithWhatTheFirstScreenSaysAndAPicture) {
   EXPECT_EQ(verdict["cards"][0]["key"], "coverage");
   EXPECT_EQ(verdict["cards"][0]["big"]["v"], screen.coverage);
   ASSERT_EQ(verdict["modes"]["rows"].size(), screen.modes.rows.size());
-  EXPECT_EQ(verdict["modes"]["rows"][0]["mode"], screen.modes.rows[0].mode);
+  EXPECT_EQ(verdict["modes"]["rows"][0]["modes"], screen.modes.rows[0].modes);
 
   const json& picture = verdict["picture"];
   EXPECT_EQ(picture["labels"], (json{"grip", "ice"}));
@@ -285,16 +287,23 @@ TEST_F(Report, BeginsWithWhatTheFirstScreenSaysAndAPicture) {
 /// use.
 TEST(ReportFolding, TransitionsOfTheOthersAreTheirMean) {
   const Eigen::MatrixXd T{{0.9, 0.06, 0.04}, {0.2, 0.7, 0.1}, {0.5, 0.1, 0.4}};
-  const Eigen::MatrixXd folded = folded_transition(T, {0}, Eigen::Vector3d(0.7, 0.2, 0.1));
+  using Group = std::vector<Index>;
+  using Groups = std::vector<Group>;
+  const Eigen::MatrixXd folded = folded_transition(T, Groups{Group{0}}, Eigen::Vector3d(0.7, 0.2, 0.1));
   ASSERT_EQ(folded.rows(), 2);
   EXPECT_NEAR(folded(0, 0), 0.9, 1e-15);
   EXPECT_NEAR(folded(0, 1), 0.1, 1e-15);
   EXPECT_NEAR(folded(1, 0), (0.2 * 0.2 + 0.1 * 0.5) / 0.3, 1e-15);
   EXPECT_NEAR(folded.row(1).sum(), 1.0, 1e-15);
-  const Eigen::MatrixXd ordered = folded_transition(T, {2, 0, 1}, Eigen::Vector3d::Zero());
+  const Eigen::MatrixXd ordered = folded_transition(T, Groups{Group{2}, Group{0}, Group{1}}, Eigen::Vector3d::Zero());
   EXPECT_EQ(ordered(0, 1), 0.5);
   EXPECT_EQ(ordered(1, 0), 0.04);
-  EXPECT_NEAR(folded_transition(T, {0}, Eigen::Vector3d::Zero())(1, 0), 0.35, 1e-15) << "never used: plain means";
+  EXPECT_NEAR(folded_transition(T, Groups{Group{0}}, Eigen::Vector3d::Zero())(1, 0), 0.35, 1e-15)
+      << "never used: plain means";
+  const Eigen::MatrixXd joined = folded_transition(T, Groups{Group{1, 2}, Group{0}}, Eigen::Vector3d(0.7, 0.2, 0.1));
+  ASSERT_EQ(joined.rows(), 2) << "no mode is left over";
+  EXPECT_NEAR(joined(0, 1), (0.2 * 0.2 + 0.1 * 0.5) / 0.3, 1e-15);
+  EXPECT_NEAR(joined(1, 0), 0.1, 1e-15);
 }
 
 /// Two modes: p0 T01 = p1 T10, where the odds of the weights change T01 and T10.

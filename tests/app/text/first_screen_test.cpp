@@ -269,7 +269,7 @@ TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {
   ASSERT_EQ(screen.modes.rows.size(), 3u);
   EXPECT_EQ(screen.modes.rows[0].cells.size(), screen.modes.headings.size());
   const std::string text = as_one_line(screen_of(archive));
-  for (const std::string& said : {screen.finding, screen.modes.rows[0].cells[4]}) EXPECT_THAT(text, HasSubstr(said));
+  for (const std::string& said : {screen.finding, screen.modes.rows[0].cells[3]}) EXPECT_THAT(text, HasSubstr(said));
   EXPECT_EQ(screen.next, "ready: `modebank track ARCHIVE` filters samples as they come");
   EXPECT_THAT(text, HasSubstr("ready: `modebank track demo.h5` filters")) << "as it can be typed";
 }
@@ -290,7 +290,7 @@ TEST(FirstScreen, WhatIsNotKnownIsNoNumber) {
 TEST(FirstScreen, ItsModesAreAtMostEightAndTheOthersAddUp) {
   const app::FirstScreen screen = app::make_first_screen(screen_archive(1, 1, 20), defaults);
   ASSERT_EQ(screen.modes.rows.size(), 8u);
-  EXPECT_EQ(screen.modes.rows[0].mode, 0);
+  EXPECT_EQ(screen.modes.rows[0].modes, std::vector<Index>{0});
   EXPECT_EQ(screen.modes.others, 12);
   EXPECT_NEAR(screen.modes.others_use, 0.5 * (std::pow(0.6, 8) - std::pow(0.6, 20)) / 0.4, 1e-12);
 }
@@ -314,7 +314,7 @@ TEST(FirstScreen, WarningsAreCountedAndTheFirstIsTold) {
 TEST(FirstScreen, ItsTermsHaveAMeaning) {
   for (const char* term :
        {"evidence",      "mode",        "bank",         "drifting",      "competitor",    "nats",        "held-out",
-        "step",          "used",        "stay",         "decay/sample",  "time constant", "period",      "steady gain",
+        "step",          "used",        "stay",         "family",        "time constant", "period",      "steady gain",
         "band",          "95 % band",   "calibrated",   "overconfident", "RMSE",          "FIT",         "+-",
         "lag",           "train",       "training run", "held-out run",  "single model",  "steps ahead", "optimum",
         "process noise", "whiteness",   "horizon",      "varx",          "cannot tell",   "no evidence", "not yet",

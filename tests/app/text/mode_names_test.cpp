@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "app/text/confusion_text.hpp"
-#include "app/text/mode_words.hpp"
+#include "app/text/mode_tables.hpp"
 #include "app/text/summary_tables.hpp"
 #include "tests/app/text/screen_archive.hpp"
 

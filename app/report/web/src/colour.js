@@ -24,14 +24,14 @@ export function paletteColour(palette, k) {
 // figures in papers.
 export const usedColour = (palette, rank) => paletteColour(palette, rank < palette.modes.length ? rank : -1);
 
-// How the modes of one label differ: towards black or white, and how far.
+// How the modes of one family differ: towards black or white, and how far.
 const turns = [
   [], ['#000000', 0.3], ['#ffffff', 0.4], ['#000000', 0.5], ['#ffffff', 0.6], ['#000000', 0.66], ['#ffffff', 0.75],
   ['#000000', 0.15]
 ];
 
 /**
- * The colour of a mode that has `turn` more used ones of its label before it; `hue`: the label's place in the palette.
+ * The colour of a mode that has `turn` more used ones of its family before it; `hue`: the family's place in the palette.
  */
 export function hueColour(palette, hue, turn) {
   const base = usedColour(palette, hue), [towards, share] = turns[turn % turns.length];

@@ -1,6 +1,7 @@
 // The modes of the banks beside those of A, matched one to one.
 import {details, h, note} from './elements.js';
 import {differingWords, sortedPairs} from './mode_pairs.js';
+import {hasFamilies, nameOf} from './modes.js';
 import {section} from './page.js';
 import {letters, modeColours} from './pair.js';
 import {table} from './table.js';
@@ -11,7 +12,7 @@ const parametersOf = (bank, k) =>
          bank.motion_names.length ? bank.modes[k].motion :
                                     bank.modes[k].parameters);
 const namesOf = (bank) => (bank.motion_names.length ? bank.motion_names : bank.parameter_names);
-const modeText = (k) => (k < 0 ? '–' : String(k));
+const modeText = (bank, k) => (k < 0 ? '–' : nameOf(bank, k));
 
 /** `ofModes`: colours of A's modes and of the other bank's. */
 function pairColumns(a, b, letter, ofModes, {by_time: byTime, difference}) {
@@ -22,11 +23,11 @@ function pairColumns(a, b, letter, ofModes, {by_time: byTime, difference}) {
     return values ? values[i] : null;
   };
   return [
-    {name: 'Mode of A', text: true, of: (pair) => modeText(pair.first), swatch: (pair) => colourOf(0, pair.first)},
+    {name: 'Mode of A', text: true, of: (pair) => modeText(a, pair.first), swatch: (pair) => colourOf(0, pair.first)},
     {
       name: `Mode of ${letter}`,
       text: true,
-      of: (pair) => modeText(pair.second),
+      of: (pair) => modeText(b, pair.second),
       swatch: (pair) => colourOf(1, pair.second)
     },
     ...(byTime ? [{name: 'Time in common', of: (pair) => (pair.first < 0 || pair.second < 0 ? null : pair.shared)}] :
@@ -41,6 +42,19 @@ function pairColumns(a, b, letter, ofModes, {by_time: byTime, difference}) {
   ];
 }
 
+// Families that share time; nothing where no run is in both, or every mode is a family of its own.
+function familyTable({families}, a, b, letter, ofModes) {
+  if (!families.length || !(hasFamilies(a) || hasFamilies(b))) return null;
+  const columns = [
+    {name: 'Family of A', text: true, of: (pair) => pair.first, swatch: (pair) => ofModes[0](pair.lead[0])},
+    {name: 'Used', of: (pair) => pair.first_use},
+    {name: `Family of ${letter}`, text: true, of: (pair) => pair.second, swatch: (pair) => ofModes[1](pair.lead[1])},
+    {name: `Used in ${letter}`, of: (pair) => pair.second_use},
+    {name: 'Time in common', of: (pair) => pair.shared},
+  ];
+  return table(columns, families, {caption: `Families of A and ${letter}, each with the one it shares most time with`});
+}
+
 function matchTables(data, match, k, ofModes) {
   const letter = letters[k], [a, b] = [data.runs[0].bank, data.runs[k].bank];
   const heading = h('h3', {}, `A and ${letter}`);
@@ -51,6 +65,7 @@ function matchTables(data, match, k, ofModes) {
   const fold = same && differing.length ? details(`${agreeing.length} pairs agree within their errors`, same) : same;
   return [
     data.matches.length > 1 ? heading : null,
+    familyTable(match, a, b, letter, [ofModes[0], ofModes[k]]),
     differing.length ? table(columns, differing, {caption: `Modes of A and ${letter} that differ`, sortable: true}) :
                        note('All modes agree within their errors.'),
     fold,

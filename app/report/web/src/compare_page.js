@@ -5,6 +5,7 @@ import {drawModes} from './compare_modes.js';
 import {drawWindows} from './compare_windows.js';
 import {copyButton, details, facts, h, note} from './elements.js';
 import {roleNames, shortNames} from './filters.js';
+import {nameOf} from './modes.js';
 import {draw, head, section} from './page.js';
 import {pageData} from './page_data.js';
 import {colours, letters, pairLegend} from './pair.js';
@@ -83,7 +84,9 @@ function drawScores(data) {
 
 function bankTable(bank, letter) {
   const columns = [
-    {name: 'Mode', of: (row) => row.mode},
+    {name: 'Mode', text: true, of: (row) => nameOf(bank, row.mode)},
+    {name: 'Family', text: true, of: (row) => bank.families.find(({modes}) => modes.includes(row.mode)).title},
+    {name: 'Used', of: (row) => row.use},
     {name: 'Weight', of: (row) => row.weight},
     ...bank.parameter_names.map((name, i) => ({name, of: (row) => row.parameters[i]})),
     {name: bank.noise_name, of: (row) => row.noise_sd},

@@ -54,7 +54,7 @@ export function transitionGraph(transition, nodes) {
                              y: centre - ring * Math.cos(angle(k)),
                              r: Math.min(15 + 16 * Math.sqrt(use || 0), 30),
                            }));
-  const label = `Transitions between ${K} modes; the matrix beside holds the same numbers`;
+  const label = 'Transitions between the modes, those of one family together; the matrix holds those of each mode';
   const picture = s('svg', {viewBox: `0 0 ${size} ${size}`, role: 'img', 'aria-label': label, class: 'graph'});
   const {pictures, labels} = edgesOf(transition, nodes, places);
   const circles = places.map(

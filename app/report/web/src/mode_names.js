@@ -4,30 +4,33 @@ let names = [];
 let ranks = [];
 let hues = [];
 let toldCount = Infinity;
+let groups = [];
 
 /**
- * `list`: the name of each mode, '' where it has none; `order`: all modes, most used first, of which `told` are told
- * one by one.
+ * `list`: the name of each mode, '' where it has none; `order`: all modes, those of the most used family first, of which
+ * `told` stand one by one; `families`: {title, modes}, the most used first.
  */
-export function nameModes(list, order = [], told = Infinity) {
+export function nameModes(list, order = [], told = Infinity, families = order.map((mode) => ({modes: [mode]}))) {
   names = list;
   ranks = [];
   hues = [];
   toldCount = told;
-  const taken = new Map();  // how many modes have the label so far
-  const labels = [];
+  groups = [];
   order.forEach((mode, rank) => {
     ranks[mode] = rank;
-    const label = list[mode] || `mode ${mode}`, turn = taken.get(label) || 0;
-    if (!turn) labels.push(label);
-    hues[mode] = {hue: labels.indexOf(label), turn};
-    taken.set(label, turn + 1);
   });
+  families.forEach((family, hue) => family.modes.forEach((mode, turn) => {
+    hues[mode] = {hue, turn};
+    groups[mode] = family;
+  }));
 }
+
+/** The most used mode of the family of mode k; the family has its colour. */
+export const leadOf = (k) => (groups[k] ? groups[k].modes[0] : k);
 
 /** Number of modes with more use. */
 export const rankOf = (k) => (ranks[k] === undefined ? k : ranks[k]);
-/** Its hue, which modes of the same label share, and how many more used modes of that label there are. */
+/** Its hue, which modes of one family share, and how many more used modes that family has. */
 export const hueOf = (k) => hues[k] || {hue: rankOf(k), turn: 0};
 /** Whether a mode is among the rarely used ones that are merged. */
 export const isOther = (k) => rankOf(k) >= toldCount;

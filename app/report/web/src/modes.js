@@ -1,7 +1,6 @@
-// The modes of a bank as the page's sections list them: most used first, those hardly used as one.
+// The modes of a bank as the page's sections list them: by family, the most used first, those hardly used as one.
 import {legend} from './elements.js';
 import {modeColour, palette} from './look.js';
-import {modeTitle} from './mode_names.js';
 
 /** Rows of the modes listed one by one, and those of the others. */
 export function byUse(bank) {
@@ -9,12 +8,24 @@ export function byUse(bank) {
   return {told: rows.slice(0, bank.told), others: rows.slice(bank.told)};
 }
 
+/** The families that stand one by one, each with `lead`, its most used mode, and those of the others. */
+export function familiesOf(bank) {
+  const all = bank.families.map((family) => ({...family, lead: family.modes[0]}));
+  return {told: all.slice(0, bank.told_families), others: all.slice(bank.told_families)};
+}
+
+/** Whether some family has several modes. */
+export const hasFamilies = (bank) => bank.families.length < bank.modes.length;
+
+/** A mode in a column of a page of several banks: its number and its label. */
+export const nameOf = (bank, k) => (bank.modes[k].name ? `${k} ${bank.modes[k].name}` : String(k));
+
 export const othersName = (count) => `${count} other${count === 1 ? '' : 's'}`;
 
 /** The legend of a bank; `bank` may be missing. */
 export function modeLegend(bank) {
   if (!bank || bank.modes.length < 2) return null;
-  const {told, others} = byUse(bank);
+  const {told, others} = familiesOf(bank);
   const rest = others.length ? [[palette.unclustered, othersName(others.length)]] : [];
-  return legend([...told.map(({mode}) => [modeColour(mode), modeTitle(mode)]), ...rest], 'Colours of modes');
+  return legend([...told.map(({lead, title}) => [modeColour(lead), title]), ...rest], 'Colours of modes');
 }

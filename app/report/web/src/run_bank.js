@@ -2,8 +2,8 @@
 import {details, facts, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {modeColour} from './look.js';
-import {modeCell, modeTitle} from './mode_names.js';
-import {byUse, othersName} from './modes.js';
+import {modeCell} from './mode_names.js';
+import {byUse, familiesOf, hasFamilies, othersName} from './modes.js';
 import {section} from './page.js';
 import {switching} from './run_switching.js';
 import {table} from './table.js';
@@ -47,14 +47,30 @@ function numberColumns(bank) {
   ];
 }
 
+// Families as the first screen has them, all of them.
+function familyTable(bank) {
+  const {told, others} = familiesOf(bank);
+  const rows = [...told, ...others].map((row) => ({...row, colour: modeColour(row.lead)}));
+  const columns = [
+    {...which, name: 'Family', of: (row) => row.title},
+    {name: 'Used', of: (row) => row.use},
+    {name: 'Stay', of: (row) => row.stay},
+    {name: 'Time constant', of: (row) => row.decays},
+    ...gains(bank),
+  ];
+  const means = 'means by use; ± holds the errors of the modes and how far they are apart';
+  return table(columns, rows, {caption: `Families of modes, most used first (${means})`, sortable: true});
+}
+
 function modeTables(bank) {
   const named = (rows) => rows.map((row) => ({...row, name: modeCell(row.mode), colour: modeColour(row.mode)}));
   const baseline = bank.baseline ? [{...bank.baseline, name: 'baseline', colour: null}] : [];
   const {told, others} = byUse(bank);
   const caption = `Modes, most used first (± one standard error; ${roleNames[bank.role]})`;
   const all = [...named(bank.order.map((k) => bank.modes[k])), ...baseline];
+  const each = table(wordColumns(bank), [...named(told), ...baseline], {caption, sortable: true});
   return [
-    table(wordColumns(bank), [...named(told), ...baseline], {caption, sortable: true}),
+    ...(hasFamilies(bank) ? [familyTable(bank), details('Each mode', each)] : [each]),
     others.length ? details(
                         `${othersName(others.length)}, used less`,
                         table(wordColumns(bank), named(others), {caption: 'Other modes', sortable: true})) :
@@ -98,12 +114,12 @@ function screenedTable(screened) {
 function confusionTable(bank) {
   const {confusion} = bank;
   if (!confusion) return null;
-  const {told, others} = byUse(bank);
-  const rest = others.length ? [{name: othersName(others.length), of: (row) => row.others}] : [];
+  const {told, others} = familiesOf(bank);
+  const rest = others.length ? [{name: othersName(others.length), of: (row) => row.shares[told.length]}] : [];
   const columns = [
     {name: 'Label', text: true, of: (row) => row.label},
     {name: 'Samples', of: (row) => row.samples},
-    ...told.map(({mode}) => ({name: modeTitle(mode), of: (row) => row.shares[mode]})),
+    ...told.map(({title}, f) => ({name: title, of: (row) => row.shares[f]})),
     ...rest,
   ];
   const caption = `Most probable mode of each label’s samples (${roleNames[confusion.role]})`;

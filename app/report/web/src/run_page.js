@@ -95,7 +95,7 @@ const data = pageData();
 
 function drawFirst() {
   const {bank} = data;
-  if (bank) nameModes(bank.modes.map((mode) => mode.name), bank.order, bank.told);
+  if (bank) nameModes(bank.modes.map((mode) => mode.name), bank.order, bank.told, bank.families);
   head(data.file, `Run of ${data.origin.created}`);
   drawVerdict(data.verdict);
 }

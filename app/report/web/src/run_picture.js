@@ -5,7 +5,7 @@ import {mixed} from './colour.js';
 import {h, legend} from './elements.js';
 import {roleNames} from './filters.js';
 import {groundNow, INK, inkNow, modeColour, onCanvas, palette} from './look.js';
-import {modeTitle, rankOf} from './mode_names.js';
+import {leadOf, rankOf} from './mode_names.js';
 import {dark, onTheme} from './page.js';
 import {segments, ticks} from './picture_layout.js';
 import {inNaturalOrder} from './run_names.js';
@@ -39,13 +39,16 @@ function layoutOf(picture, width, height) {
   return {plot, places, strips, top, bottom: height - below};
 }
 
+// A family has the colour of its most used mode: shades of one thing would look like confetti.
+const familiesOver = (modes) => modes.map((k) => (k < 0 ? k : leadOf(k)));
+
 // Where a share of the range stands; its ends are clear of the frame.
 const heightOf = (at, share) => above_px + at.plot * (0.98 - 0.96 * share);
 
 function drawState(pen, picture, at, {run, x, width}) {
   const n = run.low.length, step = width / n, high = run.high || run.low;
   const y = (v) => heightOf(at, v / picture.steps);
-  const list = run.mode || run.low.map(() => -1);
+  const list = run.mode ? familiesOver(run.mode) : run.low.map(() => -1);
   // The rarer modes last, or the others would hide them.
   const modes = [...new Set(list)].sort((a, b) => rankOf(a) - rankOf(b));
   for (const mode of modes) {
@@ -122,7 +125,7 @@ function paint(canvas, picture) {
   for (const place of at.places) {
     drawState(pen, picture, at, place);
     if (at.strips.includes('mode') && place.run.mode) {
-      drawStrip(pen, place.run.mode, at.top('mode'), place, (k) => onCanvas(modeColour(k)));
+      drawStrip(pen, familiesOver(place.run.mode), at.top('mode'), place, (k) => onCanvas(modeColour(k)));
     }
     if (place.run.label) {
       drawStrip(pen, place.run.label, at.top('label'), place, (k) => labelNow(k, picture.labels.length));
@@ -136,12 +139,12 @@ function described(picture, role) {
   const shown = picture.runs.length;
   const which = shown < picture.of_runs ? `${shown} of ${picture.of_runs} ${roleNames[role]}` : roleNames[role];
   const known = picture.labels.length ? '; beneath, what is known of them' : '';
-  const coloured = picture.modes > 1 ? ', in the colour of the mode that the filter finds most probable' : '';
+  const coloured = picture.modes > 1 ? ', in the colour of the mode that is most probable' : '';
   return `${titleOf(picture.state)} over time [s], ${which}${coloured}${known}.`;
 }
 
 function key(picture, modes) {
-  const told = modes && picture.modes > 1 ? modes.rows.map(({mode}) => [modeColour(mode), modeTitle(mode)]) : [];
+  const told = modes && picture.modes > 1 ? modes.rows.map((row) => [modeColour(row.modes[0]), row.title]) : [];
   const others = told.length && modes.others ? [[palette.unclustered, 'others']] : [];
   const known = picture.labels.map((name, k) => [labelColour(k, picture.labels.length), `known: ${name}`]);
   return legend([...told, ...others, ...known], 'Colours of modes and labels');

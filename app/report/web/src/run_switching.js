@@ -5,16 +5,16 @@ import {transitionGraph} from './graph.js';
 import {modeMapFigure} from './mode_map.js';
 import {modeColour, palette} from './look.js';
 import {modeCell, modeTitle} from './mode_names.js';
-import {byUse, othersName} from './modes.js';
+import {familiesOf, othersName} from './modes.js';
 import {table} from './table.js';
 
-// The modes told one by one, and all others as one: {title, short, colour, use}.
+// The families told one by one, and all others as one: {title, short, colour, use}.
 function nodesOf(bank) {
-  const {told, others} = byUse(bank);
+  const {told, others} = familiesOf(bank);
   const nodes = told.map((row) => ({
-                           title: modeTitle(row.mode),
-                           short: String(row.mode),
-                           colour: modeColour(row.mode),
+                           title: row.title,
+                           short: row.modes.length > 1 ? `${row.lead}…` : String(row.lead),
+                           colour: modeColour(row.lead),
                            use: row.use.v,
                          }));
   if (!others.length) return nodes;
@@ -62,11 +62,11 @@ function switchMap(bank) {
 export function switching(bank) {
   if (bank.modes.length < 2) return note('There is one mode, so there are no switches.');
   const nodes = nodesOf(bank), stays = bank.modes.some((row) => row.stay_seen);
-  const folded = bank.order.length > bank.told;
+  const folded = bank.folded.length < bank.modes.length;
   return [
     switchMap(bank),
     h('h3', {}, 'How modes follow each other'),
-    folded ? h('p', {class: 'caption'}, 'Modes that are hardly used are taken as one; the matrix has each.') : null,
+    folded ? h('p', {class: 'caption'}, 'Modes of one family are one node, and so are all that are hardly used; the matrix has each mode.') : null,
     bank.switch_weights ? movedSwitches() : null,
     h('div', {class: 'pair'}, h('div', {}, transitionGraph(bank.folded, nodes)),
       stays ? h('div', {}, h('h3', {}, 'How long they last'), stayTable(bank)) : null),

@@ -10,7 +10,7 @@ import {withTips} from './tips.js';
 const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 // A cell breaks between its parts, not between a number and its error or unit.
-const breakable = (text) => text.replace(/ (±|%|s\b)/g, '\u00a0$1').replace(/(±|period) /g, '$1\u00a0');
+const breakable = (text) => text.replace(/ (±|%|s\b|m\b)/g, '\u00a0$1').replace(/(±|period) /g, '$1\u00a0');
 
 // Commands (`modebank show`) and options (--filter.horizon 10) in a sentence.
 const command = /(`[^`]+`|--[\w.]+(?:[ =](?:'[^']*'|[\d.]+|auto|varx|adaptive))?)/;
@@ -28,17 +28,15 @@ function card(row) {
 
 const cardList = (id, rows) => (rows.length ? h('ul', {class: 'numbers', id}, rows.map(card)) : null);
 
-const left_out = 'decay/sample';  // a time constant says it to people
-
 function modesTable(modes) {
-  const kept = modes.headings.map((_, i) => i).filter((i) => modes.headings[i] !== left_out);
   const unit = modes.gain_unit ? `; gains in ${modes.gain_unit}` : '';
-  const title = `${modes.count} mode${modes.count === 1 ? '' : 's'}${unit}`;
-  const columns = kept.map((i) => ({
-                             name: modes.headings[i],
+  const families = modes.families < modes.count ? ` in ${modes.families} famil${modes.families === 1 ? 'y' : 'ies'}` : '';
+  const title = `${modes.count} mode${modes.count === 1 ? '' : 's'}${families}${unit}`;
+  const columns = modes.headings.map((name, i) => ({
+                             name,
                              text: i === 0,
                              of: (row) => breakable(row.cells[i]),
-                             swatch: i === 0 ? (row) => modeColour(row.mode) : null,
+                             swatch: i === 0 ? (row) => modeColour(row.modes[0]) : null,
                            }));
   const head = h('tr', {}, columns.map((column) => headingOf(column, {}, column.name)));
   const body = modes.rows.map((row) => h('tr', {}, columns.map((column) => cellOf(column, row))));

@@ -1,4 +1,4 @@
-#include "app/export/ros2/ros2_numbers.hpp"
+#include "app/text/robot_numbers.hpp"
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
@@ -85,17 +85,17 @@ double mean_delay_s(double gain, double delay_gain, double dt_s, double input_la
 }
 
 /// Wheel separation, left and right multiplier, delay of the yaw rate and of the forward speed.
-VectorXd wheel_numbers(const ExportedBank& exported, const LinearModel& model, const RobotChannels& at,
+VectorXd wheel_numbers(const RobotBank& robot, const LinearModel& model, const RobotChannels& at,
                        const RobotSizes& sizes) {
   VectorXd numbers = VectorXd::Constant(5, not_a_number);
   if (at.left < 0 || at.yaw_rate < 0) return numbers;
-  const Response response = response_of(exported.bank, model);
+  const Response response = response_of(robot.bank, model);
   const double radius = !at.wheels_in_rad_s ? 1.0 : sizes.wheel_radius_m > 0.0 ? sizes.wheel_radius_m : not_a_number;
   const double G_L = response.gain(at.yaw_rate, at.left), G_R = response.gain(at.yaw_rate, at.right);
   const auto delay = [&](Index state, double sign) {
     return mean_delay_s(response.gain(state, at.right) + sign * response.gain(state, at.left),
                         response.delay_gain(state, at.right) + sign * response.delay_gain(state, at.left),
-                        exported.bank.dt_s, exported.input_lag_s);
+                        robot.bank.dt_s, robot.input_lag_s);
   };
   numbers(3) = delay(at.yaw_rate, -1.0);
   if (at.forward_speed < 0) {
@@ -124,8 +124,8 @@ MatrixXd stationary_covariance(MatrixXd F, MatrixXd P) {
 }
 
 /// Variances of the measured states about their steady values, P = A P A' + Q; NaN where the mode is not stable.
-VectorXd stationary_variances(const ExportedBank& exported, const LinearModel& model, const MatrixXd& Q) {
-  const MatrixXd& C = exported.bank.C;
+VectorXd stationary_variances(const RobotBank& robot, const LinearModel& model, const MatrixXd& Q) {
+  const MatrixXd& C = robot.bank.C;
   const MatrixXd P = stationary_covariance(model.full_form(), Q);
   if (P.size() == 0) return VectorXd::Constant(C.rows(), not_a_number);
   return (C * P * C.transpose()).diagonal();
@@ -133,10 +133,10 @@ VectorXd stationary_variances(const ExportedBank& exported, const LinearModel& m
 
 /// The same with standard errors: those from theta by the delta method, those from Q entry by entry, since it enters
 /// linearly.
-DerivedNumbers variances_of(const ExportedBank& exported, Index mode) {
-  const Mode& of = exported.bank.modes[static_cast<std::size_t>(mode)];
+DerivedNumbers variances_of(const RobotBank& robot, Index mode) {
+  const Mode& of = robot.bank.modes[static_cast<std::size_t>(mode)];
   DerivedNumbers result = derived_numbers(
-      exported.bank, mode, [&](const LinearModel& model) { return stationary_variances(exported, model, of.Q); });
+      robot.bank, mode, [&](const LinearModel& model) { return stationary_variances(robot, model, of.Q); });
   VectorXd squares = result.errors.array().square();
   if (of.Q_standard_error.size() == 0) squares.setConstant(not_a_number);
   for (Index i = 0; i < of.Q_standard_error.rows(); ++i)
@@ -144,7 +144,7 @@ DerivedNumbers variances_of(const ExportedBank& exported, Index mode) {
       if (of.Q_standard_error(i, j) == 0.0) continue;
       MatrixXd unit = MatrixXd::Zero(of.Q.rows(), of.Q.cols());
       unit(i, j) = unit(j, i) = of.Q_standard_error(i, j);
-      squares.array() += stationary_variances(exported, of.model, unit).array().square();
+      squares.array() += stationary_variances(robot, of.model, unit).array().square();
     }
   result.errors = squares.cwiseSqrt();
   return result;
@@ -154,23 +154,24 @@ DerivedNumbers variances_of(const ExportedBank& exported, Index mode) {
 
 bool Estimate::known() const { return std::isfinite(value); }
 
-RobotChannels robot_channels(const ExportedBank& exported) {
+bool Estimate::vague() const { return std::abs(value) < error; }
+
+RobotChannels robot_channels(const RobotBank& robot) {
   RobotChannels channels;
-  channels.yaw_rate = find_channel(exported.measurements, "rad/s", {"wz", "yaw", "gyro_z", "angular.z", "omega_z"});
-  channels.forward_speed = find_channel(exported.measurements, "m/s", {"vx", "forward", "linear.x", "speed", "surge"});
+  channels.yaw_rate = find_channel(robot.measurements, "rad/s", {"wz", "yaw", "gyro_z", "angular.z", "omega_z"});
+  channels.forward_speed = find_channel(robot.measurements, "m/s", {"vx", "forward", "linear.x", "speed", "surge"});
   if (channels.yaw_rate < 0)
     channels.missing.push_back("no state is the yaw rate (state its unit, data.state_unit = rad/s)");
   if (channels.forward_speed < 0)
     channels.missing.push_back("no state is the forward speed (state its unit, data.state_unit = m/s)");
-  find_wheels(exported.recorded_inputs, channels);
+  find_wheels(robot.recorded_inputs, channels);
   return channels;
 }
 
-RobotNumbers robot_numbers(const ExportedBank& exported, Index mode, const RobotChannels& channels,
-                           const RobotSizes& sizes) {
+RobotNumbers robot_numbers(const RobotBank& robot, Index mode, const RobotChannels& channels, const RobotSizes& sizes) {
   const DerivedNumbers derived = derived_numbers(
-      exported.bank, mode, [&](const LinearModel& model) { return wheel_numbers(exported, model, channels, sizes); });
-  const DerivedNumbers variances = variances_of(exported, mode);
+      robot.bank, mode, [&](const LinearModel& model) { return wheel_numbers(robot, model, channels, sizes); });
+  const DerivedNumbers variances = variances_of(robot, mode);
   const auto variance = [&](Index state) {
     return state < 0 ? Estimate{not_a_number, not_a_number}
                      : Estimate{variances.values(state), variances.errors(state)};

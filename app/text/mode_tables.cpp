@@ -1,0 +1,204 @@
+#include "app/text/mode_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
+#include <cmath>
+
+#include "app/text/mode_names.hpp"
+#include "app/text/number_text.hpp"
+#include "app/text/robot_numbers.hpp"
+#include "app/text/terminal.hpp"
+#include "app/text/text_table.hpp"
+
+namespace modebank::app {
+namespace {
+
+constexpr std::size_t most_members = 4;  // modes of a family that a cell of a table has room for
+
+std::vector<std::string> gain_cells(const Eigen::MatrixXd& gain, const Eigen::MatrixXd& error,
+                                    const std::vector<bool>& open) {
+  std::vector<std::string> cells;
+  const Eigen::VectorXd gains = gain.transpose().reshaped(), errors = error.transpose().reshaped();
+  for (Index i = 0; i < gains.size(); ++i)
+    cells.push_back(open[static_cast<std::size_t>(i)] ? not_identifiable
+                    : std::isnan(gains(i))            ? "never settles"
+                                                      : estimate_text(gains(i), errors(i)));
+  return cells;
+}
+
+bool some_have_several(const std::vector<ModeFamily>& families) {
+  return std::any_of(families.begin(), families.end(),
+                     [](const ModeFamily& family) { return family.modes.size() > 1; });
+}
+
+/// "ice (0, 5, 3)", "modes 2, 7", where families have several modes; else "4 grip", "2".
+std::string family_cell(const ModeFamily& family, bool several) {
+  const std::string name = shortened(family.name);
+  if (!several) return name.empty() ? family.numbers() : fmt::format("{} {}", family.numbers(), name);
+  if (!name.empty()) return fmt::format("{} ({})", name, family.numbers(most_members));
+  return fmt::format("{} {}", family.modes.size() == 1 ? "mode" : "modes", family.numbers(most_members));
+}
+
+/// Without the period, which `show` has by mode. A mean of several modes stands as it is: its error is no interval that
+/// may reach a mode that never dies out.
+std::string time_words(const ModeFamily& family) {
+  Decay slowest = family.slowest;
+  slowest.frequency_hz = 0.0;
+  const bool mean = family.counted.size() > 1 && std::isfinite(slowest.time_constant_s);
+  return mean ? estimate_text(slowest.time_constant_s, slowest.time_constant_error_s) + " s" : decay_words(slowest);
+}
+
+/// Of a robot on two rows of wheels how wide its track acts in each family, in metres; nothing of others.
+std::vector<std::string> track_cells(const Archive& archive, const std::vector<ModeFamily>& families) {
+  if (!archive.recording) return {};
+  const RobotBank robot{*archive.bank, archive.recording->states, archive.recording->inputs};
+  const RobotChannels channels = robot_channels(robot);
+  if (channels.yaw_rate < 0 || channels.left < 0) return {};
+  std::vector<std::string> cells;
+  bool any = false;
+  for (const ModeFamily& family : families) {
+    const Estimate track = family_numbers(robot, family, channels, {}).separation_m;
+    any = any || track.known();
+    cells.push_back(track.known() ? estimate_text(track.value, track.error) + " m" : "-");
+  }
+  return any ? cells : std::vector<std::string>();
+}
+
+std::vector<std::string> family_headings(const GainNames& gains, bool several, bool track) {
+  std::vector<std::string> headings{several ? "family (modes)" : "mode", "used", "stay", "time constant"};
+  if (track) headings.emplace_back("track width");
+  headings.insert(headings.end(), gains.names.begin(), gains.names.end());
+  return headings;
+}
+
+std::vector<ModeTable::Row> family_rows(const Archive& archive, const std::vector<ModeFamily>& families, bool several,
+                                        const std::vector<std::string>& tracks) {
+  const std::vector<bool> open = unidentifiable_gains(archive, archive.bank->structure);
+  const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
+  std::vector<ModeTable::Row> rows;
+  for (const ModeFamily& family : families) {
+    const UsedMode stay{family.modes.front(), family.use, family.stay_s, family.at_least};
+    ModeTable::Row row{family.modes,
+                       family.title(),
+                       {family_cell(family, several), fmt::format("{:.1f} %", 100 * family.use), stay_words(stay),
+                        no_decays ? not_identifiable : time_words(family)}};
+    if (!tracks.empty()) row.cells.push_back(tracks[rows.size()]);
+    const std::vector<std::string> gains = gain_cells(family.gain, family.gain_error, open);
+    row.cells.insert(row.cells.end(), gains.begin(), gains.end());
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string text_of(const std::vector<std::string>& headings, const std::vector<ModeTable::Row>& rows, bool left,
+                    int width) {
+  std::vector<TextTable::Column> columns;
+  for (const std::string& heading : headings)
+    columns.push_back({heading, 0, left && columns.empty() ? TextTable::Align::left : TextTable::Align::right});
+  TextTable table(std::move(columns));
+  for (const ModeTable::Row& row : rows) table.add(row.cells);
+  return table.text(width);
+}
+
+GainNames gains_of(const Archive& archive) {
+  const Recording none;
+  const Recording& recording = archive.recording ? *archive.recording : none;
+  return gain_names(*archive.bank, recording.states, recording.inputs);
+}
+
+int widest_line(const std::string& text) {
+  int widest = 0;
+  for (const std::string& line : lines_of(text)) widest = std::max(widest, columns_of(line));
+  return widest;
+}
+
+/// Every mode with all of its decays.
+std::string all_modes(const Archive& archive, const GainNames& gains, int width) {
+  const std::vector<bool> open = unidentifiable_gains(archive, archive.bank->structure);
+  const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
+  std::vector<std::string> headings{"mode", "used", "stay", "decay/sample", "time constant"};
+  headings.insert(headings.end(), gains.names.begin(), gains.names.end());
+  std::vector<ModeTable::Row> rows;
+  for (const UsedMode& used : used_modes(archive)) {
+    const ModeDynamics dynamics = mode_dynamics(*archive.bank, used.mode);
+    std::vector<std::string> times;
+    for (const Decay& decay : dynamics.decays) times.push_back(decay_words(decay));
+    ModeTable::Row row{{used.mode},
+                       mode_title(archive.mode_names, used.mode),
+                       {shortened(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
+                        stay_words(used), no_decays ? "-" : per_sample_words(dynamics.decays),
+                        no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
+    const std::vector<std::string> cells = gain_cells(dynamics.gain, dynamics.gain_error, open);
+    row.cells.insert(row.cells.end(), cells.begin(), cells.end());
+    rows.push_back(std::move(row));
+  }
+  return text_of(headings, rows, !archive.mode_names.empty(), width);
+}
+
+/// Families, where some have several modes: their modes and what their numbers rest on.
+std::string all_families(const Archive& archive, const GainNames& gains, int width) {
+  const std::vector<ModeFamily> families = mode_families(archive);
+  if (!some_have_several(families)) return "";
+  std::string text =
+      "\nfamilies of modes: means by use; their errors hold those of the modes and how far the modes "
+      "are apart\n";
+  const std::vector<std::string> tracks = track_cells(archive, families);
+  text = wrapped(text, width) + text_of(family_headings(gains, true, !tracks.empty()),
+                                        family_rows(archive, families, true, tracks), true, width);
+  for (const ModeFamily& family : families) {
+    if (family.modes.size() == 1) continue;
+    std::string line = family.title();
+    if (family.counted.size() < family.modes.size())
+      line += fmt::format(": numbers of {} of them, the others are vague or do not settle", family.counted.size());
+    text += wrapped(line + "\n", width);
+  }
+  return text;
+}
+
+}  // namespace
+
+ModeTable mode_table(const Archive& archive, Index rows) {
+  std::vector<ModeFamily> families = mode_families(archive);
+  const bool several = some_have_several(families);
+  const auto all = static_cast<Index>(families.size());
+  std::vector<double> use;
+  for (const ModeFamily& family : families) use.push_back(family.use);
+  const Index told = told_of(use);
+  const bool fit = rows == 0 || (told == all ? all : told + 1) <= rows;
+  const Index shown = fit ? told : std::clamp<Index>(rows - 1, 1, told);
+  const GainNames gains = gains_of(archive);
+  const std::vector<std::string> tracks = track_cells(archive, families);
+  ModeTable table{family_headings(gains, several, !tracks.empty()), {}, all, all - shown, 0.0, gains.unit};
+  for (Index i = shown; i < all; ++i) table.others_use += use[static_cast<std::size_t>(i)];
+  families.resize(static_cast<std::size_t>(shown));
+  table.rows = family_rows(archive, families, several, tracks);
+  return table;
+}
+
+ShortModes short_modes(const Archive& archive, Index rows, int width) {
+  ModeTable table = mode_table(archive, rows);
+  const bool left = !archive.mode_names.empty() || table.families < archive.bank->mode_count();
+  ShortModes result{text_of(table.headings, table.rows, left, 0), 0};
+  const std::size_t without_gains = table.headings.size() - gains_of(archive).names.size();
+  while (widest_line(result.text) > width && table.headings.size() > without_gains) {
+    table.headings.pop_back();
+    for (ModeTable::Row& row : table.rows) row.cells.pop_back();
+    ++result.gains_left_out;
+    result.text = text_of(table.headings, table.rows, left, 0);
+  }
+  if (table.others > 0)
+    result.text += fmt::format("and {} other{}, used {:.1f} %\n", table.others, table.others == 1 ? "" : "s",
+                               100 * table.others_use);
+  return result;
+}
+
+std::string modes_in_words(const Archive& archive, int width) {
+  if (!archive.bank) return "";
+  const GainNames gains = gains_of(archive);
+  return fmt::format("\nmodes in words{}\n", gains.unit.empty() ? "" : fmt::format("; gains in {}", gains.unit)) +
+         all_modes(archive, gains, width) + all_families(archive, gains, width);
+}
+
+}  // namespace modebank::app
