@@ -3,10 +3,13 @@
 #include <pybind11/stl.h>
 
 #include <string>
+#include <vector>
 
 #include "app/config/config_file.hpp"
 #include "app/text/first_screen.hpp"
+#include "app/text/mode_families.hpp"
 #include "app/text/summary_text.hpp"
+#include "modebank/base/eigen.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
@@ -26,6 +29,30 @@ std::string summary(const std::string& path, int width) {
   return app::summary_text(read_archive(path, Evaluations::in_file), width);
 }
 
+/// A dictionary per family, the most used first.
+py::list families(const std::string& path) {
+  std::vector<app::ModeFamily> all;
+  {
+    const py::gil_scoped_release unlocked;
+    const Archive archive = read_archive(path, Evaluations::in_file);
+    if (archive.bank) all = app::mode_families(archive);
+  }
+  py::list list;
+  for (const app::ModeFamily& family : all) {
+    py::dict said;
+    said["title"] = family.title();
+    said["modes"] = family.modes;
+    said["use"] = family.use;
+    said["stay_s"] = family.stay_s;
+    said["time_constant_s"] = family.slowest.time_constant_s;
+    said["time_constant_error_s"] = family.slowest.time_constant_error_s;
+    said["gain"] = copied(to_matrix(family.gain));
+    said["gain_error"] = copied(to_matrix(family.gain_error));
+    list.append(said);
+  }
+  return list;
+}
+
 }  // namespace
 
 void bind_archive(py::module_& module) {
@@ -36,6 +63,8 @@ void bind_archive(py::module_& module) {
         return OpenArchive(path).digest();
       },
       py::arg("path"), "SHA-256 of an archive, which is right; throws DataError for a file that is none.");
+  module.def("families", &families, py::arg("path"),
+             "Families of the modes of an archive's bank, the most used first: a dictionary each.");
   module.def("screen", &screen, py::arg("path"), py::arg("width"));
   module.def("summary", &summary, py::arg("path"), py::arg("width"));
 }
