@@ -90,7 +90,7 @@ std::string instead_words(const Finding& finding) {
   if (simpler == finding.best_competitor && falls_short_of(finding, simpler) && finding.answer != Answer::cannot_tell)
     return "";
   if (simpler == finding.best_competitor) return fmt::format(" The single model `{}` {}.", simpler, how);
-  return fmt::format(" The simpler model ({}) {}, and is about as good as `{}` ({:+.3f} nats per sample).",
+  return fmt::format(" The simpler model ({}) {}, and is about as good as `{}` ({:+.3g} nats per sample).",
                      described(finding, simpler), how, finding.best_competitor, -finding.description_loss);
 }
 
@@ -167,7 +167,7 @@ std::string without_noise_words(const Finding& finding) {
 
 std::string one_mode_words(const Finding& finding) {
   if (finding.without_noise) return without_noise_words(finding);
-  std::string text = "The bank has one mode: it does not switch.";
+  std::string text = "The bank has one mode: no modes of motion.";
   if (finding.coarse.empty()) return text + instead_words(finding);
   return text + fmt::format(" Its log scores measure rounding rather than motion: {}.", coarse_reasons(finding));
 }

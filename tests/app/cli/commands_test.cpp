@@ -151,7 +151,7 @@ TEST_F(Commands, DataWithoutNoiseEndInCoefficients) {
   const ProgramResult result = modebank({"run", file("exact.ini").string()});
   ASSERT_EQ(result.status, 0) << result.err;
   const std::string screen = std::regex_replace(result.out, std::regex("\n +"), " ");
-  for (const char* said : {"without noise", "y <- y -0.1, y <- u 0.2", "take the coefficients"})
+  for (const char* said : {"up to rounding", "y <- y -0.1, y <- u 0.2", "write the coefficients"})
     EXPECT_NE(screen.find(said), std::string::npos) << said << '\n' << screen;
 }
 
@@ -176,7 +176,7 @@ TEST_F(Commands, StepsThatScatterEndInOneModelAndItsTimeConstant) {
         "[data]\ninputs = log_*.csv\nstate = y\ninput = u\n[archive]\noutput = " + file("uneven.h5").string() + "\n");
   const ProgramResult result = modebank({"run", file("uneven.ini").string()});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.out.find("not judged yet: steps scatter by 4"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("not judged yet: time steps scatter by 4"), std::string::npos) << result.out;
   EXPECT_EQ(result.out.find("warning"), std::string::npos) << result.out;
   const Archive archived = read_archive(file("uneven.h5"));
   EXPECT_EQ(archived.finding->answer, Answer::not_yet);
