@@ -12,6 +12,7 @@
 #include "app/init/proposed_times.hpp"
 #include "app/init/words.hpp"
 #include "ident/base/characters.hpp"
+#include "ident/base/natural_order.hpp"
 #include "ident/base/printable.hpp"
 #include "io/import/expression.hpp"
 #include "io/import/split.hpp"
@@ -78,7 +79,9 @@ class Proposer {
   std::string runs_text(const FileSet& set, bool listed) const {
     if (set.files.size() == 1) return "one file";
     if (listed) return fmt::format("{} runs, named by their files", set.files.size());
-    return fmt::format("{} runs; * names them: {} to {}", set.runs.size(), set.runs.front(), set.runs.back());
+    const std::vector<std::size_t> order = natural_order(set.runs);
+    return fmt::format("{} runs; * names them: {} to {}", set.runs.size(), set.runs[order.front()],
+                       set.runs[order.back()]);
   }
 
   /// The common folder of all files of both sets.

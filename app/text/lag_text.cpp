@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/text/text_units.hpp"
+#include "ident/base/natural_order.hpp"
 
 namespace modebank::app {
 
@@ -81,7 +82,9 @@ std::string lag_text(const LagReport& report, bool done) {
   const auto estimated = std::count_if(report.runs.begin(), report.runs.end(),
                                        [](const RunLag& run) { return run.status != LagStatus::not_estimated; });
   if (static_cast<std::size_t>(estimated) > most_runs) return text;  // the archive has them: /lag/runs
-  for (const RunLag& run : report.runs) text += run_text(run);
+  std::vector<std::string> names;
+  for (const RunLag& run : report.runs) names.push_back(run.run);
+  for (const std::size_t i : natural_order(names)) text += run_text(report.runs[i]);
   return text;
 }
 

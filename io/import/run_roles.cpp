@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "ident/base/natural_order.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "modebank/base/error.hpp"
 
@@ -12,17 +13,24 @@ namespace modebank {
 
 namespace {
 
+/// As people count: run_2 before run_10.
+std::string listed(const std::vector<std::string>& runs) {
+  std::vector<std::string> names;
+  for (const std::size_t i : natural_order(runs)) names.push_back(runs[i]);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 void assign(const std::vector<std::string>& runs, const std::vector<std::string>& named, Role role,
             std::vector<std::optional<Role>>& roles) {
   for (const std::string& name : named) {
     const auto found = std::find(runs.begin(), runs.end(), name);
     if (found == runs.end())
       throw ConfigurationError(fmt::format("data.{}: unknown run \"{}\"{}; runs: {}", name_of(role), name,
-                                           did_you_mean(name, runs), fmt::join(runs, ", ")));
+                                           did_you_mean(name, runs), listed(runs)));
     auto& assigned = roles[static_cast<std::size_t>(found - runs.begin())];
     if (assigned)
       throw ConfigurationError(fmt::format("data.{}: run \"{}\" is already named in data.{}; runs: {}", name_of(role),
-                                           name, name_of(*assigned), fmt::join(runs, ", ")));
+                                           name, name_of(*assigned), listed(runs)));
     assigned = role;
   }
 }

@@ -7,6 +7,7 @@
 #include "app/cli/check/check_output.hpp"
 #include "app/text/lag_text.hpp"
 #include "app/text/text_units.hpp"
+#include "ident/base/natural_order.hpp"
 
 namespace modebank::app {
 namespace {
@@ -70,9 +71,11 @@ std::string run_table(const DataCheck& check) {
       "{}\n",
       "run", width, "role", "s", "in Hz", "st Hz", "jit %", "gaps", "disor", "NaN", "rest%", "const s", "levels",
       "sat%", "exc", "defic%", "spikes", "lag s", "drift ms/s", "best match s [range] windows");
+  std::vector<std::string> names;
+  for (const RunReport& run : check.runs) names.push_back(run.run);
   std::size_t rows = 0;
-  for (const RunReport& run : check.runs)
-    if (++rows <= most_rows) text += run_row(run, width);
+  for (const std::size_t i : natural_order(names))
+    if (++rows <= most_rows) text += run_row(check.runs[i], width);
   if (rows > most_rows) text += fmt::format("... and {} runs more (--json has all)\n", rows - most_rows);
   return text;
 }
@@ -102,8 +105,8 @@ std::string check_text(const DataCheck& check, const std::vector<std::string>& f
   for (const RunReport& run : check.runs) transitions += run.transitions;
   const auto trains =
       std::count_if(check.runs.begin(), check.runs.end(), [](const RunReport& run) { return run.role == Role::train; });
-  std::string text = fmt::format("data check: {} runs ({} train), {} transitions when joined\n\n", check.runs.size(),
-                                 trains, transitions);
+  std::string text = fmt::format("data check: {} runs ({} training runs), {} transitions when joined\n\n",
+                                 check.runs.size(), trains, transitions);
   text += run_table(check) +
           fmt::format(
               "  rest: all inputs zero; const: longest constant command in motion; levels, sat: distinct and saturated "
