@@ -14,6 +14,7 @@
 
 #include "app/cli/command_table.hpp"
 #include "app/config/config_file.hpp"
+#include "app/config/faults.hpp"
 #include "app/config/option_table.hpp"
 #include "app/study/launch/shell.hpp"
 #include "modebank/base/error.hpp"
@@ -159,16 +160,40 @@ std::string known_words(const Command& command) {
 }
 
 /// "-o" and "--window.length x" are refused alike where nothing would read them.
-[[noreturn]] void refuse(const Command& command, const std::string& option) {
-  throw ConfigurationError(fmt::format("{0} does not read --{1}; {2}{3} (modebank help {0})", command.name, option,
-                                       instead_of(command, option), known_words(command)));
+void refuse_unread(const Command& command, const CommandLine& line) {
+  std::vector<std::string> unread;
+  std::string instead;
+  const auto add = [&](const std::string& option) {
+    unread.push_back("--" + option);
+    instead += instead_of(command, option);
+  };
+  for (const std::string& given : line.given)
+    if (!command.find_option(given)) add(given);
+  for (const auto& [key, value] : line.overrides)
+    if (!command.reads(key)) add(key);
+  if (!unread.empty())
+    throw ConfigurationError(fmt::format("{0} does not read {1}; {2}{3} (modebank help {0})", command.name,
+                                         fmt::join(unread, ", "), instead, known_words(command)));
+}
+
+/// Takes the words that the parser recognized into the line. Throws ConfigurationError with all others.
+void take_words(const po::parsed_options& parsed, CommandLine& line) {
+  Faults faults;
+  for (const po::option& option : parsed.options)
+    if (option.unregistered) {
+      const std::string& word = option.original_tokens.at(0);
+      const std::string name = word.substr(0, word.find('='));
+      faults.add(fmt::format("unknown option {}{}", name, nearest_key_hint(name)));
+    } else if (option.string_key.find('.') != std::string::npos) {
+      line.overrides.emplace_back(option.string_key, option.value.at(0));
+    } else if (option.position_key < 0) {
+      line.given.push_back(option.string_key);
+    }
+  faults.refuse();
 }
 
 void check_command(const Command& command, const CommandLine& line) {
-  for (const std::string& given : line.given)
-    if (!command.find_option(given)) refuse(command, given);
-  for (const auto& [key, value] : line.overrides)
-    if (!command.reads(key)) refuse(command, key);
+  refuse_unread(command, line);
   const auto& [text, needs, fewest, most] = command.arguments;
   if (!line.version && (line.files.size() < fewest || line.files.size() > most))
     throw ConfigurationError(fmt::format("{} {}, as in: {}", command.name, needs, command.example));
@@ -195,17 +220,11 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
                                           .options(description)
                                           .positional(positional)
                                           .style(style)
+                                          .allow_unregistered()
                                           .run();
-    for (const po::option& option : parsed.options)
-      if (option.string_key.find('.') != std::string::npos)
-        line.overrides.emplace_back(option.string_key, option.value.at(0));
-      else if (option.position_key < 0)
-        line.given.push_back(option.string_key);
+    take_words(parsed, line);
     po::store(parsed, values);
     po::notify(values);
-  } catch (const po::unknown_option& error) {
-    const std::string name = error.get_option_name();
-    throw ConfigurationError(fmt::format("unknown option {}{}", name, nearest_key_hint(name)));
   } catch (const po::error& error) {
     throw ConfigurationError(error.what());
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/config/config_file.hpp"
+#include "app/config/faults.hpp"
 #include "app/config/ini_lines.hpp"
 #include "app/config/option_table.hpp"
 #include "app/config/options/sections.hpp"
@@ -58,13 +59,16 @@ void refuse_other_kinds(const Config& config, const std::map<std::string, std::s
 void read_system(const std::filesystem::path& folder, Config& config) {
   const SystemText system = system_text(config.simulate.name, folder);
   std::map<std::string, std::string> seen;
-  for (const FileEntry& entry : parse_lines(system.text, system.name)) {
-    const std::string where = fmt::format("{}:{}", system.name, entry.line);
-    const Option& option = parameter(where, entry.key);
-    if (!seen.emplace(entry.key, where).second)
-      throw ConfigurationError(fmt::format("{}: {} is set twice", where, entry.key));
-    set_option(config, option, where, entry.value, entry.has_comment);
-  }
+  Faults faults;
+  for (const FileEntry& entry : parse_lines(system.text, system.name, faults))
+    faults.collect([&] {
+      const std::string where = fmt::format("{}:{}", system.name, entry.line);
+      const Option& option = parameter(where, entry.key);
+      if (!seen.emplace(entry.key, where).second)
+        throw ConfigurationError(fmt::format("{}: {} is set twice", where, entry.key));
+      set_option(config, option, where, entry.value, entry.has_comment);
+    });
+  faults.refuse();
   if (!seen.contains("system.kind"))
     throw ConfigurationError(system.name + ": system.kind is not set: linear or vehicle");
   refuse_other_kinds(config, seen);

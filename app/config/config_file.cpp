@@ -10,6 +10,7 @@
 #include <iterator>
 #include <map>
 
+#include "app/config/faults.hpp"
 #include "app/config/ini_lines.hpp"
 #include "app/config/option_table.hpp"
 #include "app/config/options/gone_keys.hpp"
@@ -80,15 +81,17 @@ void forget_lags(Config& config, const KeyValues& overrides) {
   config.structure = {.length = config.structure.length, .step = config.structure.step};
 }
 
-void apply_overrides(Config& config, const KeyValues& overrides) {
+void apply_override(Config& config, const std::string& key, const std::string& value) {
+  if (value.find('#') != std::string::npos && !takes_quotes(key))
+    throw ConfigurationError(fmt::format(
+        "--{}: '{}' holds a #, which starts a comment in configuration files, so no value can hold one", key, value));
+  apply(config, "--" + key, key, boost::trim_copy(value), false);
+}
+
+void apply_overrides(Config& config, const KeyValues& overrides, Faults& faults) {
   clear_overridden(config, overrides);
   forget_lags(config, overrides);
-  for (const auto& [key, value] : overrides) {
-    if (value.find('#') != std::string::npos && !takes_quotes(key))
-      throw ConfigurationError(fmt::format(
-          "--{}: '{}' holds a #, which starts a comment in configuration files, so no value can hold one", key, value));
-    apply(config, "--" + key, key, boost::trim_copy(value), false);
-  }
+  for (const auto& [key, value] : overrides) faults.collect([&] { apply_override(config, key, value); });
 }
 
 /// Defaults that follow from the file's folder and name.
@@ -142,29 +145,51 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
   return config_of_text({std::istreambuf_iterator<char>(stream), {}}, path, overrides, origins);
 }
 
-Config config_of_text(const std::string& bytes, const std::filesystem::path& path, const KeyValues& overrides,
-                      Origins* origins) {
-  Config config;
-  Origins found;
-  std::map<std::string, int> seen;
-  if (!is_utf8(bytes)) spdlog::warn("{}: {}", path.string(), read_as_windows_1252);
-  for (const FileEntry& entry : parse_lines(bytes, path.string())) {
-    const std::string where = fmt::format("{}:{}", path.string(), entry.line);
+namespace {
+
+/// The lines of a file, applied one after the other.
+class FileLines {
+ public:
+  FileLines(const std::filesystem::path& path, Config& config, Origins& origins)
+      : path_(path), config_(config), origins_(origins) {}
+
+  void apply_line(const FileEntry& entry) {
+    const std::string where = fmt::format("{}:{}", path_.string(), entry.line);
     const Option* option = find_option(entry.key);
-    const auto [earlier, fresh] = seen.emplace(entry.key, entry.line);
+    const auto [earlier, fresh] = seen_.emplace(entry.key, entry.line);
     if (!fresh && !(option && option->repeatable))
       throw ConfigurationError(fmt::format("{}: {} is already set in line {}", where, entry.key, earlier->second));
-    apply(config, where, entry.key, entry.value, entry.has_comment);
-    found[entry.key] = fresh ? where : found[entry.key] + "\n" + where;
+    apply(config_, where, entry.key, entry.value, entry.has_comment);
+    origins_[entry.key] = fresh ? where : origins_[entry.key] + "\n" + where;
     if (entry.comment_touches_value)
       spdlog::warn(
           "{}: {} is cut to '{}': # starts a comment{}", where, entry.key, entry.value,
           takes_quotes(entry.key) ? "; a value that holds one stands in double quotes" : ", so no value can hold one");
     // A relative root in a file means relative to that file, wherever the program is started.
-    if (entry.key == "data.root" && !config.data.root.empty())
-      config.data.root = (std::filesystem::absolute(path).parent_path() / config.data.root).string();
+    if (entry.key == "data.root" && !config_.data.root.empty())
+      config_.data.root = (std::filesystem::absolute(path_).parent_path() / config_.data.root).string();
   }
-  apply_overrides(config, overrides);
+
+ private:
+  const std::filesystem::path& path_;
+  Config& config_;
+  Origins& origins_;
+  std::map<std::string, int> seen_;  ///< by key, the line that sets it
+};
+
+}  // namespace
+
+Config config_of_text(const std::string& bytes, const std::filesystem::path& path, const KeyValues& overrides,
+                      Origins* origins) {
+  Config config;
+  Origins found;
+  Faults faults;
+  if (!is_utf8(bytes)) spdlog::warn("{}: {}", path.string(), read_as_windows_1252);
+  FileLines lines(path, config, found);
+  for (const FileEntry& entry : parse_lines(bytes, path.string(), faults))
+    faults.collect([&] { lines.apply_line(entry); });
+  apply_overrides(config, overrides, faults);
+  faults.refuse();
   for (const auto& [key, value] : overrides) found[key] = "--" + key;
   apply_defaults_of_file(config, path, found);
   if (origins) *origins = std::move(found);
@@ -188,7 +213,9 @@ Config stored_config(const std::string& resolved, const KeyValues& overrides) {
   Config config = config_of(resolved, [](const std::string& key) {
     return key.rfind("data.", 0) == 0 || key.rfind("filter.", 0) == 0 || key == "job.seed";
   });
-  apply_overrides(config, overrides);
+  Faults faults;
+  apply_overrides(config, overrides, faults);
+  faults.refuse();
   return config;
 }
 
@@ -211,8 +238,11 @@ std::string resolved_text(const Config& config) {
 }
 
 std::map<std::string, std::string> resolved_values(const std::string& resolved) {
+  Faults faults;
+  const std::vector<FileEntry> entries = parse_lines(resolved, "stored configuration", faults);
+  faults.refuse();
   std::map<std::string, std::string> values;
-  for (const FileEntry& entry : parse_lines(resolved, "stored configuration")) {
+  for (const FileEntry& entry : entries) {
     std::string& value = values[entry.key];
     value += (value.empty() ? "" : "\n") + entry.value;
   }

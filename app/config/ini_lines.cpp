@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "ident/base/utf8.hpp"
-#include "modebank/base/error.hpp"
 
 namespace po = boost::program_options;
 
@@ -68,7 +67,7 @@ std::optional<FileEntry> quoted_entry(const std::string& section, const std::str
 
 }  // namespace
 
-std::vector<FileEntry> parse_lines(std::string_view text, const std::string& path) {
+std::vector<FileEntry> parse_lines(std::string_view text, const std::string& path, Faults& faults) {
   std::string storage;
   std::istringstream stream{std::string(utf8_or_windows_1252(text, storage))};
   static const po::options_description no_options;
@@ -94,7 +93,7 @@ std::vector<FileEntry> parse_lines(std::string_view text, const std::string& pat
       for (const po::option& option : parsed.options)
         entries.push_back({option.string_key, option.value.at(0), number, hash != std::string::npos, touches});
     } catch (const po::error&) {
-      throw ConfigurationError(fmt::format("{}:{}: '{}' is neither [section] nor key = value", path, number, content));
+      faults.add(fmt::format("{}:{}: '{}' is neither [section] nor key = value", path, number, content));
     }
   }
   return entries;

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "app/config/faults.hpp"
+
 /// Lines of a configuration file or of a system file (system_file.hpp).
 namespace modebank::app {
 
@@ -14,9 +16,9 @@ struct FileEntry {
   bool has_comment = false, comment_touches_value = false;
 };
 
-/// One line at a time through Boost's parser: its grammar, and a line number for every message. Throws
-/// ConfigurationError for a line that is neither a section nor key = value. `path`: for messages.
-std::vector<FileEntry> parse_lines(std::string_view text, const std::string& path);
+/// One line at a time through Boost's parser: its grammar, and a line number for every message. A line that is neither
+/// a section nor key = value is a fault. `path`: for messages.
+std::vector<FileEntry> parse_lines(std::string_view text, const std::string& path, Faults& faults);
 
 /// Whether a key's value is a single path, which may contain any character.
 bool is_path(const std::string& key);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/config/config.hpp"
+#include "app/config/faults.hpp"
 #include "app/config/free_run_check.hpp"
 #include "app/config/section.hpp"
 #include "filter/learn/chain/stages.hpp"
@@ -76,8 +77,10 @@ void check_drift(const Config& config) {
 
 void validate(const Config& config) {
   const DataOptions& data = config.data;
-  require(!data.inputs.empty(), "data.inputs is empty: it names the files to read, for example pro_*.csv");
-  require(!data.state.empty(), "data.state is empty: it names the columns of the measured states");
+  Faults faults;
+  if (data.inputs.empty()) faults.add("data.inputs is empty: it names the files to read, for example pro_*.csv");
+  if (data.state.empty()) faults.add("data.state is empty: it names the columns of the measured states");
+  faults.refuse();
   require(data.truth.empty() || data.truth.size() == data.state.size(),
           fmt::format("data.truth names {} columns, data.state {}; name as many in data.truth, or none",
                       data.truth.size(), data.state.size()));

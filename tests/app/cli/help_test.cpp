@@ -134,6 +134,17 @@ TEST_F(Help, OptionsThatACommandDoesNotReadAreRefused) {
   EXPECT_TRUE(left_behind().empty());
 }
 
+TEST_F(Help, AllUnknownAndUnreadOptionsAreNamedAtOnce) {
+  const ProgramResult unknown = modebank({"run", config(), "--window.lenght", "30", "--forse"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("unknown option --window.lenght, did you mean window.length?"), std::string::npos)
+      << unknown.err;
+  EXPECT_NE(unknown.err.find("unknown option --forse"), std::string::npos) << unknown.err;
+  const ProgramResult unread = modebank({"run", config(), "--repair", "--study.shard", "1 of 2"});
+  EXPECT_EQ(unread.status, 2);
+  EXPECT_NE(unread.err.find("run does not read --repair, --study.shard; "), std::string::npos) << unread.err;
+}
+
 TEST_F(Help, WithoutACommandThreeLinesSayHowToStart) {
   const ProgramResult result = modebank({});
   EXPECT_EQ(result.status, 2);

@@ -132,6 +132,29 @@ TEST_F(ConfigFile, EveryOptionReadsItsOwnDefaultBack) {
   }
 }
 
+/// One line for each fault of the file and of the command line, with its place and what would be right.
+TEST_F(ConfigFile, AllFaultsAreReportedAtOnce) {
+  const auto faults = [&](const std::string& text, const KeyValues& overrides) -> std::string {
+    try {
+      load(text, overrides);
+    } catch (const ConfigurationError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string place = (folder() / "c.ini").string() + ":";
+  const std::string all = faults(
+      "[data]\nstte = wz\njust words\n[window]\nlength = long\nloss = huber\nloss = softlone\n", {{"bank.stay", "2"}});
+  EXPECT_EQ(all.substr(0, all.find('\n')), "5 settings cannot be used:");
+  for (const std::string& part :
+       {"\n  " + place + "2: unknown key data.stte, did you mean data.state?",
+        "\n  " + place + "3: 'just words' is neither [section] nor key = value",
+        "\n  " + place + "5: window.length = 'long' is not a whole number; allowed: ",
+        "\n  " + place + "7: window.loss is already set in line 6", std::string("\n  --bank.stay: bank.stay = '2' ")})
+    EXPECT_NE(all.find(part), std::string::npos) << part << " not in: " << all;
+  EXPECT_EQ(faults("[window]\nlength = long\n", {}).find(place + "2: window.length"), 0u) << "a single one as it is";
+}
+
 TEST_F(ConfigFile, KeyOutsideAnySectionIsExplained) {
   try {
     load("length = 3\n");
