@@ -47,8 +47,8 @@ std::vector<Command> commands_to_start() {
        run_demo},
       {"Start",
        "init",
-       {"FILE...", "needs one or more logs", 1, any_number},
-       "look into logs and write a configuration to start from",
+       {"LOG...", "needs one or more logs", 1, any_number},
+       "look into logs, or a folder of them, and write a configuration to start from",
        "CSV, ROS 1 bag, ROS 2 MCAP and .db3, MATLAB, HDF5: every channel with its unit, rate, range and gaps; time, "
        "states and inputs are guessed, each guess with its reason beside it.",
        "modebank init robot.bag",
@@ -215,7 +215,10 @@ std::vector<Command> commands_to_use() {
        "modebank export robot.h5 --to c -o tracker.c",
        {"track.filter"},
        {as_json(),
-        {"to", "FORM", "json, regimes, mat, c, casadi, ros2 or csv", &CommandLine::to},
+        {"to",
+         "FORM",
+         "json, regimes, mat, c, casadi, ros2 or csv",
+         &CommandLine::to},
         output("FILE", "file, or folder of ros2"),
         force("export the bank even against this verdict"),
         {"table", "PATH", "csv: path of the table in the archive", &CommandLine::table},
@@ -277,7 +280,7 @@ std::string CommandOption::typed() const {
          long_name() + value;
 }
 
-std::vector<std::string> CommandOption::choices() const { return choices_in(argument); }
+std::vector<std::string> CommandOption::choices() const { return words.empty() ? choices_in(argument) : words; }
 
 bool Command::reads(const std::string& key) const {
   if (std::find(not_keys.begin(), not_keys.end(), key) != not_keys.end()) return false;

@@ -122,11 +122,16 @@ std::string nearest_key_hint(const std::string& key) {
   return did_you_mean(name, keys);
 }
 
-bool looks_like_log(const std::filesystem::path& path) {
+bool has_ending_of_logs(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
   boost::to_lower(ending);
   for (const char* of_logs : {".csv", ".tsv", ".dat", ".bag", ".mcap", ".db3", ".mat", ".hdf5"})
     if (ending == of_logs) return true;
+  return false;
+}
+
+bool looks_like_log(const std::filesystem::path& path) {
+  if (has_ending_of_logs(path)) return true;
   std::ifstream stream(path, std::ios::binary);
   std::string first(512, ' ');
   stream.read(first.data(), static_cast<std::streamsize>(first.size()));

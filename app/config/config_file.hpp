@@ -26,6 +26,8 @@ Config load_config(const std::filesystem::path& path, const KeyValues& overrides
 Config config_of_text(const std::string& bytes, const std::filesystem::path& path, const KeyValues& overrides,
                       Origins* origins = nullptr);
 
+/// Whether a name ends as those of logs do: .csv, .bag and others.
+bool has_ending_of_logs(const std::filesystem::path& path);
 /// Whether a file is a log by its name, or because it holds bytes that no text has.
 bool looks_like_log(const std::filesystem::path& path);
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/algorithm/string/trim.hpp>
 
+#include "app/config/config_file.hpp"
+#include "ident/base/natural_order.hpp"
 #include "ident/base/printable.hpp"
 #include "modebank/base/error.hpp"
 
@@ -11,8 +14,54 @@ namespace modebank::app {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// A folder that is one recording: of ROS 2, or with the parts of a recording.
+bool is_recording(const fs::path& folder) {
+  if (fs::exists(folder / "metadata.yaml")) return true;
+  return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const fs::directory_entry& entry) {
+    const fs::path ending = entry.path().extension();
+    return ending == ".bag" || ending == ".mcap" || ending == ".db3";
+  });
+}
+
+bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
+
+/// The logs of a folder in natural order: recordings in folders of their own, and files with the endings of logs. Text
+/// is a log only where nothing else is one: beside logs it tells about them.
+std::vector<std::string> logs_in(const fs::path& folder) {
+  std::vector<std::string> logs, texts;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const fs::path& path = entry.path();
+    if (is_hidden(path)) continue;
+    if (entry.is_directory() ? is_recording(path) : has_ending_of_logs(path)) logs.push_back(path.string());
+    if (entry.is_regular_file() && path.extension() == ".txt") texts.push_back(path.string());
+  }
+  if (logs.empty()) logs = std::move(texts);
+  if (logs.empty())
+    throw ConfigurationError(
+        fmt::format("{}: a folder without logs; expected files that end in .csv, .tsv, .dat, .txt, .mat or .hdf5, or "
+                    "recordings (metadata.yaml, .bag, .mcap, .db3)",
+                    printable_name(folder.string())));
+  std::sort(logs.begin(), logs.end(), natural_less);
+  return logs;
+}
+
+/// A folder of logs as its logs.
+std::vector<std::string> without_folders(const std::vector<std::string>& logs) {
+  std::vector<std::string> files;
+  for (const std::string& log : logs)
+    if (fs::is_directory(log) && !is_recording(log))
+      for (std::string& file : logs_in(log)) files.push_back(std::move(file));
+    else
+      files.push_back(log);
+  return files;
+}
+
+}  // namespace
+
 std::vector<FileSet> nameable_sets(const std::vector<std::string>& logs) {
-  std::vector<FileSet> sets = file_sets(logs);
+  std::vector<FileSet> sets = file_sets(without_folders(logs));
   for (const fs::path& file : files_of(sets)) {
     const std::string name = file.filename().string();
     if (name_holds_controls(name) || boost::trim_copy(name) != name || name.find_first_of("#,*") != std::string::npos)
@@ -26,10 +75,12 @@ std::vector<FileSet> nameable_sets(const std::vector<std::string>& logs) {
 
 std::string name_after(const std::vector<FileSet>& sets) {
   const FileSet& first = sets.front();
-  std::string stem = (first.pattern.empty() ? first.files.front() : fs::path(first.pattern)).stem().string();
+  const fs::path path = first.pattern.empty() ? first.files.front() : fs::path(first.pattern);
+  std::string stem = path.stem().string();
   stem = stem.substr(0, stem.find('*'));
   while (!stem.empty() && (stem.back() == '_' || stem.back() == '-' || stem.back() == '.')) stem.pop_back();
-  return stem.empty() ? "log" : stem;
+  const std::string folder = path.parent_path().filename().string();
+  return !stem.empty() ? stem : folder.empty() ? "log" : folder;
 }
 
 std::vector<fs::path> files_of(const std::vector<FileSet>& sets) {

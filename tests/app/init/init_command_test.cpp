@@ -60,6 +60,28 @@ TEST_F(InitCommand, AsksOnATerminal) {
   EXPECT_THAT(read_file(ini), HasSubstr("state = wz"));
 }
 
+/// A folder stands for the logs in it, other files left out; the configuration is named after the folder.
+TEST_F(InitCommand, AFolderStandsForTheLogsInIt) {
+  const std::filesystem::path drives = file("drives");
+  std::filesystem::create_directory(drives);
+  for (const unsigned i : {1u, 2u, 10u}) write_file(drives / (std::to_string(i) + ".csv"), csv_run(150, i));
+  write_file(drives / "README.txt", "Three drives.\n");
+  write_file(drives / ".hidden.csv", "a,b\n1,2\n");
+  const auto init = [&](const std::string& folder) {
+    return run_program(
+        {"/bin/sh", "-c", "cd '" + file("").string() + "' && '" MODEBANK_PROGRAM "' init " + folder + " --yes"});
+  };
+  const ProgramResult made = init("drives");
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(read_file(file("drives.ini")), HasSubstr("inputs = *.csv"));
+  EXPECT_THAT(read_file(file("drives.ini")), HasSubstr("# 3 runs; * names them: 1 to 10"));
+  EXPECT_EQ(modebank({"run", file("drives.ini").string(), "--archive.output", archive(), "--dry-run"}).status, 0);
+  std::filesystem::create_directory(file("empty"));
+  const ProgramResult empty = init("empty");
+  EXPECT_EQ(empty.status, 2);
+  EXPECT_THAT(empty.err, HasSubstr("empty: a folder without logs; expected files that end in .csv"));
+}
+
 TEST_F(InitCommand, IsWhatOtherCommandsAskForWhenGivenALog) {
   write("one.csv", csv_run(50, 1));
   const std::string log = file("one.csv").string();
