@@ -17,6 +17,7 @@
 #include "app/config/faults.hpp"
 #include "app/config/option_table.hpp"
 #include "app/study/launch/shell.hpp"
+#include "ident/base/nearest_name.hpp"
 #include "modebank/base/error.hpp"
 
 namespace po = boost::program_options;
@@ -66,7 +67,8 @@ void take_values(const std::map<std::string, CommandOption>& options, const po::
     if (words.empty() || !values.count(name)) continue;
     const auto& value = values[name].as<std::string>();
     if (std::find(words.begin(), words.end(), value) == words.end())
-      throw ConfigurationError(fmt::format("--{} {}: allowed are {}", name, value, fmt::join(words, " and ")));
+      throw ConfigurationError(
+          fmt::format("--{} {}: allowed are {}{}", name, value, fmt::join(words, " and "), did_you_mean(value, words)));
   }
 }
 

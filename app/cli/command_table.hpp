@@ -18,6 +18,7 @@ struct CommandOption {
   std::string argument;  ///< what follows it, or words to choose from ("increment | full"); empty: a switch
   std::string help;
   OptionTarget target;
+  std::vector<std::string> words = {};  ///< to choose from where `argument` names them by one word ("FORM")
 
   std::string long_name() const { return name.substr(0, name.find(',')); }
   std::string typed() const;                 ///< "-o FILE, --output FILE"

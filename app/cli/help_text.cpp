@@ -184,6 +184,12 @@ std::string help_on(const std::string& name) {
                                        did_you_mean(name, known), first));
 }
 
+std::vector<std::string> term_names() {
+  std::vector<std::string> names;
+  for (const nlohmann::json& entry : nlohmann::json::parse(assets::terms_json())) names.push_back(entry.at("term"));
+  return names;
+}
+
 std::string option_markdown() {
   const Config defaults{};
   std::string text = "| key | allowed | unit | default | meaning |\n|---|---|---|---|---|\n";

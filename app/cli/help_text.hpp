@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace modebank::app {
 
@@ -13,5 +14,8 @@ std::string help_on(const std::string& name);
 
 /// All keys as a table: the documentation's reference.
 std::string option_markdown();
+
+/// The words of the glossary that help_on explains.
+std::vector<std::string> term_names();
 
 }  // namespace modebank::app

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <map>
 
 #include "app/cli/command_table.hpp"
 #include "app/cli/commands.hpp"
+#include "app/cli/help_text.hpp"
 #include "app/config/option_table.hpp"
 #include "modebank/base/error.hpp"
 
@@ -17,6 +19,26 @@ std::vector<std::string> command_names() {
   std::vector<std::string> names;
   for (const Command& command : command_table()) names.push_back(command.name);
   return names;
+}
+
+/// In single quotes of a shell: a description, or a word.
+std::string quoted(std::string text) {
+  boost::replace_all(text, "'", "");
+  boost::replace_all(text, "[", "(");
+  boost::replace_all(text, "]", ")");
+  boost::replace_all(text, ":", ",");
+  boost::replace_all(text, "\\", "");
+  return text;
+}
+
+/// The words that `help` explains: commands, sections, keys and terms, some of which have blanks.
+std::vector<std::string> help_topics() {
+  std::vector<std::string> topics = command_names();
+  for (const Option& option : option_table())
+    for (const std::string& name : {option.section(), option.key})
+      if (std::find(topics.begin(), topics.end(), name) == topics.end()) topics.push_back(name);
+  for (const std::string& term : term_names()) topics.push_back(quoted(term));
+  return topics;
 }
 
 /// What may follow a command: its options and the keys that it reads.
@@ -77,7 +99,11 @@ _modebank() {{
     return
   fi
   case $previous in
-    help) COMPREPLY=($(compgen -W "{0}" -- "$current")); return ;;
+    help)
+      local IFS=$'\n'
+      COMPREPLY=($(compgen -W '{3}' -- "$current"))
+      COMPREPLY=("${{COMPREPLY[@]// /\\ }}")
+      return ;;
     completion) COMPREPLY=($(compgen -W "bash zsh fish" -- "$current")); return ;;
 {1}  esac
   [[ $current == -* ]] || {{ COMPREPLY=($(compgen -f -- "$current")); return; }}
@@ -88,17 +114,8 @@ _modebank() {{
 complete -o filenames -o bashdefault -F _modebank modebank
 )",
                      fmt::join(command_names(), " "),
-                     value_branches("COMPREPLY=($(compgen -W \"{}\" -- \"$current\"))"), options);
-}
-
-/// In single quotes of zsh and fish, for a description.
-std::string quoted(std::string text) {
-  boost::replace_all(text, "'", "");
-  boost::replace_all(text, "[", "(");
-  boost::replace_all(text, "]", ")");
-  boost::replace_all(text, ":", ",");
-  boost::replace_all(text, "\\", "");
-  return text;
+                     value_branches("COMPREPLY=($(compgen -W \"{}\" -- \"$current\"))"), options,
+                     fmt::join(help_topics(), "\n"));
 }
 
 std::string zsh_script() {
@@ -121,7 +138,7 @@ _modebank() {{
     return
   fi
   case ${{words[CURRENT-1]}} in
-    help) _describe -t commands command commands; return ;;
+    help) compadd -- '{3}'; return ;;
     completion) compadd -- bash zsh fish; return ;;
 {1}  esac
   if [[ ${{words[CURRENT]}} != -* ]]; then
@@ -139,7 +156,7 @@ else
   compdef _modebank modebank
 fi
 )",
-                     commands, value_branches("compadd -- {}"), options);
+                     commands, value_branches("compadd -- {}"), options, fmt::join(help_topics(), "' '"));
 }
 
 std::string fish_script() {
@@ -154,6 +171,8 @@ std::string fish_script() {
                             word.choices.empty() ? "" : fmt::format(" -f -a '{}'", fmt::join(word.choices, " ")),
                             quoted(word.help));
   }
+  for (const std::string& topic : help_topics())
+    text += fmt::format("complete -c modebank -n '__fish_seen_subcommand_from help' -f -a \"'{}'\"\n", topic);
   for (const CommandOption& option : common_options())
     text += fmt::format("complete -c modebank -l {} -d '{}'\n", option.long_name(), quoted(option.help));
   return text;

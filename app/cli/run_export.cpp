@@ -197,8 +197,9 @@ int run_export(const CommandLine& line) {
   const auto form = forms.find(line.to);
   if (form == forms.end())
     throw ConfigurationError(fmt::format(
-        "export needs one of the forms json, regimes, mat, c, casadi, ros2 and csv{}: modebank export {} --to json",
-        line.to.empty() ? "" : ", not " + line.to, line.files.front()));
+        "export needs one of the forms json, regimes, mat, c, casadi, ros2 and csv: modebank export {} --to "
+        "json",
+        line.files.front()));
   check_form_options(line);
   json result = form->second(line);
   result["form"] = line.to;

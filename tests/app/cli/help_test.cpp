@@ -224,6 +224,16 @@ TEST_F(Help, BashCompletesCommandsOptionsKeysAndWords) {
   EXPECT_EQ(completed("modebank run --window.len"), " --window.length \n");
   EXPECT_EQ(completed("modebank run --data.decimal co"), " comma \n");
   EXPECT_EQ(completed("modebank show --form inc"), " increment \n");
+  EXPECT_EQ(completed("modebank export a.h5 --to ca"), " casadi \n");
+  EXPECT_EQ(completed("modebank help window.len"), " window.length \n");
+  EXPECT_EQ(completed("modebank help verif"), " verify \n");
+  EXPECT_EQ(completed("modebank help 'log sc'"), " log\\ score \n");
+}
+
+/// Each topic that completion offers is one that help explains.
+TEST_F(Help, EveryTermOfTheGlossaryIsExplained) {
+  EXPECT_GT(app::term_names().size(), 50u);
+  for (const std::string& term : app::term_names()) EXPECT_NO_THROW(app::help_on(term)) << term;
 }
 
 class CompletionScript : public Help, public ::testing::WithParamInterface<const char*> {};
