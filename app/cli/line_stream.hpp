@@ -17,6 +17,8 @@ class LineStream {
   LineStream& operator=(const LineStream&) = delete;
 
   using Clock = std::chrono::steady_clock;
+  /// Seconds of that clock.
+  static double now_s() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
   enum class Got { line, overlong, waiting, quiet, end };
   /// `line`: the next one, valid until the next call. `waiting`: all that has arrived is read; the next call waits.

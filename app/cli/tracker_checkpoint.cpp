@@ -1,0 +1,41 @@
+// How a live filter keeps what it has learned, and goes on from there.
+#include <cmath>
+
+#include "app/cli/tracker.hpp"
+#include "modebank/base/error.hpp"
+
+namespace modebank::app {
+
+void Tracker::go_on() {
+  const Resumed resumed = resume(filter_, config_.track.resume, identity_);
+  if (std::isnan(resumed.time_s)) return;
+  resumed_s_ = stepped_s_ = resumed.time_s;
+  validity_.go_on(resumed.samples, resumed.time_s);
+  last_s_ = resumed.time_s - alignment_.reach_s();
+  reader_.remember(resumed.input);
+  samples_.go_on_after(resumed.time_s);
+  messages_.say(fmt::format(
+      "goes on after the sample at {} s ({}); send what follows {}, and drop what was written of later "
+      "samples: they are estimated again",
+      resumed.time_s, config_.track.resume, *last_s_ < resumed.time_s ? fmt::format("{} s", *last_s_) : "it"));
+}
+
+void Tracker::save() const { app::save(filter_, config_.track.checkpoint, identity_); }
+
+/// Saves a checkpoint on the way, after the estimates that it covers have left, so that a program that goes on from it
+/// lacks none. Where it cannot be written the filter goes on, and tries again when the next one is due.
+void Tracker::keep() {
+  checkpoint_due_ = false;
+  try {
+    save();
+    if (checkpoint_fails_) messages_.say(fmt::format("{} is written again", config_.track.checkpoint));
+    checkpoint_fails_ = false;
+  } catch (const DataError& error) {
+    if (!checkpoint_fails_)
+      messages_.say(fmt::format("{}: the filter goes on without, and tries again every {} samples", error.what(),
+                                config_.track.checkpoint_interval));
+    checkpoint_fails_ = true;
+  }
+}
+
+}  // namespace modebank::app
