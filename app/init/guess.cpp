@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/init/mounting.hpp"
+#include "app/init/unreachable_commands.hpp"
 #include "app/init/words.hpp"
 #include "ident/base/printable.hpp"
 #include "io/import/expression.hpp"
@@ -211,6 +212,7 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
   else if (!by_place && is_measured_motion(files, guess.inputs.front()))
     guess.reasons.emplace_back(
         "no command is recorded: measured motion stands in for it, so the model says how one follows the other");
+  replace_unreachable_commands(files, guess);
   turn_upright(files, guess);
   return guess;
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -115,6 +116,27 @@ TEST_F(Init, FindsAGyroMountedSideways) {
   EXPECT_THAT(config.data.state, ElementsAre("wy"));
   EXPECT_THAT(config.data.input, ElementsAre("cmd_left", "cmd_right"));
   EXPECT_NO_THROW(import_data(config.data));
+}
+
+/// Wheels that reach 4 under commands up to `most`; the yaw rate follows the wheels.
+std::string driven(double most) {
+  std::string text = "time,wz,cmd_left,cmd_right,wheel_left,wheel_right\n";
+  for (int k = 0; k < 1000; ++k) {
+    const double left = most * std::sin(0.11 * k), right = most * std::cos(0.07 * k);
+    const double l = std::clamp(left, -4.0, 4.0), r = std::clamp(right, -4.0, 4.0);
+    text += fmt::format("{},{},{},{},{},{}\n", 0.05 * k, r - l + 0.01 * std::sin(9.0 * k), left, right, l, r);
+  }
+  return text;
+}
+
+TEST_F(Init, CommandsBeyondReachAreNoInputs) {
+  write_file(folder.path() / "log.csv", driven(10.0));
+  EXPECT_THAT(write({path("log.csv")}), HasSubstr("cmd_left, cmd_right reach 10, but wheel_left, wheel_right never "
+                                                  "exceed 4: many commands are not followed"));
+  EXPECT_THAT(config.data.input, ElementsAre("wheel_left", "wheel_right"));
+  write_file(folder.path() / "log.csv", driven(3.9));
+  write({path("log.csv")});
+  EXPECT_THAT(config.data.input, ElementsAre("cmd_left", "cmd_right"));
 }
 
 TEST_F(Init, TurnsAGyroThatHangsUpsideDown) {
@@ -277,7 +299,7 @@ TEST_F(Init, KnowsIceDriveDartAndTanks) {
   EXPECT_THAT(config.data.input, ElementsAre("velL", "velR"));
   write(shared("drive_husky/husky_samples.csv"));
   EXPECT_THAT(config.data.state, ElementsAre("gyro_z"));
-  EXPECT_THAT(config.data.input, ElementsAre("cmd_left", "cmd_right"));
+  EXPECT_THAT(config.data.input, ElementsAre("wheel_left", "wheel_right"));
   EXPECT_THAT(config.data.time, ElementsAre("t_block"));
   EXPECT_EQ(config.data.run, "block");
   EXPECT_EQ(import_data(config.data).recording.runs.size(), 201U);

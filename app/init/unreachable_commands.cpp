@@ -1,0 +1,95 @@
+#include "app/init/unreachable_commands.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/algorithm/string/replace.hpp>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace modebank::app {
+namespace {
+
+constexpr std::array command_words{" cmd ", " command ", " commanded ", " setpoint ", " desired ", " target "};
+constexpr std::array measured_words{" wheel ", " measured ", " meas ", " actual ", " encoder ", " feedback "};
+
+/// The name without the first of these words that it has; empty: it has none.
+template <std::size_t size>
+std::string without(const std::array<const char*, size>& list, const std::string& name) {
+  std::string words = words_of_name(name);
+  for (const char* const word : list)
+    if (words.find(word) != std::string::npos) {
+      boost::replace_first(words, word, " ");
+      return words;
+    }
+  return {};
+}
+
+double reach_of(const SurveyedChannel& channel) {
+  return std::max(std::abs(channel.check.least), std::abs(channel.check.largest));
+}
+
+/// The channel beside the command that measures the same; empty: there is none.
+std::optional<std::size_t> counterpart(const SurveyedTable& table, const SurveyedChannel& command) {
+  const std::string rest = without(command_words, command.name);
+  if (rest.empty()) return std::nullopt;
+  for (std::size_t c = 0; c < table.channels.size(); ++c)
+    if (table.channels[c].moves() && without(measured_words, table.channels[c].name) == rest) return c;
+  return std::nullopt;
+}
+
+/// Whether a tenth of the commands is a fifth beyond what is ever measured, while both have the same unit: moderate
+/// commands are followed by a slope between a half and two.
+bool is_beyond_reach(const SurveyedChannel& command, const SurveyedChannel& measured) {
+  constexpr double beyond = 1.2, least_share = 0.1, moderate = 0.5, least_slope = 0.5, largest_slope = 2.0;
+  const double reach = reach_of(measured);
+  double products = 0.0, squares = 0.0;
+  Eigen::Index above = 0, known = 0;
+  for (Eigen::Index k = 0; k < command.values.size(); ++k) {
+    const double c = command.values(k), m = measured.values(k);
+    if (!std::isfinite(c) || !std::isfinite(m)) continue;
+    ++known;
+    if (std::abs(c) > beyond * reach) ++above;
+    if (std::abs(c) > moderate * reach) continue;
+    products += c * m;
+    squares += c * c;
+  }
+  const double slope = squares > 0.0 ? products / squares : 0.0;
+  return static_cast<double>(above) > least_share * static_cast<double>(known) && slope > least_slope &&
+         slope < largest_slope;
+}
+
+}  // namespace
+
+void replace_unreachable_commands(const std::vector<SurveyedFile>& files, Guess& guess) {
+  std::vector<ChannelPlace> places;
+  std::vector<std::string> commands, measured;
+  double commanded = 0.0, reached = 0.0;
+  bool beyond = false;
+  for (const ChannelPlace& place : guess.inputs) {
+    const SurveyedTable& table = files[place.file].tables[place.table];
+    const SurveyedChannel& command = channel_at(files, place);
+    const std::optional<std::size_t> found = counterpart(table, command);
+    if (!found) return;
+    places.push_back({place.file, place.table, *found});
+    const SurveyedChannel& other = channel_at(files, places.back());
+    if (std::count(guess.states.begin(), guess.states.end(), places.back()) > 0) return;
+    beyond = beyond || is_beyond_reach(command, other);
+    commanded = std::max(commanded, reach_of(command));
+    reached = std::max(reached, reach_of(other));
+    commands.push_back(command.name);
+    measured.push_back(other.name);
+  }
+  if (!beyond) return;
+  guess.inputs = std::move(places);
+  guess.reasons.push_back(fmt::format(
+      "{0} reach {1:.3g}, but {2} never exceed {3:.3g}: many commands are not followed, so the measured values are the "
+      "inputs; the commands would be input = {0}",
+      fmt::join(commands, ", "), commanded, fmt::join(measured, ", "), reached));
+}
+
+}  // namespace modebank::app
