@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/trim.hpp>
 #include <filesystem>
-#include <set>
 
 #include "app/cli/commands.hpp"
 #include "app/cli/init_trial.hpp"
@@ -16,6 +15,7 @@
 #include "app/cli/log/log_outputs.hpp"
 #include "app/cli/log/log_sets.hpp"
 #include "app/cli/log/log_text.hpp"
+#include "app/cli/log/same_runs.hpp"
 #include "app/cli/progress_meter.hpp"
 #include "app/config/configuration_output.hpp"
 #include "app/config/option_table.hpp"
@@ -50,27 +50,6 @@ void refuse_keys(const KeyValues& overrides) {
             key));
 }
 
-/// One data set has one kind of files, or two instruments' files of the same runs.
-void refuse_other_columns(const std::vector<FileSet>& sets, const Guess& guess) {
-  std::set<std::size_t> used;
-  for (const auto* places : {&guess.states, &guess.inputs})
-    for (const ChannelPlace& place : *places) used.insert(place.file);
-  const FileSet &states = sets[guess.states.front().file],
-                &inputs = guess.inputs.empty() ? states : sets[guess.inputs.front().file];
-  const bool other_runs =
-      states.files.size() != inputs.files.size() ||
-      (states.files.size() > 1 && !states.pattern.empty() && !inputs.pattern.empty() && states.runs != inputs.runs);
-  const auto refuse = [](const FileSet& a, const FileSet& b) {
-    throw ConfigurationError(fmt::format(
-        "{} and {} have different columns, and are not two instruments of the same runs: name logs of one kind, or "
-        "for each run both files",
-        a.files.front().string(), b.files.front().string()));
-  };
-  if (other_runs) refuse(states, inputs);
-  for (std::size_t i = 0; i < sets.size(); ++i)
-    if (used.count(i) == 0) refuse(states, sets[i]);
-}
-
 /// Keys of the command line, as the configuration is to have them.
 void take_data_keys(const KeyValues& overrides, Proposal& proposal) {
   for (const auto& [key, value] : overrides) {
@@ -98,13 +77,15 @@ LookedInto look_into(std::vector<FileSet> sets) {
   LookedInto logs{std::move(sets), {}, {}};
   for (const FileSet& set : logs.sets) logs.surveyed.push_back(survey_set(set));
   logs.guess = guess_roles(logs.surveyed);
-  refuse_other_columns(logs.sets, logs.guess);
+  refuse_other_runs(logs.sets, logs.surveyed, logs.guess);
   return logs;
 }
 
 LogConfiguration configure(const CommandLine& line, const LookedInto& logs, const fs::path& target) {
   const fs::path folder = fs::absolute(target).lexically_normal().parent_path();
   Proposal proposal = propose(logs.sets, logs.surveyed, logs.guess, folder.string());
+  if (const std::string doubt = doubt_of_one_run(logs.sets, logs.surveyed, logs.guess); !doubt.empty())
+    proposal.doubt(doubt);
   take_data_keys(line.overrides, proposal);
   state_values(proposal);
   make_it_run(proposal, target);

@@ -93,6 +93,21 @@ TEST_F(RunLog, LogsOfOneKindAreRunsAndOtherColumnsAreRefused) {
   EXPECT_THAT(other.err, HasSubstr("tank.csv have different columns"));
 }
 
+/// A tank's pump and a gyro suit as input and state, but the one was recorded after the other.
+TEST_F(RunLog, TwoFilesOfOtherTimesAreNoInstrumentsOfOneRun) {
+  std::string pump = "time,pump\n", gyro = "time,wz\n";
+  for (int k = 0; k < 300; ++k) {
+    pump += std::to_string(1000.0 + 0.1 * k) + "," + std::to_string(std::sin(0.3 * k)) + "\n";
+    gyro += std::to_string(1020.0 + 0.1 * k) + "," + std::to_string(std::cos(0.7 * k)) + "\n";
+  }
+  write("pump.csv", pump);
+  write("gyro.csv", gyro);
+  const ProgramResult result = run_log({file("pump.csv").string(), file("gyro.csv").string()});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("are not two instruments of the same runs (of the shorter one's 29.9 s they have "
+                                    "9.9 s in common)"));
+}
+
 TEST_F(RunLog, ALogWithoutDataIsRefusedInOneSentence) {
   write("empty.csv", "time,wz,left\n");
   write("still.csv", "time,wz,left\n0,1,2\n1,1,2\n2,1,2\n3,1,2\n");
@@ -133,6 +148,7 @@ TEST_F(RunLog, LateInputsOfAnotherInstrumentAreFoundAndNamed) {
   EXPECT_THAT(labels, ::testing::IsSupersetOf({"log", "time", "state", "inputs", "runs", "robot", "files"}));
   for (const std::string& label : labels)
     EXPECT_THAT(app::help_on(label), HasSubstr(label + " (a line of the screen): "));
+  EXPECT_THAT(read_file(ini()), HasSubstr("are taken for two instruments of one run: they have 149."));
 }
 
 /// The variance at rest, tried as R, is measured_sd^2. The training half rests for about 150 samples, whose variance
