@@ -64,6 +64,13 @@ log = mavutil.mavlink_connection("FILE")
 rows = [m.to_dict() for m in iter(lambda: log.recv_match(type=["IMU", "RCOU"]), None)]
 imu, motors = (pandas.DataFrame([r for r in rows if r["mavpackettype"] == name]) for name in ("IMU", "RCOU"))
 archive = modebank.run({"flight": (motors, imu)}, state="GyrZ", input=["C1", "C3"], time="TimeUS", **{"data.split": "blocks 10"}))";
+constexpr std::string_view telemetry_lines = R"(
+from pymavlink import mavutil
+import pandas, modebank
+log = mavutil.mavlink_connection("FILE")
+rows = [m.to_dict() for m in iter(lambda: log.recv_match(type=["RAW_IMU", "SERVO_OUTPUT_RAW"]), None)]
+imu, motors = (pandas.DataFrame([r for r in rows if r["mavpackettype"] == name]) for name in ("RAW_IMU", "SERVO_OUTPUT_RAW"))
+archive = modebank.run({"flight": (motors, imu)}, state="zgyro", input=["servo1_raw", "servo3_raw"], time="time_usec", **{"data.time_unit": "us", "data.split": "blocks 10"}))";
 constexpr std::string_view parquet_lines = R"(
 import pandas, modebank
 frame = pandas.read_parquet("FILE")
@@ -73,7 +80,7 @@ import pandas, modebank
 frame = pandas.read_feather("FILE")
 archive = modebank.run({"drive": frame}, state="wz", input=["left", "right"], time="time", **{"data.split": "blocks 10"}))";
 
-/// A format that is not read, by the bytes it begins with.
+/// A format that is not read, by the bytes it begins with; without them a telemetry log (is_telemetry).
 struct Foreign {
   std::string_view magic, name, advice, python = {};
 };
@@ -107,6 +114,7 @@ constexpr std::array foreign{
     Foreign{"\xFD\x37zXZ"sv, "compressed by xz", "unxz -k '{0}'"},
     Foreign{"ULog\x01\x12\x35"sv, "a PX4 log", "ulog2csv '{0}' writes one CSV per topic", px4_lines},
     Foreign{"\xA3\x95"sv, "an ArduPilot log", "mavlogdump.py --format csv '{0}'", ardupilot_lines},
+    Foreign{""sv, "a MAVLink telemetry log", "mavlogdump.py --format csv '{0}'", telemetry_lines},
     Foreign{"MDF     "sv, "an ASAM MDF measurement", "asammdf's export to CSV reads it"},
     Foreign{"TDSm"sv, "a National Instruments TDMS file", "nptdms's tdmsinfo and as_dataframe().to_csv() read it"},
     Foreign{"%PDF"sv, "a PDF document", "export the table as CSV"},
@@ -127,6 +135,13 @@ void refuse_octave_text(const Path& path, std::string_view first) {
       fmt::format("{0} is in Octave's text format, which is not read here; octave --eval \"s = load('{0}'); "
                   "save('-v7', '{1}', '-struct', 's')\"",
                   path.string(), (path.parent_path() / (path.stem().string() + "_v7.mat")).string()));
+}
+
+/// A MAVLink telemetry log has no magic of its own: eight bytes of time, then a packet of version 1 or 2.
+bool is_telemetry(const Path& path, std::string_view first) {
+  constexpr std::size_t time_bytes = 8;
+  return path.extension() == ".tlog" && first.size() > time_bytes &&
+         (first[time_bytes] == '\xFE' || first[time_bytes] == '\xFD');
 }
 
 std::string first_bytes(const Path& path) {
@@ -160,7 +175,7 @@ std::vector<unsigned> bytes_of(std::string_view first) {
 std::shared_ptr<const TableReader> open_table(const Path& path, const FormatOptions& options) {
   const std::string first = first_bytes(path);
   for (const Foreign& other : foreign)
-    if (first.starts_with(other.magic))
+    if (other.magic.empty() ? is_telemetry(path, first) : first.starts_with(other.magic))
       throw ConfigurationError(fmt::format("{} is {}, which is not read here; {}", path.string(), other.name,
                                            advice_of(other, path.string())));
   refuse_octave_text(path, first);

@@ -1,6 +1,7 @@
 #include "io/recording/recording_reader.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -99,6 +100,18 @@ void set_times(const std::string& file, const TimeRequest& request, bool is_stam
   stamps.finish(file, table);
 }
 
+/// Lines of Python that read messages of Protobuf into a frame; docs/howto/any_reader.md has them, too.
+std::string protobuf_lines(const std::string& path) {
+  return fmt::format(R"( (topics and columns are examples):
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
+import pandas, modebank
+messages = make_reader(open("{}", "rb"), decoder_factories=[DecoderFactory()]).iter_decoded_messages(topics=["/motion"])
+frame = pandas.DataFrame([{{"time": m.log_time / 1e9, "wz": p.wz, "left": p.left, "right": p.right}} for _, _, m, p in messages])
+archive = modebank.run({{"drive": frame}}, state="wz", input=["left", "right"], time="time", **{{"data.split": "blocks 10"}}))",
+                     path);
+}
+
 }  // namespace
 
 RecordingReader::RecordingReader(const std::vector<std::filesystem::path>& files,
@@ -121,6 +134,21 @@ std::string RecordingReader::why_without(const std::string& column) const {
       return fmt::format("topic {} ({}) cannot be read: {} (name a folder with .msg files in data.definitions)",
                          topic.name, topic.type, topic.problem);
   return {};
+}
+
+std::vector<std::string> RecordingReader::left_out() const {
+  std::vector<std::string> topics;
+  std::string problem;
+  bool protobuf = false;
+  for (const LogTopic& topic : log_.topics()) {
+    if (topic.problem.empty()) continue;
+    topics.push_back(fmt::format("{} ({})", topic.name, topic.type));
+    if (problem.empty()) problem = topic.problem;
+    protobuf = protobuf || topic.problem.find("\"protobuf\"") != std::string::npos;
+  }
+  if (topics.empty()) return {};
+  return {fmt::format("left out: {} cannot be read: {}{}", fmt::join(topics, ", "), problem,
+                      protobuf ? protobuf_lines(path_.string()) : "")};
 }
 
 InputFile RecordingReader::described(const UsedMessages& used) const {

@@ -21,6 +21,8 @@ class RecordingReader : public TableReader {
   InputFile describe(const std::vector<TableRequest>& requests) const override;
   std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const override;
   std::string why_without(const std::string& column) const override;
+  /// Topics that cannot be read, and for messages of Protobuf lines of Python that read them.
+  std::vector<std::string> left_out() const override;
 
  private:
   InputFile described(const UsedMessages& used) const;

@@ -122,6 +122,24 @@ class AnyReader(unittest.TestCase):
             for line in BLOCKS[block].splitlines():
                 self.assertIn(re.sub(r"\s+# .*", "", line).replace(name, str(pathlib.Path(name).resolve())), done.stderr.splitlines())
 
+    def test_a_telemetry_log_is_refused_with_its_messages(self):
+        pathlib.Path("flight.tlog").write_bytes(b"\0\5\xfa\x12\x34\x56\x78\x9a\xfe\x09\0\1")
+        done = subprocess.run([os.environ["MODEBANK_PROGRAM"], "init", "flight.tlog"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("a MAVLink telemetry log", done.stderr)
+        self.assertIn(' type=["RAW_IMU", "SERVO_OUTPUT_RAW"]'.strip(), done.stderr)
+
+    def test_protobuf_in_mcap_prints_the_lines(self):
+        sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "io/recording"))
+        import ros2_writers
+        ros2_writers.write_mcap("drive.mcap", [("/motion", "robot.Motion", "")], [(0, 10**9 * k, b"1234") for k in range(9)],
+                                encoding="protobuf", definition_form="protobuf")
+        done = subprocess.run([os.environ["MODEBANK_PROGRAM"], "init", "drive.mcap"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("/motion (robot.Motion) cannot be read: its messages are written in \"protobuf\"", done.stderr)
+        for line in BLOCKS["mcap"].splitlines():
+            self.assertIn(re.sub(r"\s+# .*", "", line).replace("drive.mcap", str(pathlib.Path("drive.mcap").resolve())), done.stderr.splitlines())
+
 
 if __name__ == "__main__":
     unittest.main()
