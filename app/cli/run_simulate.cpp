@@ -47,10 +47,12 @@ VehicleSimulationOptions vehicle_of(const Config& config) {
 
 /// One name per kind of ground, or none.
 const std::vector<std::string>& grounds_of(const SimulateConfig& options) {
-  const std::size_t kinds = options.vehicle.friction.size();
+  const bool vehicle = options.kind == SimulatedSystem::vehicle;
+  const std::size_t kinds = vehicle ? options.vehicle.friction.size() : options.system.modes.size();
   if (!options.ground_names.empty() && options.ground_names.size() != kinds)
-    throw ConfigurationError(fmt::format("system.ground_names has {} names for {} kinds of ground (system.friction)",
-                                         options.ground_names.size(), kinds));
+    throw ConfigurationError(fmt::format("system.ground_names has {} names for {} kinds of ground ({})",
+                                         options.ground_names.size(), kinds,
+                                         vehicle ? "system.friction" : "system.modes"));
   return options.ground_names;
 }
 
@@ -62,7 +64,7 @@ void simulate_system(const Config& config) {
                      {options.output, data.state, data.input, grounds_of(options)});
   else
     write_simulation(simulate(system_of(config), config.job.seed),
-                     {options.output, data.state, data.input, options.state_rate_hz});
+                     {options.output, data.state, data.input, options.state_rate_hz, grounds_of(options)});
 }
 
 }  // namespace

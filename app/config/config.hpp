@@ -54,7 +54,7 @@ struct SimulateConfig {
   SimulatedSystem kind = SimulatedSystem::linear;
   SimulationOptions system;               ///< the linear system; commands, runs and outliers also of the vehicle
   VehicleSimulationOptions vehicle;       ///< what only a vehicle has
-  std::vector<std::string> ground_names;  ///< of a vehicle's kinds of ground
+  std::vector<std::string> ground_names;  ///< of the kinds of ground, or of the linear system's modes
   std::string output = "simulated";
   double rate_hz = 6.5;
   double state_rate_hz = 65.0;

@@ -20,6 +20,7 @@ std::vector<std::string> inputs_header(const SimulationLayout& layout) {
   names.insert(names.end(), layout.inputs.begin(), layout.inputs.end());
   for (const std::string& state : layout.states) names.push_back("true_" + state);
   names.emplace_back("mode");
+  if (!layout.grounds.empty()) names.emplace_back("ground");
   return names;
 }
 
@@ -29,10 +30,18 @@ std::vector<std::string> states_header(const SimulationLayout& layout) {
   return names;
 }
 
+/// The name of the ground of each sample.
+std::vector<std::string> names_of_kinds(const Eigen::VectorXi& kinds, const std::vector<std::string>& names) {
+  std::vector<std::string> column;
+  for (const int kind : kinds) column.push_back(names.at(static_cast<std::size_t>(kind)));
+  return column;
+}
+
 SimulationTable inputs_table(const SimulatedRun& run, const SimulationLayout& layout) {
   const Trajectory& measured = run.measured;
   SimulationTable table{inputs_header(layout), {}};
-  table.values.resize(static_cast<Index>(table.names.size()), measured.samples());
+  if (!layout.grounds.empty()) table.texts.push_back(names_of_kinds(run.mode, layout.grounds));
+  table.values.resize(std::ssize(table.names) - std::ssize(table.texts), measured.samples());
   table.values << measured.time_s.transpose(), measured.input, measured.truth, run.mode.cast<double>().transpose();
   return table;
 }
@@ -110,12 +119,8 @@ SimulationTables vehicle_tables(const VehicleRun& run, const VehicleLayout& layo
   SimulationTables tables{{vehicle_inputs_header(layout), {}}, {vehicle_states_header(layout), {}}};
   tables.inputs.values.resize(static_cast<Index>(tables.inputs.names.size()), run.inputs_time_s.size());
   tables.inputs.values << run.inputs_time_s.transpose(), run.wheel_speed, run.command;
-  const auto texts = static_cast<Index>(layout.grounds.empty() ? 0 : 1);
-  tables.states.values.resize(static_cast<Index>(tables.states.names.size()) - texts, run.time_s.size());
-  for (Index i = 0; i < texts; ++i) {
-    auto& grounds = tables.states.texts.emplace_back();
-    for (const int kind : run.kind) grounds.push_back(layout.grounds.at(static_cast<std::size_t>(kind)));
-  }
+  if (!layout.grounds.empty()) tables.states.texts.push_back(names_of_kinds(run.kind, layout.grounds));
+  tables.states.values.resize(std::ssize(tables.states.names) - std::ssize(tables.states.texts), run.time_s.size());
   tables.states.values << run.time_s.transpose(), run.measured, run.truth, run.true_wheel, run.pose,
       run.friction.transpose(), run.kind.cast<double>().transpose();
   return tables;

@@ -9,14 +9,16 @@
 
 namespace modebank {
 
-/// Writes simulated runs in the two-file layout that `import` reads: pro_NN.csv (time, inputs, truth columns, mode) at
-/// the system's rate and imu_NN.csv (time, states) at `state_rate_hz`. The states file holds y at the system's own
-/// samples and linear interpolation between them, so a rate that is a multiple of the system's gives y back exactly.
+/// Writes simulated runs in the two-file layout that `import` reads: pro_NN.csv (time, inputs, truth columns, mode
+/// and, where modes have names, ground) at the system's rate and imu_NN.csv (time, states) at `state_rate_hz`. The
+/// states file holds y at the system's own samples and linear interpolation between them, so a rate that is a multiple
+/// of the system's gives y back exactly.
 struct SimulationLayout {
   std::filesystem::path folder;     ///< created if its parent exists
   std::vector<std::string> states;  ///< column names, n
   std::vector<std::string> inputs;  ///< column names, m
   double state_rate_hz = 65.0;
+  std::vector<std::string> grounds = {};  ///< names of the modes; empty: they are numbered alone
 };
 
 /// Truth columns have names true_<state>; `mode` counts from 0. Either all files are written or none; simulated runs of

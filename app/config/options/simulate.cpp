@@ -19,6 +19,9 @@ std::vector<Option> common_parameters() {
       words("system.kind", "kind of system: a switching linear system, or a skid-steer robot on patches of ground",
             MODEBANK_FIELD(simulate.kind))
           .touch("always"),
+      text("system.ground_names", "words", "column ground, beside the column mode; empty: none, mode numbers them",
+           MODEBANK_FIELD(simulate.ground_names))
+          .touch("when modes shall be named after the grounds"),
       numeric("system.outlier_fraction", between(0, 1), "", "share of measurements with an outlier",
               MODEBANK_FIELD(simulate.system.outlier_fraction))
           .touch("to see what a robust loss does: 0.01 to 0.1"),
@@ -103,9 +106,6 @@ std::vector<Option> vehicle_parameters() {
       numeric("system.friction", each(above(0)), "", "friction coefficient of each kind of ground",
               MODEBANK_FIELD(simulate.vehicle.friction))
           .touch("for your grounds: 0.05 to 0.1 is ice, 0.6 dry floor"),
-      text("system.ground_names", "words", "column ground of the states file; empty: none, mode numbers them",
-           MODEBANK_FIELD(simulate.ground_names))
-          .touch("when modes shall be named after the grounds"),
       numeric("system.shear", each(above(0)), "m", "shear deformation modulus of each kind of ground, or one for all",
               MODEBANK_FIELD(simulate.vehicle.shear_m))
           .touch("rarely: when grounds shall differ in stiffness, too"),
