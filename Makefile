@@ -292,7 +292,7 @@ firefox: packages-firefox build
 
 # README's picture: a held-out run of the demo.
 picture: build
-	build/modebank demo -o $(DEMO) --data.label mode
+	build/modebank demo -o $(DEMO)
 	/usr/bin/python3 docs/pictures/demo.py $(DEMO)/demo.h5 > docs/pictures/demo.svg
 
 # configs/reference.ini: every key at its default.

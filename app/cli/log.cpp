@@ -65,9 +65,10 @@ void set_up_log(Verbosity verbosity) {
   formatter->add_flag<Mark>('*').add_flag<Message>('#').set_pattern(
       isatty(STDERR_FILENO) == 1 ? "%*%#\x1b[K" : "%*%#");  // no rest of a progress meter's line
   logger->set_formatter(std::move(formatter));
-  logger->set_level(verbosity == Verbosity::quiet    ? spdlog::level::err
-                    : verbosity == Verbosity::normal ? spdlog::level::info
-                                                     : spdlog::level::debug);
+  logger->set_level(verbosity == Verbosity::quiet      ? spdlog::level::err
+                    : verbosity == Verbosity::warnings ? spdlog::level::warn
+                    : verbosity == Verbosity::normal   ? spdlog::level::info
+                                                       : spdlog::level::debug);
   spdlog::set_default_logger(std::move(logger));
 }
 

@@ -4,8 +4,8 @@
 
 namespace modebank::app {
 
-/// What comes to standard error beside errors: nothing, progress and warnings, or all that was tried, too.
-enum class Verbosity { quiet, normal, verbose };
+/// Messages on standard error beside errors: none, warnings, progress as well, or all that was tried, too.
+enum class Verbosity { quiet, warnings, normal, verbose };
 
 /// Warnings are marked, and coloured on a terminal unless NO_COLOR is set (no-color.org).
 void set_up_log(Verbosity verbosity);

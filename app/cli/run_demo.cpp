@@ -6,8 +6,13 @@
 #include <string_view>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/demo_text.hpp"
+#include "app/cli/log.hpp"
+#include "app/cli/simulated_system.hpp"
+#include "app/config/config_file.hpp"
 #include "app/config/configuration_output.hpp"
 #include "app/report/page/assets.hpp"
+#include "io/archive/archive.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/replace_file.hpp"
 #include "io/simulation/simulation_files.hpp"
@@ -18,16 +23,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the demo leaves in its folder. The configurations are the program's own, so that it needs no file beside
+/// The files of a demo in its folder. The configurations are the program's own, so that it needs no file beside
 /// itself.
 struct DemoFolder {
   fs::path folder;
+  std::string name, simulation_name;
+  std::string_view configuration_text, simulation_text;
 
-  fs::path simulation() const { return folder / "simulate_ice.ini"; }
-  fs::path configuration() const { return folder / "demo.ini"; }
+  fs::path simulation() const { return folder / (simulation_name + ".ini"); }
+  fs::path configuration() const { return folder / (name + ".ini"); }
   fs::path data() const { return folder / "data"; }
-  fs::path archive() const { return folder / "demo.h5"; }
+  fs::path archive() const { return folder / (name + ".h5"); }
 };
+
+/// Two grounds that are linear, or with the word `tyres` the grounds of a tyre model, which are not.
+DemoFolder demo_of(const CommandLine& line) {
+  const bool tyres = !line.files.empty();
+  if (tyres && line.files.front() != "tyres")
+    throw ConfigurationError(
+        fmt::format("unknown demo {}: type `modebank demo`, or `modebank demo tyres` for tyres that slide on ice",
+                    line.files.front()));
+  const std::string folder = tyres ? "modebank_tyres" : "modebank_demo";
+  const fs::path chosen = line.output.empty() ? folder : line.output;
+  if (tyres) return {chosen, "tyres", "simulate_ice", assets::tyres_ini(), assets::simulate_ice_ini()};
+  return {chosen, "demo", "simulate_demo", assets::demo_ini(), assets::simulate_demo_ini()};
+}
 
 bool holds(const fs::path& file, std::string_view content) {
   return fs::is_regular_file(file) && read_file(file) == content;
@@ -41,8 +61,8 @@ bool holds_runs_alone(const fs::path& folder) {
 }
 
 bool is_of_a_demo(const fs::path& path, const DemoFolder& demo) {
-  if (path == demo.simulation()) return holds(path, assets::simulate_ice_ini());
-  if (path == demo.configuration()) return holds(path, assets::demo_ini());
+  if (path == demo.simulation()) return holds(path, demo.simulation_text);
+  if (path == demo.configuration()) return holds(path, demo.configuration_text);
   if (path == demo.data()) return holds_runs_alone(path);
   return path == demo.archive() && fs::is_regular_file(path);
 }
@@ -95,28 +115,56 @@ CommandLine typed_command(const CommandLine& demo, const std::vector<std::string
   return command;
 }
 
-}  // namespace
-
-int run_demo(const CommandLine& line) {
-  const DemoFolder demo{line.output.empty() ? "modebank_demo" : line.output};
-  const CommandLine simulate = typed_command(
-      line, {"simulate", demo.simulation().string(), fmt::format("--simulate.output={}", demo.data().string())});
-  CommandLine run =
-      typed_command(line, {"run", demo.configuration().string(), fmt::format("--data.root={}", demo.data().string()),
-                           fmt::format("--archive.output={}", demo.archive().string())});
-  run.force = true;  // the archive in its folder is the demo's own
+void write_configurations(const CommandLine& line, const DemoFolder& demo) {
   if (!line.force) refuse_foreign_files(demo);
   make_folder(demo.folder);
   for (const fs::path& file : {demo.simulation(), demo.configuration()})
     check_configuration_output("-o", file, {}, true);
-  replace_file(demo.simulation(), {assets::simulate_ice_ini()});
-  replace_file(demo.configuration(), {assets::demo_ini()});
+  replace_file(demo.simulation(), {demo.simulation_text});
+  replace_file(demo.configuration(), {demo.configuration_text});
+}
+
+/// Replaces what the run printed by what was found beside the truth, where the two can be compared.
+void add_truth(const DemoFolder& demo, const CommandLine& simulate, Result& result) {
+  Config simulation = load_config(demo.simulation(), simulate.overrides);
+  read_system(demo.folder, simulation);
+  const Archive archive = read_archive(OpenArchive(demo.archive()));
+  if (!is_comparable(archive, simulation)) return;
+  const DemoFindings findings = compare_with_truth(archive, simulation);
+  result.text = demo_text(archive, findings, resolved_values(archive.config));
+  result.members["truth"] = demo_json(findings);
+}
+
+std::string closing_words(const DemoFolder& demo, const std::string& program) {
+  const std::string pages = fmt::format("Look inside: {0} show {1}\nA page of it: {0} report {1} -o {2}.html\n",
+                                        program, shell_quoted(demo.archive().string()), demo.name);
+  return demo.name == "tyres" ? pages : pages + fmt::format("Tyres that slide on ice: {} demo tyres\n", program);
+}
+
+constexpr std::string_view introduction =
+    "A simulated robot turns quickly on grip and slowly on ice. Its log has the set speeds of its wheels\n"
+    "(cmd_velL, cmd_velR) and its turn rate (wz). What it does on each ground has to be found from these.\n";
+
+}  // namespace
+
+int run_demo(const CommandLine& line) {
+  const DemoFolder demo = demo_of(line);
+  const bool first = demo.name == "demo";
+  const CommandLine simulate = typed_command(
+      line, {"simulate", demo.simulation().string(), fmt::format("--simulate.output={}", demo.data().string())});
+  CommandLine run = typed_command(
+      line, {"run", demo.configuration().string(), fmt::format("--archive.output={}", demo.archive().string())});
+  run.force = true;  // the archive in its folder is the demo's own
+  run.quiet = run.quiet || (first && !line.verbose);
+  write_configurations(line, demo);
+  if (run.quiet && !line.quiet) set_up_log(Verbosity::warnings);
+  if (first) print_text(line, introduction);
   print_text(line, simulate.typed + "\n");
   print_text(line, do_simulate(simulate).text);
   print_text(line, run.typed + "\n");
   Result result = do_pipeline(run);
-  result.text += fmt::format("Look inside: {0} show {1}\nA page of it: {0} report {1} -o demo.html\n", line.program,
-                             shell_quoted(demo.archive().string()));
+  if (first) add_truth(demo, simulate, result);
+  result.text += closing_words(demo, line.program);
   return print_result(line, result);
 }
 

@@ -28,9 +28,10 @@ SystemText system_text(const std::string& system, const std::filesystem::path& f
   if (std::filesystem::is_regular_file(file)) return {read_file(file), file.string()};
   if (system == "husky_ice") return {std::string(assets::husky_ice_system()), system};
   if (system == "three_grips") return {std::string(assets::three_grips_system()), system};
-  throw ConfigurationError(
-      fmt::format("simulate.system = {}: expected husky_ice, three_grips or a file, and there is none at {}", system,
-                  file.string()));
+  if (system == "two_grounds") return {std::string(assets::two_grounds_system()), system};
+  throw ConfigurationError(fmt::format(
+      "simulate.system = {}: expected husky_ice, three_grips, two_grounds or a file, and there is none at {}", system,
+      file.string()));
 }
 
 const Option& parameter(const std::string& where, const std::string& key) {

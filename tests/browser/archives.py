@@ -52,7 +52,7 @@ def demo_data(modebank):
 
 def demo(modebank, data, name, *options, command="run"):
     quick = [] if command == "identify" else ["--mixture.restarts", "2", *QUICK]  # identify reads none of them
-    return modebank.run(name, modebank.source / "configs/demo.ini", "--data.root", data, *quick, *options, command=command)
+    return modebank.run(name, modebank.source / "configs/tyres.ini", "--data.root", data, *quick, *options, command=command)
 
 
 def ice(modebank):
@@ -122,7 +122,7 @@ def hostile(modebank):
 def study(modebank, data):
     folder = modebank.work / "study"
     config = modebank.work / "study.ini"
-    config.write_text((modebank.source / "configs/demo.ini").read_text() + "\nrestarts = 1\n[study]\n"
+    config.write_text((modebank.source / "configs/tyres.ini").read_text() + "\nrestarts = 1\n[study]\n"
                       "vary = window.length = 15 | 25\nvary = mixture.components = 1 | 2 | 3\nvary = mixture.covariance = full | diagonal\n",
                       encoding="utf-8")
     modebank("study", config, "--data.root", data, "--study.output", folder, *QUICK)
@@ -133,7 +133,7 @@ def large_study(modebank):
     """A study of 200 runs over short data: 50 settings with four seeds each."""
     data, folder, config = modebank.work / "short", modebank.work / "large_study", modebank.work / "large_study.ini"
     modebank("simulate", modebank.source / "configs/simulate_ice.ini", "--simulate.output", data, "--simulate.runs", "4", "--simulate.samples", "200")
-    text = (modebank.source / "configs/demo.ini").read_text().replace("components = 1..8", "restarts = 1")
+    text = (modebank.source / "configs/tyres.ini").read_text().replace("components = 1..8", "restarts = 1")
     config.write_text(text + "\n[study]\nvary = window.length = 10 | 15 | 20 | 25 | 30\nvary = mixture.components = 1 | 2 | 3 | 4 | 5\n"
                              "vary = mixture.covariance = full | diagonal\nrepeats = 4\n", encoding="utf-8")
     modebank("study", config, "--data.root", data, "--study.output", folder, *QUICK, "--bank.transition", "labels")

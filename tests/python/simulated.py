@@ -1,4 +1,4 @@
-"""A robot on ice and grip as `make demo` has it, shorter: files of runs, simulated once per test program."""
+"""A robot on ice and grip as `modebank demo tyres` has it, shorter: files of runs, simulated once per test program."""
 import atexit
 import functools
 import os

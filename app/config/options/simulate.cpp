@@ -154,7 +154,7 @@ std::vector<Option> simulate_options() {
       text("simulate.output", "a folder", "folder to write the runs to", MODEBANK_FIELD(simulate.output))
           .touch("for every simulation", std::nullopt, basic),
       text("simulate.system", "a name, or a file",
-           "what is simulated: husky_ice, three_grips, or a file with a section [system]",
+           "what is simulated: husky_ice, three_grips, two_grounds, or a file with a section [system]",
            MODEBANK_FIELD(simulate.name))
           .touch("for a system of your own: copy one of configs/systems and change it", std::nullopt, basic),
       numeric("simulate.runs", between(1, 100'000), "", "number of runs", MODEBANK_FIELD(simulate.system.runs))

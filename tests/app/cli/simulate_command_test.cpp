@@ -87,7 +87,7 @@ TEST_F(SimulateCommand, RefusesWhatASystemDoesNotHave) {
   EXPECT_THAT(refusal("mass = 5\n"), HasSubstr("system.kind is not set"));
   EXPECT_THAT(refusal("kind = linear\n"), HasSubstr("system.modes is empty"));
   EXPECT_THAT(refusal("kind = car\n"), HasSubstr("linear | vehicle"));
-  EXPECT_THAT(refusal("", "left, right", "car"), HasSubstr("expected husky_ice, three_grips or a file"));
+  EXPECT_THAT(refusal("", "left, right", "car"), HasSubstr("expected husky_ice, three_grips, two_grounds or a file"));
   EXPECT_THAT(refusal("kind = vehicle\n", "a, b, c"), HasSubstr("left and right wheel speed"));
   EXPECT_THAT(modebank({"simulate", file("sim.ini").string(), "--simulate.friction", "0.1"}).err,
               HasSubstr("a line of the file that simulate.system names"));
@@ -98,7 +98,7 @@ TEST_F(SimulateCommand, RefusesWhatASystemDoesNotHave) {
 
 /// The shipped systems are those inside the program, and have every parameter of their kind.
 TEST_F(SimulateCommand, ShippedSystemsStateEveryParameter) {
-  for (const char* name : {"husky_ice", "three_grips"}) {
+  for (const char* name : {"husky_ice", "three_grips", "two_grounds"}) {
     const std::string system = (project_dir() / "configs/systems" / (std::string(name) + ".ini")).string();
     const auto made_by = [&](const std::string& which) {
       const std::string folder = file(which == name ? "own" : "of_file").string();

@@ -1,4 +1,4 @@
-// The exported C over all held-out samples of the demo and of real robots, with the configurations as they stand.
+// The exported C over all held-out samples of the demos and of real robots, with the configurations as they stand.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -15,6 +15,11 @@ using app::test::Differences;
 
 class ExportedCOfRobots : public CliTest {
  protected:
+  void simulate(const std::string& configuration) const {
+    const std::string path = (project_dir() / "configs" / configuration).string();
+    ASSERT_EQ(modebank({"simulate", path, "--simulate.output", file("data").string()}).status, 0);
+  }
+
   void learn(const std::string& configuration, const std::vector<std::string>& options) const {
     std::vector<std::string> words{"run", (project_dir() / "configs" / configuration).string(), "--archive.output",
                                    archive()};
@@ -45,12 +50,15 @@ class ExportedCOfRobots : public CliTest {
 };
 
 TEST_F(ExportedCOfRobots, Demo) {
-  ASSERT_EQ(modebank({"simulate", (project_dir() / "configs/simulate_ice.ini").string(), "--simulate.output",
-                      file("data").string()})
-                .status,
-            0);
+  simulate("simulate_demo.ini");
+  learn("demo.ini", {"--data.root", file("data").string()});
+  expect_same();
+}
+
+TEST_F(ExportedCOfRobots, Tyres) {
+  simulate("simulate_ice.ini");
   // Noise that follows the inputs cannot be exported.
-  learn("demo.ini", {"--data.root", file("data").string(), "--bank.noise_by_input", "none"});
+  learn("tyres.ini", {"--data.root", file("data").string(), "--bank.noise_by_input", "none"});
   expect_same();
 }
 
