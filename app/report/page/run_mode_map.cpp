@@ -200,7 +200,7 @@ nlohmann::json mode_map_of(const Archive& archive) {
   if (one)
     map["lines"] = lines(bank, features[0], axis[0]);
   else
-    add_map(bank, features, axis[0], axis[1], modeMap);
+    add_map(bank, features, axis[0], axis[1], map);
   return map;
 }
 
