@@ -229,8 +229,11 @@ TEST_F(Report, NamesModesAndComparesThemWithLabels) {
   EXPECT_EQ(row["samples"]["v"], 3 + stored.bank->mode_count() - 1);
   const json& families = bank["families"];
   ASSERT_EQ(row["shares"].size(), bank["told_families"].get<std::size_t>() + 1) << "the last one: others";
-  for (std::size_t f = 0; f < bank["told_families"].get<std::size_t>(); ++f)
-    if (families[f]["modes"] == json{0}) EXPECT_EQ(row["shares"][f]["v"], 0.75);
+  for (std::size_t f = 0; f < bank["told_families"].get<std::size_t>(); ++f) {
+    if (families[f]["modes"] == json{0}) {
+      EXPECT_EQ(row["shares"][f]["v"], 0.75);
+    }
+  }
 }
 
 TEST_F(Report, BeginsWithWhatTheFirstScreenSaysAndAPicture) {
