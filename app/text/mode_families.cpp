@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr double near_errors = 2.0;  // standard errors of a difference
 
-/// What families are told by: of one mode the slowest time constant, then the gains that the data determine.
+/// Numbers by which modes are near or apart: the slowest time constant, then the gains that the data determine.
 struct ModeNumbers {
   ModeDynamics dynamics;
   VectorXd values, errors;

@@ -41,8 +41,8 @@ std::string family_cell(const ModeFamily& family, bool several) {
   return fmt::format("{} {}", family.modes.size() == 1 ? "mode" : "modes", family.numbers(most_members));
 }
 
-/// Without the period, which `show` has by mode. A mean of several modes stands as it is: its error is no interval that
-/// may reach a mode that never dies out.
+/// Time constant of a family without its period, which `show` has by mode. A mean of several modes stands as it is: its
+/// error includes how far they are apart, so it does not bound a mode that may never die out.
 std::string time_words(const ModeFamily& family) {
   Decay slowest = family.slowest;
   slowest.frequency_hz = 0.0;
@@ -50,7 +50,7 @@ std::string time_words(const ModeFamily& family) {
   return mean ? estimate_text(slowest.time_constant_s, slowest.time_constant_error_s) + " s" : decay_words(slowest);
 }
 
-/// Of a robot on two rows of wheels how wide its track acts in each family, in metres; nothing of others.
+/// Effective track width [m] of each family of a robot on two rows of wheels; empty for other systems.
 std::vector<std::string> track_cells(const Archive& archive, const std::vector<ModeFamily>& families) {
   if (!archive.recording) return {};
   const RobotBank robot{*archive.bank, archive.recording->states, archive.recording->inputs};

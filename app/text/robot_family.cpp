@@ -35,7 +35,7 @@ Estimate with_modes(const PooledNumber& number, const Counted& of, const ModeFam
   return {number.value, number.error, of.modes.size() < family.modes.size() ? of.modes : std::vector<Index>()};
 }
 
-/// Of those that are known and not vague; of vague ones where there are no others.
+/// Mean of the estimates that are known and not vague; of the vague ones where there are no others.
 Estimate mean_of(const std::vector<Estimate>& estimates, const ModeFamily& family) {
   Counted of = those_that_count(estimates, family, [](const Estimate& one) { return one.known() && !one.vague(); });
   if (of.modes.empty()) of = those_that_count(estimates, family, [](const Estimate& one) { return one.known(); });
