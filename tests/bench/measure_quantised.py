@@ -36,7 +36,7 @@ def settings(likelihood, quantum):
 
 def learned(program, runs, folder, modes, options):
     start = time.monotonic()
-    done = run_program(program, runs, folder, options + ["--mixture.components", str(modes), "--filter.smooth", "false"])
+    done = run_program(program, runs, folder, options + ["--window.model", "linear", "--mixture.components", str(modes), "--filter.smooth", "false"])
     if done.returncode != 0:
         return {"failed": done.stderr.strip().splitlines()[-1:]}
     with h5py.File(folder / "out.h5") as file:
