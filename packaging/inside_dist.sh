@@ -1,5 +1,6 @@
 #!/bin/sh
-# test_dist.sh runs this in an empty root, which gets no package: it unpacks the tarball and uses the program as an ordinary user.
+# test_dist.sh runs this script in an empty root without further packages. It unpacks the tarball, and uses the program as an
+# ordinary user.
 set -eu
 as_user() { su --login robot -c "$1"; }
 

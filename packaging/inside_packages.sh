@@ -1,5 +1,6 @@
 #!/bin/sh
-# test_packages.sh runs this in the empty root: it installs each package with the fewest others that apt allows, and uses it.
+# test_packages.sh runs this script in the empty root. It installs each package with the fewest other packages that apt allows,
+# and uses it.
 set -eu
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
 

@@ -1,5 +1,6 @@
 #!/bin/sh
-# test_pip.sh runs this in the empty root: pip builds and installs the module as an ordinary user, then README's Python block runs.
+# test_pip.sh runs this script in the empty root. As an ordinary user, pip builds and installs the module; then README's Python
+# block runs.
 set -eu
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
 as_user() { su --login robot -c "$1"; }
@@ -7,7 +8,7 @@ as_user() { su --login robot -c "$1"; }
 as_user 'mkdir source && tar -xf /files/source.tar -C source'
 sh /home/robot/source/.ci/install-packages build pip >/tmp/apt.log 2>&1 || { cat /tmp/apt.log >&2; exit 1; }
 begin=$(date +%s)
-# Without a network, pip can ask no registry.
+# The network is off, so pip cannot use a registry.
 unshare --net su --login robot -c "python3 -m venv --system-site-packages env &&
   CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)} env/bin/pip install --no-build-isolation ./source" >/tmp/pip.log 2>&1 ||
   { tail -n 40 /tmp/pip.log >&2; exit 1; }

@@ -1,5 +1,6 @@
-# Manual pages and completion, printed by the program itself while it is installed: its table of commands is their one source.
-# The names differ from those of components: an install script compares these as quoted words, which CMake takes for variables.
+# Manual pages and completion. The program prints them during installation, so its table of commands is their only source.
+# The variables must not have the names of components. An install script compares these names as quoted words, and CMake would
+# expand such a word to the variable of that name.
 install(CODE [[
   set(manual_of "$<TARGET_FILE:modebank>")
   set(manual_root "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share")

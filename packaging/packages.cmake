@@ -1,7 +1,7 @@
-# What goes into which Debian package, and what is written on it; `make packages` makes them: an install component each.
-#   program      modebank: the program, its configurations as examples
-#   development  libmodebank-dev: static libraries, public headers, what find_package finds, the examples of tests/examples
-#   python       python3-modebank: the module, where MODEBANK_PYTHON is ON
+# Content and description of the Debian packages. `make packages` makes one package for each install component:
+#   program      modebank: the program, and configurations as examples
+#   development  libmodebank-dev: static libraries, public headers, files for find_package, the examples of tests/examples
+#   python       python3-modebank: the module, if MODEBANK_PYTHON is ON
 set(components program development)
 set(package_of_program modebank)
 set(package_of_development libmodebank-dev)
@@ -13,7 +13,7 @@ if(TARGET modebank_python)
   list(APPEND components python)
 endif()
 
-# Whom to ask is what the repository says: the author of its last commit; of a tree without one the packager says it.
+# The maintainer is the author of the last commit. For a tree without commits the packager sets MODEBANK_MAINTAINER.
 set(MODEBANK_MAINTAINER "" CACHE STRING "Maintainer of the packages, NAME <ADDRESS>; empty: the author of the last commit")
 function(ask_git variable format)
   execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} log -1 "--format=${format}" OUTPUT_VARIABLE answer
@@ -31,7 +31,7 @@ if(NOT date)
   string(TIMESTAMP date_s "%s" UTC)
 endif()
 
-# The licence is the owner's to choose.
+# Only the owner chooses the licence, so the packages contain the licence files of the source tree.
 file(GLOB licences LIST_DIRECTORIES false ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/LICENSE.* ${PROJECT_SOURCE_DIR}/COPYING)
 set(licence "")
 foreach(file IN LISTS licences)
@@ -40,11 +40,11 @@ foreach(file IN LISTS licences)
   string(APPEND licence "${text}\n")
 endforeach()
 if(NOT licence)
-  set(licence "The source tree that this package was built from holds no LICENSE file: its owner has stated no terms of
-use, change or distribution, and none are made up here.\n")
+  set(licence "The source tree of this package has no LICENSE file. Its owner has not stated any terms of use, change or
+distribution.\n")
 endif()
 
-# Packages of others that are compiled in, as headers, as a static library or (d3) as text; Debian's packages have their terms.
+# Packages of others that are compiled in: as headers, as a static library, or as text (d3). Their terms are in Debian's packages.
 set(others libboost-dev libceres-dev libeigen3-dev libfmt-dev libhwy-dev libspdlog-dev nlohmann-json3-dev node-d3-path node-d3-scale)
 set(notices "")
 foreach(package IN LISTS others)
@@ -59,7 +59,7 @@ foreach(component IN LISTS components)
   set(package ${package_of_${component}})
   configure_file(${CMAKE_CURRENT_LIST_DIR}/copyright.in ${documents}/${package}/copyright @ONLY)
   configure_file(${CMAKE_CURRENT_LIST_DIR}/changelog.in ${documents}/${package}/changelog @ONLY)
-  # -n: without the time of day.
+  # -n: no time stamp, so equal text gives an equal file.
   execute_process(COMMAND gzip -9nf changelog WORKING_DIRECTORY ${documents}/${package} COMMAND_ERROR_IS_FATAL ANY)
   install(FILES ${documents}/${package}/copyright ${documents}/${package}/changelog.gz DESTINATION share/doc/${package}
           COMPONENT ${component})
@@ -85,10 +85,10 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 
-# Lines as Debian has them, of at most 79 letters.
-set(what "A robot's logged runs become local linear models in sliding windows, their
-mixture, a bank of modes, and a multiple-model filter that is judged on runs
-it never saw. Every number has its uncertainty.")
+# Debian wants lines of at most 79 letters.
+set(what "modebank fits local linear models to a robot's logged runs in sliding windows.
+It clusters the models, learns a bank of modes, and judges a multiple-model
+filter on held-out runs. Parameters and gains have standard errors.")
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME modebank)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
@@ -97,9 +97,9 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libmodebank-dev")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "identifies motion with changing character from logged runs
 ${what}
 .
-This package has the program; `modebank demo` shows what it does.")
+This package contains the program. Type `modebank demo` to see an example.")
 
-# Static libraries: nothing to look into for what they need, so modebank-config.cmake is written out here.
+# dpkg-shlibdeps finds no dependencies of static libraries. So this list repeats those of modebank-config.cmake.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmodebank-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
@@ -109,12 +109,12 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "cmake, g++, modebank")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "motion with changing character: libraries of modebank
 ${what}
 .
-This package has static libraries and headers for C++20: stepping a bank on a
-robot, judging, learning, loading archives; CMake finds them with
+This package contains static libraries and headers for C++20. They step a bank
+on a robot, judge and learn banks, and load archives. CMake finds them with
 find_package(modebank).")
 
 if(TARGET modebank_python)
-  # A module is for the Python it was compiled for.
+  # A module runs only with the version of Python for which it was compiled.
   find_package(Python 3 COMPONENTS Interpreter REQUIRED)
   math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-modebank)
@@ -126,13 +126,13 @@ if(TARGET modebank_python)
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION "motion with changing character: modebank for Python 3
 ${what}
 .
-This package has the module modebank: numpy arrays and pandas frames in and
-out.")
+This package contains the module modebank. Its functions take and return numpy
+arrays and pandas frames.")
 endif()
 
 include(CPack)
 
-# All that is packed, and nothing else that may be configured. Dated as the commit, so that one tree makes one package.
+# Builds only the targets that are packed. The files have the date of the commit, so equal trees give equal packages.
 add_custom_target(modebank_packages COMMAND ${CMAKE_COMMAND} -E env SOURCE_DATE_EPOCH=${date_s} ${CMAKE_CPACK_COMMAND}
                   WORKING_DIRECTORY ${CMAKE_BINARY_DIR} USES_TERMINAL)
 list(TRANSFORM installed_libraries PREPEND modebank_ OUTPUT_VARIABLE packed)

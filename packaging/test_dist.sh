@@ -1,5 +1,6 @@
 #!/bin/sh
-# Uses the tarball in an empty Debian 12 and an empty Debian 13, and compares README's oldest glibc with what the tarball needs.
+# Uses the tarball in an empty Debian 12 and an empty Debian 13. Compares the oldest glibc in README with the one that the tarball
+# needs.
 # Usage: test_dist.sh TARBALL ROOT
 set -eu
 tarball=$1 root=$2
