@@ -15,7 +15,7 @@ seconds() { date +%s; }
 install_packages ./modebank_*.deb
 begin=$(seconds)
 as_user 'modebank demo >demo.txt 2>demo.log' || { as_user 'cat demo.log demo.txt' >&2; exit 1; }
-as_user 'grep -q "of the held-out samples are given to the ground" demo.txt && cat demo.txt'
+as_user 'grep -q "of the held-out samples are assigned to their true ground" demo.txt && cat demo.txt'
 echo "modebank demo took $(($(seconds) - begin)) s"
 as_user 'modebank report modebank_demo/demo.h5 -o demo.html && test -s demo.html && modebank verify modebank_demo/demo.h5'
 

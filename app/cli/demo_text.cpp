@@ -124,8 +124,8 @@ std::string ground_rows(const FoundGround& mode) {
 /// Whether the modes are worth it, in the words of a first reader; the screen's own finding where they are not.
 std::string worth_text(const FirstScreen& screen) {
   if (screen.answer != Answer::evidence) return wrapped("finding   " + screen.finding, demo_columns) + "\n";
-  return fmt::format("With these modes each held-out sample is {:.2g} times as likely as with the best single model.\n",
-                     std::exp(screen.gain));
+  return fmt::format("With these modes each held-out sample is {:.2g} times as likely as with one linear model ({}).\n",
+                     std::exp(screen.gain), screen.competitor);
 }
 
 }  // namespace
@@ -157,14 +157,14 @@ std::string demo_text(const Archive& archive, const DemoFindings& findings, cons
   const FirstScreen screen = make_first_screen(archive, settings);
   const std::size_t modes = findings.modes.size();
   std::string text =
-      fmt::format("Found: {} mode{} of motion on {} grounds. A mode is one way in which wz follows the inputs.\n",
-                  modes, modes == 1 ? "" : "s", findings.grounds);
+      fmt::format("Found {} mode{} on {} grounds. A mode is one way in which {} answers; +- is one standard error.\n",
+                  modes, modes == 1 ? "" : "s", findings.grounds, archive.recording->states.front().name);
   for (const FoundGround& mode : findings.modes) text += ground_rows(mode);
-  text += fmt::format("{:.1f} % of the {} samples are given to the ground that they were driven on:\n",
+  text += fmt::format("{:.1f} % of the {} samples are assigned to their true ground. One of the runs:\n",
                       100.0 * findings.agreement, words_for(screen.role));
   text += ground_strips(archive) + worth_text(screen);
   if (std::isfinite(screen.coverage))
-    text += fmt::format("{:.1f} % of them lie in the band that was predicted for 95 % (92.5 to 97.5 % is good).\n",
+    text += fmt::format("{:.1f} % of the held-out samples lie in the predicted 95 % band (92.5 to 97.5 % is good).\n",
                         100.0 * screen.coverage);
   if (!screen.warning.empty()) text += wrapped("warning   " + screen.warning, demo_columns) + "\n";
   return text;

@@ -74,7 +74,7 @@ TEST_F(Demo, FindsTheGroundsThatItSimulates) {
   }
   EXPECT_THAT(truths, ::testing::UnorderedElementsAre(0.15, -0.95, 0.95, 0.005, 0.6, -0.5, 0.5, 0.005));
   std::smatch share;
-  ASSERT_TRUE(std::regex_search(shown.out, share, std::regex(R"(([\d.]+) % of the held-out samples are given)")));
+  ASSERT_TRUE(std::regex_search(shown.out, share, std::regex(R"(([\d.]+) % of the held-out samples are assigned)")));
   EXPECT_GT(std::stod(share[1]), 95.0);
 }
 

@@ -105,8 +105,8 @@ Deviations deviations(int seed) {
   ExportedBank exported = as_exported(learned(recording));
   exported.measurements = recording.states;
   exported.recorded_inputs = recording.inputs;
-  const RobotBank robot{exported.bank, exported.measurements, exported.recorded_inputs, exported.input_lag_s};
-  const RobotNumbers said = robot_numbers(robot, 0, robot_channels(robot), {});
+  const RobotBank learned_robot{exported.bank, exported.measurements, exported.recorded_inputs, exported.input_lag_s};
+  const RobotNumbers said = robot_numbers(learned_robot, 0, robot_channels(learned_robot), {});
   const Mode& mode = exported.bank.modes[0];
   const double dt_s = exported.bank.dt_s;
   const std::array<Estimate, names.size()> estimates{said.separation_m,
