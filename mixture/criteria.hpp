@@ -9,7 +9,7 @@
 namespace modebank {
 
 /// Cost in log-likelihood of assigning each point to one component: - sum over points of w log max_k r [nats]. Zero if
-/// no point is doubtful. A noise component counts as a class.
+/// every point clearly belongs to one component. A noise component counts as a class.
 double classification_cost(const GaussianMixture& mixture, const PointSet& points);
 
 /// Fills the criteria of a row from its log_likelihood, parameters and effective_samples (method: section 3). BIC = -2
@@ -18,17 +18,18 @@ double classification_cost(const GaussianMixture& mixture, const PointSet& point
 /// weight, `cost` the classification_cost.
 void fill_criteria(Candidate& candidate, double total_weight, double cost);
 
-/// Value of a row under the criterion; lower is better for every criterion.
+/// Value of a row under the criterion. For every criterion a lower value is better.
 double criterion_value(const Candidate& candidate, Criterion criterion);
 
-/// Position of the best row by the criterion: the first on a tie, ignoring rows that are not finite; -1 if none is
-/// left. Rows that rest on the covariance floor come after all others, because the floor determined their likelihood.
+/// Position of the best row by the criterion: the first on a tie, ignoring rows that are not finite; -1 if no rows
+/// remain. Rows whose fit is at the covariance floor come after all others, because the floor determined their
+/// likelihood.
 Eigen::Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion);
 
-/// Reasons against trusting the selected row, one sentence each: restarts that disagree, the covariance floor, the edge
-/// of the range, fits that did not converge. Also: another number describes left-out runs better by more than two
-/// standard errors. Disagreement of criteria does not count, because AIC nearly always chooses more components than
-/// BIC.
+/// Reasons against trusting the selected row, one sentence each. They are: restarts that disagree, the covariance
+/// floor, the edge of the range, fits that did not converge, and another number of components that describes left-out
+/// runs better by more than two standard errors. Disagreement of criteria is no reason, because AIC nearly always
+/// chooses more components than BIC.
 std::vector<std::string> selection_warnings(const std::vector<Candidate>& candidates);
 
 }  // namespace modebank

@@ -11,18 +11,18 @@ namespace modebank {
 
 /// A fitted mixture and how the fit ended.
 struct EmResult {
-  GaussianMixture mixture;      ///< by decreasing weight; in the start's order if fitted from a start
+  GaussianMixture mixture;      ///< by decreasing weight; in the start's order if the fit began at a given start
   double log_likelihood = 0.0;  ///< weighted sum over points under `mixture`
-  int iterations = 0;           ///< of the kept restart
+  int iterations = 0;           ///< iterations of the kept restart
   bool converged = false;
   /// Number of restarts that reached the best log-likelihood within 1e-4 nats per point by themselves, without
-  /// crossing. 0: only crossing found it.
+  /// crossing. 0 if only a crossing found it.
   int agreeing_restarts = 0;
   bool floor_active = false;  ///< whether the covariance floor acted on any component in the last iteration
 };
 
-/// Throws std::invalid_argument for points that nothing can be fitted to: no points, sizes that do not fit, values,
-/// weights or error covariances out of range.
+/// Throws std::invalid_argument for points that cannot be fitted: no points, sizes that do not fit, values, weights or
+/// error covariances out of range.
 void check_points(const PointSet& points);
 
 /// Fits K components: the best of options.restarts restarts, improved by split-and-merge moves (Ueda et al. 2000) and
@@ -46,8 +46,8 @@ class EmSweep {
   EmSweep(const EmSweep&) = delete;
   EmSweep& operator=(const EmSweep&) = delete;
 
-  /// Fits `components`. With `start` (physical units, the same number of components) the first restart begins there.
-  /// Throws as fit_em does.
+  /// Fits `components`. With `start` (physical units, the same number of components) the first restart begins at
+  /// `start`. Throws the errors of fit_em.
   EmResult fit(Eigen::Index components, std::uint64_t seed, const GaussianMixture* start = nullptr) const;
 
  private:

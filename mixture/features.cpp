@@ -20,8 +20,8 @@ bool failed(const WindowFits& fits, Index window) { return fits.status(window) =
 
 bool full_rank(const WindowFits& fits, Index window) { return fits.rank(window) == fits.parameter_count(); }
 
-/// Whether the full-rank windows are worth at least two independent windows per feature. Fewer would not determine a
-/// component.
+/// Whether the full-rank windows are worth at least two independent windows per feature. Fewer windows would not
+/// determine a component.
 bool enough_of_full_rank(const WindowFits& fits, Index features) {
   Index count = 0;
   for (Index window = 0; window < fits.count(); ++window)
@@ -29,7 +29,7 @@ bool enough_of_full_rank(const WindowFits& fits, Index features) {
   return count * fits.step >= 2 * features * fits.length;
 }
 
-/// The window choice that `automatic` means for these windows.
+/// The choice of windows that `automatic` means for these windows.
 WindowChoice resolved(const WindowFits& fits, WindowChoice choice, WindowErrors errors, Index features) {
   if (choice != WindowChoice::automatic) return choice;
   if (errors == WindowErrors::include) return WindowChoice::all;
@@ -49,7 +49,7 @@ Index features_kept(FeatureSet features, Index all) {
   return features == FeatureSet::automatic ? std::min<Index>(all, most_features) : all;
 }
 
-/// Median standard deviation of the clustered windows' errors; 0 where it is unknown.
+/// Median standard deviation of the clustered windows' errors; 0 if it is unknown.
 Eigen::VectorXd typical_error(const WindowFits& fits, const std::vector<Index>& windows, Index features) {
   const Index p = fits.parameter_count();
   Eigen::VectorXd result = Eigen::VectorXd::Zero(features);
@@ -132,7 +132,7 @@ class CloudBuilder {
   Eigen::MatrixXd error_, covariance_;
 };
 
-/// Variance of the values clamped to their 5 % and 95 % quantiles. Large sets are thinned.
+/// Variance of the values, clamped to their 5 % and 95 % quantiles. Large sets are thinned.
 double central_variance(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& all) {
   constexpr Index enough = 20'000;
   constexpr double tail = 0.05;

@@ -15,7 +15,7 @@ struct FeatureCloud {
   std::vector<std::string> names;     ///< F: parameter names, then "log_noise_variance_<state>" when noise is included
   Eigen::MatrixXd points;             ///< F x N, physical units
   Eigen::MatrixXd covariances;        ///< F*F x N, covariance of each point's error; empty unless requested
-  Eigen::VectorXd typical_error;      ///< F, median standard deviation of the windows' errors; 0: unknown
+  Eigen::VectorXd typical_error;      ///< F, median standard deviation of the windows' errors; 0 if it is unknown
   std::vector<Eigen::Index> windows;  ///< N, window of each point
   std::vector<Eigen::Index> runs;     ///< N, run of that window
 
@@ -27,23 +27,23 @@ enum class WindowErrors { ignore, include };
 
 /// The cloud of the clustered windows, without failed fits and non-finite windows.
 ///
-/// With errors, a point is the estimate from the window's data alone: the prior is taken off, because clustering would
+/// With errors, a point is the estimate from the window's data alone. The prior is removed, because clustering would
 /// count it once per window. This works in directions where data have at least 5 % of the information. The point's
 /// covariance is that of theta. The logarithm of a noise variance has variance 2 / (L - rank / n), uncorrelated with
 /// theta (delta method: an estimate of sigma^2 on nu degrees of freedom has variance 2 sigma^4 / nu under Gaussian
-/// noise). Windows with a non-finite covariance are left out: rank deficient and without a prior, their theta measures
-/// nothing.
+/// noise). Windows with a non-finite covariance are skipped: they are rank deficient without a prior, and their theta
+/// measures nothing.
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
                            const std::vector<Channel>& states, WindowsOverSwitch over_switch = WindowsOverSwitch::keep,
                            WindowErrors errors = WindowErrors::ignore);
 /// make_features with the choices of the options. FeatureSet::automatic gives at most most_features features.
 FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options);
 
-/// Whether one-lag fits of the windows are clustered in place of `fits`.
+/// Whether one-lag fits of the windows are clustered instead of `fits`.
 bool clusters_one_lag(const WindowFits& fits, FeatureSet features);
 
-/// The cloud restricted to the named features, in the order of the names. Throws std::invalid_argument for a name that
-/// the cloud lacks.
+/// The cloud restricted to the named features, in the order of the names. Throws std::invalid_argument for a name
+/// without a feature in the cloud.
 FeatureCloud in_features(FeatureCloud cloud, const std::vector<std::string>& names);
 
 /// Names of the `most` features that vary most beyond their errors, in the cloud's order. Measure: variance of the
@@ -51,10 +51,10 @@ FeatureCloud in_features(FeatureCloud cloud, const std::vector<std::string>& nam
 /// last.
 std::vector<std::string> most_varied(const FeatureCloud& cloud, Eigen::Index most);
 
-/// Windows that are not clustered, because their data do not determine all parameters, but that get a membership. Their
-/// errors are large in the undetermined directions. For each the mixture states how probable each component is. Empty
-/// without a prior (their theta is then no estimate), and if all windows are clustered. `names`: features of the
-/// clustered cloud; empty: all.
+/// Windows that are not clustered but get a membership. Their data do not determine all parameters. Their errors are
+/// large in the undetermined directions. For each such window the mixture gives the probability of each component.
+/// Empty without a prior (their theta is then no estimate), and if all windows are clustered. `names`: features of the
+/// clustered cloud; if empty, all features.
 FeatureCloud assigned_features(const WindowFits& fits, const std::vector<Channel>& states,
                                const ClusterOptions& options, const std::vector<std::string>& names = {});
 

@@ -18,7 +18,8 @@ using Eigen::Index;
 
 namespace {
 
-/// Checks the values of a mixture, beyond check_sizes. Weights may have any sum, as those of a part of a mixture do.
+/// Checks the values of a mixture, in addition to check_sizes. Weights may have any sum, because the mixture may be a
+/// part of another one.
 void check_numbers(const GaussianMixture& mixture) {
   if (!mixture.means.allFinite() || !mixture.weights.allFinite() || mixture.weights.minCoeff() < 0.0)
     throw std::invalid_argument("mixture with a mean or weight that is not finite, or a negative weight");
@@ -27,7 +28,7 @@ void check_numbers(const GaussianMixture& mixture) {
         fmt::format("noise component has the weight {}; expected a probability", mixture.noise.weight));
 }
 
-/// Evaluates a mixture block by block. With errors it uses units in which the mixture's numbers are near one.
+/// Evaluates a mixture block by block. With errors, the units are such that the mixture's numbers are near one.
 class BlockEvaluation {
  public:
   BlockEvaluation(const GaussianMixture& mixture, const PointSet& set)

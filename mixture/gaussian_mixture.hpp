@@ -15,10 +15,10 @@ namespace modebank {
 /// 3.3). Its density is 1 / volume inside the box and 0 outside.
 struct UniformNoise {
   double weight = 0.0;
-  Eigen::VectorXd lower, upper;  ///< F, corners of the box [feature unit]; empty: the mixture has no such component
+  Eigen::VectorXd lower, upper;  ///< F, corners of the box [feature unit]; empty if the mixture has no noise component
 
   bool present() const { return lower.size() > 0; }
-  double log_density() const { return -(upper - lower).array().log().sum(); }  ///< inside the box
+  double log_density() const { return -(upper - lower).array().log().sum(); }  ///< density inside the box
   bool contains(const Eigen::Ref<const Eigen::VectorXd>& point) const {
     return (point.array() >= lower.array()).all() && (point.array() <= upper.array()).all();
   }
@@ -36,7 +36,8 @@ struct GaussianMixture {
   Eigen::Index components() const { return weights.size(); }
   Eigen::Index features() const { return means.rows(); }
   /// Free parameters q of the information criteria: K - 1 + K F + K F (F + 1) / 2, or K - 1 + 2 K F if diagonal. A
-  /// noise component adds 2: its weight and its volume (as mclust counts: nMclustParams, Scrucca et al. 2016).
+  /// noise component adds 2: its weight and its volume (the same count as in mclust: nMclustParams, Scrucca et al.
+  /// 2016).
   Eigen::Index parameter_count() const;
 };
 
@@ -46,7 +47,7 @@ class NotPositiveDefinite : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// Throws std::invalid_argument if the sizes of a mixture's parts do not fit together, or it has no component or
+/// Throws std::invalid_argument if the sizes of a mixture's parts do not fit together, or if it has no component or no
 /// feature.
 void check_sizes(const GaussianMixture& mixture);
 
@@ -54,16 +55,16 @@ void check_sizes(const GaussianMixture& mixture);
 /// a negative variance or a correlation beyond one.
 void check_errors(const PointSet& points);
 
-/// Raises the eigenvalues to `floor`. `diagonal`: raises the variances and zeroes the off-diagonals. Returns whether
-/// any was below.
+/// Raises the eigenvalues to `floor`. `diagonal`: raises the variances and sets the off-diagonals to zero. Returns
+/// whether any value was below `floor`.
 bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type);
 
 // The functions below throw std::invalid_argument for sizes that do not fit, values that are not finite, a negative
 // weight and an invalid error covariance. They also throw NotPositiveDefinite. For a point with error covariance S,
 // component k has density N(mu_k, Sigma_k + S) (Bovy, Hogg & Roweis 2011, eq. 9). Weights of points are ignored.
 
-/// Log density of every point, computed in the log domain: N values, finite for finite points. The value is about
-/// -1e300 where the distance itself overflows.
+/// Log density of every point, computed in the log domain: N values, finite for finite points. If the distance
+/// overflows, the value is about -1e300.
 Eigen::VectorXd log_density(const GaussianMixture& mixture, const PointSet& points);
 /// Posterior component probabilities, K x N; each column sums to one, or to one minus the probability of noise.
 Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const PointSet& points);

@@ -13,7 +13,7 @@ namespace modebank {
 /// to group j mod the number of groups. `runs` (N): run of each point.
 Eigen::Index heldout_groups(const std::vector<Eigen::Index>& runs);
 
-/// Log densities of the points of each left-out group, and their weights; NaN in groups that could not be scored.
+/// Log densities of the points of each left-out group, and their weights. NaN in groups that could not be scored.
 struct HeldoutScore {
   Eigen::VectorXd sums, weights;
 
@@ -27,9 +27,9 @@ struct HeldoutScore {
 /// differences d_g of weight w_g and mean m: sqrt(G / (G - 1) sum (d_g - m w_g)^2) / sum w_g.
 double difference_error(const HeldoutScore& a, const HeldoutScore& b);
 
-/// Log density [nats per point] of points under mixtures fitted without their group of runs. Higher is better. Each fit
-/// has up to two restarts without split-and-merge moves. Points count by their weight. The mean is NaN with fewer than
-/// two runs, or if the remaining points are fewer than the components.
+/// Log density [nats per point] of points under mixtures that were fitted without the points' group of runs. Higher is
+/// better. Each fit has up to two restarts without split-and-merge moves. Points are weighted. The mean is NaN with
+/// fewer than two runs, or if the number of remaining points is below the number of components.
 HeldoutScore heldout_score(const PointSet& points, const std::vector<Eigen::Index>& runs, Eigen::Index components,
                            EmOptions options, std::uint64_t seed);
 

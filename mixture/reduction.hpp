@@ -35,15 +35,15 @@ double merge_loss(const GaussianMixture& mixture, Eigen::Index i, Eigen::Index j
 std::vector<Merge> merges_by_loss(const GaussianMixture& mixture);
 
 /// Greedy reduction of a mixture: repeatedly merges the pair of least merge_loss (Runnalls 2007, section V). A merged
-/// component takes the earlier one's place. Of pairs with equal cost the first is merged. Time K^2 initially and per
-/// merge.
+/// component takes the place of the earlier of the two. Of pairs with equal cost the first is merged. Time K^2
+/// initially and per merge.
 class Reduction {
  public:
   explicit Reduction(GaussianMixture mixture);
 
   Eigen::Index components() const { return std::ssize(alive_); }
 
-  /// Positions of the merged component and of the absorbed one, among the components before the merge.
+  /// Positions of the merged component and of the absorbed component, among the components before the merge.
   struct Pair {
     Eigen::Index into, absorbed;
   };
@@ -60,7 +60,7 @@ class Reduction {
   GaussianMixture mixture_;
   Eigen::MatrixXd loss_;  // pairs i < j
   std::vector<double> log_determinants_;
-  std::vector<Eigen::Index> alive_;  // positions that are left, in order
+  std::vector<Eigen::Index> alive_;  // positions of the remaining components, in order
 };
 
 }  // namespace modebank

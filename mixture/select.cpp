@@ -29,7 +29,8 @@ using Eigen::Index;
 namespace {
 
 constexpr Index affordable_heldout = 20000;  // points
-/// Number of points that stand for a cloud of more than most_compared. Costs a tenth of comparing 700,000.
+/// Number of points that represent a cloud of more than most_compared. Comparing candidates on them takes a tenth of
+/// the time for 700,000 points.
 constexpr Index compared_part = 50'000;
 
 struct FittedCandidate {
@@ -48,7 +49,7 @@ struct Task {
   double total_weight;
   Index distinct_points;
 
-  /// The seed depends on the candidate's size, not on its place in the table, so other candidates do not change it.
+  /// The seed depends on the candidate's size instead of its place in the table. So other candidates do not change it.
   std::uint64_t seed_of(Index components) const {
     return derive_seed(seed, "mixture", static_cast<std::uint64_t>(components));
   }
@@ -171,7 +172,8 @@ std::optional<PointPart> part_to_compare(const PointSet& points, std::uint64_t s
   return PointPart(points, positions);
 }
 
-/// The sample design of a part. It is worth as many independent samples as all points, because neighbours share theirs.
+/// The sample design of a part. The part is worth the same number of independent samples as all points, because
+/// neighbouring points share samples.
 SampleDesign design_of(const SampleDesign& all, const std::vector<Index>& positions) {
   SampleDesign part{std::min(all.effective_samples, static_cast<double>(positions.size())), {}};
   for (const Index i : positions)

@@ -36,7 +36,7 @@ DataInformation block_of(const DataInformation& all, Index first, Index size) {
   return {vectors, values.array().max(0.0)};
 }
 
-/// Offset from the prior's mean before the prior pulled the estimate towards it.
+/// Offset of the data's estimate from the prior's mean, before the prior pulled the estimate towards the mean.
 Eigen::VectorXd unpulled(const DataInformation& data, double weighed, const Eigen::VectorXd& offset) {
   return data.directions * ((data.directions.transpose() * offset).array() / data.share(weighed)).matrix();
 }

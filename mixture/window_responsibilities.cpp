@@ -40,7 +40,7 @@ WindowResponsibilities::WindowResponsibilities(GaussianMixture mixture, FeatureC
     : windows_(windows) {
   check_order(clustered, windows);
   check_order(assigned, windows);
-  // With few components the inputs take more memory than the responsibilities, which are then stored.
+  // With few components the inputs take more memory than the responsibilities. The responsibilities are then stored.
   const Index kept_of_a_point = clustered.points.rows() + clustered.covariances.rows() + 1;
   const bool small = mixture.components() * windows <=
                      kept_of_a_point * static_cast<Index>(clustered.windows.size() + assigned.windows.size());

@@ -9,9 +9,9 @@
 
 namespace modebank {
 
-/// Posterior component probabilities of all windows, K x M; NaN where a window is neither clustered nor assigned. They
-/// are either stored (as read from an archive) or recomputed block by block on each reading, which saves K x M memory.
-/// Both give the same bits.
+/// Posterior component probabilities of all windows, K x M; NaN for windows that are neither clustered nor assigned.
+/// They are either stored (as read from an archive) or recomputed block by block on each reading, which saves K x M
+/// memory. Both give the same bits.
 class WindowResponsibilities {
  public:
   WindowResponsibilities() = default;
@@ -25,7 +25,7 @@ class WindowResponsibilities {
   /// Probabilities of windows first to first + count - 1, K x count.
   Eigen::MatrixXd block(Eigen::Index first, Eigen::Index count) const;
   Eigen::MatrixXd all() const { return block(0, windows_); }
-  /// Adds the probabilities of component `absorbed` to those of `into`; later components move up.
+  /// Adds the probabilities of component `absorbed` to those of `into`; later components move up by one.
   WindowResponsibilities merged(Eigen::Index into, Eigen::Index absorbed) &&;
 
  private:
@@ -35,7 +35,7 @@ class WindowResponsibilities {
   };
   Eigen::MatrixXd stored_;
   std::shared_ptr<const Source> source_;
-  Eigen::MatrixXd sums_;  ///< merged components x fitted ones, entries one or zero; empty: nothing is merged
+  Eigen::MatrixXd sums_;  ///< merged components x fitted components, entries one or zero; empty without a merge
   Eigen::Index windows_ = 0;
 
   Eigen::Index fitted() const { return source_ ? source_->mixture.components() : stored_.rows(); }

@@ -15,17 +15,18 @@
 
 namespace modebank {
 
-/// One Kalman filter on the global model with maximum-likelihood Q and R, and the result of that search.
+/// One Kalman filter on the global model with maximum-likelihood Q and R. Also contains the result of that search.
 struct Baseline {
   Bank bank;                    ///< K = 1
-  double log_likelihood = 0.0;  ///< of the training runs, from each run's second sample
+  double log_likelihood = 0.0;  ///< log-likelihood of the training runs, from each run's second sample
   bool converged = false;
-  bool at_bound = false;  ///< R is at its lower bound (1e-8 of the residual variance), or 0 because of many lags
+  bool at_bound = false;  ///< whether R is at its lower bound (1e-8 of the residual variance), or 0 because of many
+                          ///< lags
 };
 
 /// theta is the global least-squares estimate; Q (full) and R (diagonal) maximise the exact Gaussian likelihood. For
 /// rounded states all three maximise the likelihood of their intervals. With more than most_lags_beside_R lags, R is 0
-/// and Q the residual covariance.
+/// and Q is the residual covariance.
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure);
 
 /// The competitor with switching noise only: one Huber theta, eight noise scales in geometric steps, and `stay` chosen
@@ -38,50 +39,52 @@ Bank learn_noise_only(const Recording& recording, const LinearStructure& structu
 Bank learn_noise_levels(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                         Eigen::Index levels, const NoiseFactor& factor = {});
 
-/// The adaptation of a competitor's noise scale: of the settings in a bank's cross-validation, the most likely one on
-/// the training runs. A competitor has so few parameters that it needs no left-out runs.
+/// The adaptation of a competitor's noise scale. It is the most likely one on the training runs, among the settings in
+/// a bank's cross-validation. A competitor has so few parameters that it needs no left-out runs.
 NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& recording, const FilterOptions& filter,
                                        const RefineTuning& tuning);
 
-/// The competitor with one motion that is learned as the bank is. Expectation-maximisation with one theta shared by all
-/// modes starts from `most_levels` noise scales and fewer, down to one. Its own cross-validation chooses (refine_bank),
-/// with measurement noise as in `options`. One more start has the noises and transitions of `rival`, the bank that it
-/// competes with. `global`: in linear form. `filter`: its filter.
+/// The competitor with one motion, learned like the bank. Expectation-maximisation with one theta shared by all modes
+/// starts from `most_levels` noise scales and fewer, down to one. Its own cross-validation chooses among them
+/// (refine_bank), with measurement noise as in `options`. One more start has the noises and transitions of `rival`, the
+/// bank that it competes with. `global`: in linear form. `filter`: filter of the competitor.
 Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
                             const Bank& rival, const Eigen::MatrixXd& R, Eigen::Index most_levels,
                             const BankOptions& options, const FilterOptions& filter);
 
 /// The competitor with one nonlinear motion. theta of linear regressors and terms comes from expectation-maximisation
-/// with one theta shared by all noise levels, as in learn_one_motion. It starts from up to four levels and one wide
-/// level. The terms of each transition are then known inputs, because states count as measured exactly (R is
-/// negligible). `em`: its prior, iterations and folds. `structure`: with the lags of the terms. `filter`: its filter.
+/// with one theta shared by all noise levels, as in learn_one_motion. The search starts from up to four levels and one
+/// wide level. The terms of each transition are then known inputs, because states count as measured exactly (R is
+/// negligible). `em`: prior, iterations and folds of the search. `structure`: with the lags of the terms. `filter`:
+/// filter of the competitor.
 Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
                      const RefineOptions& em, const FilterOptions& filter);
 
-/// Starting banks with one theta: `most` noise levels, three quarters of that, and so on.
+/// Starting banks with one theta. The first has `most` noise levels, the next three quarters of that, and so on.
 std::vector<Bank> level_starts(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                                Eigen::Index most, double kept, const NoiseFactor& factor = {});
 
 /// Converts clustered windows into a bank (method: section 4). `R` is used unless options.measurement_variance is set.
 /// `motion`: motion model of the windows, null for linear ones; its modes are linearised at their mean state and input.
-/// If every component is screened, the bank has one mode, merged from all. Throws DataError if that mode is screened,
-/// too.
+/// If every component is screened out, the bank has one mode, merged from all components. Throws DataError if that mode
+/// is screened out, too.
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
 
-/// Replaces Refine::automatic by em or none (see Refine); keeps other values. `linear`: whether the windows have a
-/// linear model.
+/// Replaces Refine::automatic by em or none (see Refine); keeps other values. `linear`: whether the model of the
+/// windows is linear.
 Refine refinement_asked(const BankOptions& options, bool linear);
 
-/// Calls learn_refined_bank or learn_bank, as refinement_asked decides; only the first needs `filter`. Throws
+/// Calls learn_refined_bank or learn_bank, as refinement_asked decides. Only learn_refined_bank needs `filter`. Throws
 /// std::invalid_argument for refinement of a motion model.
 Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                           const BankOptions& options, const Eigen::MatrixXd& R,
                           const std::optional<FilterOptions>& filter, const MotionModel* motion);
 
-/// learn_bank, then refine_bank. Starts are the mixture's bank and smaller ones: the closest components are merged
-/// (merge_components) to three quarters of the modes, repeatedly, down to one. If more modes do not gain on left-out
-/// training runs, as with little data, one mode wins. The mixture's own bank is `start` of the result.
+/// Calls learn_bank, then refine_bank. Starts are the mixture's bank and smaller banks. For these the closest
+/// components are merged (merge_components) to three quarters of the modes, repeatedly, down to one. If more modes do
+/// not gain on training runs that were left out, as with little data, one mode wins. The mixture's own bank is `start`
+/// of the result.
 Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                               const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter);
 

@@ -8,7 +8,7 @@ namespace modebank {
 
 namespace {
 
-constexpr double alarm_tail = 0.0005;  // per side: one in 1000 samples of a true filter
+constexpr double alarm_tail = 0.0005;  // per side; one in 1000 samples of a correct model
 
 }  // namespace
 
@@ -25,7 +25,9 @@ const LiveVerdict& LiveJudge::judge(const FilterEstimate& estimate) {
     verdict_.lower(i) = verdict_.predicted(i) - half;
     verdict_.upper(i) = verdict_.predicted(i) + half;
     const double pit = estimate.pit(i);
-    if (pit < alarm_tail || pit > 1.0 - alarm_tail) verdict_.alarm = true;  // false for NaN, a missing signal
+    if (pit < alarm_tail || pit > 1.0 - alarm_tail)
+      verdict_.alarm = true;  // false for NaN, which marks a missing
+                              // signal
   }
   return verdict_;
 }

@@ -10,7 +10,7 @@
 
 namespace modebank {
 
-/// A running filter of any kind: a bank's, or several combined.
+/// A running filter of any kind: the filter of a bank, or several combined filters.
 class AnyFilter {
  public:
   virtual ~AnyFilter() = default;

@@ -154,7 +154,7 @@ struct BankFilter::Internal {
   std::optional<Forecaster> forecaster = {};  ///< created at the first request
   Estimate estimate = {};
   std::uint64_t seed = pit_seed(1, "");
-  Index samples = 0;  ///< number of samples taken in
+  Index samples = 0;  ///< number of processed samples
 
   Internal(const Bank& stepped, const FilterOptions& how)
       : bank(stepped),
@@ -203,7 +203,7 @@ std::vector<Forecast> BankFilter::forecast(const Matrix& inputs, std::ptrdiff_t 
 
 std::vector<double> BankFilter::snapshot() const {
   std::vector<double> numbers = to_numbers(internal_->filter.snapshot());
-  numbers.push_back(static_cast<double>(internal_->samples));  // the draws of the transform depend on it
+  numbers.push_back(static_cast<double>(internal_->samples));  // the draws of the transform depend on this number
   return numbers;
 }
 

@@ -143,7 +143,8 @@ TransitionMatrix::TransitionMatrix(Eigen::MatrixXd row_stochastic) : matrix_(std
     if (!(matrix_.row(i).minCoeff() >= 0.0))
       throw std::invalid_argument("row " + std::to_string(i) + " of the transition matrix holds the negative entry " +
                                   std::to_string(matrix_.row(i).minCoeff()));
-    // A row that is already normalised keeps its bits, so that a stored bank filters as the original does.
+    // A row that is already normalised stays bit-identical, so that a stored bank gives the same results as the
+    // original.
     const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * static_cast<double>(matrix_.cols());
     if (std::abs(sum - 1.0) > rounding) matrix_.row(i) /= sum;
   }

@@ -21,9 +21,9 @@ class TransitionMatrix {
  public:
   TransitionMatrix() : matrix_(Eigen::MatrixXd::Identity(1, 1)) {}
   /// Throws std::invalid_argument unless the matrix is square and its rows are nonnegative with sum one within 1e-9.
-  /// Rows are then normalised, unless they already are up to rounding; so construction from matrix() keeps every bit.
+  /// Rows are then normalised, unless they already are up to rounding. So construction from matrix() keeps every bit.
   explicit TransitionMatrix(Eigen::MatrixXd row_stochastic);
-  /// `stay` on the diagonal, the rest distributed equally; K = 1 gives 1.
+  /// `stay` on the diagonal; the rest of each row is distributed equally. K = 1 gives 1.
   static TransitionMatrix sticky(Eigen::Index modes, double stay);
 
   const Eigen::MatrixXd& matrix() const { return matrix_; }
@@ -39,21 +39,22 @@ struct Mode {
   LinearModel model;                     ///< A (n x n), B (n x m), c (n)
   Eigen::MatrixXd Q;                     ///< n x n process noise covariance per step
   Eigen::MatrixXd parameter_covariance;  ///< p x p, covariance of theta over the mode's windows
-  Eigen::VectorXd standard_error;        ///< p, standard error of theta
+  Eigen::VectorXd standard_error;        ///< p, standard errors of theta
   double weight = 1.0;                   ///< share of the windows
-  /// Parameters of a motion model and their standard errors; the fields above are then its linearisation.
+  /// Parameters of a motion model and their standard errors. The fields above are then those of its linearisation.
   Eigen::VectorXd motion_theta = {};
   Eigen::VectorXd motion_standard_error = {};
-  Eigen::MatrixXd Q_standard_error = {};  ///< n x n; only for refined banks, else empty
+  Eigen::MatrixXd Q_standard_error = {};  ///< n x n, standard errors of Q; only for refined banks, else empty
   /// Coefficients of the terms, measured states x T; empty without terms. Their product with the terms is added to
   /// x[k+1].
   Eigen::MatrixXd bend = {};
-  Eigen::MatrixXd bend_standard_error = {};  ///< same order; empty without terms
+  Eigen::MatrixXd bend_standard_error = {};  ///< their standard errors, in the same order; empty without terms
 };
 
-/// How fast the noise scale follows a run (filter/step/equations/noise_scale.hpp).
+/// Speed at which the noise scale follows a run (filter/step/equations/noise_scale.hpp).
 struct NoiseAdaptation {
-  double forgetting = 0.98;  ///< per sample, in (0, 1]; the memory is 1 / (1 - forgetting) samples; 1: the whole run
+  double forgetting = 0.98;  ///< forgetting factor per sample, in (0, 1]; the memory is 1 / (1 - forgetting) samples;
+                             ///< with 1 it is the whole run
   double prior_samples = 5;  ///< weight of scale one at a run's start, in samples, > 0
 };
 
@@ -64,30 +65,33 @@ struct Bank {
   std::vector<Mode> modes;  ///< K >= 1
   Eigen::MatrixXd C;        ///< n_y x n
   Eigen::MatrixXd R;        ///< n_y x n_y
-  /// n_y, spacing of measured values [state unit]: a value determines only the interval that contains C x + v
-  /// (equations/interval.hpp). 0: continuous; empty: all continuous.
+  /// n_y, spacing of measured values [state unit]. A value determines only the interval that contains C x + v
+  /// (equations/interval.hpp). 0 marks a continuous signal; an empty vector means that all are continuous.
   Eigen::VectorXd quantum = {};
   TransitionMatrix transition;          ///< K x K
-  TransitionLogit transition_logit;     ///< dependence of the transition matrix on state and input; empty: constant
+  TransitionLogit transition_logit;     ///< dependence of the transition matrix on state and input; empty if it is
+                                        ///< constant
   Eigen::VectorXd initial_probability;  ///< K
   std::vector<std::string> state_names;
   std::vector<std::string> input_names;
   double dt_s = 0.0;  ///< median sample period of the training data
   std::vector<ScreenedMode> screened;
-  Shrinking shrinking;                            ///< shrinking of the learned modes
+  Shrinking shrinking;                            ///< shrinkage of the learned modes
   std::vector<ModelParameter> motion_parameters;  ///< parameters of a motion model; empty for linear ones
-  NoiseAdaptation noise_adaptation;               ///< for filters with adaptive noise
-  BankDrift drift;                                ///< drift of each mode's theta within a run; empty: none
-  MotionTerms terms = {};                         ///< nonlinear terms, the same for all modes; empty: none
-  NoiseFactor noise_factor = {};                  ///< factor of state and input on every Q; empty: none
-  RunningNoise running_noise = {};                ///< for one mode that drifts, the competitor `drifting`; empty: Q
-  Eigen::MatrixXd R_standard_error;               ///< n_y x n_y; empty unless R was estimated with the bank
-  Eigen::MatrixXd transition_standard_error;      ///< K x K; only for refined banks, else empty
-  Eigen::MatrixXd transition_weight_error;        ///< K x d standard errors of the logit's weights; empty: unknown
+  NoiseAdaptation noise_adaptation;               ///< used by filters with adaptive noise
+  BankDrift drift;                                ///< drift of each mode's theta within a run; empty without drift
+  MotionTerms terms = {};                         ///< nonlinear terms, the same for all modes; empty without terms
+  NoiseFactor noise_factor = {};                  ///< factor of state and input on every Q; empty without a factor
+  RunningNoise running_noise = {};   ///< running noise of a single mode that drifts (the competitor `drifting`); if
+                                     ///< empty, the noise is Q
+  Eigen::MatrixXd R_standard_error;  ///< n_y x n_y, standard errors of R; empty unless R was estimated with the bank
+  Eigen::MatrixXd transition_standard_error;  ///< K x K, standard errors of T; only for refined banks, else empty
+  Eigen::MatrixXd transition_weight_error;    ///< K x d standard errors of the logit's weights; empty if unknown
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
   bool is_quantised() const { return (quantum.array() > 0.0).any(); }
-  /// Variances of the difference between recorded values and C x: R, plus rounding that is uniform within the quantum.
+  /// Variances of the difference between recorded values and C x: R, plus the variance of rounding that is uniform
+  /// within the quantum.
   Eigen::MatrixXd recording_noise() const;
   /// The variances of the first mode's process noise, n_s.
   auto noise_variance() { return modes.front().Q.diagonal().head(structure.states); }
@@ -102,21 +106,23 @@ Bank one_mode_bank(const LinearStructure& structure, const Eigen::VectorXd& thet
 /// Whether the bank has several modes with the same theta, which differ in noise alone.
 bool has_one_theta(const Bank& bank);
 
-/// Throws std::invalid_argument that names the first invalid part: a size that does not fit the others, a number that
-/// is not finite, a negative variance, invalid probabilities, a noise adaptation out of range.
+/// Throws std::invalid_argument that names the first invalid part. Invalid are: a size that does not fit the others, a
+/// number that is not finite, a negative variance, invalid probabilities, a noise adaptation out of range.
 void validate(const Bank& bank);
-/// Checks the sizes only; an optimiser's candidates have valid sizes, but possibly extreme numbers.
+/// Checks the sizes only, for candidates of an optimiser: these have valid sizes but may have extreme numbers.
 void check_sizes(const Bank& bank);
 
-/// Directions of the state that one measurement does not determine start with this multiple of the largest variance of
-/// Q and R. It is wide against what the filter will learn, and small enough for accurate arithmetic.
+/// Some directions of the state are not determined by one measurement. Their starting variance is this multiple of the
+/// largest variance of Q and R. It is wide compared with what the filter will learn, and small enough for accurate
+/// arithmetic.
 inline constexpr double unobserved_variance_factor = 1e4;
 
 /// Start of a filter from its first measurement: x[0] = gain y[0]. With lags, the start uses the measurements of all of
 /// z: gain I, and R for each sample. Quantised values start with a uniform distribution in their interval.
 struct StartMoments {
   Eigen::MatrixXd gain;        ///< n x n_y, the pseudo-inverse C+; n x n with lagged states
-  Eigen::MatrixXd covariance;  ///< n x n, C+ R C+' plus a wide variance where C does not measure; R itself for C = I
+  Eigen::MatrixXd covariance;  ///< n x n, C+ R C+' plus a wide variance in directions that C does not measure; R itself
+                               ///< for C = I
 };
 
 StartMoments start_moments(const Bank& bank);

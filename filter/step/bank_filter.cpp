@@ -38,7 +38,7 @@ void check_memory(const FilterMemory& memory, Index n, Index K) {
       throw std::invalid_argument("the snapshot has a matrix that is not a covariance");
 }
 
-/// The same check for drifting coefficients; `own`: state of this filter.
+/// The same check for drifting coefficients. `own`: state of this filter.
 void check_memory(const DriftState& drift, const DriftState& own) {
   const auto same = [](const std::vector<Eigen::MatrixXd>& a, const std::vector<Eigen::MatrixXd>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
@@ -128,7 +128,7 @@ void BankFilter::restore(const FilterSnapshot& snapshot) {
   FilterMemory own;
   parts_->stepper->save(own);
   check_memory(snapshot.drift, own.drift);
-  parts_->feed.restore(snapshot.samples);  // throws before any change, as does the line above
+  parts_->feed.restore(snapshot.samples);  // throws before any change, like the line above
   parts_->stepper->restore(snapshot);
   parts_->started = snapshot.started;
 }

@@ -10,22 +10,22 @@
 
 namespace modebank {
 
-/// A filter's results for one sample. Values that do not exist are NaN: before the start, and for missing measurements.
+/// A filter's results for one sample. NaN where a value does not exist: before the start, and for missing measurements.
 struct FilterEstimate {
-  Eigen::VectorXd prediction;                  ///< n, combined prediction of the state before the measurement
-  Eigen::VectorXd innovation;                  ///< n_y, measurement minus combined prediction
-  Eigen::MatrixXd innovation_covariance;       ///< n_y x n_y, of the combined prediction
-  Eigen::VectorXd state;                       ///< n, state after the measurement
-  Eigen::MatrixXd covariance;                  ///< n x n, after the measurement
-  Eigen::VectorXd pit;                         ///< n_y, Rosenblatt's transform; the middle if it is an interval
-  Eigen::VectorXd pit_width;                   ///< n_y, width of its interval; 0 for a continuous signal
+  Eigen::VectorXd prediction;             ///< n, combined prediction of the state before the measurement
+  Eigen::VectorXd innovation;             ///< n_y, measurement minus combined prediction
+  Eigen::MatrixXd innovation_covariance;  ///< n_y x n_y, of the combined prediction
+  Eigen::VectorXd state;                  ///< n, state after the measurement
+  Eigen::MatrixXd covariance;             ///< n x n, after the measurement
+  Eigen::VectorXd pit;        ///< n_y, Rosenblatt's transform; if it is an interval, the middle of that interval
+  Eigen::VectorXd pit_width;  ///< n_y, width of the interval of pit; 0 for a continuous signal
   Eigen::VectorXd mode_probability_predicted;  ///< K, before the measurement
   Eigen::VectorXd mode_probability;            ///< K, after the measurement
   double nis = 0.0;                            ///< normalised innovation squared of the available signals
   double log_density = 0.0;                    ///< nats
   double spread_share = 0.0;                   ///< share of the modes' differences in the trace of
                                                ///< innovation_covariance
-  Eigen::Index steps = 0;                      ///< model steps from the previous sample; 0: the filter (re)started here
+  Eigen::Index steps = 0;  ///< model steps from the previous sample; 0 if the filter (re)started here
 };
 
 /// State of a filter between two samples, for any bank and variant.
@@ -34,7 +34,7 @@ struct FilterMemory {
   Eigen::MatrixXd covariances;       ///< n*n x K
   Eigen::VectorXd mode_probability;  ///< K
   double noise_scale = 1.0;
-  double noise_samples = 0.0;  ///< number of samples behind the noise scale
+  double noise_samples = 0.0;  ///< number of samples in the noise scale
   DriftState drift = {};       ///< for modes that drift; empty otherwise
 };
 
@@ -67,7 +67,7 @@ class BankFilter {
   bool started() const;
 
   FilterSnapshot snapshot() const;
-  /// Throws std::invalid_argument if the snapshot belongs to a bank of other sizes or has invalid numbers; the filter
+  /// Throws std::invalid_argument if the snapshot belongs to a bank of other sizes or has invalid numbers. The filter
   /// is then unchanged.
   void restore(const FilterSnapshot& snapshot);
 

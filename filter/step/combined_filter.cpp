@@ -69,9 +69,10 @@ const FilterEstimate& CombinedFilter::step(double time_s, const Eigen::Ref<const
   return estimate_;
 }
 
-/// Combines with the weights from before this sample. If the first filter has no score, its estimate is used alone.
+/// Combines the filters with the weights from before this sample. If the first filter has no score, its estimate is
+/// used alone.
 void CombinedFilter::combine() {
-  take_measured(*said_.front(), estimate_);  // modes, steps, and fields of a single filter
+  take_measured(*said_.front(), estimate_);  // modes, steps and fields of a single filter
   if (std::isnan(estimate_.log_density)) return;
   estimate_.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
   mix(filter::ForecastWeights::spoken_weights(weights_.weights(), log_densities_), estimate_);
@@ -82,7 +83,8 @@ FilterEstimate CombinedFilter::forecast(double time_s, const Eigen::VectorXd& in
   std::vector<double> known;
   for (const auto& filter : filters_) {
     FilterEstimate& one = ahead.emplace_back(filter->forecast(time_s, input));
-    one.innovation = -one.prediction.head(one.innovation.size());  // for a measurement of zero: the filters' distance
+    one.innovation = -one.prediction.head(one.innovation.size());  // for a measurement of zero; the differences are
+                                                                   // then those between the filters
     known.push_back(one.prediction.array().isNaN().any() ? not_a_number : 0.0);
   }
   for (std::size_t i = 0; i < ahead.size(); ++i) said_[i] = &ahead[i];

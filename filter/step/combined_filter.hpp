@@ -11,14 +11,15 @@ namespace modebank {
 /// Name of the combination of several filters in archives.
 inline constexpr const char* combined_name = "combined";
 
-/// A bank with the sizes of the combined estimates: the modes of `bank` (the first filter), and only its measured
-/// states, because other filters may have other lags. It serves for scores and cannot be stepped.
+/// A bank with the sizes of the combined estimates. It has the modes of `bank` (the first filter) and only its measured
+/// states, because other filters may have other lags. It is used for scores and cannot be stepped.
 Bank combined_frame(const Bank& bank);
 
-/// Several filters of the same measurements as one; their predictions are weighted by past success within the run.
-/// Prediction, state and covariances are those of the mixture, for the measured states. With one signal the transform
-/// is the mixture's. With several it is mixed by the joint weights, which is exact for the first signal. spread_share
-/// is the filters' differences in the trace of innovation_covariance. Modes are the first filter's.
+/// Combines several filters of the same measurements into one filter. Predictions are weighted by past success within
+/// the run. Prediction, state and covariances are those of the mixture, for the measured states. With one signal the
+/// transform is that of the mixture. With several signals it is mixed by the joint weights, which is exact for the
+/// first signal. spread_share is the share of the filters' differences in the trace of innovation_covariance. Modes are
+/// those of the first filter.
 class CombinedFilter final : public AnyFilter {
  public:
   /// `start`: weights at the start and after every gap.

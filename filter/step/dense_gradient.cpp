@@ -14,13 +14,13 @@ constexpr int any = Eigen::Dynamic;
 
 MatrixXd symmetric_part(const MatrixXd& M) { return 0.5 * (M + M.transpose()); }
 
-/// Derivatives by one mode's estimate.
+/// Derivatives with respect to the estimate of one mode.
 struct ByGaussian {
   VectorXd mean;
   MatrixXd covariance;
 };
 
-/// Derivatives by the filter's state.
+/// Derivatives with respect to the filter's state.
 struct ByState {
   std::vector<ByGaussian> modes;
   VectorXd probability;
@@ -70,11 +70,11 @@ class DenseGradient {
   FilterModel<any, any> model_;
   RunInstants instants_;
   FilterStep<any, any> step_;
-  ByState by_;         ///< of all later moments
-  VectorXd by_prior_;  ///< by the mode probabilities before the measurement
+  ByState by_;         ///< derivatives of all later moments
+  VectorXd by_prior_;  ///< derivatives with respect to the mode probabilities before the measurement
   BankGradient sum_;
 
-  /// Filters a stretch of moments. Returns the states before each of them.
+  /// Filters a stretch of moments. Returns the state before each moment.
   std::vector<FilterState<any>> follow_stretch(Index first, FilterState<any>& state) {
     std::vector<FilterState<any>> before;
     for (Index t = first; t < std::min(first + stretch_length, instants_.count()); ++t) {
@@ -102,7 +102,8 @@ class DenseGradient {
     if (K > 1) back_over_mixing(before);
   }
 
-  /// Back over Bayes' rule and every mode's update: from derivatives by the estimates to those by the predictions.
+  /// Goes back over Bayes' rule and the update of every mode: from derivatives by the estimates to those by the
+  /// predictions.
   template <class Y>
   void back_over_measurement(const Y& y, double weight, const VectorXd& posterior) {
     const VectorXd by_log = posterior.array() * (weight + by_.probability.array() - by_.probability.dot(posterior));
@@ -112,7 +113,7 @@ class DenseGradient {
     for (std::size_t j = 0; j < by_.modes.size(); ++j)
       by_R += back_over_update(step_.partial.missing > 0 ? step_.partial.C : model_.C, step_.kalman[j],
                                by_log(static_cast<Index>(j)), by_.modes[j]);
-    for (Index i = 0; i < y.size(); ++i)  // R of a missing signal does not belong to the bank
+    for (Index i = 0; i < y.size(); ++i)  // R of a missing signal is not a parameter of the bank
       if (is_missing(y(i))) {
         by_R.row(i).setZero();
         by_R.col(i).setZero();
@@ -120,8 +121,8 @@ class DenseGradient {
     sum_.R += by_R;
   }
 
-  /// Back over m = x + K e, P' = (I - K C) P with K = P C' S^-1 and S = C P C' + R, and over log N(e; 0, S). Returns
-  /// the derivative by R.
+  /// Goes back over m = x + K e, P' = (I - K C) P with K = P C' S^-1 and S = C P C' + R, and over log N(e; 0, S).
+  /// Returns the derivative with respect to R.
   static MatrixXd back_over_update(const MatrixXd& C, const KalmanStep<any, any>& kalman, double by_density,
                                    ByGaussian& by) {
     MatrixXd inverse = MatrixXd::Identity(C.rows(), C.rows());
@@ -140,7 +141,7 @@ class DenseGradient {
     return by_R;
   }
 
-  /// Back over x = F m + B u + c and P' = F P F' + Q.
+  /// Goes back over x = F m + B u + c and P' = F P F' + Q.
   template <class U>
   void back_over_motion(std::size_t j, const Gaussian<any>& from, const U& u) {
     const MatrixXd& F = model_.modes[j].F;
@@ -154,8 +155,8 @@ class DenseGradient {
     by.covariance = (F.transpose() * by.covariance * F).eval();
   }
 
-  /// Back over the mixing: every mode starts from the mixture of all with weights W_ij = T_ij mu_i / c_j. (The
-  /// covariance of the mixture has zero derivative by its mean.)
+  /// Goes back over the mixing: every mode starts from the mixture of all modes with weights W_ij = T_ij mu_i / c_j.
+  /// (The derivative of the mixture's covariance with respect to its mean is zero.)
   void back_over_mixing(const FilterState<any>& before) {
     const Index n = sum_.start_covariance.rows(), K = model_.mode_count();
     ByState by(n, K);

@@ -4,8 +4,8 @@
 
 #include "filter/step/likelihood_gradient.hpp"
 
-/// log_likelihood_gradient for any number of states, signals and modes. For sizes with vector kernels
-/// (detail/vector/reverse.hpp) these are an order of magnitude faster.
+/// log_likelihood_gradient for any number of states, signals and modes. If vector kernels exist for the sizes
+/// (detail/vector/reverse.hpp), they are an order of magnitude faster.
 namespace modebank {
 
 /// True for imm, and for kf with one mode, with Gaussian noise of constant scale.

@@ -10,8 +10,8 @@ namespace modebank {
 
 /// Drift of the coefficients of scaled regressors, in units of the noise variance v (method: section 6).
 struct DriftRates {
-  double q = 0.0;     ///< variance added to every coefficient per step; 0: constant
-  double p0 = 0.0;    ///< variance of every coefficient at the start; if q = 0, too, coefficients are fixed
+  double q = 0.0;     ///< variance added to every coefficient per step; 0 for constant coefficients
+  double p0 = 0.0;    ///< variance of every coefficient at the start; if q is 0, too, coefficients are fixed
   double leak = 1.0;  ///< factor per step on the difference from theta0, in (0, 1]
 
   bool operator==(const DriftRates&) const = default;
@@ -21,16 +21,16 @@ struct DriftRates {
 struct GridTuning {
   double log_score = 0.0;    ///< log score of the training runs [nats/sample]
   Eigen::Index samples = 0;  ///< scored training samples
-  /// Settings whose best value is at the end of the grid and could go further: from "q", "p0", "leak", "lam", "nu",
-  /// "floor", "horizon_factor".
+  /// Settings whose best value lies at the end of the grid, so that the optimum may lie beyond. From "q", "p0", "leak",
+  /// "lam", "nu", "floor", "horizon_factor".
   std::vector<std::string> at_grid_end;
 };
 
 /// Drift of the coefficients of a bank's modes within a run (equations/drift.hpp); v is each mode's Q.
 struct BankDrift {
   DriftRates rates = {};
-  Eigen::VectorXd scale = {};            ///< r, root mean square of each regressor, positive; empty: no drift
-  Wandering wandering = Wandering::all;  ///< which coefficients drift; other than `all` requires running noise
+  Eigen::VectorXd scale = {};            ///< r, root mean square of each regressor, positive; empty without drift
+  Wandering wandering = Wandering::all;  ///< coefficients that drift; a value other than `all` requires running noise
   GridTuning tuning = {};                ///< for the competitor `drifting`
 
   bool empty() const { return scale.size() == 0; }

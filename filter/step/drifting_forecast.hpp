@@ -10,15 +10,14 @@ namespace modebank {
 
 /// Predicts from the state of a filter with running noise, with known inputs and no further measurements.
 ///
-/// Coefficients: those of the origin, theta0 + leak^j (theta - theta0) in step j + 1. The first step is the filter's
-/// own. Unstable coefficients are contracted before the second step: A_i (of x[k-i+1], in full form) becomes A_i /
-/// rho^i. rho > 1 is the largest modulus of the polynomial's roots, so every root is divided by rho. theta0 is
-/// contracted likewise; otherwise the leak towards it would undo the contraction.
+/// Coefficients in step j + 1: theta0 + leak^j (theta - theta0), from those of the origin. The first step equals that
+/// of the filter. Unstable coefficients are contracted before the second step: A_i (of x[k-i+1], in full form) becomes
+/// A_i / rho^i. rho > 1 is the largest modulus of the polynomial's roots, so every root is divided by rho. theta0 is
+/// contracted in the same way; otherwise the leak towards theta0 would undo the contraction.
 ///
-/// Variance, to first order in the errors of coefficients and samples, with e the error of a sample and d that of
-/// theta:
+/// Variance to first order in the errors of coefficients and samples. e is the error of a sample and d that of theta:
 ///   e[j] = h[j]' d[j] + phi[j]' (e[j-1], e[j-2], ...) + noise of variance v,  d[j] = leak d[j-1] + w,  cov(w) = q v W.
-/// phi are the coefficients of the lagged samples. The joint covariance of d and the lagged e, and v, start with their
+/// phi are the coefficients of the lagged samples. v and the joint covariance of d and the lagged e start with their
 /// values at the origin.
 class DriftingForecast {
  public:
@@ -40,12 +39,12 @@ class DriftingForecast {
   Eigen::MatrixXd theta0_, stable_theta0_;  ///< r x n, scaled
   DriftState origin_;
   Eigen::VectorXd z_, h_, prediction_;
-  Eigen::MatrixXd towards_, deviation_, theta_;         ///< r x n: target of the leak, and the difference from it
-  Eigen::MatrixXd direction_;                           ///< r x n, drifting direction; empty: all coefficients drift
-  double of_origin_ = 1.0, of_drift_ = 0.0;             ///< cov(d) / v = of_origin P + of_drift W
-  Eigen::MatrixXd Z_, next_Z_;                          ///< covariance of the lagged errors
-  std::vector<Eigen::MatrixXd> cross_, next_cross_;     ///< per output r x dimension: covariance of d with the lagged
-                                                        ///< errors
+  Eigen::MatrixXd towards_, deviation_, theta_;      ///< r x n: target of the leak, and the difference from it
+  Eigen::MatrixXd direction_;                        ///< r x n, direction of the drift; empty if all coefficients drift
+  double of_origin_ = 1.0, of_drift_ = 0.0;          ///< cov(d) / v = of_origin P + of_drift W
+  Eigen::MatrixXd Z_, next_Z_;                       ///< covariance of the lagged errors
+  std::vector<Eigen::MatrixXd> cross_, next_cross_;  ///< per output r x dimension: covariance of d with the lagged
+                                                     ///< errors
   Eigen::MatrixXd covariance_, with_lagged_, through_;  ///< n x n, n x dimension, n x dimension
   Eigen::MatrixXd of_lagged_;                           ///< n x dimension, phi
   int steps_ = 0;

@@ -109,7 +109,7 @@ void DriftingRecursion::skip() {
   pass_time();
 }
 
-/// If some outputs that share a P are measured and others are not, the latter get a copy.
+/// If some outputs that share a P are measured and others are not, the unmeasured outputs get a copy.
 void DriftingRecursion::split_partial() {
   const Index before = P_count_;
   for (Index g = 0; g < before; ++g) {

@@ -17,12 +17,13 @@ namespace modebank {
 ///
 /// Choices that the method leaves open, with reasons:
 /// - The first step after a start uses theta0 with covariance p0 v I, without leak or q.
-/// - After a step the coefficients are updated, then the variance, then leak and q. So a sample does not influence its
+/// - After a step the coefficients are updated, then the variance, then leak and q. So a sample does not influence
+///   its
 ///   own score.
 /// - A step without a measurement also applies leak and q, because time passes. Its prediction replaces the sample.
-/// - If some signals of a sample are missing, only the others' coefficients learn; from then on they have their own P.
-/// - Between samples that are further apart, one step is taken per sample period with the inputs held, as in other
-///   banks.
+/// - If some signals of a sample are missing, only the coefficients of the other signals learn. From then on these
+///   have a P of their own.
+/// - If samples are further apart, one step is taken per sample period with the inputs held, as in other banks.
 class DriftingRecursion {
  public:
   /// Requires validate(bank) and running noise.
@@ -33,11 +34,11 @@ class DriftingRecursion {
   void predict(const Eigen::Ref<const Eigen::VectorXd>& inputs);
   /// Without a measurement, the prediction becomes the sample.
   void skip();
-  /// Updates with a sample; missing signals are replaced by their predictions.
+  /// Updates with a sample. Missing signals are replaced by their predictions.
   void update(const Eigen::Ref<const Eigen::VectorXd>& measured);
 
   const Eigen::VectorXd& prediction() const { return prediction_; }  ///< n, prediction of the newest sample
-  const Eigen::VectorXd& variance() const { return variance_; }      ///< n, variance of its error
+  const Eigen::VectorXd& variance() const { return variance_; }      ///< n, variance of the prediction's error
   const Eigen::VectorXd& innovation() const {
     return innovation_;
   }                                                ///< n, innovation of the last update; NaN where
@@ -75,11 +76,11 @@ class DriftingRecursion {
   void push(const Eigen::VectorXd& sample);
 };
 
-/// theta as coefficients of scaled regressors, r x n.
+/// theta, as coefficients of scaled regressors, r x n.
 Eigen::MatrixXd scaled_coefficients(const LinearStructure& structure, const Eigen::VectorXd& theta,
                                     const Eigen::VectorXd& scale);
-/// The unit direction d in which each output's scaled coefficients drift, r x n: cov(w) = q v d d'. Empty if all drift:
-/// cov(w) = q v I.
+/// The unit direction d in which each output's scaled coefficients drift, r x n: cov(w) = q v d d'. If empty, all
+/// coefficients drift: cov(w) = q v I.
 Eigen::MatrixXd wandering_direction(const Bank& bank);
 
 }  // namespace modebank

@@ -9,9 +9,9 @@
 
 namespace modebank {
 
-/// One mode that drifts, with running noise. The state is z with the newest measured value (or the prediction if
-/// missing). State covariances are zero, the innovation covariance is diagonal. pit uses Student's distribution. The
-/// log density is the sum over outputs; for quantised outputs log (mass of the interval / q).
+/// One mode that drifts, with running noise. The state is z with the newest measured value (or the prediction if it is
+/// missing). State covariances are zero; the innovation covariance is diagonal. pit uses Student's distribution. The
+/// log density is the sum over outputs. For quantised outputs it is log (mass of the interval / q).
 class DriftingStepper final : public Stepper {
  public:
   explicit DriftingStepper(const Bank& bank);
@@ -33,10 +33,10 @@ class DriftingStepper final : public Stepper {
  private:
   DriftingRecursion recursion_;
   StudentNoise noise_;
-  Eigen::VectorXd quantum_;  ///< n; 0: continuous
+  Eigen::VectorXd quantum_;  ///< n; 0 for a continuous signal
   Eigen::VectorXd one_ = Eigen::VectorXd::Ones(1);
 
-  /// Standard deviation of the prediction's error; the same before and after the update.
+  /// Standard deviation of the prediction's error. The update does not change it.
   double deviation(Eigen::Index i) const { return std::sqrt(recursion_.variance()(i)); }
 };
 

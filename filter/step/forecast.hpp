@@ -9,14 +9,14 @@
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"
 
-/// Prediction without measurements, from a filter's state and with known inputs; all such predictions use this header.
+/// Prediction without measurements, from a filter's state and with known inputs. All such predictions use this header.
 /// A forecast is an object with start(...) and step(acting inputs): BankForecast (moments of a bank), DriftingForecast
-/// (running noise) or SamplePaths (random paths). look_ahead applies one to a recorded run, Forecaster to planned
-/// inputs.
+/// (running noise) or SamplePaths (random paths). look_ahead applies a forecast to a recorded run; Forecaster applies
+/// one to planned inputs.
 namespace modebank {
 
-/// Steps `forecast`, started at moment t of a run, through the following moments. Calls arrive(ahead, k) at each sample
-/// k, the `ahead`-th after t, until it returns false or the stretch ends.
+/// Steps `forecast`, which was started at moment t of a run, through the following moments. Calls arrive(ahead, k) at
+/// each sample k, the `ahead`-th after t. Ends if arrive returns false or the stretch ends.
 template <class Forecast, class Arrive>
 void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, Arrive arrive) {
   Eigen::Index ahead = 0;
@@ -27,7 +27,7 @@ void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, Arri
   }
 }
 
-/// look_ahead up to the longest of `horizons` (samples ahead, ascending); calls arrive(i, k) at the i-th of them.
+/// Calls look_ahead up to the longest of `horizons` (samples ahead, ascending). Calls arrive(i, k) at horizon i.
 template <class Forecast, class Arrive>
 void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, const std::vector<Eigen::Index>& horizons,
                 Arrive arrive) {
@@ -107,8 +107,8 @@ class BankForecast {
   Gaussian<N> unused_;
   bool ahead_ = false, contracted_ = false;
 
-  /// Contracts coefficients that drifted to unstable values. These are good for one step but diverge over many. Method
-  /// as in DriftingForecast.
+  /// Contracts coefficients that drifted to unstable values. Such coefficients are good for one step but diverge over
+  /// many. Same method as in DriftingForecast.
   void contract() {
     contracted_ = true;
     const LinearStructure& s = model_.structure;
@@ -129,7 +129,7 @@ struct StateForecast {
 /// Forecasts of a bank of any size under planned inputs.
 class Forecaster {
  public:
-  /// Conditions as for BankFilter.
+  /// Conditions are those of BankFilter.
   Forecaster(const Bank& bank, const FilterOptions& options);
   ~Forecaster();
 

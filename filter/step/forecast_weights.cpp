@@ -11,10 +11,11 @@ namespace modebank::filter {
 
 namespace {
 
-constexpr double kept_per_sample = 0.99;     // Raftery, Karny & Ettler's
-constexpr double least_log_weight = -700.0;  // of a density of zero, after which a forecaster must be able to recover
+constexpr double kept_per_sample = 0.99;     // forgetting factor of Raftery, Karny & Ettler
+constexpr double least_log_weight = -700.0;  // log density in place of a density of zero, so that a forecaster can
+                                             // recover
 
-/// The largest number; NaN if there is none.
+/// The largest number; NaN if there are none.
 double largest(const std::vector<double>& values) {
   double most = std::numeric_limits<double>::quiet_NaN();
   for (const double value : values) most = std::fmax(most, value);
@@ -49,7 +50,8 @@ void ForecastWeights::observe(const std::vector<double>& log_densities) {
   if (log_densities.size() != evidence_.size())
     throw std::invalid_argument(std::to_string(log_densities.size()) + " log densities of " +
                                 std::to_string(evidence_.size()) + " forecasters");
-  // Forecasters without a value get the mixture's density, so that the others' scores do not change their weights.
+  // Forecasters without a value get the density of the mixture. The scores of the others then do not change the weights
+  // of these forecasters.
   const double together = mixed_log_density(weights_, log_densities);
   if (std::isnan(together)) return;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
@@ -74,7 +76,7 @@ void ForecastWeights::normalise() {
 
 namespace {
 
-/// Densities of all forecasters for each sample, in units of the largest, sample by sample; NaN without a value.
+/// Densities of all forecasters for each sample, in units of the sample's largest density; NaN without a value.
 std::vector<double> relative_densities(const std::vector<std::vector<double>>& log_densities) {
   const std::size_t forecasters = log_densities.size();
   std::vector<double> densities, one(forecasters);

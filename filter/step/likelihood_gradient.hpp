@@ -9,8 +9,8 @@
 
 namespace modebank {
 
-/// Derivatives of a log-likelihood by all numbers of a bank that it depends on, each separately; for symmetric matrices
-/// by each of their entries.
+/// Derivatives of a log-likelihood with respect to all numbers of a bank that it depends on. Each number has its own
+/// derivative; for symmetric matrices, each entry.
 struct BankGradient {
   struct Mode {
     LinearModel model;
@@ -19,7 +19,7 @@ struct BankGradient {
   std::vector<Mode> modes;
   Eigen::MatrixXd R;
   Eigen::MatrixXd transition;
-  Eigen::MatrixXd start_covariance;  ///< that of start_moments
+  Eigen::MatrixXd start_covariance;  ///< derivative with respect to start_moments
 
   BankGradient& operator+=(const BankGradient& other);
   /// First-order difference of the log-likelihoods of two similar banks. They may differ only in the parts listed
@@ -32,7 +32,7 @@ bool has_likelihood_gradient(const Bank& bank, const FilterOptions& options);
 
 /// The gradient of sum_k weight_k log p(y_k | earlier) of one run. It is exact for the filter's computation and costs a
 /// few filter passes for any number of parameters (reverse-mode differentiation; Griewank & Walther 2008, "Evaluating
-/// derivatives"). `weight`: one per sample, or empty: all one. Conditions are those of log_likelihood
+/// derivatives"). `weight`: one per sample; if empty, all weights are one. Conditions are those of log_likelihood
 /// (filter/judge/run/evaluate.hpp) and has_likelihood_gradient.
 BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
                                      const FilterOptions& options);

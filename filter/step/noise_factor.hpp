@@ -12,10 +12,10 @@ namespace modebank {
 /// The limits keep a forecast usable if inputs differ from those of the training runs. Without them, a factor learned
 /// on DART lost 54 nats per sample on other runs.
 struct NoiseFactor {
-  Eigen::MatrixXd directions;  ///< d x (n + m): directions that the noise depends on, divided by their root mean square
-                               ///< on the training runs
+  Eigen::MatrixXd directions;  ///< d x (n + m): directions on which the noise depends, divided by their root mean
+                               ///< square on the training runs
   Eigen::VectorXd weights;     ///< d
-  double offset = 0.0;         ///< makes the mean logarithm on the training runs 0
+  double offset = 0.0;         ///< makes the mean logarithm on the training runs zero
 
   static constexpr double softening = 0.1, largest = 5.0;
 

@@ -12,15 +12,15 @@ namespace modebank {
 ///   v <- max(lam v + (1 - lam) e^2 / (1 + h'Ph), floor), from the diagonal of Q at a start.
 /// Given the past, outputs are independent.
 struct RunningNoise {
-  double lam = 0.9;            ///< forgetting of the running variance, in [0, 1]
-  double nu = 0.0;             ///< degrees of freedom, above 2; 0: Gaussian
-  Eigen::VectorXd floor = {};  ///< n, smallest v; empty: the noise is constant, Q
-  /// Horizons in samples, ascending from 2, and the factor on the first-order variance at each. One sample ahead the
-  /// factor is 1, because the prediction is the filter's own.
+  double lam = 0.9;            ///< forgetting factor of the running variance, in [0, 1]
+  double nu = 0.0;             ///< degrees of freedom, above 2; 0 for a normal distribution
+  Eigen::VectorXd floor = {};  ///< n, smallest value of v; if empty, the noise is the constant Q
+  /// Horizons in samples, ascending from 2, and the factor on the first-order variance at each horizon. One sample
+  /// ahead the factor is 1, because the prediction is that of the filter.
   std::vector<std::pair<Eigen::Index, double>> horizon_factor = {};
 
   bool empty() const { return floor.size() == 0; }
-  /// The factor of the longest horizon up to this one; 1 if there is none.
+  /// The factor of the longest horizon that is at most this one; 1 if there is none.
   double factor_at(Eigen::Index horizon) const {
     double factor = 1.0;
     for (const auto& [ahead, value] : horizon_factor)

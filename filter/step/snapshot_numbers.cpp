@@ -69,7 +69,7 @@ class NumbersReader {
     for (double& value : matrix.reshaped()) value = next();
   }
   void operator()(std::vector<Eigen::MatrixXd>& matrices) {
-    matrices.resize(static_cast<std::size_t>(count(left() / 2)));  // each has two sizes
+    matrices.resize(static_cast<std::size_t>(count(left() / 2)));  // each of these has two sizes
     for (Eigen::MatrixXd& matrix : matrices) (*this)(matrix);
   }
   void require_end() const {

@@ -10,41 +10,41 @@ namespace modebank {
 
 struct FilterMemory;
 
-/// A bank's filter for any size and variant. It uses the equations (equations/filter_step.hpp), or vector kernels with
-/// one mode per lane (detail/vector) where they exist. Both agree up to rounding. Call start, then advance and update
-/// for each sample, or follow. Allocates only at construction.
+/// A bank's filter for any size and variant. It uses vector kernels with one mode per lane (detail/vector) if they
+/// exist, else the equations (equations/filter_step.hpp). Both agree up to rounding. Call start, then advance and
+/// update for each sample, or follow. Allocates only at construction.
 class Stepper {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
   using Columns = Eigen::Ref<const Eigen::MatrixXd>;
 
   virtual ~Stepper() = default;
-  /// Starts from the first measurement `y`; with lags from the first complete z of measurements.
+  /// Starts from the first measurement `y`; with lags, from the first complete z of measurements.
   virtual void start(const Vector& y) = 0;
-  /// One model step under the acting inputs `v`. After predict a measurement may follow; after skip none does.
+  /// One model step under the acting inputs `v`. A measurement may follow predict; none follows skip.
   virtual void predict(const Vector& v) = 0;
   virtual void skip(const Vector& v) = 0;
-  /// Updates with `y` and returns the log predictive density [nats] of its available signals; NaN without any.
+  /// Updates with `y` and returns the log predictive density [nats] of its available signals; NaN without signals.
   virtual double update(const Vector& y) = 0;
   /// predict and update for a stretch of samples, each one step after the previous one. Computes the log predictive
-  /// densities of `measurements` (n_y x samples) reached under `inputs` (acting inputs x samples).
+  /// densities of `measurements` (n_y x samples) under `inputs` (acting inputs x samples).
   virtual void follow(const Columns& inputs, const Columns& measurements, Eigen::Ref<Eigen::VectorXd> log_density) {
     for (Eigen::Index k = 0; k < measurements.cols(); ++k) {
       predict(inputs.col(k));
       log_density(k) = update(measurements.col(k));
     }
   }
-  /// Advances from the previous sample to the prediction of the next, `steps` model steps later.
+  /// Advances from the previous sample to the prediction of the next sample, which is `steps` model steps later.
   void advance(const Vector& v, Eigen::Index steps) {
     for (Eigen::Index i = 1; i < steps; ++i) skip(v);
     predict(v);
   }
 
-  /// After predict: moments of the predicted mixture, n and n_y x n_y. Returns the share of the modes' differences in
-  /// the trace of S.
+  /// Call after predict. Moments of the predicted mixture, n and n_y x n_y. Returns the share of the modes' differences
+  /// in the trace of S.
   virtual double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) = 0;
-  /// After update with the same y: its probability integral transform (predicted_mixture.hpp), n_y. `width`: width of
-  /// the interval with middle pit; unchanged if nothing is quantised.
+  /// Call after update with the same y. Probability integral transform of y (predicted_mixture.hpp), n_y. `width`:
+  /// width of the interval whose middle is pit; unchanged if nothing is quantised.
   virtual void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) = 0;
   /// Moments of the present mixture, n and n x n.
   virtual void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) = 0;
@@ -52,7 +52,7 @@ class Stepper {
   virtual Eigen::Map<const Eigen::VectorXd> mode_probability() const = 0;       ///< K
 
   virtual void save(FilterMemory& memory) const = 0;
-  /// `memory`: from a filter of the same sizes.
+  /// `memory`: memory of a filter with the same sizes.
   virtual void restore(const FilterMemory& memory) = 0;
 
  protected:

@@ -39,7 +39,8 @@ double StudentNoise::log_mass(double low, double high) const {
   if (gaussian()) return truncated_normal(low, high).log_mass;
   if (low + high > 0.0) low = -std::exchange(high, -low);  // the lower tail keeps more digits
   const double mass = probability(high) - probability(low), middle = 0.5 * (low + high);
-  // If an interval is narrow against its distance, the difference loses digits; the density then gives the mass.
+  // If an interval is narrow compared with its distance, the difference loses digits. The mass is then computed from
+  // the density.
   constexpr double narrow = 1e-3;
   if (high - low < narrow * (1.0 + std::abs(middle))) return log_density(middle * middle) + std::log(high - low);
   return std::log(mass);

@@ -8,21 +8,21 @@ namespace modebank {
 /// normal distribution if `degrees` is 0.
 class StudentNoise {
  public:
-  /// Throws std::invalid_argument unless degrees are 0 or above 2, because the variance is then infinite.
+  /// Throws std::invalid_argument unless degrees are 0 or above 2. With 2 or less the variance would be infinite.
   explicit StudentNoise(double degrees);
 
   double degrees() const { return degrees_; }
   bool gaussian() const { return degrees_ == 0.0; }
   /// The part of a log density that does not depend on the value [nats].
   double log_constant() const { return log_constant_; }
-  /// Log density of a value by its square [nats].
+  /// Log density of a value, given its square [nats].
   double log_density(double square) const {
     return gaussian() ? log_constant_ - 0.5 * square
                       : log_constant_ - 0.5 * (degrees_ + 1.0) * std::log1p(square / (degrees_ - 2.0));
   }
   /// P(X <= value).
   double probability(double value) const;
-  /// log P(low <= X <= high), low < high.
+  /// log P(low <= X <= high), with low < high.
   double log_mass(double low, double high) const;
 
  private:

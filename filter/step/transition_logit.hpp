@@ -6,11 +6,11 @@ namespace modebank {
 
 /// State-dependent transition probabilities, a multinomial logit (McFadden 1974). For the step from k to k + 1, to mode
 /// j after mode i:
-///   P(j | i, z[k]) = T_ij exp(w_j' (z[k] - reference)) / sum_l T_il exp(w_l' (z[k] - reference)).
-/// z[k] = (x[k], v[k]) holds the state at the start of the step and the acting inputs, known before its measurement.
-/// Without weights the probabilities are T. A constant added to a column of the weights has no effect.
+///   P(j | i, z[k]) = T_ij exp(w_j' (z[k] - reference)) / sum_l T_il exp(w_l' (z[k] - reference)). z[k] = (x[k], v[k])
+///   holds the state at the start of the step and the acting inputs. Both are known before the measurement of sample k
+///   + 1. Without weights the probabilities are T. A constant added to a column of the weights has no effect.
 struct TransitionLogit {
-  Eigen::MatrixXd weights = {};    ///< K x d, d = n + acting inputs [1 / unit of z]; empty: T for every z
+  Eigen::MatrixXd weights = {};    ///< K x d, d = n + acting inputs [1 / unit of z]; if empty, T holds for every z
   Eigen::VectorXd reference = {};  ///< d, the z for which T holds
 
   bool empty() const { return weights.size() == 0; }
@@ -30,7 +30,8 @@ struct TransitionWorkspace {
   Eigen::VectorXd offset;  ///< K, weights times reference
 };
 
-/// Cap on the difference of log odds; larger ones are practically certain, and rows of T stay possible.
+/// Upper limit of the difference of log odds. Larger differences are practically certain, and with the limit rows of T
+/// stay possible.
 inline constexpr double largest_log_odds = 200.0;
 
 /// The probabilities at (x, v); T if z is not finite. Does not allocate.

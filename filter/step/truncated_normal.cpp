@@ -13,7 +13,7 @@ namespace {
 
 double density(double x) { return std::exp(-0.5 * x * x - 0.5 * log_two_pi); }
 
-/// Moments from the error function, for `low` not far above zero and an interval that is not narrow.
+/// Moments from the error function. `low` must not be far above zero and the interval must not be narrow.
 TruncatedNormal by_differences(double low, double high) {
   const double mass = 0.5 * (std::erfc(low / std::numbers::sqrt2) - std::erfc(high / std::numbers::sqrt2));
   const double at_low = density(low) / mass, at_high = density(high) / mass, mean = at_low - at_high;
@@ -57,7 +57,7 @@ TruncatedNormal by_quadrature(double low, double whole_width) {
           fourth / sum - mean * (4.0 * cube - mean * (6.0 * square - 3.0 * mean * mean))};
 }
 
-/// `width`: high - low with the digits that the difference loses.
+/// `width`: high - low, with the digits that the difference would lose.
 TruncatedNormal within_interval(double low, double high, double width) {
   low = std::clamp(low, -truncated::furthest, truncated::furthest);
   high = std::clamp(high, -truncated::furthest, truncated::furthest);

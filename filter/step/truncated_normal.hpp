@@ -16,11 +16,11 @@ struct TruncatedNormal {
 /// Constants shared by the scalar and the vector computation.
 namespace truncated {
 
-// Narrower intervals, or intervals far out, use quadrature, because differences of the error function lose digits.
+// Narrower intervals and intervals far out use quadrature, because differences of the error function lose digits.
 inline constexpr double least_width = 0.25;
 inline constexpr double largest_start = 4.0;
 inline constexpr double furthest = 1e100;
-inline constexpr double negligible_exponent = 40.0;  ///< exp of minus this is neglected
+inline constexpr double negligible_exponent = 40.0;  ///< exponents beyond this are neglected
 inline constexpr double most_per_panel = 4.0;        ///< largest change of the integrand's logarithm
 
 /// Gauss-Legendre quadrature with 12 points: positive abscissas and their weights.
@@ -33,24 +33,25 @@ inline constexpr std::array<std::pair<double, double>, 6> gauss{{{0.125233408511
 
 }  // namespace truncated
 
-/// Moments for [low, high], low <= high, of any width and at any distance, to about twelve digits (the mass to
-/// fourteen). A single point has the smallest representable mass. Bounds beyond 1e100 are clamped.
+/// Moments for [low, high], low <= high, of any width and at any distance. They are accurate to about twelve digits
+/// (the mass to fourteen). A single point has the smallest representable mass. Bounds beyond 1e100 are clamped.
 TruncatedNormal truncated_normal(double low, double high);
 
 /// Likelihood of a Gaussian signal that is recorded in multiples of a quantum, and its moments given the record.
 struct SignalLikelihood {
-  /// Log of the interval's mean density, log(mass / q), which tends to a density for q = 0. So scores of coarser and
-  /// finer data have one unit. Differences between models of the same data equal those of log mass.
+  /// Log of the interval's mean density, log(mass / q). It tends to a log density for q = 0. So scores of coarser and
+  /// finer data have the same unit. Differences between models of the same data equal those of log mass.
   double log_density = 0.0;
-  /// Mean m, variance v, third and fourth central moments of the standardised innovation given the measurement. For u =
-  /// sqrt(s) times it, with mean M and variance V, they also give the derivatives (cumulants of an exponential family):
+  /// Mean m, variance v, third and fourth central moments of the standardised innovation given the measurement. u is
+  /// sqrt(s) times this innovation and has mean M and variance V. The four moments also give these derivatives
+  /// (cumulants of an exponential family):
   ///   d log_density / de = -m / sqrt(s)    d log_density / ds = (v + m^2 - 1) / 2s
   ///   dM/de = 1 - v                        dM/ds = (2 m v + third) / 2 sqrt(s)
   ///   dV/de = -sqrt(s) third               dV/ds = (2 m third + fourth - v^2) / 2
   double mean = 0.0, variance = 0.0, third = 0.0, fourth = 0.0;
 };
 
-/// `e`: innovation of variance `s` > 0. A signal of quantum zero is measured exactly as recorded.
+/// `e`: innovation of variance `s` > 0. A signal of quantum zero has exactly the recorded value.
 SignalLikelihood signal_likelihood(double e, double s, double quantum);
 
 }  // namespace modebank

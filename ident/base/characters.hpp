@@ -5,7 +5,7 @@
 
 namespace modebank {
 
-// ASCII only, independent of the locale.
+// ASCII only; does not depend on the locale.
 constexpr bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
 constexpr bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
 constexpr bool is_letter(char c) { return is_lower(c) || is_upper(c); }

@@ -8,7 +8,7 @@ namespace modebank {
 
 /// Phi^-1 of a probability in (0, 1).
 double normal_quantile(double probability);
-/// z = Phi^-1(pit). pit is first clipped to [1e-15, 1 - 1e-15], so z is finite.
+/// z = Phi^-1(pit). pit is first clipped to [1e-15, 1 - 1e-15], so that z is finite.
 double normal_score(double pit);
 
 double chi_square_quantile(double probability, double degrees);

@@ -52,8 +52,8 @@ namespace gram {
 
 HWY_EXPORT(add_block);
 
-/// Calls `add_block` for this processor. Highway requires an unqualified name for a function that is built for one
-/// processor only.
+/// Calls `add_block` for this processor. If a function is built for one processor only, Highway requires an unqualified
+/// name.
 void dispatch(const double* block, std::ptrdiff_t stride, std::ptrdiff_t count, std::ptrdiff_t side, double* sums) {
   HWY_DYNAMIC_DISPATCH(add_block)(block, stride, count, side, sums);
 }

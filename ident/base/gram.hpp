@@ -6,8 +6,8 @@
 namespace modebank {
 
 /// Z' Z with Z = diag(root) [left right](rows), symmetric to the bit. `root` has one entry per listed row. `left` and
-/// `right` must have equally many rows. The order of summation depends on the instruction set, not on the number of
-/// threads.
+/// `right` must have the same number of rows. The order of summation depends on the instruction set, but not on the
+/// number of threads.
 Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
                               const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& root);
 

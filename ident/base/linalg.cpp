@@ -22,7 +22,7 @@ VectorXd solve_least_squares(const MatrixXd& A, const VectorXd& b) {
 }
 
 VectorXd singular_values(const MatrixXd& square) {
-  constexpr Eigen::Index large = 24;  // Jacobi rotations take eight times as long with 60 columns
+  constexpr Eigen::Index large = 24;  // with 60 columns Jacobi rotations take eight times as long
   if (square.cols() >= large) return Eigen::BDCSVD<MatrixXd>(square).singularValues();
   // square: no QR preconditioner is needed
   return Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner>(square).singularValues();
@@ -121,7 +121,7 @@ MatrixXd Cholesky::whiten(const MatrixXd& B) const { return factor_.matrixL().so
 
 std::optional<MatrixXd> definite_inverse(const MatrixXd& M) {
   const Cholesky factor(M);
-  // The factorisation stops at the first failing pivot; solving with it would give a wrong result.
+  // The factorisation stops at the first failing pivot. Solving with it would give a wrong result.
   if (!factor.definite()) return std::nullopt;
   return factor.inverse();
 }

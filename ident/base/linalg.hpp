@@ -6,8 +6,8 @@
 #include <functional>
 #include <optional>
 
-/// Dense matrix decompositions by Eigen, compiled once to shorten compile times: each is one of Eigen's heaviest
-/// templates. Matrices must be finite.
+/// Dense matrix decompositions by Eigen. Each is one of Eigen's heaviest templates, so they are compiled once to
+/// shorten compile times. Matrices must be finite.
 namespace modebank {
 
 /// X = U diag(sigma) V' with min(rows, columns) singular values in decreasing order.
@@ -46,8 +46,8 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& M);
 /// Eigenvalues of any square matrix, unordered.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& square);
 /// The largest real part of the eigenvalues of a linear map on R^n, given by its products M x. `start` (n): a guess of
-/// the eigenvector. Uses restarted Arnoldi iteration (Spectra) to a relative tolerance of 1e-11. A dense decomposition
-/// replaces it for small maps and after failed convergence.
+/// the eigenvector. Uses restarted Arnoldi iteration (Spectra) to a relative tolerance of 1e-11. Small maps, and maps
+/// for which the iteration does not converge, use a dense decomposition.
 double largest_real_eigenvalue(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& product,
                                const Eigen::VectorXd& start);
 

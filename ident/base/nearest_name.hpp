@@ -6,7 +6,7 @@
 namespace modebank {
 
 /// The known name nearest to `name` by edit distance (Levenshtein 1966), or the one that `name` abbreviates. Empty if
-/// none is within a third of its length (at least 2 edits). For messages with suggestions.
+/// no known name is within a third of the length of `name` (at least 2 edits). Used in messages with suggestions.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& known);
 
 /// ", did you mean NAME?", or empty if no known name is near.

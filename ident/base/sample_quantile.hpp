@@ -7,7 +7,7 @@
 
 namespace modebank {
 
-/// Quantile by linear interpolation between order statistics at position (N - 1) p, as in numpy and R's type 7.
+/// Quantile by linear interpolation between order statistics at position (N - 1) p, like in numpy and R's type 7.
 /// `sorted` must have N >= 1 increasing values, and p must lie in [0, 1].
 inline double sample_quantile(std::span<const double> sorted, double p) {
   const double position = static_cast<double>(sorted.size() - 1) * p;

@@ -8,9 +8,9 @@
 
 namespace modebank {
 
-/// Seed of one use of randomness, derived from the configured seed, the use's name and an index. All random generators
-/// start from it, so results do not depend on threads or the order of work. FNV-1a of the name, mixed by SplitMix64
-/// (Steele 2014).
+/// Seed of one use of randomness, derived from the configured seed, the name of the use and an index. All random
+/// generators start from such a seed, so results do not depend on threads or the order of work. FNV-1a of the name,
+/// mixed by SplitMix64 (Steele 2014).
 std::uint64_t derive_seed(std::uint64_t seed, std::string_view use, std::uint64_t index = 0);
 
 inline std::mt19937_64 make_generator(std::uint64_t seed, std::string_view use, std::uint64_t index = 0) {

@@ -6,14 +6,15 @@
 
 namespace modebank {
 
-/// Length in bytes of the UTF-8 character at the start of a non-empty text; 0 if the first byte starts none.
+/// Length in bytes of the UTF-8 character at the start of a non-empty text; 0 if no character starts with the first
+/// byte.
 std::size_t character_bytes(std::string_view text);
 
 /// Whether the bytes are valid UTF-8 (RFC 3629: no surrogates, no overlong forms, at most U+10FFFF).
 bool is_utf8(std::string_view bytes);
 
-/// The text in UTF-16 without surrogates. A byte that starts no character, and a character beyond U+FFFF, becomes
-/// U+FFFD.
+/// The text in UTF-16 without surrogates. A byte that does not start a character, and a character beyond U+FFFF,
+/// becomes U+FFFD.
 std::u16string basic_utf16(std::string_view text);
 
 /// Appends a code point; only its lowest 21 bits are used.
@@ -21,7 +22,7 @@ void append_utf8(std::string& text, std::uint32_t code);
 
 /// Decodes every line that is not UTF-8 as Windows-1252, the encoding of Excel and many loggers. The five bytes that
 /// Windows-1252 leaves undefined become Latin-1 control characters. Valid UTF-8 is returned without a copy; `storage`
-/// holds any other text. Each line is judged on its own, because two programs may have written one file.
+/// holds any other text. Each line is tested separately, because two programs may have written one file.
 std::string_view utf8_or_windows_1252(std::string_view text, std::string& storage);
 
 /// Message for users about lines that were decoded as Windows-1252.

@@ -14,8 +14,8 @@ struct WorkDone {
   double seconds = 0.0;  ///< seconds since the loop began
 };
 
-/// Counts the progress of a loop that may take seconds, for display. Of several counters at one time only the first is
-/// displayed; nested loops and parallel computations count without display. Thread-safe.
+/// Counts the progress of a loop that may take seconds, for display. If several counters exist, only the first is
+/// displayed. Nested loops and parallel computations count without display. Thread-safe.
 class WorkCounter {
  public:
   WorkCounter(std::string what, std::size_t all);

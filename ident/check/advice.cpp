@@ -12,10 +12,10 @@ namespace modebank {
 
 namespace {
 
-/// Rounds to four digits, so that the ratio of two such rates is a whole number within a thousandth.
+/// Rounds to four digits. The ratio of two such rates is then a whole number within a thousandth.
 double rounded(double value) {
   const double per_unit = std::pow(10.0, 3.0 - std::floor(std::log10(value)));
-  return std::round(value * per_unit) / per_unit;  // 0.4588 prints so; 4588 * 0.0001 does not
+  return std::round(value * per_unit) / per_unit;  // this prints as 0.4588; 4588 * 0.0001 does not
 }
 
 /// The rate nearest to `wanted_hz` among rate_hz / 2, rate_hz / 3, ...

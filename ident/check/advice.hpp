@@ -18,20 +18,20 @@ TailCheck check_tails(const Recording& recording, const LinearStructure& structu
 
 struct LengthAdvice {
   Eigen::Index length = 0;
-  double deficient = 0.0;  ///< share of rank-deficient windows of that length
+  double deficient = 0.0;  ///< share of rank-deficient windows of this length
   bool enough = false;     ///< whether at most a fifth of the windows is rank deficient
 };
 /// Shortest length (of a fixed series, at least 8 transitions per regressor) at which at most a fifth of the windows is
-/// rank deficient. If there is none, the shortest within 0.1 of the smallest share. Lengths that half of the runs
-/// cannot hold are ignored.
+/// rank deficient. If no length satisfies this, the shortest length whose share is within 0.1 of the smallest share.
+/// Ignores lengths that half of the runs cannot hold.
 LengthAdvice advise_length(const std::vector<Trajectory>& runs, const LinearStructure& structure);
 
 struct LossAdvice {
   Loss loss = Loss::huber;
   TailCheck tails;
 };
-/// Recommends a loss: trivial if fewer than 0.1 % of the errors lie beyond 4 robust standard deviations, tukey if more
-/// than 1 % lie beyond 8 (gross errors), else huber.
+/// Recommends a loss. trivial: fewer than 0.1 % of the errors lie beyond 4 robust standard deviations. tukey: more than
+/// 1 % lie beyond 8 (gross errors). Otherwise huber.
 LossAdvice advise_loss(const Recording& recording, const LinearStructure& structure);
 
 /// Reason for a suggested rate.
@@ -42,10 +42,10 @@ struct RateFacts {
   double states_hz = 0.0;
   double jitter = 0.0;           ///< standard deviation of the inputs' intervals, as a share of the median interval
   double repeated = 0.0;         ///< share of repeated values of a measured input; 0 for commands
-  double time_constant_s = 0.0;  ///< time constant of the response; 0: unknown
+  double time_constant_s = 0.0;  ///< time constant of the response; 0 if unknown
 };
 struct RateAdvice {
-  double rate_hz = 0.0;  ///< value for data.rate_hz; 0: keep the inputs' own times
+  double rate_hz = 0.0;  ///< value for data.rate_hz; 0 keeps the inputs' own times
   RateReason reason = RateReason::keep;
 };
 /// Recommends a sample rate. Two to thirty samples per time constant are good. Faster data are reduced to ten; slower

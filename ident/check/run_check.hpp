@@ -9,31 +9,33 @@
 
 namespace modebank {
 
-/// An input up to this share of its largest value counts as zero (still).
+/// Share of its largest value up to which an input counts as zero (still).
 inline constexpr double still_share = 0.005;
 
-/// Flags the samples of `states` at rest. All inputs then and one sample earlier are within `still_level` (per input,
-/// m) of zero, and every state repeats its value. Without inputs no sample is flagged, because rest looks the same as a
-/// coarse measurement.
+/// Flags the samples of `states` at rest. Then, all inputs are within `still_level` (per input, m) of zero at the
+/// sample and one sample earlier, and every state repeats its value. Without inputs no sample is flagged, because a
+/// coarse measurement would also repeat its values.
 std::vector<bool> resting_samples(const Stream& states, const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Flags the samples of `inputs` at which all inputs are within `still_level` of zero, then and one sample earlier.
+/// Flags the samples of `inputs` at which all inputs are within `still_level` of zero, at the sample and one sample
+/// earlier.
 std::vector<bool> still_samples(const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Share of known samples equal to the previous one, ignoring samples flagged in `at_rest`; 0 if none remains.
+/// Share of known samples equal to the previous one, ignoring samples flagged in `at_rest`; 0 if no samples remain.
 double repeats_in_motion(const Eigen::VectorXd& values, const std::vector<bool>& at_rest);
 
-/// Stillness and constancy of the commands of one run.
+/// Figures of the commands of one run: share of still samples, and of constant values.
 struct CommandCheck {
   double still = 0.0;               ///< share of input samples with every input within `still_level` of zero
-  double longest_constant_s = 0.0;  ///< longest time without a change of any input while at least one is not still
+  double longest_constant_s = 0.0;  ///< longest time without a change of any input while at least one input is not
+                                    ///< still
   double changes = 0.0;             ///< share of input samples that differ from the previous one
 };
 /// Checks the inputs of one run. `still_level`: per input (m).
 CommandCheck check_commands(const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Mean and standard deviation of each state at rest: after all inputs have been still for settle_s, in rests of at
-/// least 1 s. NaN if there is none.
+/// Mean and standard deviation of each state at rest. A rest lasts at least 1 s and begins after all inputs have been
+/// still for settle_s. NaN if the run has no rest.
 struct RestCheck {
   double duration_s = 0.0;
   Eigen::VectorXd mean, sd;  ///< n
@@ -46,8 +48,8 @@ RestCheck check_rest(const Stream& states, const Stream& inputs, const Eigen::Ve
 inline constexpr Eigen::Index most_excitation_order = 10;
 Eigen::Index excitation_order(const Eigen::MatrixXd& inputs, Eigen::Index most = most_excitation_order);
 
-/// Share of windows of `length` transitions with rank-deficient regressors, from at most `most_windows` evenly spread
-/// ones; NaN without windows.
+/// Share of windows of `length` transitions with rank-deficient regressors. At most `most_windows` evenly spread
+/// windows are examined. NaN without windows.
 struct DeficientWindows {
   Eigen::Index windows = 0, deficient = 0;
   double share() const;

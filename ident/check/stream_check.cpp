@@ -57,7 +57,7 @@ bool on_lattice(const std::vector<double>& levels, double& spacing) {
 
 /// Largest spacing of a lattice that contains all levels (in increasing order); 0 if none is visible.
 double quantum_of(const std::vector<double>& levels) {
-  constexpr double visible = 1e-3;  // of the range
+  constexpr double visible = 1e-3;  // share of the range
   constexpr int most_divisions = 6;
   const double range = levels.back() - levels.front();
   double closest = range;
@@ -70,9 +70,9 @@ double quantum_of(const std::vector<double>& levels) {
   return 0.0;
 }
 
-/// Distinct values in increasing order; values that differ only by rounding in the file count as one.
+/// Distinct values in increasing order. Values that differ only by rounding in the file count as one.
 std::vector<double> levels_of(std::vector<double> values) {
-  // rounding: share of the range; ulps: relative to the values, which may be far from zero (stamps)
+  // rounding: share of the range; ulps: relative to the values, because the values may be far from zero (stamps)
   constexpr double rounding = 1e-9, ulps = 4.0;
   std::sort(values.begin(), values.end());
   const double largest = std::max(std::abs(values.front()), std::abs(values.back()));
@@ -84,8 +84,8 @@ std::vector<double> levels_of(std::vector<double> values) {
   return levels;
 }
 
-/// Whether a signal takes few levels, and the ends of its range as often as the levels inside. Such values are chosen
-/// by an operator, not limited.
+/// Whether a signal takes few levels, and takes the ends of its range as often as the levels inside. An operator chose
+/// such values; a limiter did not cause them.
 bool is_of_few_levels(const std::vector<double>& known) {
   constexpr std::size_t most_levels = 10;
   constexpr double pressed = 3.0;
@@ -155,7 +155,7 @@ ChannelCheck check_channel(const VectorXd& values) {
     if (known_values(k) == known_values(k - 1)) ++repeats;
   if (known.size() > 1) check.repeated = static_cast<double>(repeats) / static_cast<double>(known.size() - 1);
   check.two_level = has_two_levels(known_values);
-  // A two-level signal may be on for one sample; that is not an outlier.
+  // A two-level signal may be on for one sample; such a sample is not an outlier.
   check.outliers = check.two_level ? 0 : spikes(known_values, check.quantum);
   return check;
 }
@@ -214,7 +214,7 @@ struct PileUp {
   double errors;       ///< standard errors by which the ratio must be exceeded
 };
 
-/// Values that are repeated for `held` samples on average. That many samples count as one independent value.
+/// Values that are repeated for `held` samples on average. A group of `held` samples counts as one independent value.
 struct Held {
   std::vector<double> values;
   double held = 1.0;

@@ -11,7 +11,7 @@ namespace modebank {
 struct SamplingCheck {
   Eigen::Index samples = 0;
   double duration_s = 0.0;  ///< largest minus smallest time
-  double rate_hz = 0.0;     ///< 1 / median interval; 0: unknown
+  double rate_hz = 0.0;     ///< 1 / median interval; 0 if unknown
   double jitter = 0.0;      ///< standard deviation of the intervals without gaps, as a share of the median interval
   Eigen::Index gaps = 0;    ///< intervals longer than gap_periods median intervals
   double longest_gap_s = 0.0;
@@ -27,12 +27,12 @@ SamplingCheck check_sampling(const Stream& recorded);
 /// The usable part of a recorded stream: sorted by time, one sample per time, without samples that lack a time.
 Stream in_order(const Stream& recorded);
 
-/// Figures of one signal of a stream; missing values are left out.
+/// Figures of one signal of a stream. Missing values are ignored.
 struct ChannelCheck {
   Eigen::Index missing = 0;
   double least = 0.0, largest = 0.0, mean = 0.0, sd = 0.0;
-  double quantum = 0.0;       ///< spacing of the lattice that contains all values; 0: no spacing above a thousandth of
-                              ///< the range
+  double quantum = 0.0;  ///< spacing of the lattice that contains all values; 0 if no spacing is above a thousandth of
+                         ///< the range
   Eigen::Index levels = 0;    ///< distinct values
   bool two_level = false;     ///< see has_two_levels()
   double repeated = 0.0;      ///< share of samples equal to the previous one
@@ -42,8 +42,8 @@ struct ChannelCheck {
 ChannelCheck check_channel(const Eigen::VectorXd& values);
 
 /// Whether a signal is a switch or a binary test signal. At least 99 % of its known values must lie near one of two
-/// levels, within a tenth of the levels' distance. A level is the mean of its values and must have at least 2 % of
-/// them.
+/// levels, within a tenth of the levels' distance. A level is the mean of its values and must have at least 2 % of all
+/// values.
 bool has_two_levels(const Eigen::VectorXd& values);
 
 /// Number of isolated outliers. Such a sample differs from both neighbours in the same direction. Its distance from
@@ -52,17 +52,19 @@ bool has_two_levels(const Eigen::VectorXd& values);
 Eigen::Index spikes(const Eigen::VectorXd& values, double quantum);
 
 /// Detects the ends of a signal's range at which a limiter acts. Full scale is the largest absolute value over all
-/// runs; ends below 0.8 of it are ignored.
-/// Hard limit: the outermost 2 % of the range hold more than 0.5 % of the samples, and more than 1.5 times as many as
-/// the next 4 %.
-/// Soft limit: the outermost fifth of full scale holds more than 2 % of the samples that differ from the previous one,
-/// and more than 1.2 times as many as the next fifth. Samples in its outer half then count as saturated.
-/// Each excess must be at least three standard errors of the counts, where held values count once. Two-level signals
-/// have no limits. A signal of up to ten levels has one only where an end has three times the share of the commonest
-/// inner level: test signals and gears often take each of a few values.
+/// runs. Ends below 0.8 of full scale are ignored.
+/// - Hard limit: the outermost 2 % of the range hold more than 0.5 % of the samples, and more than 1.5 times the
+///   number in the next 4 %.
+/// - Soft limit: the outermost fifth of full scale holds more than 2 % of the samples that differ from the previous
+///   one, and more than 1.2 times the number in the next fifth. Samples in the outer half of that fifth then count as
+///   saturated.
+/// - Each excess must be at least three standard errors of the counts, where held values count once.
+/// - Two-level signals have no limits. A signal of up to ten levels has a limit only at an end with three times the
+///   share of the commonest inner level. Test signals and gears often take each of a few values.
 struct SaturationLimits {
-  double low, high;   ///< samples at or below low, or at or above high, count as saturated; NaN: no limit at that end
-  bool soft = false;  ///< a soft limit was found, and no hard one
+  double low, high;   ///< samples at or below low, or at or above high, count as saturated; NaN if there is no limit at
+                      ///< that end
+  bool soft = false;  ///< whether a soft limit was found, but no hard limit
 };
 SaturationLimits saturation_limits(const std::vector<Eigen::VectorXd>& runs);
 

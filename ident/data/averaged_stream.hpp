@@ -17,8 +17,8 @@ class AveragedStream {
   Eigen::Index channels() const { return values_.rows(); }
   double first_s() const { return time_s_(0); }
   double last_s() const { return time_s_(time_s_.size() - 1); }
-  /// Mean over [centre - width/2, centre + width/2] for each centre, channels x N. Beyond the stream's span a linear
-  /// stream keeps its end value, a held one its last sample.
+  /// Mean over [centre - width/2, centre + width/2] for each centre, channels x N. Beyond the stream's span, a linear
+  /// stream keeps its end value and a held stream its last sample.
   Eigen::MatrixXd mean(const Eigen::VectorXd& centres_s, double width_s) const;
 
  private:

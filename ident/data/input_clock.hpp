@@ -2,8 +2,8 @@
 
 namespace modebank {
 
-/// Delay of the inputs on the states' clock: the input that acts at time t is u(t - at(t)). Positive: inputs act later
-/// than their stamps. Negative: inputs act earlier, because their stamps are late.
+/// Delay of the inputs on the states' clock. The input that acts at time t is u(t - at(t)). A positive delay means that
+/// inputs act later than their stamps. A negative delay means that they act earlier, because their stamps are late.
 struct InputClock {
   double lag_s = 0.0;        ///< lag at reference_s
   double drift = 0.0;        ///< rate of change of the lag [s/s]

@@ -21,8 +21,8 @@ using Eigen::VectorXd;
 
 double last(const VectorXd& time_s) { return time_s(time_s.size() - 1); }
 
-/// Differences of times below this are rounding of decimal stamps, of k / rate or of t - lag. It is a millionth of the
-/// mean period, but at least the resolution of a double at these times (epoch seconds: 2.4e-7).
+/// Time differences below this come from rounding: of decimal stamps, of k / rate or of t - lag. The limit is a
+/// millionth of the mean period, but at least the resolution of a double at these times (epoch seconds: 2.4e-7).
 double time_tolerance(const VectorXd& time_s) {
   constexpr double share_of_period = 1e-6, units_in_last_place = 4.0;
   const double largest = std::max(std::abs(time_s(0)), std::abs(last(time_s)));
@@ -31,19 +31,20 @@ double time_tolerance(const VectorXd& time_s) {
   return std::max(resolution, share_of_period * (last(time_s) - time_s(0)) / static_cast<double>(time_s.size() - 1));
 }
 
-/// Advances `sample`, the position of the last sample at or before an earlier time, to `time`; -1: before all samples.
+/// Advances `sample` to the last sample at or before `time`; -1 if all samples are later. On entry, `sample` belongs to
+/// an earlier time.
 Index advance(const VectorXd& samples, Index sample, double time) {
   while (sample + 1 < samples.size() && samples(sample + 1) <= time) ++sample;
   return sample;
 }
 
-/// The times of a grid without those deep inside a gap of a stream, where no data exist. So a pause has a bounded cost,
-/// however long. Shorter gaps stay complete.
+/// The times of a grid, without times deep inside a gap of a stream, where no data exist. So the cost of a pause is
+/// bounded, however long the pause. Shorter gaps stay complete.
 class Grid {
  public:
   Grid(double first, double end, double rate_hz) : first_(first), end_(end), rate_hz_(rate_hz) {}
 
-  /// Removes the times in the long gaps of a stream. The sample of time s acts at acts_at(s).
+  /// Removes the times in the long gaps of a stream. The sample of time s acts at time acts_at(s).
   template <class ActsAt>
   void skip_gaps(const VectorXd& stream_s, ActsAt acts_at) {
     samples_ = std::max(samples_, stream_s.size());
@@ -74,10 +75,11 @@ class Grid {
   }
 
  private:
-  static constexpr double rounding = 1e-6;  // of a period; keeps an end that k / rate_hz narrowly misses
+  static constexpr double rounding = 1e-6;  // share of a period; keeps an end that k / rate_hz narrowly misses
   // periods; filters restart after 50 periods of the model
   static constexpr double longest_gap = 1000.0, margin = 100.0;
-  /// Limits of a grid in relation to its streams. Beyond them the times are not seconds, or the rate is wrong.
+  /// Limits of a grid in relation to its streams. Beyond these limits the times are not in seconds, or the rate is
+  /// wrong.
   static constexpr Index most_times = 1'000'000, most_per_sample = 1000;
   double first_, end_, rate_hz_;
   Index samples_ = 0;  ///< samples of the longest stream

@@ -13,8 +13,8 @@ struct Window {
 };
 
 /// All windows of the training runs by index, without storing a list. Windows start at transition `first` of each run
-/// and advance by `step`; none crosses the border of a run. Runs with fewer than `first + length` transitions have no
-/// window. This class alone decides where windows are.
+/// and advance by `step`. No window crosses the border of a run. Runs with fewer than `first + length` transitions have
+/// no window. The positions of windows are defined only in this class.
 class WindowPlan {
  public:
   /// Throws std::invalid_argument unless length >= 1 and step >= 1.

@@ -17,11 +17,11 @@ struct CovarianceInput {
 /// The p x p covariance of theta at the optimum. J, r and psi are those of the whitened problem, P is the prior's
 /// information (zero without a prior). Data and prior together must determine theta; otherwise every entry is NaN.
 ///
-/// L <= q, either kind: (sum J_k' J_k + P)^-1, which is (X'X / sigma^2 + prior information)^-1.
+/// For L <= q, either kind: (sum J_k' J_k + P)^-1, which is (X'X / sigma^2 + prior information)^-1.
 ///
 /// `model`: (sum J_k' G^-1 J_k + P)^-1 with G_ij = K_i K_j [sum psi_i psi_j / (L - f)] / (mean psi'_i mean psi'_j).
 /// psi'_i is the derivative of psi_i by r_i. K_i = 1 + (f / L) var(psi'_i) / (mean psi'_i)^2. f is the sum of a state's
-/// leverages; for states i and j, L - f is the geometric mean of theirs. Without a prior f is q. With one it is the
+/// leverages; for states i and j, L - f is the geometric mean of theirs. Without a prior f is q. With a prior f is the
 /// part of q that data determine; sum r^2 / (L - f) is then unbiased if the truth is drawn from the prior.
 ///
 /// For one state this is K^2 sigma^2 [sum psi^2 / (L - f)] / [mean psi']^2 (X'X)^-1 with the prior's information added.
@@ -36,9 +36,9 @@ struct CovarianceInput {
 /// reweighted form without rho''.
 Eigen::MatrixXd theta_covariance(const CovarianceInput& input, CovarianceKind kind);
 
-/// n: information of the data that the estimate weighed against the prior, in units of that in the `model` covariance:
-/// mean psi'_i / (G^-1)_ii. It comes from the second derivative sum J_k' psi'_k J_k, with the mean of psi' for all
-/// samples. Exact for a trivial loss. NaN for `sandwich`, which has no information matrix.
+/// n: information of the data that the estimate weighed against the prior, in units of the information in the `model`
+/// covariance: mean psi'_i / (G^-1)_ii. It comes from the second derivative sum J_k' psi'_k J_k, with the mean of psi'
+/// for all samples. Exact for a trivial loss. NaN for `sandwich`, which has no information matrix.
 Eigen::VectorXd weighed_information(const CovarianceInput& input, CovarianceKind kind);
 
 }  // namespace modebank

@@ -13,20 +13,20 @@ namespace modebank {
 
 /// Fits one window as a robust Ceres problem. The residual is r_k = (x[k+1] - x[k] - [A B c] phi_k) / sigma, with one
 /// loss per sample on |r_k|^2 over its n states. Residuals other than outliers are assumed independent, with standard
-/// deviation `sigma` (n entries, the state's unit). `prior` may be null. Transitions with a NaN or infinity are left
-/// out; L counts the others. Rank deficiency is a status, not an exception, and takes precedence over iteration_limit.
-/// Status failed (theta NaN): no transition is left, or numbers overflow.
+/// deviation `sigma` (n entries, the state's unit). `prior` may be null. Transitions with a NaN or infinity are
+/// ignored; L is the number of the other transitions. Rank deficiency is a status instead of an exception, and takes
+/// precedence over iteration_limit. Status failed (theta NaN): no transition remains, or numbers overflow.
 ///
-/// Sample weights w_k (Trajectory::weight) multiply the losses: the fit minimises sum w_k rho(|r_k|^2). They are
-/// divided by their mean over the window, so a common factor has no effect, not even against the prior. With least
-/// squares, the noise variance of transition k is noise_variance / w_k, as in statsmodels' WLS. rank and condition are
-/// those of the regressors times sqrt(w_k). robust_scale uses weighted medians.
+/// Sample weights w_k (Trajectory::weight) multiply the losses: the fit minimises sum w_k rho(|r_k|^2). Weights are
+/// divided by their mean over the window. So a common factor has no effect, even with a prior. With least squares, the
+/// noise variance of transition k is noise_variance / w_k, as in statsmodels' WLS. rank and condition are those of the
+/// regressors times sqrt(w_k). robust_scale uses weighted medians.
 ///
 /// noise_variance: sigma^2 sum w_k r_k^2 / [(L - rank) kappa] with the robust weight w_k = rho' and the rank of one
 /// state's regressors. kappa = E[w z^2] for Gaussian z makes it consistent for the variance of Gaussian noise. For L <=
-/// q: sum of squared residuals about the posterior / L. Lower bound: the square of `sigma_floor` (n entries, or empty:
-/// none), which also bounds the residual variance of the `model` covariance. Throws std::invalid_argument for a range
-/// outside the run or sizes and signs that do not fit.
+/// q: sum of squared residuals about the posterior / L. The lower bound is the square of `sigma_floor` (n entries, or
+/// empty without a bound). It also bounds the residual variance of the `model` covariance. Throws std::invalid_argument
+/// for a range outside the run, and for invalid sizes or signs.
 LocalModel fit_window(const Trajectory& run, Index start, const LinearStructure& structure, const FitOptions& options,
                       const Eigen::VectorXd& sigma, const ParameterPrior* prior,
                       const Eigen::VectorXd& sigma_floor = {});

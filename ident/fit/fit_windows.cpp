@@ -49,7 +49,7 @@ void check_options(const FitOptions& options, Index parameters) {
 
 /// Number of windows per call of the sink of stream_windows.
 constexpr Index streamed_windows = 65536;
-/// Largest number of windows for the default prior; they are drawn in blocks.
+/// Largest number of windows for the default prior. The windows are drawn in blocks.
 constexpr Index prior_windows = 200000;
 constexpr Index prior_block = 64;
 
@@ -72,7 +72,7 @@ std::vector<WindowPlan::Range> prior_ranges(const WindowPlan& plan, Index longes
 /// Windows solved by Ceres are separate jobs.
 Index longest_range(const BatchWindows* batch) { return batch ? BatchWindows::longest_range : 1; }
 
-/// The linear structure of a model, and the motion model if it is not fitted as a linear regression.
+/// The linear structure of a model, and the motion model if the fit is not a linear regression.
 struct ModelChoice {
   LinearStructure structure;
   std::shared_ptr<const MotionModel> motion;  ///< null: linear
@@ -89,8 +89,8 @@ ModelChoice choose_model(const Recording& recording, const FitOptions& options) 
 /// Fits all windows of a recording, range by range.
 class Fitting {
  public:
-  /// `motion`: null for linear models. It, the recording and the options must outlive this object. `first`: earliest
-  /// transition at which a window may begin; windows also begin no earlier than their regressors allow.
+  /// `motion`: null for linear models. `motion`, the recording and the options must outlive this object. `first`:
+  /// earliest transition at which a window may begin. Windows also begin no earlier than their regressors allow.
   Fitting(const Recording& recording, const FitOptions& options, const LinearStructure& structure,
           const MotionModel* motion, Index first = 0)
       : plan_(recording, options.length, options.step, std::max(first, structure.first_transition())) {
@@ -113,7 +113,7 @@ class Fitting {
     common_.audit.ceres_method = fitter_->method();
     if (batch_) common_.audit.batch_method = BatchWindows::method();
   }
-  Fitting(const Fitting&) = delete;  // not copied: the fitter refers to the global model
+  Fitting(const Fitting&) = delete;  // not copied, because the fitter refers to the global model
   Fitting& operator=(const Fitting&) = delete;
 
   Index count() const { return plan_.count(); }

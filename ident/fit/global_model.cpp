@@ -14,7 +14,7 @@
 namespace modebank {
 
 std::vector<Index> unidentifiable_columns(const Eigen::MatrixXd& X, const Decomposition& d) {
-  constexpr double rounding = 1e-6;  // of a squared length; far below any real dependence
+  constexpr double rounding = 1e-6;  // share of a squared length; far below any real dependence
   const Index q = d.basis.rows();
   std::vector<Index> unidentifiable;
   if (d.rank() == q) return unidentifiable;
@@ -30,7 +30,7 @@ std::vector<Index> unidentifiable_columns(const Eigen::MatrixXd& X, const Decomp
 
 namespace {
 
-/// S (x) (X'X)^+ for theta row-major; NaN where the transitions do not determine theta.
+/// S (x) (X'X)^+ for theta row-major. NaN for parameters that the transitions do not determine.
 Eigen::MatrixXd least_squares_covariance(const Eigen::MatrixXd& X, const Decomposition& d,
                                          const Eigen::MatrixXd& residual_square_sum, Index N) {
   const Index q = d.basis.rows(), n = residual_square_sum.rows(), rank = d.rank();
@@ -63,7 +63,7 @@ std::pair<Transitions, Index> reduce(const Recording& recording, const LinearStr
 }
 
 constexpr int motion_iterations = 1000;
-// fits of the motion model; each weighs states by the residuals' standard deviations of the previous one
+// number of fits of the motion model; each weights the states by the residuals' standard deviations of the previous fit
 constexpr int scale_passes = 3;
 
 /// Root mean square per state.

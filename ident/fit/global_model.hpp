@@ -8,12 +8,12 @@
 namespace modebank {
 
 /// Ordinary least squares over all transitions of the training runs. Throws DataError without transitions.
-/// Rank-deficient regressors give the minimum-norm solution. With sample weights it is weighted least squares, and N
-/// the number of transitions of positive weight.
+/// Rank-deficient regressors give the minimum-norm solution. With sample weights the fit is weighted least squares, and
+/// N is the number of transitions of positive weight.
 GlobalModel fit_global(const Recording& recording, const LinearStructure& structure);
 
 /// Least squares of one-step residuals over all training transitions, from the model's start values. Several states are
-/// weighed by the standard deviations of their residuals (three passes). Throws DataError without transitions.
+/// weighted by the standard deviations of their residuals (three passes). Throws DataError without transitions.
 GlobalModel fit_global(const Recording& recording, const MotionModel& model);
 
 }  // namespace modebank

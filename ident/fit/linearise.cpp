@@ -10,8 +10,8 @@ namespace modebank {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-constexpr double difference_share = 1e-6;  // of a parameter's size
-// assumed size of a parameter near zero; gives a derivative a rounding error of 2e-8
+constexpr double difference_share = 1e-6;  // share of a parameter's size
+// assumed size of a parameter near zero; the rounding error of a derivative is then 2e-8
 constexpr double least_size = 1e-2;
 
 Eigen::VectorXd linear_theta(const MotionModel& model, const Eigen::VectorXd& theta, const OperatingPoint& at) {

@@ -15,8 +15,8 @@ struct OperatingPoint {
   double dt_s = 0.0;
 };
 
-/// Weighted mean state and input of the training runs' finite transitions (`weights` empty: all one), and the median
-/// sample period.
+/// Weighted mean state and input of the training runs' finite transitions, and the median sample period. If `weights`
+/// is empty, all weights are one.
 OperatingPoint operating_point(const Recording& recording, const Eigen::VectorXd& weights = {});
 
 /// First-order approximation x[k+1] = x + A x + B u + c of a motion model about an operating point; exact for models

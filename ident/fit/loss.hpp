@@ -22,11 +22,11 @@ struct LossValue {
   double curvature = 0.0;  ///< rho''(s)
 };
 
-/// A Ceres loss with its tuning constant c in units of sigma. Immutable, shared by all windows and threads. arctan is
-/// rho(s) = c^2 atan(s / c^2), where Ceres' own argument is c^2; so c is a residual for every loss.
+/// A Ceres loss with its tuning constant c in units of sigma. Immutable; all windows and threads share it. arctan is
+/// rho(s) = c^2 atan(s / c^2). (Ceres' own argument is c^2.) So c is a residual for every loss.
 class RobustLoss {
  public:
-  /// `scale` 0: default_loss_scale. Throws std::invalid_argument for a negative or non-finite scale.
+  /// `scale`: 0 means default_loss_scale. Throws std::invalid_argument for a negative or non-finite scale.
   RobustLoss(Loss loss, double scale);
   ~RobustLoss();
   RobustLoss(RobustLoss&&) noexcept;

@@ -18,14 +18,15 @@ namespace {
 
 /// Larger whitened residuals are numerical accidents; their squares would overflow.
 constexpr double largest_residual = 1e100;
-/// Relative cost change at which Ceres stops. The first tolerance is near enough for Newton steps; if these fail, the
-/// second goes to the precision of the cost.
+/// Relative cost changes at which Ceres stops. The first tolerance leads near enough for Newton steps. If these fail,
+/// the second goes to the precision of the cost.
 constexpr double near_tolerance = 1e-4;
 constexpr double far_tolerance = 1e-14;
-/// If psi is below this share of b, it no longer scales a gradient: stationary_gradient of it is rounding error.
+/// If |psi| is below this share of |b|, it is no longer a scale for a gradient: even stationary_gradient times |psi| is
+/// rounding error.
 constexpr double least_influence = 1e-5;
 /// Near the optimum the expected gain of a step is rounding error, and Ceres calls the step invalid. The trust region
-/// then shrinks, and the search should end as after any small step, not as a failure.
+/// then shrinks. The search should end in the same way as after any small step, without a failure.
 constexpr int most_invalid_steps = 50;
 constexpr double cost_rounding = 1e-13;
 constexpr int max_newton_steps = 60;
@@ -52,7 +53,8 @@ ceres::Solver::Options solver_options(const Tolerances& tolerances, int max_iter
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
   options.jacobi_scaling = false;             // the columns already have unit norm
-  options.initial_trust_region_radius = 1e8;  // begin with full steps: the problem is convex or starts near its optimum
+  options.initial_trust_region_radius = 1e8;  // begin with full steps, because the problem is convex or starts near its
+                                              // optimum
   options.function_tolerance = tolerances.function;
   options.gradient_tolerance = tolerances.gradient;
   options.max_num_consecutive_invalid_steps = most_invalid_steps;
@@ -83,7 +85,8 @@ bool stationary(const WhitenedProblem& problem, const RobustTerms& terms) {
   return scaled_gradient(problem, terms) <= stationary_gradient;
 }
 
-/// -H^-1 g; without rho'' if the second derivative is not positive definite. Empty if that matrix is not, either.
+/// -H^-1 g; without rho'' if the second derivative is not positive definite. Empty if that matrix is not positive
+/// definite, either.
 Eigen::VectorXd newton_step(const WhitenedProblem& problem, const RobustTerms& terms, const Eigen::VectorXd& g) {
   Cholesky factor(hessian(problem, terms));
   if (!factor.definite()) factor.factorise(weighted_information(problem, terms));
@@ -198,7 +201,7 @@ Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max
     minimum.status = search(problem, loss, {tolerance}, max_iterations, minimum.z);
     if (minimum.status != FitStatus::converged || polish(problem, loss, minimum.z)) return finite_or_failed(minimum);
   }
-  minimum.status = FitStatus::iteration_limit;  // no further gain from Ceres, yet the point is not stationary
+  minimum.status = FitStatus::iteration_limit;  // Ceres gains no more, but the point is not stationary
   return finite_or_failed(minimum);
 }
 

@@ -7,9 +7,9 @@
 
 namespace modebank {
 
-/// Residuals of a whitened problem at z, and the loss's derivatives. psi_k = weight_k r_k is the influence of sample k
-/// (Huber 1981). For a sample of weight w all values refer to its rows, which contain sqrt(w): r_k is sqrt(w) times the
-/// sample's residual.
+/// Residuals of a whitened problem at z, and the derivatives of the loss. psi_k = weight_k r_k is the influence of
+/// sample k (Huber 1981). For a sample of weight w all values refer to its rows, which contain sqrt(w): r_k is sqrt(w)
+/// times the residual of the sample.
 struct RobustTerms {
   Eigen::VectorXd residual;   ///< b - J z, all rows
   Eigen::VectorXd weight;     ///< L, rho'(|r_k|^2 / w)
@@ -31,16 +31,16 @@ RobustTerms evaluate_at(const WhitenedProblem& problem, const RobustLoss& loss, 
 
 /// The objective 1/2 sum w rho(|r_k|^2 / w) + 1/2 |prior rows|^2.
 double half_cost(const WhitenedProblem& problem, const RobustLoss& loss, const RobustTerms& terms);
-/// Gradient of half_cost by z.
+/// Gradient of half_cost with respect to z.
 Eigen::VectorXd gradient(const WhitenedProblem& problem, const RobustTerms& terms);
 /// Exact second derivative of half_cost.
 Eigen::MatrixXd hessian(const WhitenedProblem& problem, const RobustTerms& terms);
 /// The second derivative without rho'', as in iteratively reweighted least squares; never indefinite.
 Eigen::MatrixXd weighted_information(const WhitenedProblem& problem, const RobustTerms& terms);
 
-/// Distance from a minimum, without units: the norm of the gradient relative to that of psi and the prior's rows, whose
-/// projection the gradient is. If psi is below 1e-5 |b|, the gradient is rounding error, and 1e-5 |b| is the reference.
-/// (Karush-Kuhn-Tucker condition without bounds.)
+/// Distance from a minimum, without units. It is the norm of the gradient relative to that of psi and the prior's rows.
+/// (The gradient is a projection of these.) If psi is below 1e-5 |b|, the gradient is rounding error, and the reference
+/// is 1e-5 |b|. (Karush-Kuhn-Tucker condition without bounds.)
 double scaled_gradient(const WhitenedProblem& problem, const RobustTerms& terms);
 
 /// The minimiser and the status of the search: converged, iteration_limit or failed.
@@ -49,14 +49,14 @@ struct Minimum {
   FitStatus status = FitStatus::failed;
 };
 
-/// Defines the fit of a linear window, and solves it unless the batch solver does. Ceres' trust region search with one
-/// residual block and loss per sample starts from the least-squares solution (non-convex losses: from the Huber
-/// optimum). It ends when the relative cost change is below 1e-4. Newton steps with the exact second derivative follow,
-/// to a scaled gradient of stationary_gradient. They are needed because Ceres drops a negative rho'' and then converges
-/// only linearly. Deterministic, without output.
+/// Defines the fit of a linear window, and solves it unless the batch solver does. The search starts from the
+/// least-squares solution (non-convex losses: from the Huber optimum). First comes Ceres' trust region search with one
+/// residual block and loss per sample. It ends when the relative cost change is below 1e-4. Newton steps with the exact
+/// second derivative follow, to a scaled gradient of stationary_gradient. These steps are needed because Ceres drops a
+/// negative rho'' and then converges only linearly. Deterministic, without output.
 Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max_iterations);
 
-/// Ceres alone from the same start, at tolerances of 1e-16; the reference of audits.
+/// Ceres alone from the same start, at tolerances of 1e-16. Audits use it as reference.
 Minimum minimise_by_ceres_alone(const WhitenedProblem& problem, const RobustLoss& loss);
 
 }  // namespace modebank

@@ -73,7 +73,7 @@ class PriorResidual final : public ceres::CostFunction {
 };
 
 /// Near the optimum the expected gain of a step is rounding error, and Ceres calls such steps invalid. The trust region
-/// then shrinks until the step is small, which should end the search as converged.
+/// then shrinks until the step is small. The search should then end as converged.
 constexpr int most_invalid_model_steps = 50;
 
 ceres::Solver::Options model_solver_options(int iterations) {
@@ -98,8 +98,8 @@ void set_bounds(const MotionModel& model, ceres::Problem& problem, Eigen::Vector
   }
 }
 
-/// Minimises by Ceres. Ceres applies the loss to one residual block, so each sample is a block; plain least squares use
-/// one block for all.
+/// Minimises by Ceres. Ceres applies the loss to one residual block, so each sample is a block. Plain least squares use
+/// one block for all samples.
 FitStatus ceres_search(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, const RobustLoss& loss,
                        const ParameterPrior* prior, int iterations, Eigen::VectorXd& theta) {
   ceres::Problem::Options problem_options;
@@ -155,7 +155,7 @@ LinearisedFit linearise(const ModelResiduals& residuals, const Eigen::VectorXd& 
   return fit;
 }
 
-/// The whitened problem that has its solution, the fit, at z = 0.
+/// The whitened problem whose solution, the fit, is at z = 0.
 WhitenedProblem whiten_at(const LinearisedFit& fit, const ModelResiduals& residuals, const Eigen::VectorXd& at,
                           const Decomposition& excitation, const ParameterPrior* prior) {
   const Index rows = fit.r.size(), u = at.size(), p = prior ? prior->mean.size() : 0;

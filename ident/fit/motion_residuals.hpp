@@ -20,13 +20,13 @@ std::vector<TransitionRange> training_stretches(const Recording& recording);
 
 using RowMajorJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Residuals measured - predicted of a model over stretches of runs; each sample is predicted from the previous
-/// measured one. n rows per sample, in the state's unit. Samples that are not finite are skipped. Refers to model and
-/// runs, which must outlive it.
+/// Residuals measured - predicted of a model over stretches of runs. Each sample is predicted from the previous
+/// measured sample. n rows per sample, in the state's unit. Samples that are not finite are skipped. Holds references
+/// to model and runs, which must outlive it.
 class ModelResiduals {
  public:
-  /// `weights`: factors of each transition's loss, in the order of the stretches. Empty: the runs' sample weights
-  /// divided by their mean, or one for all. Samples of weight zero are skipped.
+  /// `weights`: factors of each transition's loss, in the order of the stretches. If empty, they are the runs' sample
+  /// weights divided by their mean, or one for all. Samples of weight zero are skipped.
   ModelResiduals(const MotionModel& model, const std::vector<TransitionRange>& stretches,
                  const Eigen::VectorXd& weights = {});
 
@@ -36,11 +36,12 @@ class ModelResiduals {
   Index rows() const { return samples() * states(); }
   Index unknowns() const { return model_.parameter_count(); }
   double weight(Index sample) const { return weights_.size() > 0 ? weights_(sample) : 1.0; }
-  const Eigen::VectorXd& weights() const { return weights_; }  ///< empty: all one
-  /// Increments to be explained by the model, one row per sample, times the square root of its weight.
+  const Eigen::VectorXd& weights() const { return weights_; }  ///< empty if all weights are one
+  /// Increments that the model should explain, one row per sample, times the square root of its weight.
   Eigen::MatrixXd responses() const;
 
-  /// r (rows) and, if not null, the predictions' derivatives by theta (rows x unknowns): dr = -J d(theta).
+  /// r (rows) and, if not null, the derivatives of the predictions with respect to theta (rows x unknowns): dr = -J
+  /// d(theta).
   void evaluate(const double* theta, Eigen::VectorXd& r, RowMajorJacobian* J) const;
   /// `evaluate` for samples first .. first + count - 1, into count n numbers and, if not null, count n rows of J.
   void evaluate(const double* theta, Index first, Index count, double* r, double* J) const;

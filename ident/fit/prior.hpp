@@ -15,17 +15,17 @@ struct ParameterPrior {
 };
 
 /// Default prior standard deviations: 3 x the robust standard deviation over windows. The windows are full-rank robust
-/// fits without prior (`parameters` p x M, one per column; non-finite ones do not count).
+/// fits without prior (`parameters` p x M, one per column). Windows that are not finite are ignored.
 ///
 /// The robust standard deviation is 1.4826 times the median absolute deviation per parameter. Windows near the rank
-/// tolerance have extreme estimates that would dominate a sample standard deviation. If the robust one is zero (more
-/// than half of the windows agree exactly), the sample standard deviation is used. If that is zero, too, or without
-/// full-rank windows, noise decides: the standard deviation of windows of `length` transitions by noise alone, global
-/// standard error x sqrt(N / length). If that is zero or undefined: 1.
+/// tolerance have extreme estimates that would dominate a sample standard deviation. If the robust value is zero (more
+/// than half of the windows agree exactly), the sample standard deviation is used. If that is also zero, or without
+/// full-rank windows, it is the standard deviation that noise alone gives windows of `length` transitions: global
+/// standard error x sqrt(N / length). If that is zero or undefined, the value is 1.
 Eigen::VectorXd default_prior_sd(const Eigen::MatrixXd& parameters, const GlobalModel& global, Index length);
 
-/// Prior standard deviations from the options, one per parameter or one for all; otherwise default_prior_sd of
-/// `unregularised()`.
+/// Prior standard deviations from the options, one per parameter or one for all. Without such options, default_prior_sd
+/// of `unregularised()`.
 Eigen::VectorXd make_prior_sd(const FitOptions& options, const GlobalModel& global,
                               const std::function<Eigen::MatrixXd()>& unregularised);
 

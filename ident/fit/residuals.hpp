@@ -33,7 +33,7 @@ class LinearResidual final : public ceres::CostFunction {
 };
 
 /// w rho(s / w): the loss of a sample whose rows contain the square root of its weight w. The wrapped loss must outlive
-/// it.
+/// this object.
 class WeightedLoss final : public ceres::LossFunction {
  public:
   WeightedLoss(const ceres::LossFunction& loss, double weight) : loss_(&loss), weight_(weight) {}

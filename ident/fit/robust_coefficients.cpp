@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-// of the errors' root mean square, because more than half of the errors may be zero
+// share of the errors' root mean square, because more than half of the errors may be zero
 constexpr double least_share_of_rms = 1e-3;
 constexpr double least_normal_scale = 1e-150;  // its square is still a normal floating-point number
 

@@ -29,7 +29,7 @@ double uncentred_scale(const VectorXd& residuals) { return median(residuals.cwis
 Transitions one_response(const Transitions& all, Index i) {
   Transitions one = all;
   one.increments = all.increments.col(i);
-  one.weight.resize(0);  // rows count unweighted
+  one.weight.resize(0);  // rows are not weighted
   return one;
 }
 
@@ -40,7 +40,8 @@ struct ResponseFit {
   bool converged = false;
 };
 
-/// Standard errors for a problem of scale 1. If it is rank deficient: those of the determined directions.
+/// Standard errors for a problem of scale 1. If the problem is rank deficient, they are those of the determined
+/// directions.
 VectorXd standard_errors(const WhitenedProblem& problem, const RobustLoss& loss, const VectorXd& residuals,
                          double scale) {
   const Index q = problem.basis.rows(), rank = problem.unknowns();
@@ -56,7 +57,7 @@ VectorXd standard_errors(const WhitenedProblem& problem, const RobustLoss& loss,
   return scale * (problem.basis * covariance(determined) * problem.basis.transpose()).diagonal().cwiseSqrt();
 }
 
-/// Reweighted least squares on one problem; the scale is updated in every step.
+/// Reweighted least squares on one problem. The scale is updated in every step.
 ResponseFit fit_response(const Transitions& transitions, const Decomposition& design) {
   const WhitenedProblem problem = whiten(transitions, design, VectorXd::Ones(1), nullptr);
   const RobustLoss loss(Loss::huber, default_loss_scale(Loss::huber));

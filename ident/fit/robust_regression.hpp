@@ -15,9 +15,9 @@ struct RobustRegression {
 };
 
 /// Fits increments = regressors * coefficients + noise, each increment separately, by iteratively reweighted least
-/// squares. Weights are min(1, k scale / |r|) with k = default_loss_scale(Loss::huber). The scale is re-estimated in
-/// every iteration, until the fit moves by less than 1e-12 of it. Standard errors: Huber (1981), eq. 7.6.7 with its
-/// correction K. A zero scale (more than half of the residuals are zero) ends the iteration as converged.
+/// squares. Weights are min(1, k scale / |r|) with k = default_loss_scale(Loss::huber). The scale is estimated again in
+/// every iteration, until the fit moves by less than 1e-12 of the scale. Standard errors: Huber (1981), eq. 7.6.7 with
+/// its correction K. A zero scale (more than half of the residuals are zero) ends the iteration as converged.
 /// Rank-deficient regressors (excitation_tolerance) give the minimum-norm solution. Throws std::invalid_argument
 /// without transitions or with entries that are not finite.
 RobustRegression huber_regression(const Transitions& transitions);

@@ -30,7 +30,8 @@ double normalised_mad(const Eigen::VectorXd& values) {
 
 namespace {
 
-/// Smallest value at which the cumulative weight reaches half; the mean of it and the next value if it is exactly half.
+/// Smallest value at which the cumulative weight reaches half. If it is exactly half, the mean of this value and the
+/// next one.
 double weighted_median(const Eigen::VectorXd& values, const Eigen::VectorXd& weights) {
   std::vector<Index> order(static_cast<std::size_t>(values.size()));
   std::iota(order.begin(), order.end(), Index{0});

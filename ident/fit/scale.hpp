@@ -21,15 +21,15 @@ struct NoiseScale {
 };
 
 /// Residual standard deviation per state: normalised_mad times sqrt(N / (N - lost)). r are least-squares residuals (N x
-/// n, without weights applied) that cost each state `lost` degrees of freedom. Sample weights (N, or empty) enter the
-/// medians. NaN if N <= lost.
+/// n, without weights applied). The least-squares fit costs each state `lost` degrees of freedom. Sample weights (N, or
+/// empty) enter the medians. NaN if N <= lost.
 Eigen::VectorXd robust_scale(const Eigen::Ref<const Eigen::MatrixXd>& r, const Eigen::VectorXd& weights, double lost);
 
 /// robust_scale of a linear regression.
 Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition& decomposition);
 
-/// Lower bound of sigma per state: 1e-3 of the global residual standard deviation. Noise-free data keep a bound at the
-/// states' rounding error, and constant zero data a bound of 1, so that whitened residuals stay finite.
+/// Lower bound of sigma per state: 1e-3 of the global residual standard deviation. For noise-free data the bound is the
+/// states' rounding error. For constant zero data the bound is 1, so that whitened residuals stay finite.
 Eigen::VectorXd scale_floor(const Recording& recording, const LinearStructure& structure,
                             const Eigen::VectorXd& global_noise_variance);
 

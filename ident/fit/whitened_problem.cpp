@@ -26,7 +26,8 @@ StateBlock block_with_prior(const Transitions& t, double sigma, const Eigen::Vec
   return {d.U.topRows(L), d.U.bottomRows(q), d.basis};
 }
 
-/// Moves the origin to the least-squares solution. Done twice, because the first pass leaves rounding errors of b.
+/// Moves the origin to the least-squares solution. A second pass removes the rounding errors of b that the first one
+/// leaves.
 void centre(WhitenedProblem& problem) {
   for (int pass = 0; pass < 2; ++pass) {
     const Eigen::VectorXd z = problem.J.transpose() * problem.b;

@@ -12,14 +12,14 @@
 
 namespace modebank {
 
-/// The data shared by the fits of all windows of a recording, and the fit of one window through Ceres. Refers to
-/// recording, options and global model, which must outlive it. Thread-safe.
+/// The data shared by the fits of all windows of a recording, and the fit of one window through Ceres. Holds references
+/// to recording, options and global model, which must outlive it. Thread-safe.
 class WindowFitter {
  public:
   virtual ~WindowFitter() = default;
 
   virtual LocalModel fit(const Window& window, const ParameterPrior* prior) const = 0;
-  /// theta without prior; NaN if rank deficient or failed.
+  /// theta without prior; NaN if the window is rank deficient or the fit failed.
   virtual Eigen::VectorXd unregularised_theta(const Window& window) const = 0;
 
   /// Solver and tolerance in words, for reports.
@@ -30,7 +30,7 @@ class WindowFitter {
   const GlobalModel& global() const { return global_; }
   const Eigen::VectorXd& floor() const { return floor_; }  ///< n, smallest sigma
   const Trajectory& run_of(const Window& window) const { return recording_.runs[static_cast<std::size_t>(window.run)]; }
-  /// sigma of a whole run; the global sigma if the run is too short to estimate it.
+  /// sigma of a whole run. If the run is too short for an estimate, the global sigma.
   const Eigen::VectorXd& run_scale(Index run) const;
 
  protected:
@@ -39,8 +39,8 @@ class WindowFitter {
 
   /// robust_scale of a run's least-squares residuals; NaN if the run is too short.
   virtual Eigen::VectorXd scale_of(const Trajectory& run) const = 0;
-  /// sigma as the options require: `own` (scale of the window's residuals) if they ask for it, the window has `enough`
-  /// samples and the scale is finite. Otherwise the run's.
+  /// sigma as the options require. It is `own` (scale of the window's residuals) if the options ask for it, the window
+  /// has at least `enough` samples and the scale is finite. Otherwise it is the sigma of the run.
   Eigen::VectorXd window_sigma(const Window& window, bool enough, const std::function<Eigen::VectorXd()>& own) const;
 
  private:
@@ -71,7 +71,7 @@ class LinearWindows final : public WindowFitter {
     Decomposition decomposition;
     NoiseScale scale;
   };
-  /// The window's transitions without those that hold a NaN or infinity; empty if none is left.
+  /// The window's transitions without those that hold a NaN or infinity; empty if no transition remains.
   std::optional<WindowData> load(const Window& window) const;
 
   LocalModel fit(const Window& window, const ParameterPrior* prior) const override;
@@ -95,7 +95,7 @@ class MotionWindows final : public WindowFitter {
 
  private:
   Eigen::VectorXd scale_of(const Trajectory& run) const override;
-  /// robust_scale of least-squares residuals, with states weighed by `sigma`; NaN for too few samples.
+  /// robust_scale of least-squares residuals, with states weighted by `sigma`; NaN for too few samples.
   Eigen::VectorXd least_squares_scale(const ModelResiduals& residuals, const Eigen::VectorXd& sigma) const;
 
   const MotionModel& model_;

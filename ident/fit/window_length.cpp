@@ -29,7 +29,8 @@ Residuals residuals_of(const Trajectory& run, Index start, Index count, const Li
   return {left.colwise().squaredNorm().transpose().array(), static_cast<double>(t.count() - d.rank())};
 }
 
-/// Whether the motion of a window's two halves differs in any state, at a Bonferroni share of the level per state.
+/// Whether the motion of a window's two halves differs in any state. The level is divided by the number of states
+/// (Bonferroni).
 bool changes(const Trajectory& run, Index start, Index length, const LinearStructure& one_lag) {
   const Index half = length / 2;
   const Residuals first = residuals_of(run, start, half, one_lag);
@@ -74,8 +75,8 @@ Index automatic_length(const Recording& recording, const LinearStructure& struct
     const Index length = length_of(per_regressor);
     if (length > shortest && changed_share(recording, structure.with_one_lag(), length) <= most_changed) return length;
   }
-  // Runs too short for such a window may still hold one of the smallest length. If they do not, forming windows reports
-  // it.
+  // Runs that are too short for such a window may still hold one of the smallest length. If they do not, the function
+  // that forms windows reports it.
   return WindowPlan(recording, shortest, 1, structure.first_transition()).count() > 0 ? shortest
                                                                                       : shortest_automatic_length;
 }

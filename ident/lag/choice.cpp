@@ -50,8 +50,8 @@ void apply(RunLag& run, const InputClock& clock) {
   run.applied_reference_s = clock.reference_s;
 }
 
-/// The simplest correction (in the order of LagCorrection) that gains more than its standard error and is within one
-/// standard error of the best (Breiman et al. 1984, sec. 3.4.3).
+/// The simplest correction (in the order of LagCorrection) that satisfies two conditions. It gains more than its
+/// standard error, and it is within one standard error of the best (Breiman et al. 1984, sec. 3.4.3).
 LagCorrection decide(const std::vector<LagScore>& scores) {
   const auto gains = [](const LagScore& score) { return score.gain > 0.0 && score.gain > score.gain_standard_error; };
   const LagScore* best = nullptr;

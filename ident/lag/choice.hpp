@@ -29,12 +29,11 @@ struct LagChoiceOptions {
 RunLag estimate_run(const RunPair& run, double range_s);
 
 /// Estimates lag and drift of every training run, and chooses a correction by cross-validation over the training runs
-/// (at most ten folds; a single run is split in halves).
-/// The score is the log score of the global model's one-step predictions (with intercept, Gaussian) on the transitions
-/// that all corrections share. The choice is the simplest correction that gains more than one standard error over none
-/// and is within one standard error of the best.
-/// A left-out run is shifted as a held-out run would be: by the pooled values of the others. Training runs use their
-/// own estimates, shrunk towards the pooled ones by their errors; runs without a usable estimate use the pooled ones.
+/// (at most ten folds; a single run is split in halves). The score is the log score of the global model's one-step
+/// predictions (with intercept, Gaussian) on the transitions that all corrections share. The choice is the simplest
+/// correction that gains more than one standard error over none and is within one standard error of the best.
+/// A left-out run is shifted like a held-out run: by the pooled values of the other runs. Training runs use their own
+/// estimates, shrunk towards the pooled ones by their errors. Runs without a usable estimate use the pooled values.
 /// Parallel over runs, deterministic.
 LagReport choose_lag(const std::vector<RunPair>& runs, const LagChoiceOptions& options);
 

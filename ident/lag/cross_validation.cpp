@@ -32,7 +32,7 @@ RunScore score(const Trajectory& run, const GlobalModel& global, const LinearStr
                double last_s) {
   RunScore result;
   const LinearModel model = unpack(structure, global.theta);
-  constexpr double least_variance = 1e-200;  // noise-free data: logarithms stay finite
+  constexpr double least_variance = 1e-200;  // keeps logarithms finite for noise-free data
   const Index n = structure.states;
   const Cholesky noise(global.residual_covariance + least_variance * MatrixXd::Identity(n, n));
   const MatrixXd L = noise.L();
@@ -49,7 +49,7 @@ RunScore score(const Trajectory& run, const GlobalModel& global, const LinearStr
   return result;
 }
 
-/// Scores of all runs of one fold for every correction, run by run, correction by correction.
+/// Scores of all runs of one fold for every correction, in order of runs, then of corrections.
 std::vector<std::vector<RunScore>> score_fold(const std::vector<LagSubject>& subjects, std::size_t fold,
                                               std::size_t folds, double rate_hz) {
   std::vector<LagSubject> kept, out;

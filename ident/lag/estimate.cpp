@@ -15,21 +15,21 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index coarse_samples = 4000;  // enough to find the minimum roughly
-constexpr Index most_samples = 20000;   // enough to find the minimum exactly
+constexpr Index coarse_samples = 4000;  // number of averages that finds the minimum roughly
+constexpr Index most_samples = 20000;   // number of averages that finds the minimum exactly
 constexpr Index coarse_lags = 51;
 constexpr Index coarse_drifts = 21;
 constexpr double fastest_drift = 0.05;  // [s/s]; clocks drift more slowly
 constexpr int halvings = 12;
 constexpr int most_moves = 400;
-constexpr double least_evidence_nats = 5.0;  // smallest gain of the best lag over the typical one
+constexpr double least_evidence_nats = 5.0;  // smallest gain of the best lag over the typical lag
 constexpr double least_r_squared = 0.5;      // below this the inputs do not explain the states
-constexpr double largest_error = 0.2;        // standard error as a share of the range searched
+constexpr double largest_error = 0.2;        // standard error as a share of the searched range
 
 struct Search {
   double range_s;          // width of the range of lags
-  double time_constant_s;  // largest one searched
-  double drift;            // largest one searched
+  double time_constant_s;  // largest lag that is searched
+  double drift;            // largest time constant that is searched
 };
 
 bool inside(const LagPoint& p, const Search& search) {
@@ -98,8 +98,8 @@ LagPoint moved(LagPoint p, const std::array<double, 3>& direction, const LagPoin
   return p;
 }
 
-/// Pattern search (Hooke & Jeeves 1961) along the axes and along lag minus time constant; their sum is determined
-/// better than either.
+/// Pattern search (Hooke & Jeeves 1961) along the axes and along lag minus time constant. The sum of lag and time
+/// constant is determined better than either.
 LagPoint refine(const LagObjective& objective, const Search& search, LagPoint point, bool with_drift) {
   static constexpr std::array<std::array<double, 3>, 8> directions{
       {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {0, 1, 0}, {0, -1, 0}}};
@@ -126,7 +126,7 @@ LagPoint refine(const LagObjective& objective, const Search& search, LagPoint po
   return point;
 }
 
-/// Number of independent samples that the residuals are worth, given their autocorrelation.
+/// Effective number of independent samples of the residuals, given their autocorrelation.
 double effective_samples(const LagObjective::Fit& fit) {
   double numerator = 0.0, denominator = 0.0;
   const Index N = fit.samples;

@@ -8,9 +8,8 @@
 
 namespace modebank {
 
-/// Status of a lag estimate. not_excited: the response fits nearly equally well at any lag of the range, so the value
-/// is meaningless. at_edge: the best fit lies at the end of the searched range (for drifts: 5 %), so the true value may
-/// lie beyond.
+/// Status of a lag estimate. not_excited: all lags of the range fit nearly equally well, so the value is meaningless.
+/// at_edge: the best fit lies at the end of the searched range (for drifts: 5 %), so the true value may lie beyond.
 enum class LagStatus { converged, not_excited, at_edge, not_estimated };
 
 template <>
@@ -27,8 +26,8 @@ struct LagFit {
   InputClock clock;  ///< lag at the middle of the run, and its drift (0 if not estimated)
   double lag_standard_error_s = std::numeric_limits<double>::quiet_NaN();
   double drift_standard_error = std::numeric_limits<double>::quiet_NaN();
-  double time_constant_s = 0.0;  ///< time constant of the response; 0: at its bound, too fast for the samples
-  double r_squared = 0.0;        ///< explained share of the states' variance (n > 1: 1 - geometric mean of the
+  double time_constant_s = 0.0;  ///< time constant of the response; 0 if it is at its bound, too fast for the samples
+  double r_squared = 0.0;        ///< share of the states' variance that is explained (n > 1: 1 - geometric mean of the
                                  ///< unexplained shares)
   LagStatus status = LagStatus::not_estimated;
 
@@ -41,17 +40,17 @@ struct LagEstimate {
 };
 
 /// Dead time from inputs to states, lag(t) = lag + drift (t - middle), by output error. Every state is regressed on a
-/// constant and the inputs, which are held, delayed by lag(t) and filtered by one shared first-order lag (time constant
+/// constant and the inputs. The inputs are held, delayed by lag(t) and filtered by one first-order lag (time constant
 /// from 0 to the range). All inputs share one lag. All signals are averaged over the longer sample period, so the fit
-/// is smooth in the lag and resolves fractions of a sample.
-/// The objective is the sum over states of log(1 - R^2) over the samples with known delayed inputs. It is minimised on
-/// a grid, then by pattern search, with Huber weights against outliers.
+/// is smooth in the lag and resolves fractions of a sample. The objective is the sum over states of log(1 - R^2) over
+/// the samples with known delayed inputs. It is minimised on a grid, then by pattern search, with Huber weights against
+/// outliers.
 ///
-/// The time constant takes the place of A in a one-step model, so the dead time is the delay to be removed for such a
-/// model. The delay of best match (ident/lag/track.hpp) is longer by about the time constant. Standard errors:
-/// Gauss-Newton sandwich with the autocorrelation of the scores by Newey & West (1987), bandwidth by Andrews (1991, eq.
-/// 6.2, 6.4). Short gaps of states are bridged, long ones left out; NaN inputs keep their last value. Streams that are
-/// too short or constant give not_excited, not an exception.
+/// The time constant replaces A of a one-step model. So for such a model, the dead time is the delay to be removed. The
+/// delay of best match (ident/lag/track.hpp) is longer by about the time constant. Standard errors: Gauss-Newton
+/// sandwich with the autocorrelation of the scores by Newey & West (1987), bandwidth by Andrews (1991, eq. 6.2, 6.4).
+/// Short gaps of states are bridged, long gaps are skipped. NaN inputs keep their last value. Streams that are too
+/// short or constant give not_excited instead of an exception.
 LagEstimate estimate_lag(const Stream& states, const Stream& inputs, const LagOptions& options);
 
 }  // namespace modebank

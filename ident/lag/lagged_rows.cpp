@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index most_entries = 4'000'000;
-constexpr Index rows_together = 500;  // rows that are kept or dropped together
+constexpr Index rows_together = 500;  // number of rows that are kept or dropped together
 constexpr Index folds_of_parts = 5;
 
 LinearStructure widest_of(const Recording& recording, const StructureRanges& ranges, bool intercept) {

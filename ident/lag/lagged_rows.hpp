@@ -24,19 +24,19 @@ struct StructureRanges {
   }
 };
 
-/// The transitions of the training runs that all structures of some ranges have in common. Their regressors are
-/// measured in the same run even with the most lags. Rows are ordered by fold.
+/// The transitions of the training runs that all structures of some ranges have in common. Even with the largest lags,
+/// their regressors were measured in the same run. Rows are ordered by fold.
 ///
-/// The columns of X belong to the widest structure; leading parts of them belong to narrower ones. They are the newest
-/// state, differences between successive older states (accurate for smooth signals), inputs from the smallest delay on,
-/// and a constant. Columns have unit root mean square, and zero mean if there is a constant.
+/// The columns of X belong to the widest structure; leading parts of these columns belong to narrower structures. The
+/// columns are the newest state, differences between successive older states (accurate for smooth signals), inputs from
+/// the smallest delay on, and a constant. Columns have unit root mean square, and zero mean if there is a constant.
 struct LaggedRows {
   Index states = 1, inputs = 0;
   StructureRanges ranges;
   bool intercept = false;
   Eigen::MatrixXd X;              ///< N x q
   Eigen::MatrixXd Y;              ///< N x n, increments
-  Eigen::VectorXd weight;         ///< N sample weights of mean one, or empty: all one
+  Eigen::VectorXd weight;         ///< N sample weights of mean one; empty if all are one
   std::vector<Index> part;        ///< N, index of the row's run or stretch of a run
   std::vector<Index> fold_begin;  ///< folds + 1, first row of each fold
   Index parts = 0;
@@ -50,9 +50,9 @@ struct LaggedRows {
   std::vector<Index> columns(const LinearStructure& structure) const;
 };
 
-/// Makes the rows and deals their parts to five folds. Six or more runs are parts themselves; fewer runs are cut into
-/// at least ten stretches. Long recordings are thinned to evenly spaced stretches, so that X has at most about four
-/// million entries.
+/// Makes the rows and assigns their parts to five folds. With six or more runs, the parts are the runs. Fewer runs are
+/// cut into at least ten stretches. Long recordings are thinned to evenly spaced stretches, so that X has at most about
+/// four million entries.
 LaggedRows make_lagged_rows(const Recording& recording, const StructureRanges& ranges, bool intercept);
 
 }  // namespace modebank

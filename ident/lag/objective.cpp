@@ -16,9 +16,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double least_unexplained = 1e-12;  // noise-free data: logarithms stay finite
+constexpr double least_unexplained = 1e-12;  // keeps logarithms finite for noise-free data
 
-/// Times at steps of `period_s` between two others, away from gaps of the states at `time_s`.
+/// Times at steps of `period_s` between two given times, without gaps of the states at `time_s`.
 VectorXd averaging_times(const VectorXd& time_s, double first_s, double last_s, double period_s) {
   const double longest = gap_periods * std::max(median_period_s(time_s), period_s);
   std::vector<double> times;

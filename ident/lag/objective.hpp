@@ -15,7 +15,8 @@ struct LagPoint {
   double time_constant_s = 0.0;
 };
 
-/// The stream without samples that have a missing value (states), or with the last known value instead (inputs).
+/// The stream without gaps. Samples of states with a missing value are removed; a missing value of an input is replaced
+/// by the last known value.
 Stream without_missing(const Stream& stream);
 Stream with_last_known(const Stream& stream);
 
@@ -31,7 +32,8 @@ class LagObjective {
   Eigen::Index samples() const { return centres_s_.size(); }
   InputClock clock(const LagPoint& point) const { return {point.lag_s, point.drift, middle_s_}; }
 
-  /// Mean over the states of log(1 - R^2). 0 if nothing is explained or fewer than half of the samples have an input.
+  /// Mean over the states of log(1 - R^2). 0 if the inputs explain nothing, or if fewer than half of the samples have
+  /// an input.
   double cost(const LagPoint& point) const;
   /// Updates the weights by Huber's loss of the residuals at `point`.
   void reweight(const LagPoint& point);

@@ -4,15 +4,15 @@
 
 namespace modebank {
 
-/// One quantity estimated in several runs whose true values may differ.
+/// One quantity that is estimated in several runs. Its true values in these runs may differ.
 struct PooledEstimate {
   double mean = 0.0;
-  double standard_error = 0.0;  ///< of the mean; NaN without estimates
+  double standard_error = 0.0;  ///< standard error of the mean; NaN without estimates
   double between_sd = 0.0;      ///< standard deviation of the true values between runs
   Eigen::Index count = 0;       ///< number of pooled estimates
 
-  /// Empirical Bayes estimate of one run's true value: its estimate, shrunk towards the mean. It shrinks more the
-  /// larger its error is against the standard deviation between runs.
+  /// Empirical Bayes estimate of one run's true value: its estimate, shrunk towards the mean. The shrinkage grows with
+  /// the error of the estimate, relative to the standard deviation between runs.
   double shrunk(double estimate, double error) const;
 };
 

@@ -19,7 +19,7 @@ struct EnumNames<LagCorrection> {
   static constexpr Names<4> values{"none", "pooled", "per_run", "drift"};
 };
 
-/// One run's estimates (NaN: none, as for held-out runs) and the applied correction.
+/// Estimates of one run (NaN without estimates, as for held-out runs) and the applied correction.
 struct RunLag {
   std::string run;
   LagStatus status = LagStatus::not_estimated;
@@ -50,7 +50,7 @@ struct LagScore {
   double log_score = not_a_number;            ///< nats per transition of the global model's one-step prediction
   double rmse = not_a_number;                 ///< root mean square one-step error, over all states
   double gain = 0.0;                          ///< gain of log_score over `none`
-  double gain_standard_error = not_a_number;  ///< over the left-out runs
+  double gain_standard_error = not_a_number;  ///< standard error of the gain over the left-out runs
 };
 
 /// Result of data.lag_s = auto.

@@ -23,14 +23,15 @@ inline bool acts_later(const Lags& lags) { return lags[2] > 0; }
 
 ScoredStructures select(const ScoredStructures& all, bool (*wanted)(const Lags&));
 
-/// The structure with the highest score, the first on a tie. Only wanted structures count; at least one must be wanted.
+/// The structure with the highest score, the first on a tie. Only wanted structures are considered; at least one must
+/// be wanted.
 Lags best_of(const ScoredStructures& all);
 Lags best_of(const ScoredStructures& all, bool (*wanted)(const Lags&));
 
-/// Whether the best structure without delay gains enough over the best one with a delay: at least 0.02 nats per sample,
-/// and more than the standard error of the gain.
+/// Whether the best structure without delay gains enough over the best structure with a delay: at least 0.02 nats per
+/// sample, and more than the standard error of the gain.
 bool gains_enough(const ScoredStructures& at_once, const ScoredStructures& later, const Eigen::VectorXd& weight);
-/// The best structure; one without delay only if it gains enough.
+/// The best structure. A structure without delay is returned only if it gains enough.
 Lags best_with_delay_rule(const ScoredStructures& all, const Eigen::VectorXd& weight);
 
 /// Loss per sample that is within chance for this number of samples, or negligible [nats/sample].
@@ -45,11 +46,12 @@ struct StructureLoss {
 };
 StructureLoss loss_against(const LeftOutForecast& best, const LeftOutForecast& other, const Eigen::VectorXd& weight);
 
-/// The finalists: half of them are the best, the others the smallest that lose at most one standard error.
+/// The finalists. Half of them are the best structures. The others are the smallest structures that lose at most one
+/// standard error.
 std::vector<Lags> finalists_of(const ScoredStructures& all, const StructureSize& size, const Eigen::VectorXd& weight,
                                std::size_t count);
 
-/// The smallest structure with a negligible loss against the best; the best of equally small ones.
+/// The smallest structure with a negligible loss against the best; among equally small ones, the best.
 Lags smallest_as_good(const ScoredStructures& all, const StructureSize& size, const Eigen::VectorXd& weight);
 
 /// One row per structure, the best first.

@@ -14,14 +14,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Ridge on the diagonal of a Gram matrix of columns with unit root mean square, as a share of the rows. It divides the
-/// effect of collinear columns among them; other coefficients do not change.
+/// effect of collinear columns between these columns. Other coefficients do not change.
 constexpr double collinear_ridge = 1e-11;
-constexpr double exact_share = 1e-9;  // of the increments; a smaller error counts as an exact prediction
-// of the errors' root mean square, because more than half of the errors may be zero
+constexpr double exact_share = 1e-9;  // share of the increments; a smaller error counts as an exact prediction
+// share of the errors' root mean square, because more than half of the errors may be zero
 constexpr double least_share_of_rms = 1e-3;
 constexpr double least_normal_scale = 1e-150;  // its square is still a normal floating-point number
 
-/// Rows of one response except rows first .. first + count - 1.
+/// Rows of one response, without rows first .. first + count - 1.
 Transitions rows_without(const LaggedRows& rows, const std::vector<Index>& columns, Index response, Index first,
                          Index count) {
   const Index N = rows.count(), after = N - first - count;

@@ -18,13 +18,14 @@ struct LeftOutForecast {
 /// degrees of freedom fit the structure's own errors, state by state.
 class StructureScorer {
  public:
-  /// Refers to `rows`, which must outlive it. `quantum` as in Recording.
+  /// Holds a reference to `rows`, which must outlive this object. `quantum`: as in Recording.
   StructureScorer(const LaggedRows& rows, const Eigen::VectorXd& quantum);
 
-  /// Scores least squares, from Gram matrices that all structures share. Rank-deficient regressors determine what they
-  /// can.
+  /// Scores least squares, from Gram matrices that all structures share. If regressors are rank deficient, the solution
+  /// has minimum norm.
   LeftOutForecast least_squares(const LinearStructure& structure) const;
-  /// Scores fits with the windows' loss and scale, each state separately; least squares where such a fit fails.
+  /// Scores fits with the loss and scale of the windows, each state separately. Least squares is used if such a fit
+  /// fails.
   LeftOutForecast robust(const LinearStructure& structure, const FitOptions& options) const;
 
   /// Least-squares errors of the left-out rows, N x n.

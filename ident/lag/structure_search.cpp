@@ -37,7 +37,7 @@ StructureRanges ranges_up_to(const Recording& recording, const FitOptions& windo
       range(searched.input && acted_on, 1, most[1], searched.input || !acted_on ? 1 : window.input_lags),
       range(searched.delay && acted_on, 0, most[2], searched.delay || !acted_on ? 1 : window.input_delay)};
   if (searched.most_samples == 0) return ranges;
-  // Given lags may exceed what a free run can start from; the configuration is then rejected elsewhere.
+  // The given lags may be too many for the start of a free run. Such a configuration is rejected elsewhere.
   const Index stated = std::max(ranges.state_lags.low, ranges.input_lags.low + ranges.input_delay.low - 1);
   ranges.memory = std::max(searched.most_samples, stated);
   ranges.state_lags.high = std::min(ranges.state_lags.high, ranges.memory);
@@ -65,7 +65,7 @@ class StructureClimb {
   const StructureScorer& scorer() const { return scorer_; }
   const ScoredStructures& seen() const { return seen_; }
 
-  /// Changes one number at a time while that improves the score. Delays stay within least_delay and most_delay.
+  /// Changes one number at a time while the score improves. Delays stay within least_delay and most_delay.
   void climb(Lags at, Index least_delay, Index most_delay) {
     const StructureRanges& ranges = rows_.ranges;
     const LagRange delays{std::max(least_delay, ranges.input_delay.low), std::min(most_delay, ranges.input_delay.high)};
@@ -89,8 +89,8 @@ class StructureClimb {
   }
 
   /// Starts from the best structure of one kind and removes lags one by one, each time the lag whose loss is smallest.
-  /// Candidates are the oldest state lag and the oldest and newest input lags. A climb along one number may miss the
-  /// smallest structure that is as good.
+  /// Candidates are the oldest state lag and the oldest and newest input lags. This is needed because a climb along one
+  /// number may miss the smallest structure that is as good.
   void prune(bool (*wanted)(const Lags&)) {
     if (select(seen_, wanted).empty()) return;
     Lags at = best_of(seen_, wanted);
@@ -125,7 +125,7 @@ class StructureClimb {
   }
 };
 
-/// Climbs from starts of short, middle and long memory, and from `another` if given.
+/// Climbs from starts of short, middle and long memory, and from `another` if it is given.
 void explore(StructureClimb& search, const Lags* another) {
   std::vector<Lags> starts{{1, 1, 1}, {4, 4, 1}, {8, 8, 1}};
   if (another) starts.insert(starts.begin(), *another);
@@ -142,7 +142,8 @@ void explore(StructureClimb& search, const Lags* another) {
   search.prune(&acts_at_once);
 }
 
-/// The limits of a wider search: each limit at which the best structure lies moves up, if it may; the others stay.
+/// The limits of a wider search. A limit moves up if the best structure lies at this limit and the limit may move. The
+/// other limits stay.
 Lags moved_ends(const StructureClimb& search, const SearchedLags& searched, const Lags& most) {
   const Lags at = best_with_delay_rule(search.seen(), search.scorer().part_weight());
   const bool acted_on = search.rows().inputs > 0;

@@ -18,9 +18,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index half_grid = 100;        // lags on either side of zero
+constexpr Index half_grid = 100;        // number of lags on either side of zero
 constexpr Index most_pairs = 20000;     // longer runs are thinned
-constexpr Index least_pairs = 20;       // smallest number in a window
+constexpr Index least_pairs = 20;       // smallest number of samples in a window
 constexpr double least_coverage = 0.8;  // smallest share of a window's inputs that have a state at the lag
 
 /// Averaged states at the inputs' times plus each lag of the grid.
@@ -34,7 +34,7 @@ class ShiftedStates {
   double lag(Index i) const { return static_cast<double>(i) * step_s_; }
   double step_s() const { return step_s_; }
 
-  /// The samples of [first, first + count) that have a state lag(i) later; empty if they are too few.
+  /// The samples of [first, first + count) that have a state lag(i) later; empty if there are too few.
   Eigen::Vector2<Index> covered(Index i, Index first, Index count) const {
     Index from = first, end = first + count;
     while (from < end && time_s_(from) + lag(i) < series_.first_s()) ++from;

@@ -6,33 +6,33 @@
 
 namespace modebank {
 
-/// Delays of best match along a run: one per window in which states and inputs correlate well.
+/// Delays of best match along a run, for each window in which states and inputs correlate well.
 struct LagTrack {
   Eigen::VectorXd time_s;       ///< W, middle of the window
   Eigen::VectorXd lag_s;        ///< W, lag to add to the inputs' times
   Eigen::VectorXd correlation;  ///< W, correlation at that lag
 
   Eigen::Index windows() const { return time_s.size(); }
-  double median_s() const;   ///< NaN without windows
+  double median_s() const;   ///< median lag; NaN without windows
   double least_s() const;    ///< NaN without windows
   double largest_s() const;  ///< NaN without windows
 };
 
 struct LagTrackOptions {
-  double range_s = 2.5;      ///< largest lag searched
+  double range_s = 2.5;      ///< largest lag that is searched
   double window_s = 15.0;    ///< window length; windows overlap by half, and a shorter run is one window
-  double correlation = 0.9;  ///< smallest correlation of a window that counts
+  double correlation = 0.9;  ///< smallest correlation of a usable window
 };
 
-/// Estimates the lag in each window: added to the inputs' times, it gives the best correlation of the states (averaged
-/// over one input period) with B u. B comes from the whole run at its best lag. For n > 1 the mean of squared
-/// correlations counts. The grid has steps of range_s / 100, refined by a parabola. Windows with the best lag at the
-/// end of the range are dropped. The estimate has no model of the dynamics, so it includes the time constant of the
+/// Estimates the lag in each window. Added to the inputs' times, it gives the best correlation of the states (averaged
+/// over one input period) with B u. B comes from the whole run at its best lag. For n > 1 the score is the mean of
+/// squared correlations. The grid has steps of range_s / 100, refined by a parabola. Windows whose best lag lies at the
+/// end of the range are dropped. The estimate has no model of the dynamics. So it includes the time constant of the
 /// motion, and half an input period for held inputs.
 ///
-/// It is the only estimate of a lag that varies inside a run. On BorealTC it finds the ranges in the data's own
-/// description (FLOORING 03: 0.4 to 1.9 s; tests/app/cli/check/check_real_test.cpp). One lag and a drift per run give
-/// only an average.
+/// This is the only estimate of a lag that varies inside a run. On BorealTC it finds the ranges that the description of
+/// the data states (FLOORING 03: 0.4 to 1.9 s; tests/app/cli/check/check_real_test.cpp). One lag and a drift per run
+/// give only an average.
 LagTrack track_lag(const Stream& states, const Stream& inputs, const LagTrackOptions& options = {});
 
 }  // namespace modebank

@@ -10,8 +10,8 @@ namespace modebank {
 /// (Newey & West 1987). Bandwidth by Andrews (1991), eq. 6.2 and 6.4, for first-order autoregressions.
 Eigen::MatrixXd long_run_sum(const Eigen::MatrixXd& scores);
 
-/// Variances of lag, drift and time constant at the optimum; NaN if the data do not determine one. A parameter that is
-/// held or at its bound has variance 0.
+/// Variances of lag, drift and time constant at the optimum. NaN for a parameter that the data do not determine. A
+/// parameter that is held or at its bound has variance 0.
 struct LagVariances {
   double lag_s2 = 0.0, drift = 0.0, time_constant_s2 = 0.0;
 };

@@ -10,25 +10,24 @@ namespace modebank {
 /// Structure of the linear increment model x[k+1] = x[k] + A x[k] + B u[k] (+ c) + w[k] (Salvi et al. 2025, eq. 1),
 /// extended to lags: a VARX model in increment form (Ljung 1999, section 4.2):
 ///   x[k+1] = x[k] + sum_{i=1..state_lags} A_i x[k+1-i] + sum_{j=0..input_lags-1} B_j u[k+1-input_delay-j] (+ c)
-///          + w[k].
-/// theta is the row-major vec of [A_1 A_2 ... B_0 B_1 ... (c)]: row i predicts the increment of state i. In state space
-/// the lagged samples are further states: z[k] = [x[k]; x[k-1]; ...] has dimension n = states * state_lags. The inputs
-/// that act on transition k are v[k] = [u[k+1-d]; u[k-d]; ...]. Fits, filters and simulation all use this header's
-/// equation.
+///          + w[k]. theta is the row-major vec of [A_1 A_2 ... B_0 B_1 ... (c)]: row i predicts the increment of state
+///          i. In state space the lagged samples are further states: z[k] = [x[k]; x[k-1]; ...] has dimension n =
+///          states * state_lags. The inputs that act on transition k are v[k] = [u[k+1-d]; u[k-d]; ...]. Fits, filters
+///          and simulation all use the equation of this header.
 struct LinearStructure {
   Eigen::Index states = 1;       ///< measured states
   Eigen::Index inputs = 0;       ///< input channels
   bool intercept = false;        ///< whether c is estimated
-  Eigen::Index state_lags = 1;   ///< samples x[k], x[k-1], ... that predict x[k+1]; at least 1
-  Eigen::Index input_lags = 1;   ///< input samples that act on one transition; at least 1
-  Eigen::Index input_delay = 1;  ///< samples from an input to its first effect; 0: u[k+1] acts on x[k+1]
+  Eigen::Index state_lags = 1;   ///< number of samples x[k], x[k-1], ... that predict x[k+1]; at least 1
+  Eigen::Index input_lags = 1;   ///< number of input samples that act on one transition; at least 1
+  Eigen::Index input_delay = 1;  ///< number of samples from an input to its first effect; 0: u[k+1] acts on x[k+1]
 
   Eigen::Index dimension() const { return states * state_lags; }                                   ///< n, size of z
   Eigen::Index acting_inputs() const { return inputs * input_lags; }                               ///< m, size of v
   Eigen::Index regressors() const { return dimension() + acting_inputs() + (intercept ? 1 : 0); }  ///< q
   Eigen::Index parameters() const { return states * regressors(); }                                ///< p
   bool lagged() const { return state_lags != 1 || input_lags != 1 || input_delay != 1; }
-  /// Whether samples older than the newest predict.
+  /// Whether samples older than the newest one are used in predictions.
   bool has_several_lags() const { return state_lags > 1 || input_lags > 1; }
   /// The same structure with one state lag and one input lag.
   LinearStructure with_one_lag() const { return {states, inputs, intercept, 1, 1, input_delay}; }
@@ -64,7 +63,7 @@ void propagate(const MatrixA& A, const MatrixB& B, const VectorC& c, const X& x,
 
 /// The matrices of one parameter vector in state space; A is in companion form if there are lags.
 struct LinearModel {
-  Eigen::MatrixXd A;  ///< n x n, increment form: the full form is I + A
+  Eigen::MatrixXd A;  ///< n x n, increment form; the full form is I + A
   Eigen::MatrixXd B;  ///< n x m
   Eigen::VectorXd c;  ///< n, zero without intercept
 
@@ -79,7 +78,7 @@ struct LinearModel {
   Eigen::MatrixXd full_form() const { return A + Eigen::MatrixXd::Identity(A.rows(), A.cols()); }
 };
 
-/// Converts theta to matrices with companion rows, and back; pack ignores the companion rows.
+/// Converts theta to matrices with companion rows, and back. pack ignores the companion rows.
 LinearModel unpack(const LinearStructure& structure, const Eigen::VectorXd& theta);
 Eigen::VectorXd pack(const LinearStructure& structure, const LinearModel& model);
 

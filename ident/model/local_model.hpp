@@ -18,18 +18,19 @@ struct LocalModel {
   Eigen::MatrixXd covariance;      ///< p x p, covariance of theta; NaN if rank deficient without a prior
   Eigen::VectorXd noise_variance;  ///< n, variance of the one-step residuals [state unit^2]
   double condition = 0.0;  ///< ratio of singular values of the column-scaled regressor matrix, before weights and prior
-  Index rank = 0;          ///< rank of theta: n times the regressors' rank at relative tolerance 1e-6
+  Index rank = 0;          ///< rank of theta: n times the rank of the regressors at relative tolerance 1e-6
   Eigen::VectorXd information;   ///< p, 1 - posterior variance / prior variance; NaN without a prior
   double inlier_fraction = 0.0;  ///< share of samples that keep at least half of their least-squares weight
   FitStatus status = FitStatus::failed;
-  Eigen::VectorXd r_squared;  ///< n, see ident/fit/describe.hpp; empty: not computed
+  Eigen::VectorXd r_squared;  ///< n, see ident/fit/describe.hpp; empty if it was not computed
   double aic = 0.0;           ///< nat, see ident/fit/describe.hpp
   Index transitions = 0;      ///< L, transitions that entered the fit: finite and of positive weight
   /// n, information of the data against the prior (curvature of the loss over sigma^2), in units of the information in
-  /// `covariance`. It allows taking the prior off again. NaN without a prior and for a sandwich covariance.
+  /// `covariance`. With this number the prior can be removed from the estimate. NaN without a prior and for a sandwich
+  /// covariance.
   Eigen::VectorXd weighed_information;
-  bool solved = false;  ///< whether the search reached its tolerance (`status` shows a deficient rank instead of
-                        ///< iteration_limit)
+  bool solved = false;  ///< whether the search reached its tolerance (if the rank is deficient, `status` shows that
+                        ///< instead of iteration_limit)
 };
 
 /// The global model: ordinary least squares over all training transitions.
@@ -41,12 +42,12 @@ struct GlobalModel {
   Eigen::VectorXd noise_variance() const { return residual_covariance.diagonal(); }
 };
 
-/// All windows' fits, one window per column (M columns), so that a million windows are a few arrays.
+/// All windows' fits, one window per column (M columns). Even a million windows are only a few arrays.
 struct WindowFits {
   std::string model = "linear";  ///< linear, varx, or the name of a motion model
-  /// Structure of the linear model. For a motion model: that of its linearisations x[k+1] = x + A x + B u + c.
+  /// Structure of the linear model. For a motion model, the structure of its linearisations x[k+1] = x + A x + B u + c.
   LinearStructure structure;
-  std::vector<ModelParameter> model_parameters;  ///< parameters of a motion model; empty for linear ones
+  std::vector<ModelParameter> model_parameters;  ///< parameters of a motion model; empty for linear models
   Index length = 0;                              ///< transitions per window
   Index step = 1;                                ///< transitions between window starts
   Loss loss = Loss::huber;
@@ -62,7 +63,7 @@ struct WindowFits {
   Eigen::MatrixXd r_squared;            ///< n x M
   Eigen::VectorXd aic;                  ///< M
   Eigen::VectorXi transitions;          ///< M
-  Eigen::MatrixXd weighed_information;  ///< n x M, see LocalModel; empty: unknown (older archives)
+  Eigen::MatrixXd weighed_information;  ///< n x M, see LocalModel; empty if unknown (older archives)
   Eigen::VectorXd prior_sd;             ///< p, the prior's standard deviations; empty without a prior
   GlobalModel global;
   WindowAudit audit;

@@ -9,7 +9,7 @@
 
 namespace modebank {
 
-/// Constants that a model may need beyond its estimated parameters.
+/// Constants that a model may need in addition to its estimated parameters.
 struct ModelSettings {
   Eigen::Index states = 1;
   Eigen::Index inputs = 2;
@@ -19,8 +19,8 @@ struct ModelSettings {
 /// The motion models of the folder ident/model/models, by name.
 std::vector<std::string> motion_model_names();
 
-/// Throws ConfigurationError for an unknown name (the message lists the names) and for states or inputs that the model
-/// lacks (the message lists its own).
+/// Throws ConfigurationError for an unknown name (the message lists the names), and for states or inputs that the model
+/// does not have (the message lists those of the model).
 std::shared_ptr<const MotionModel> make_motion_model(const std::string& name, const ModelSettings& settings);
 
 }  // namespace modebank

@@ -36,7 +36,7 @@ struct Centred {
   }
 };
 
-/// Correlation of a with b `lag` samples earlier, for lags 0 .. lags; NaN if one is constant.
+/// Correlation of a with b `lag` samples earlier, for lags 0 .. lags; NaN if a series is constant.
 VectorXd correlations(const Centred& a, const Centred& b, Index lags) {
   const double scale = std::sqrt(a.square_sum) * std::sqrt(b.square_sum);
   if (!(scale > 0.0)) return VectorXd::Constant(lags + 1, not_a_number);
@@ -45,7 +45,7 @@ VectorXd correlations(const Centred& a, const Centred& b, Index lags) {
   return result;
 }
 
-/// The header's P, from the autocorrelations of both series.
+/// P of the header, from the autocorrelations of both series.
 double bartlett_variance(const VectorXd& a, const VectorXd& b) {
   double P = 1.0;
   for (Index k = 1; k < a.size(); ++k)

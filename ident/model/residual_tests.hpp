@@ -9,12 +9,12 @@
 namespace modebank {
 
 struct ResidualTestOptions {
-  Index lags = 25;      ///< lags 0 .. lags; fewer for shorter series
+  Index lags = 25;      ///< lags 0 .. lags; shorter series use fewer lags
   double level = 0.99;  ///< level of the confidence bands, two-sided, for each lag separately
 };
 
-/// Tests of a model's residuals: white, and uncorrelated with the inputs. Both hold if the model explains everything. T
-/// = lags + 1; column tau holds lag tau.
+/// Tests whether a model's residuals are white, and uncorrelated with the inputs. Both hold if the model explains
+/// everything. T = lags + 1; column tau holds lag tau.
 struct ResidualTests {
   Index samples = 0;                  ///< N, samples with finite residuals
   Eigen::MatrixXd autocorrelation;    ///< n x T, correlation of each state's residual with itself tau samples earlier;
@@ -26,26 +26,27 @@ struct ResidualTests {
   Eigen::VectorXd ljung_box_p;             ///< n, p values of "no autocorrelation" over min(lags, N / 5) lags
 
   Index states() const { return autocorrelation.rows(); }
-  /// Shares of the lags outside their bands; an adequate model has 1 - level on average. The first counts
-  /// autocorrelations at lags 1 .. lags, the second cross-correlations at lags 0 .. lags. NaN if none is defined.
+  /// Shares of the lags outside their bands. For an adequate model they are 1 - level on average. The first share is
+  /// for autocorrelations at lags 1 .. lags, the second for cross-correlations at lags 0 .. lags. NaN if no correlation
+  /// is defined.
   double autocorrelation_outside() const;
   double cross_correlation_outside() const;
 };
 
-/// Portmanteau test of Ljung & Box (1978), Biometrika 65(2): p value of the hypothesis of no autocorrelation. Inputs: N
-/// samples' autocorrelation at lags 0, 1, ...; at most N / 5 lags count, each one degree of freedom. NaN without usable
-/// lags or for a constant series.
+/// Portmanteau test of Ljung & Box (1978), Biometrika 65(2): p value of the hypothesis of no autocorrelation. Inputs
+/// are the autocorrelations of N samples at lags 0, 1, ... At most N / 5 lags are used, each with one degree of
+/// freedom. NaN without usable lags or for a constant series.
 double ljung_box_p(const Eigen::VectorXd& autocorrelation, Index N);
 
-/// Tests `residual` (n x N) against `input` (m x N); column k of both is the same step. If the residual reacts to input
-/// j with an unmodelled delay of d steps, lag d shows it. Correlations are about the mean with divisor N (Box & Jenkins
-/// 1976). Samples that are not finite are left out; a constant series gives NaN.
+/// Tests `residual` (n x N) against `input` (m x N). Column k of both is the same step. If the residual reacts to input
+/// j with an unmodelled delay of d steps, the correlation at lag d is large. Correlations are about the mean with
+/// divisor N (Box & Jenkins 1976). Samples that are not finite are ignored; a constant series gives NaN.
 ///
-/// Bands with z = Phi^-1((1 + level) / 2): z / sqrt(N) for autocorrelations of white residuals (near lag 0 those of a
-/// fitted model vary less: Box & Pierce 1970). For cross-correlations of independent residuals and inputs: z sqrt(P /
-/// N) with P = sum over k of rho_residual(k) rho_input(k) (Bartlett 1955; Soderstrom & Stoica 1989, section 11.2; Ljung
-/// 1999, section 16.6). Here |k| <= lags with the weights 1 - |k| / (lags + 1), which keep P positive. Throws
-/// std::invalid_argument for sizes and options that do not fit.
+/// Bands with z = Phi^-1((1 + level) / 2): z / sqrt(N) for autocorrelations of white residuals. (Near lag 0 the
+/// autocorrelations of a fitted model vary less: Box & Pierce 1970.) For cross-correlations of independent residuals
+/// and inputs: z sqrt(P / N) with P = sum over k of rho_residual(k) rho_input(k) (Bartlett 1955; Soderstrom & Stoica
+/// 1989, section 11.2; Ljung 1999, section 16.6). Here |k| <= lags with the weights 1 - |k| / (lags + 1), which keep P
+/// positive. Throws std::invalid_argument for sizes and options that do not fit.
 ResidualTests test_residuals(const Eigen::MatrixXd& residual, const Eigen::MatrixXd& input,
                              const ResidualTestOptions& options = {});
 
@@ -54,7 +55,8 @@ ResidualTests test_residuals(const Eigen::MatrixXd& residual, const Eigen::Matri
 ResidualTests test_residuals(const Trajectory& run, const LinearStructure& structure, const Eigen::VectorXd& theta,
                              const ResidualTestOptions& options = {});
 
-/// Mean shares outside the bands over the tests of several runs, where defined; NaN if none is.
+/// Mean shares outside the bands over the tests of several runs. Undefined shares are ignored; NaN if all are
+/// undefined.
 struct ResidualSummary {
   double autocorrelation_outside = 0.0;
   double cross_correlation_outside = 0.0;

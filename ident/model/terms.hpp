@@ -5,8 +5,8 @@
 
 #include "modebank/base/names.hpp"
 
-/// Terms make a motion nonlinear: functions of the regressors that are added to the linear ones. Each has a coefficient
-/// per state, so the model stays linear in its parameters.
+/// Terms make a motion nonlinear. They are functions of the regressors and are added to the linear ones. Each has a
+/// coefficient per state, so the model stays linear in its parameters.
 namespace modebank {
 
 /// product: of up to three variables. magnitude: |z|. hinge: max(0, z - knot).
@@ -19,15 +19,15 @@ struct EnumNames<TermKind> {
 
 struct Term {
   TermKind kind = TermKind::product;
-  std::vector<Eigen::Index> variables;  ///< one to three for a product (repeats allowed); else one
+  std::vector<Eigen::Index> variables;  ///< one to three variables for a product (repeats allowed); else one variable
   double knot = 0.0;                    ///< knot of a hinge, in units of its variable
 
   bool operator==(const Term&) const = default;
 };
 
-/// V variables and T terms of them. Variable i is z_i = clip(direction_i' phi, low_i, high_i) / unit_i. phi are the q
-/// regressors of LinearStructure. A direction is a single regressor or a direction of the linear fit. The limits are
-/// the training range, because products grow fast beyond it.
+/// V variables and T terms of these variables. Variable i is z_i = clip(direction_i' phi, low_i, high_i) / unit_i. phi
+/// are the q regressors of LinearStructure. A direction is a single regressor or a direction of the linear fit. The
+/// limits are the training range, because products grow fast beyond it.
 struct MotionTerms {
   Eigen::MatrixXd direction = {};  ///< q x V
   Eigen::VectorXd low, high = {};  ///< V
@@ -50,8 +50,11 @@ class TermValues {
  public:
   void evaluate(const MotionTerms& terms, const Eigen::Ref<const Eigen::VectorXd>& regressors);
   const Eigen::VectorXd& value() const { return value_; }  ///< T
-  const Eigen::MatrixXd& slope() const { return slope_; }  ///< T x q, derivatives; 0 for a clipped variable
-  bool is_clipped() const { return clipped_; }             ///< whether some variable is clipped
+  const Eigen::MatrixXd& slope() const {
+    return slope_;
+  }                                             ///< T x q, derivatives with respect to phi; 0 for a clipped
+                                                ///< variable
+  bool is_clipped() const { return clipped_; }  ///< whether some variable is clipped
 
  private:
   Eigen::VectorXd variable_, per_unit_, value_;
@@ -62,7 +65,7 @@ class TermValues {
 /// Terms of many rows of regressors (N x q), N x T.
 Eigen::MatrixXd term_columns(const MotionTerms& terms, const Eigen::Ref<const Eigen::MatrixXd>& regressors);
 
-/// Share of the rows outside the range of some variable; rows that are not finite do not count.
+/// Share of the rows outside the range of some variable. Ignores rows that are not finite.
 double share_outside(const MotionTerms& terms, const Eigen::Ref<const Eigen::MatrixXd>& regressors);
 
 }  // namespace modebank

@@ -47,7 +47,7 @@ void fill_rows(const Trajectory& run, Index start, Index count, const LinearStru
   }
 }
 
-/// Weights of transitions start .. start + count - 1: each has the weight of its last sample.
+/// Weights of transitions start .. start + count - 1. A transition has the weight of its last sample.
 Eigen::VectorXd transition_weights(const Trajectory& run, Index start, Index count) {
   if (run.weight.size() == 0) return {};
   if (run.weight.size() != run.samples() || !(run.weight.array() >= 0.0).all() || !run.weight.allFinite())
@@ -75,7 +75,7 @@ double condition_of(const Eigen::VectorXd& sigma) {
   return q > 0 && sigma(q - 1) > 0.0 ? sigma(0) / sigma(q - 1) : std::numeric_limits<double>::infinity();
 }
 
-/// The common case of full rank. No singular vectors are needed: any orthonormal basis of all directions serves, and
+/// Handles the common case of full rank without singular vectors. Any orthonormal basis of all directions is valid, and
 /// Householder's is much cheaper. Empty if the rank is deficient.
 std::optional<Decomposition> decompose_full_rank(const Eigen::MatrixXd& scaled, const Eigen::VectorXd& scales,
                                                  double tolerance) {

@@ -14,7 +14,7 @@ namespace modebank {
 struct Transitions {
   Eigen::MatrixXd regressors;   ///< N x q, row k is phi_k' = [z[k]' v[k]' (1)]
   Eigen::MatrixXd increments;   ///< N x n, row k is (x[k+1] - x[k])'
-  Eigen::VectorXd weight = {};  ///< N sample weights, or empty: all one
+  Eigen::VectorXd weight = {};  ///< N sample weights; empty if all are one
 
   Index count() const { return regressors.rows(); }
   bool finite() const { return regressors.allFinite() && increments.allFinite(); }
@@ -23,29 +23,29 @@ struct Transitions {
 /// The indices of the rows that finite_rows keeps.
 std::vector<Eigen::Index> usable_rows(const Transitions& transitions);
 
-/// Stacks transitions start .. start + count - 1 of a run, without applying weights. NaN where a lagged sample lies
-/// before the run. Throws std::invalid_argument unless weights are one per sample, finite and nonnegative.
+/// Stacks transitions start .. start + count - 1 of a run, without applying weights. Regressors before the start of the
+/// run are NaN. Throws std::invalid_argument unless weights are one per sample, finite and nonnegative.
 Transitions stack_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure);
-/// stack_transitions into the first `count` rows of an object that is large enough; does not allocate.
+/// Like stack_transitions, into the first `count` rows of an object that is large enough. Does not allocate.
 void fill_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure,
                       Transitions& transitions);
 /// finite_rows of all transitions of the training runs.
 Transitions stack_training(const Recording& recording, const LinearStructure& structure);
-/// The rows with finite entries and nonzero weight. Their weights are divided by their mean, so that L transitions
-/// count as L, and applied to the rows.
+/// The rows with finite entries and nonzero weight. Their weights are scaled to mean one, so that the sum of the
+/// weights is the number L of rows. Each row is then multiplied by the square root of its weight.
 Transitions finite_rows(const Transitions& transitions);
 /// Reverts the weighting of rows by finite_rows.
 Transitions unweighted(const Transitions& transitions);
 
-/// Visits the same transitions in order, in blocks of bounded size; weighted ones come in one block.
+/// Visits the same transitions in order, in blocks of bounded size. Weighted transitions come in one block.
 void for_each_training_block(const Recording& recording, const LinearStructure& structure,
                              const std::function<void(const Transitions&)>& body);
 
 /// Relative tolerance of the rank of column-scaled regressors (method: section 2).
 inline constexpr double excitation_tolerance = 1e-6;
 
-/// X = U basis^+. The rank follows from the singular values of X with columns scaled to unit norm. U spans the excited
-/// directions only. Coefficients beta = basis z have the smallest norm of all with X beta = U z.
+/// X = U basis^+. The rank follows from the singular values of X with columns scaled to unit norm. U spans only the
+/// excited directions. Of all coefficients with X beta = U z, beta = basis z has the smallest norm.
 struct Decomposition {
   Eigen::MatrixXd U;       ///< N x r, orthonormal columns
   Eigen::MatrixXd basis;   ///< q x r, X basis = U

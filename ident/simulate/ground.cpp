@@ -8,7 +8,7 @@ namespace modebank {
 
 namespace {
 
-/// Tile numbers beyond 2^31 wrap around, which is thousands of kilometres away.
+/// Tile numbers beyond 2^31 wrap around; such tiles are thousands of kilometres away.
 std::uint64_t tile_number(double x, double y) {
   const auto column = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x)));
   const auto row = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(y)));

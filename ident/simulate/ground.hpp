@@ -15,11 +15,11 @@ struct GroundKind {
   double resistance = 0.0;  ///< motion resistance over normal load, at least 0
 };
 
-/// An endless plane of square tiles. Each tile's kind is drawn independently, all kinds equally likely. It depends on
-/// the seed and the tile alone.
+/// An endless plane of square tiles. The kind of each tile is drawn independently; all kinds are equally likely. It
+/// depends on the seed and the tile alone.
 class Ground {
  public:
-  /// Requires at least one kind. tile_m = 0: kind `everywhere` on the whole plane.
+  /// Requires at least one kind. With tile_m = 0 the whole plane has kind `everywhere`.
   Ground(std::vector<GroundKind> kinds, double tile_m, int everywhere, std::uint64_t seed)
       : kinds_(std::move(kinds)), tile_m_(tile_m), everywhere_(everywhere), seed_(seed) {}
 

@@ -56,7 +56,7 @@ void check(const SimulationOptions& o) {
   require_fraction_setting(o.outlier_fraction, "outlier_fraction");
 }
 
-/// Row-stochastic matrix of the mode chain; unused if every run keeps its mode.
+/// Matrix of the mode chain, with rows that sum to one. Unused if every run keeps its mode.
 Eigen::MatrixXd transition_of(const SimulationOptions& o) {
   if (o.transition.size() > 0) return o.transition;
   const Index K = static_cast<Index>(o.modes.size());
@@ -67,7 +67,7 @@ Eigen::MatrixXd transition_of(const SimulationOptions& o) {
   return T;
 }
 
-/// pi with pi' T = pi'; the least-norm one if there are several.
+/// pi with pi' T = pi'; if there are several, the one of least norm.
 Eigen::VectorXd stationary_distribution(const Eigen::MatrixXd& T) {
   const Index K = T.rows();
   Eigen::MatrixXd equations(K + 1, K);

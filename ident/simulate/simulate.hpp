@@ -10,8 +10,8 @@
 namespace modebank {
 
 /// How inputs evolve. `white`: new values at every sample. `hold`: new values every `hold_samples`. `drive`: commands
-/// like those of a skid-steer robot's driver, with random steps and ramps, standstill and equal wheels; their length is
-/// geometric with mean `hold_samples`. Levels are uniform in [-input_amplitude, input_amplitude].
+/// like those of a skid-steer robot's driver, with random steps and ramps, standstill and equal wheels. The length of a
+/// command is geometric with mean `hold_samples`. Levels are uniform in [-input_amplitude, input_amplitude].
 enum class InputLaw { white, hold, drive };
 
 template <>
@@ -24,7 +24,7 @@ struct CommandOptions {
   InputLaw input_law = InputLaw::drive;
   Index hold_samples = 10;           ///< length of a command (law `drive`: mean length)
   double input_amplitude = 0.5;      ///< commands are drawn from [-amplitude, amplitude] [input unit]
-  double input_quantum = 0.0;        ///< applied inputs are rounded to multiples of this; 0: none
+  double input_quantum = 0.0;        ///< applied inputs are rounded to multiples of this; 0 means no rounding
   double standstill_fraction = 0.1;  ///< share of commands with all inputs zero (law `drive`)
   double equal_fraction = 0.3;       ///< share of commands with all inputs equal (law `drive`)
   Index samples = 300;               ///< per run
@@ -35,12 +35,12 @@ struct CommandOptions {
 /// chain.
 struct SimulationOptions : CommandOptions {
   std::vector<Eigen::VectorXd> modes;  ///< theta per mode, p entries each
-  std::vector<double> process_sd;      ///< per mode or one for all, sqrt of the diagonal of Q [state unit]
-  double measurement_sd = 0.0;         ///< sqrt of the diagonal of R [state unit]
-  Eigen::MatrixXd transition;          ///< K x K, row = from; empty: from dwell_samples, with equal probabilities off
-                                       ///< the diagonal
-  double dwell_samples = 0.0;     ///< mean samples in a mode, at least 1. 0: run i stays in mode (i / 2) mod K, so that
-                                  ///< even (training) and odd (held-out) runs contain every mode
+  std::vector<double> process_sd;  ///< per mode, or one vector for all modes; sqrt of the diagonal of Q [state unit]
+  double measurement_sd = 0.0;     ///< sqrt of the diagonal of R [state unit]
+  Eigen::MatrixXd transition;      ///< K x K, row = from; if empty, it is derived from dwell_samples, with equal
+                                   ///< probabilities off the diagonal
+  double dwell_samples = 0.0;     ///< mean number of samples in a mode, at least 1. With 0, run i stays in mode (i / 2)
+                                  ///< mod K, so that even (training) and odd (held-out) runs contain every mode
   double outlier_fraction = 0.0;  ///< share of measured samples with an outlier
   double outlier_sd = 0.0;        ///< standard deviation of an outlier [state unit]
   Index runs = 12;
@@ -55,10 +55,11 @@ struct SimulatedRun {
   Eigen::VectorXi mode;  ///< N, the mode that drives transition k -> k+1
 };
 
-/// Simulates runs "00", "01", ...; even ones are training runs, odd ones are held out. A run starts at state zero, in a
-/// mode drawn from the chain's stationary distribution. The quantised inputs drive the true system; outliers are added
-/// to the measured sample. Run i depends on options, seed and i alone. Throws ConfigurationError if sizes disagree, a
-/// value is out of range, the matrix is not row-stochastic, or an unstable mode makes the state overflow.
+/// Simulates runs "00", "01", ... Even ones are training runs, odd ones are held-out runs. A run starts at state zero,
+/// in a mode drawn from the chain's stationary distribution. The quantised inputs drive the true system. Outliers are
+/// added to the measured sample. Run i depends on options, seed and i alone. Throws ConfigurationError if sizes
+/// disagree, a value is out of range, the rows of the matrix do not sum to one, or an unstable mode makes the state
+/// overflow.
 std::vector<SimulatedRun> simulate(const SimulationOptions& options, std::uint64_t seed);
 
 }  // namespace modebank

@@ -45,7 +45,8 @@ std::vector<GroundKind> kinds_of(const VehicleOptions& o) {
   return kinds;
 }
 
-/// Checks the step in advance: friction bounds even an unstable integration, so the result would not reveal it.
+/// Checks the step in advance. Friction bounds even an unstable integration, so the result would not show the
+/// instability.
 void check_step(const VehicleOptions& o) {
   require_nonnegative_setting(o.step_s, "step");
   const double largest_s = Vehicle::stability_margin * Vehicle::default_step_s(o.vehicle, kinds_of(o));
@@ -92,8 +93,8 @@ void check(const VehicleOptions& o) {
   check_commands(o.commands);
 }
 
-/// Splits drawn wheel speeds into a forward and a turning part. Recombines them with the forward part shifted and the
-/// turn scaled, in whole quanta. Both wheels are exactly zero only at standstill.
+/// Splits the drawn wheel speeds into a forward and a turning part. Recombines them with the forward part shifted and
+/// the turn scaled, in whole quanta. Both wheels are exactly zero only at standstill.
 Eigen::MatrixXd draw_commands(const VehicleOptions& o, std::mt19937_64& generator) {
   CommandOptions exact = o.commands;
   exact.input_quantum = 0.0;

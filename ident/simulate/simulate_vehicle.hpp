@@ -15,9 +15,8 @@ struct SensorOptions {
   double gyro_noise_density = 5e-4;  ///< [rad/s/sqrt(Hz)]; a sample's standard deviation is density * sqrt(rate)
   double gyro_bias = 0.0;            ///< bias at the start of a run [rad/s]
   double gyro_bias_walk = 0.0;       ///< random walk of the bias [rad/s/sqrt(s)]
-  double speed_noise_sd = 0.02;      ///< noise of a measured forward or sideways speed, as from satellites or lidar
-                                     ///< [m/s]
-  double wheel_quantum_m_s = 0.005;  ///< quantum of the wheel speeds; 0: exact
+  double speed_noise_sd = 0.02;  ///< noise of a measured forward or sideways speed, as from satellites or lidar [m/s]
+  double wheel_quantum_m_s = 0.005;  ///< quantum of the wheel speeds; 0 means exact speeds
   double lag_s = 0.0;                ///< error of the inputs' stamps: true time = stamp + lag + drift * stamp
   double drift = 0.0;                ///< [s/s], above -1
 };
@@ -26,13 +25,13 @@ struct SensorOptions {
 struct VehicleSimulationOptions {
   VehicleParameters vehicle;
   std::vector<double> friction{0.06, 0.6};  ///< friction coefficient of each kind of ground, above 0
-  std::vector<double> shear_m{0.005};       ///< shear modulus of each kind, or one for all
-  std::vector<double> resistance{0.02};     ///< motion resistance of each kind, or one for all
-  double patch_m = 4.0;  ///< side of a tile; 0: run i stays on kind (i / 2) mod K, so that training and held-out runs
-                         ///< contain every kind
+  std::vector<double> shear_m{0.005};       ///< shear modulus of each kind, or one value for all
+  std::vector<double> resistance{0.02};     ///< motion resistance of each kind, or one value for all
+  double patch_m = 4.0;  ///< side of a tile; with 0, run i stays on kind (i / 2) mod K, so that training and held-out
+                         ///< runs contain every kind
   double forward_speed_m_s = 0.2;  ///< added to every command except standstill
   double turn_scale = 1.0;         ///< factor on the turning part (difference of the wheels) of the commands
-  double step_s = 0.0;             ///< integration step; 0: Vehicle::default_step_s
+  double step_s = 0.0;             ///< integration step; 0 means Vehicle::default_step_s
   SensorOptions sensors;
   CommandOptions commands;  ///< two inputs: left and right set-points [m/s]
   double outlier_fraction = 0.0;
@@ -44,8 +43,8 @@ struct VehicleSimulationOptions {
   double state_rate_hz = 65.0;
 };
 
-/// One simulated run: N samples of the wheels, M of gyro and truth. The M samples cover one gyro period more than the
-/// wheels.
+/// One simulated run: N samples of the wheels, and M samples of gyro and truth. The M samples last one gyro period
+/// longer than those of the wheels.
 struct VehicleRun {
   std::string run;
   Role role = Role::train;
@@ -61,9 +60,9 @@ struct VehicleRun {
   Eigen::VectorXi kind;           ///< M, ground under the robot's centre: the true mode
 };
 
-/// Simulates runs "00", "01", ...; even ones are training runs, odd ones are held out. A run starts at rest in the
-/// middle of a tile. Run i depends on options, seed and i alone, not on the number of threads. Throws
-/// ConfigurationError for values out of range.
+/// Simulates runs "00", "01", ... Even ones are training runs, odd ones are held-out runs. A run starts at rest in the
+/// middle of a tile. Run i depends on options, seed and i alone, for any number of threads. Throws ConfigurationError
+/// for values out of range.
 std::vector<VehicleRun> simulate_vehicle(const VehicleSimulationOptions& options, std::uint64_t seed);
 
 }  // namespace modebank

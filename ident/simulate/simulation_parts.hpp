@@ -8,14 +8,14 @@
 
 namespace modebank {
 
-/// Parts shared by the simulated systems. The checks throw ConfigurationError that names the value.
+/// Parts shared by the simulated systems. The checks throw ConfigurationError with the name of the value.
 void require_setting(bool ok, const std::string& message);
 void require_nonnegative_setting(double value, const std::string& name);
 void require_fraction_setting(double value, const std::string& name);
 void check_commands(const CommandOptions& options);
 void check_runs(Index runs, double dt_s);
 
-/// "00", "01", ...: as many digits as the last run needs, at least two, so that byte order is run order.
+/// "00", "01", ... All have the number of digits of the last run, at least two, so that byte order is run order.
 std::string simulated_run_name(Index run, Index runs);
 
 /// `size` values of N(0, sd^2).

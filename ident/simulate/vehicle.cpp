@@ -103,7 +103,7 @@ void Vehicle::advance(VehicleState& state, const WheelCommand& command, double d
 }
 
 double Vehicle::default_step_s(const VehicleParameters& p, const std::vector<GroundKind>& kinds) {
-  double stiffest_N_s_m = 0.0;  // of all four tyres without slip, wheels at rest
+  double stiffest_N_s_m = 0.0;  // sum over the four tyres without slip, with wheels at rest
   for (const GroundKind& kind : kinds) {
     const double shear = kind.friction * 0.5 * p.contact_m / kind.shear_m, resistance = kind.resistance;
     stiffest_N_s_m = std::max(stiffest_N_s_m, p.mass_kg * gravity_m_s2 * (shear + resistance) / p.slip_speed_m_s);

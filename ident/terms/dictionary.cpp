@@ -50,13 +50,13 @@ std::vector<Index> leading_regressors(const LinearStructure& s, const MatrixXd& 
   return taken;
 }
 
-/// All directions, grouped by kind, so that a limit keeps the most important ones of each state.
+/// All directions, grouped by kind. A limit on their number then keeps the most important ones of each state.
 std::vector<VectorXd> directions(const LinearStructure& s, const MatrixXd& fit) {
   std::vector<VectorXd> all;
   const Index n = s.dimension(), m = s.inputs;
   const auto add = [&](const VectorXd& direction) {
     const Index entries = (direction.array() != 0.0).count();
-    // a direction of one entry is a regressor
+    // a direction with a single entry is a regressor
     if (entries > 1 && std::ssize(all) < most_directions) all.push_back(direction);
   };
   const auto part = [&](Index state, Index first, Index count) {

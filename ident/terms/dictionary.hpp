@@ -10,9 +10,9 @@ namespace modebank {
 /// The candidate terms: products up to degree three, magnitudes and hinges. Their variables are at most eight
 /// regressors and four directions of the linear fit; hinges have 13 quantiles as knots.
 ///
-/// The regressors are those that, one after another, explain most of the increments. A state's increment has these
-/// directions: the part from inputs of all lags, the whole increment, and the parts from each of the newest two input
-/// samples. Directions matter because a saturation acts on b'u, not on a single input.
+/// Regressors are chosen one after another; each explains the most of the remaining increments. A state's increment has
+/// these directions: the part from inputs of all lags, the whole increment, and the parts from each of the newest two
+/// input samples. Directions matter because a saturation acts on b'u instead of a single input.
 ///
 /// `regressors`: N x q; `fit`: q x n, the linear fit; `targets`: N x n, to be explained.
 MotionTerms make_dictionary(const LinearStructure& structure, const Eigen::MatrixXd& regressors,

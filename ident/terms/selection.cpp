@@ -21,15 +21,16 @@ using Eigen::VectorXd;
 
 constexpr Index folds = 4;
 constexpr Index most_terms = 16;
-constexpr double clipped_errors = 6.0;  // in robust standard deviations
-// of the errors' standard deviation, because more than half of the errors may be zero
+constexpr double clipped_errors = 6.0;  // limit in robust standard deviations
+// share of the errors' standard deviation, because more than half of the errors may be zero
 constexpr double least_share = 0.02;
 constexpr double ridge = 1e-6;        // share of the number of rows; columns have unit root mean square
 constexpr double new_share = 1e-3;    // smallest part of a column that is independent of the previous columns
 constexpr double least_gain = 0.002;  // smallest gain per further term [nats/sample]
-constexpr double exact_share = 1e-9;  // of the increments; a smaller error counts as an exact prediction
+constexpr double exact_share = 1e-9;  // share of the increments; a smaller error counts as an exact prediction
 constexpr double least_scale = 1e-150;
-constexpr Index patience = 3;  // the search ends after this many steps in a row with less than a quarter of least_gain
+constexpr Index patience = 3;  // the search ends after this number of steps in a row that gain less than a quarter of
+                               // least_gain
 
 VectorXd robust_deviations(const MatrixXd& errors, const MatrixXd& increments) {
   VectorXd deviation(errors.cols());
@@ -41,7 +42,7 @@ VectorXd robust_deviations(const MatrixXd& errors, const MatrixXd& increments) {
   return deviation;
 }
 
-/// Left-out regression fold by fold, from Gram matrices alone.
+/// Cross-validated regression, fold by fold, from Gram matrices alone.
 class FoldedRegression {
  public:
   FoldedRegression(const MatrixXd& columns, const MatrixXd& targets, const std::vector<Index>& fold)
@@ -77,8 +78,8 @@ class FoldedRegression {
     return result;
   }
 
-  /// Decrease of the squared errors of left-out rows with each further column; minus infinity for columns that depend
-  /// linearly on those taken.
+  /// Decrease of the squared errors of left-out rows by each further column. Minus infinity for columns that depend
+  /// linearly on those already taken.
   VectorXd gains(const std::vector<Index>& taken) const {
     const Index C = gram_.cols();
     VectorXd gain = VectorXd::Zero(C);
@@ -137,7 +138,7 @@ bool stands_still(const std::vector<VectorXd>& path) {
   return lately < before + 0.25 * least_gain;
 }
 
-/// The first step of the path whose loss against the best is negligible or within one standard error.
+/// The first step of the path whose loss against the best step is negligible or within one standard error.
 std::size_t fewest_as_good(const std::vector<VectorXd>& path, const TermRows& rows) {
   const auto best = std::max_element(path.begin(), path.end(),
                                      [](const VectorXd& a, const VectorXd& b) { return a.mean() < b.mean(); });
@@ -188,7 +189,7 @@ SelectedTerms select_terms(const TermRows& rows, const LinearStructure& structur
     targets.col(i) = (X * fit.col(i) + errors.col(i).cwiseMax(-most).cwiseMin(most)) / deviation(i);
   }
   const MotionTerms dictionary = make_dictionary(structure, X, fit, targets);
-  // Any basis of the linear regressors serves. Lags of a smooth signal are nearly equal columns, so an orthonormal
+  // Any basis of the linear regressors is valid. Lags of a smooth signal are nearly equal columns, so an orthonormal
   // basis is used.
   const MatrixXd basis = decompose(X, excitation_tolerance).U;
   MatrixXd columns(X.rows(), basis.cols() + dictionary.count());

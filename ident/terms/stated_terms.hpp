@@ -8,25 +8,25 @@
 
 namespace modebank {
 
-/// A term as written by the user, with names of regressors as variables.
+/// A term in the user's form, with names of regressors as variables.
 struct StatedTerm {
   TermKind kind = TermKind::product;
-  std::vector<std::string> names;  ///< one to three for a product (repeats allowed); else one
+  std::vector<std::string> names;  ///< one to three variables for a product (repeats allowed); else one variable
   double knot = 0.0;               ///< knot of a hinge, in the variable's unit
 
   bool operator==(const StatedTerm&) const = default;
 };
 
-/// Whether window.terms lists terms, that is, differs from auto and none.
+/// Whether window.terms lists terms. auto and none are not lists.
 inline bool lists_terms(const std::string& choice) { return choice != "auto" && choice != "none"; }
 
-/// Parses "vx * wz, |vx|, max(0, wz[k-1] - 0.3)", the format of printed equations. Throws std::invalid_argument that
-/// quotes the unreadable part.
+/// Parses "vx * wz, |vx|, max(0, wz[k-1] - 0.3)", the format of printed equations. Throws std::invalid_argument with
+/// the unreadable part.
 std::vector<StatedTerm> read_terms(const std::string& text);
 
-/// Converts the terms to terms of regressors (N x q) with these q names. A name without a sample means the newest one.
-/// Ranges are those of the rows, units their root mean squares. Throws DataError for an unknown name; the message lists
-/// the names.
+/// Converts the terms to terms of regressors (N x q) with these q names. A name without a sample means the newest
+/// sample. Ranges are those of the rows; units are the root mean squares of the rows. Throws DataError for an unknown
+/// name; the message lists the names.
 MotionTerms stated_terms(const std::vector<StatedTerm>& stated, const std::vector<std::string>& names,
                          const Eigen::MatrixXd& regressors);
 

@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index rows_together = 500;  // rows that are kept or dropped together
+constexpr Index rows_together = 500;  // number of rows that are kept or dropped together
 
 struct RunRegression {
   MatrixXd X, Y;
@@ -43,7 +43,7 @@ RunRegression rows_of(const Trajectory& run, const LinearStructure& widest, Inde
   return rows;
 }
 
-/// Cuts parts into stretches if there are few.
+/// Cuts parts into stretches if there are few parts.
 void cut_few_parts(TermRows& rows) {
   StretchParts cut = stretch_parts(std::move(rows.part), rows.parts);
   rows.part = std::move(cut.part);

@@ -8,8 +8,8 @@
 
 namespace modebank {
 
-/// Transitions of the training runs for the search for terms. They are the same for all structures up to the widest:
-/// all regressors are measured even with the most lags.
+/// Transitions of the training runs for the search for terms. All structures up to the widest use the same transitions.
+/// Even with the most lags, their regressors were measured.
 struct TermRows {
   LinearStructure widest;
   Eigen::MatrixXd X;               ///< N x q regressors of the widest structure
@@ -20,12 +20,12 @@ struct TermRows {
   Eigen::Index count() const { return X.rows(); }
   /// Regressors of a structure with the same delay and at most as many lags.
   Eigen::MatrixXd regressors(const LinearStructure& structure) const;
-  /// The rows of some parts, with parts renumbered. Fewer than six parts are cut into stretches.
+  /// The rows of some parts, with new part numbers. Fewer than six parts are cut into stretches.
   TermRows some(const std::vector<bool>& of_part) const;
 };
 
-/// Collects the rows. Six or more runs are parts themselves; fewer runs are cut into at least ten stretches. Long
-/// recordings are thinned to evenly spaced stretches of about `most_rows` rows. Sample weights are ignored.
+/// Collects the rows. With six or more runs, the parts are the runs. Fewer runs are cut into at least ten stretches.
+/// Long recordings are thinned to evenly spaced stretches of about `most_rows` rows. Sample weights are ignored.
 TermRows gather_term_rows(const Recording& recording, const LinearStructure& widest, Eigen::Index most_rows);
 
 /// Mean difference of log densities over rows, and its standard error over parts.

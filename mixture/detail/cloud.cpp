@@ -12,7 +12,8 @@ using Eigen::Index;
 
 namespace {
 
-/// Cap on the standard deviation of an error (scaled units); a point with a larger error carries no information.
+/// Upper limit of the standard deviation of an error (scaled units). A point with a larger error carries no
+/// information.
 constexpr double largest_error = 1e15;
 
 }  // namespace

@@ -16,7 +16,7 @@
 
 namespace modebank {
 
-/// Doubles aligned to 64 bytes, the widest vector. Initialised to zero unless made by `unset`.
+/// Doubles aligned to 64 bytes, the widest vector. Initialised to zero unless created by `unset`.
 class AlignedBuffer {
  public:
   AlignedBuffer() = default;
@@ -58,8 +58,8 @@ using BlockColumns = Eigen::Array<double, block_size, Eigen::Dynamic>;
 
 /// Weighted points in scaled units, in blocks of fixed length. Within a block each feature is one column (structure of
 /// arrays), so that every loop over points is vectorised. The last block is padded with points of weight zero. Small
-/// clouds are copied. Large ones are laid out block by block on each reading, with the same bits, and need no second
-/// copy in memory. Refers to the points that it is made of, except when made for starts.
+/// clouds are copied. Large clouds are laid out block by block on each reading, with the same bits, and need no second
+/// copy in memory. The object holds a reference to its original points, except for the copies made by for_starts.
 class PointBlocks {
  public:
   /// Clouds of more than `most_copied` bytes are not copied.
@@ -77,9 +77,9 @@ class PointBlocks {
   AlignedBuffer stage() const { return AlignedBuffer::unset(copied_ ? 0 : block_doubles()); }
   em::Block block(Eigen::Index block, AlignedBuffer& stage) const;
 
-  /// A copy of at most `most` points for choosing a start: all, or evenly spread ones beginning at a random one.
-  /// Weights fall with the error variances: w / (1 + mean of S_ff over the features). Such a copy refers to no points,
-  /// so calling this on it throws std::logic_error.
+  /// A copy of at most `most` points from which a start is chosen. It contains all points, or evenly spread ones that
+  /// begin at a random point. Weights fall with the error variances: w / (1 + mean of S_ff over the features). Such a
+  /// copy has no reference to the original points. So calling this function on a copy throws std::logic_error.
   PointBlocks for_starts(Eigen::Index most, std::mt19937_64& generator) const;
 
   // For copied clouds only.
@@ -96,7 +96,7 @@ class PointBlocks {
   const double* data(Eigen::Index block) const;
   void lay_out(Eigen::Index block, double* to) const;
 
-  std::optional<PointSet> set_;  ///< empty once the original points are gone
+  std::optional<PointSet> set_;  ///< empty once the original points have been released
   FeatureScale scale_;
   Eigen::Index features_;
   Eigen::Index count_;
@@ -106,11 +106,11 @@ class PointBlocks {
   double total_weight_ = 0.0;
 };
 
-/// The cloud in the units it is fitted in.
+/// The cloud in the units of the fit.
 struct ScaledCloud {
   FeatureScale scale;
   PointBlocks points;
-  UniformNoise noise;  ///< physical units; absent unless requested
+  UniformNoise noise;  ///< mixture in physical units; absent unless requested
 
   ScaledCloud(const PointSet& set, const EmOptions& options)
       : scale(FeatureScale::of(set, options.covariance_floor)), points(set, scale) {
@@ -120,7 +120,7 @@ struct ScaledCloud {
     noise.weight = noise_start;
   }
 
-  /// Sets the noise component of a mixture in scaled units to the requested one, or to none.
+  /// Sets the noise component of a mixture in scaled units to the requested component, or to none.
   void set_noise(GaussianMixture& scaled) const {
     const double kept = scaled.noise.weight > 0.0 ? scaled.noise.weight : noise.weight;
     GaussianMixture box = scaled;

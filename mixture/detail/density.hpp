@@ -22,7 +22,7 @@ class FactoredMixture {
   bool has_noise() const { return noise_; }
   double log_noise() const { return log_noise_; }  ///< log of weight times density of the noise component
   /// Converts a component's sums in place into sums of r, r d and r d d' (em::Kernels). Kernels with errors sum in
-  /// units of W, others about the origin for central components.
+  /// units of W. For central components, other kernels sum about the origin.
   void to_plain_sums(Eigen::Index component, Eigen::Ref<Eigen::VectorXd> sums) const;
 
  private:

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double rounding_share = 1e-13;
 constexpr double smallest_scale = 1e-150;
-/// In standard deviations of the bulk. At most 2.5 % of the points cannot dominate the standard deviation if they are
-/// nearer.
+/// In standard deviations of the bulk. If at most 2.5 % of the points lie outside but within this distance, they cannot
+/// dominate the standard deviation.
 constexpr double far_out = 6.0;
 /// Number of terms per partial sum; sums of partial sums lose less to rounding.
 constexpr Index chunk = 4096;
@@ -125,15 +125,15 @@ Bulk bulk_of(const PointSet& set, Index feature) {
   return {quantile(0.5), (quantile(0.975) - quantile(0.025)) / 3.92};
 }
 
-/// The smallest allowed unit. A component that holds all points has variances between the floor and the feature's
-/// variance; their ratio must fit double precision.
+/// The smallest allowed unit. The variances of a component lie between the floor and the feature's variance (if it
+/// holds all points). Their ratio must fit double precision.
 double smallest_unit(double sd, double floor) {
   constexpr double most_ratio = 1e13;
   return sd / std::sqrt(most_ratio * floor);
 }
 
-/// Takes the bulk's unit if a few far outliers determine the standard deviation. With that standard deviation as the
-/// unit, all other points would lie within the floor of each other.
+/// Takes the bulk's unit if a few far outliers determine the standard deviation. If the unit were that standard
+/// deviation, all other points would lie within the floor of each other.
 void resist_outliers(const PointSet& set, Index feature, double floor, FeatureScale& scale) {
   constexpr double dominated = 20.0;
   const Bulk bulk = bulk_of(set, feature);

@@ -6,27 +6,28 @@
 
 namespace modebank {
 
-/// Affine map from physical units to the units of the fit. Each feature has zero mean; its unit is the typical error of
+/// Affine map from physical units to the units of the fit. Each feature has zero mean. Its unit is the typical error of
 /// its points, or their standard deviation if the error is unknown. Outliers may raise that standard deviation above 20
-/// times the bulk's (from the quantiles at 2.5 and 97.5 %). The feature then has zero median and the bulk's unit, as
-/// far as double precision allows.
+/// times that of the bulk (from the quantiles at 2.5 and 97.5 %). The feature then has zero median and the bulk's unit,
+/// within the limits of double precision.
 struct FeatureScale {
   Eigen::VectorXd center;   ///< F, weighted mean [feature unit]
   Eigen::VectorXd scale;    ///< F [feature unit]; 1 for a constant feature of unknown error
   Eigen::VectorXd inverse;  ///< F, 1 / scale; 0 for a constant feature, whose scaled values are exactly zero
 
   /// The map for these points. A feature is constant if its standard deviation is lost in rounding (1e-13 of its
-  /// magnitude) or below 1e-150, where a covariance underflows. Points of weight zero do not count. `floor` is the
-  /// smallest variance of a component in scaled units.
+  /// magnitude) or below 1e-150, where a covariance underflows. Ignores points of weight zero. `floor` is the smallest
+  /// variance of a component in scaled units.
   static FeatureScale of(const PointSet& points, double floor);
   static FeatureScale identity(Eigen::Index features);
-  /// Units that are powers of two near the components' largest standard deviation: no rounding, and numbers near one.
+  /// Units that are powers of two near the components' largest standard deviation. With these units there is no
+  /// rounding, and numbers are near one.
   static FeatureScale near_one(const GaussianMixture& mixture);
 
   GaussianMixture to_scaled(const GaussianMixture& mixture) const;
   GaussianMixture to_physical(const GaussianMixture& mixture) const;
-  /// log |d scaled / d physical| of one point. Add it (times the weight) to a scaled log density to get the physical
-  /// one.
+  /// log |d scaled / d physical| of one point. A scaled log density plus this value (times the weight) is the physical
+  /// log density.
   double log_jacobian() const { return -scale.array().log().sum(); }
 };
 

@@ -16,15 +16,16 @@ using Eigen::Index;
 
 namespace {
 
-/// Components of less weight are about to vanish; their logarithms would mislead the extrapolation of the others.
+/// Components of less weight are about to vanish. Their logarithms would mislead the extrapolation of the others.
 constexpr double least_weight = 1e-9;
 
-/// Safety factor on the estimate of what EM can still gain. A climb is given up only beyond it.
+/// Safety factor on the estimated remaining gain of EM. A climb is ended early only if even this multiple of the
+/// estimate is too small.
 constexpr double margin = 10.0;
 
 /// A mixture as an unconstrained vector: logarithms of the weights, and Cholesky factors with logarithms on the
-/// diagonal. `scale` has the size of one unit of each entry: the square root of the complete data's Fisher information.
-/// Conditional standard deviations take the place of a full whitening.
+/// diagonal. `scale` has the size of one unit of each entry. This is the square root of the complete data's Fisher
+/// information. Conditional standard deviations replace a full whitening.
 struct Coordinates {
   Eigen::VectorXd values, scale;
 };
@@ -57,11 +58,11 @@ std::optional<Coordinates> coordinates_of(const GaussianMixture& mixture) {
   return result;
 }
 
-/// Larger logarithms and coordinates (in units of a point's error) describe no mixture of the points.
+/// Larger logarithms and coordinates (in units of a point's error) cannot describe a mixture of the points.
 constexpr double largest_logarithm = 300.0, largest_coordinate_in_errors = 1e8;
 
 /// Inverse of the mapping to coordinates. `pattern` gives covariance type and noise component. Empty if an entry is out
-/// of range or not a number.
+/// of range or is NaN.
 std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const GaussianMixture& pattern,
                                           const EmOptions& options) {
   if (!(values.array().abs().maxCoeff() < largest_coordinate_in_errors)) return {};
@@ -96,13 +97,13 @@ std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const G
 }
 
 /// Squared extrapolation from two successive EM steps: SQUAREM with step length S3 (Varadhan & Roland 2008, Scand. J.
-/// Stat. 35, section 6). As in the paper, the longest allowed step grows when it was reached and shrinks when the
-/// likelihood fell.
+/// Stat. 35, section 6). As in the paper, the longest allowed step grows after a step of that length and shrinks after
+/// a fall of the likelihood.
 class Extrapolation {
  public:
   void forget() { before_.reset(); }
-  /// Estimated distance to the limit of EM, in lengths of its last but one step. The steps are taken to shrink by the
-  /// factor 1 - 1 / steps_left. Empty if the latest `next` could not estimate it.
+  /// Estimated distance to the limit of EM, in lengths of its last but one step. The estimate assumes that steps shrink
+  /// by the factor 1 - 1 / steps_left. Empty if the latest `next` could not estimate it.
   std::optional<double> steps_left() const { return steps_left_; }
   void shorten() {
     forget();
@@ -141,7 +142,7 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
   result.log_likelihood = -std::numeric_limits<double>::infinity();
   Extrapolation extrapolation;
   GaussianMixture trial = std::move(start);
-  std::optional<GaussianMixture> plain;  // result of the EM step; set where `trial` is extrapolated
+  std::optional<GaussianMixture> plain;  // result of the EM step; set if `trial` is extrapolated
   while (true) {
     interruption_point();
     const bool last = result.iterations == options.max_iterations;

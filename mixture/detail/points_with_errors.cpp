@@ -9,10 +9,10 @@
 namespace modebank::em {
 namespace {
 
-/// Smallest usable pivot of T, as a share of its diagonal. Below it, an error is so large in one direction that
-/// rounding hides the others; the point then counts as unknown there, too.
+/// Smallest usable pivot of T, as a share of its diagonal. Below this share, an error is so large in one direction that
+/// rounding hides the other directions. The point then counts as unknown in those directions, too.
 constexpr double smallest_pivot_ratio = 1e-12;
-/// Cap on squared distances that are larger or NaN, so that no density is NaN.
+/// Squared distances that are larger or NaN get this value, so that no density is NaN.
 constexpr double largest_error_distance = 2e300;
 
 Index moments_of(Index features, bool diagonal) { return diagonal ? features : features * (features + 1) / 2; }

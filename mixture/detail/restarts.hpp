@@ -8,21 +8,21 @@
 
 namespace modebank {
 
-/// Combines two mixtures of the same K, features and type. It keeps the components on which both agree, and of the rest
-/// those that differ most. Method: takes all 2 K components at half their weight and merges the two closest
-/// (reduction.hpp) until K are left. Two equal mixtures give the same mixture. Time K^2 per merge.
+/// Combines two mixtures of the same K, features and type. The result has the components on which both agree, and of
+/// the rest those that differ most. Method: takes all 2 K components at half their weight and merges the two closest
+/// (reduction.hpp) until K remain. Two equal mixtures give the same mixture. The time is K^2 per merge.
 GaussianMixture cross(const GaussianMixture& a, const GaussianMixture& b);
 
 /// The best optimum of options.restarts restarts, in the points' units, and the number of restarts that agree with it.
 ///
 /// 1. Each restart climbs from its start to near an optimum and tries split-and-merge moves, independently of the
 /// others.
-/// 2. Unless moves are off, the best is crossed with each other restart (`cross`). The result climbs, too, and replaces
-/// that restart if it ends higher. This is one generation of genetic EM (Pernkopf & Bouchaffra 2005, IEEE Trans.
-/// Pattern Anal. Mach. Intell. 27, 1344-1348).
+/// 2. Unless moves are off, the best restart is crossed with each other restart (`cross`). The result of a crossing
+/// also climbs. It replaces the other restart if it ends higher. This is one generation of genetic EM (Pernkopf &
+/// Bouchaffra 2005, IEEE Trans. Pattern Anal. Mach. Intell. 27, 1344-1348).
 /// 3. The best is followed to the tolerance. Others are followed only while they may still reach the best (see
-/// `iterate`). Restarts replaced by a crossing are followed, too: agreement counts what each restart found by itself,
-/// because a crossing resembles the best.
+/// `iterate`). Restarts that a crossing replaced are followed, too. Agreement counts the optima that each restart found
+/// by itself, because a crossing resembles the best.
 ///
 /// Restarts run in parallel. Comparisons happen between the steps, so the result does not depend on the number of
 /// threads.

@@ -34,7 +34,7 @@ GaussianMixture pair_of(const GaussianMixture& mixture, Index k) {
   return pair;
 }
 
-/// Splits a Gaussian by the plane through its mean across its longest axis; each half keeps its moments.
+/// Splits a Gaussian by the plane through its mean across its longest axis. Each part has the moments of its half.
 GaussianMixture halves(const GaussianMixture& mixture, Index k) {
   const auto [values, vectors] = symmetric_eigen(mixture.covariances[static_cast<std::size_t>(k)]);
   const Index longest = mixture.features() - 1;
@@ -105,8 +105,8 @@ std::vector<SplitMergeMove> split_merge_moves(const GaussianMixture& mixture, co
   for (Index k = 0; k < mixture.components(); ++k) {
     const SplitMergeMove split = best_split(mixture, k, points, memberships.row(k), options);
     if (split.parts.components() == 0) continue;
-    // Merges are sorted by cost, so each split needs at most its first `most` merges. K^3 / 2 combinations exist in
-    // all.
+    // Merges are sorted by cost, so each split needs only its first `most` merges. In total there are K^3 / 2
+    // combinations.
     std::size_t kept = 0;
     for (const Merge& merge : merges) {
       if (kept == most) break;
@@ -148,8 +148,9 @@ struct Ranking {
   }
 };
 
-/// Partial EM (Ueda et al. 2000, section 3.2): updates the three components that a move touches. The density of the
-/// others and the common weight of the three are held. Returns the change of the mean log-likelihood on the cloud.
+/// Partial EM (Ueda et al. 2000, section 3.2): updates the three components that a move changes. The density of the
+/// other components and the common weight of the three are held. Returns the change of the mean log-likelihood on the
+/// cloud.
 double settle(const Ranking& ranking, const SplitMergeMove& move, const EmOptions& options, GaussianMixture& mixture) {
   const std::vector<Index> touched{move.merged, move.absorbed, move.split};
   const PointBlocks points(PointSet(ranking.points), FeatureScale::identity(ranking.points.rows()));
@@ -184,8 +185,8 @@ struct Trial {
   double gain;
 };
 
-/// The mixtures after those moves that still gain once partial EM has settled them, the best first. For points with
-/// errors the gain is not used, because the cloud has no errors.
+/// The mixtures after the moves that still gain after partial EM, the best first. For points with errors this gain is
+/// ignored, because the cloud has no errors.
 std::vector<Trial> promising(const Ranking& ranking, const GaussianMixture& mixture, bool errors,
                              const EmOptions& options) {
   std::vector<Trial> trials;

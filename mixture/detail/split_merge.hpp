@@ -16,11 +16,11 @@ struct SplitMergeMove {
   double gain = 0.0;      ///< expected change of the mean log-likelihood [nats per unit weight]
 };
 
-/// The most promising moves, best first, at most `most`; none for fewer than three components. The gain of a split is
-/// that of EM with two components on the points of one, weighted by responsibility (partial EM: Ueda, Nakano,
-/// Ghahramani & Hinton 2000, Neural Comput. 12, section 3). Both starts are tried: two halves, and a dense core with a
-/// wide shell. The cost of a merge is that of merges_by_loss. `points` (F x n) is a sample; the options' covariance
-/// type and floor hold.
+/// The most promising moves, best first, at most `most`. Fewer than three components have no moves. The gain of a split
+/// is that of EM with two components on the points of one, weighted by responsibility (partial EM: Ueda, Nakano,
+/// Ghahramani & Hinton 2000, Neural Comput. 12, section 3). Two starts are tried: two halves, and a dense core with a
+/// wide shell. The cost of a merge is that of merges_by_loss. `points` (F x n) is a sample. The covariance type and
+/// floor are those of the options.
 std::vector<SplitMergeMove> split_merge_moves(const GaussianMixture& mixture, const Eigen::MatrixXd& points,
                                               const EmOptions& options, std::size_t most);
 
@@ -28,9 +28,9 @@ std::vector<SplitMergeMove> split_merge_moves(const GaussianMixture& mixture, co
 GaussianMixture apply(const SplitMergeMove& move, const GaussianMixture& mixture);
 
 /// Improves `fit` by split-and-merge moves. Each round ranks the options.split_merge most promising moves by a short EM
-/// run on a sample of the points (`seed`). The best is followed to its end and kept if its likelihood is higher. Rounds
-/// end when none gains. A run that cannot exceed the present likelihood ends early (`iterate`). The result is never
-/// worse than `fit`.
+/// run on a sample of the points (`seed`). EM after the best move runs to its end; the result is kept if its likelihood
+/// is higher. Rounds end when no move gains. A run that cannot exceed the present likelihood ends early (`iterate`).
+/// The result is never worse than `fit`.
 EmResult split_and_merge(const PointBlocks& points, EmResult fit, const EmOptions& options, std::uint64_t seed);
 
 }  // namespace modebank

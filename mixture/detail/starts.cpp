@@ -19,7 +19,7 @@ namespace {
 
 /// Largest number of points from which a start is chosen.
 constexpr Index start_points = 50000;
-/// Cap on squared distances, which overflow for points far out.
+/// Upper limit of squared distances, which overflow for points far out.
 constexpr double largest_distance = 1e200;
 
 BlockColumn squared_distances(const PointBlocks& points, Index block, const double* center) {
@@ -35,7 +35,7 @@ Eigen::VectorXd block_weights(const PointBlocks& points) {
   return sums;
 }
 
-/// Index of a point drawn with probability proportional to its weight; `block_sums` as block_weights gives.
+/// Index of a point drawn with probability proportional to its weight; `block_sums`: from block_weights.
 Index draw(const PointBlocks& points, const Eigen::VectorXd& block_sums, std::mt19937_64& generator) {
   double rest = boost::random::uniform_01<double>()(generator) * block_sums.sum();
   Index last = 0;

@@ -11,13 +11,13 @@ namespace modebank {
 struct MixtureMoments {
   double log_likelihood = 0.0;  ///< sum of w_i log p(x_i) under the mixture of the pass
   double noise = 0.0;           ///< sum of r for the noise component
-  /// One column per component; rows: sum of r, sum of r d (F), sum of r d d' (lower triangle by rows, or its diagonal).
-  /// r is w_i times the responsibility. d is the point's offset from the component's *old* mean, so that no second
-  /// moment is a difference of large numbers.
+  /// One column per component. Its rows are: sum of r, sum of r d (F), sum of r d d' (lower triangle by rows, or its
+  /// diagonal). r is w_i times the responsibility. d is the point's offset from the component's *old* mean, so that no
+  /// second moment is a difference of large numbers.
   Eigen::MatrixXd sums;
 };
 
-/// E step. Blocks are summed in fixed groups and groups in order, so the result does not depend on the number of
+/// E step. Blocks are summed in fixed groups, and groups in order. So the result does not depend on the number of
 /// threads. Runs in parallel for many points. `background` (block_size x blocks, aligned, may be null) replaces the
 /// noise component: a log density at every point.
 MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture, const double* background = nullptr);

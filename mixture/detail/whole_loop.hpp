@@ -6,8 +6,8 @@
 
 namespace modebank {
 
-/// Throws if the present parallel loop was cancelled. An exception in an outer loop cancels the inner one, which then
-/// returns with only part of its work done. Call this before the results are used.
+/// Throws if the present parallel loop was cancelled. An exception in an outer loop cancels the inner loop, which then
+/// returns with unfinished work. Call this function before the results are used.
 inline void require_whole_loop() {
   if (tbb::is_current_task_group_canceling())
     throw std::runtime_error("cancelled by an exception in an enclosing loop");

@@ -32,10 +32,10 @@ namespace {
 /// Largest relative difference in log-likelihood between implementations of the same algorithm.
 constexpr double same = 1e-11;
 
-/// CPU seconds of this process; they do not depend on the machine's load.
+/// CPU seconds of this process. They do not depend on the machine's load.
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// K overlapping components, and a start different from them, drawn as in the peers' gmm_make.py.
+/// K overlapping components, and a start that differs from the components. Both are drawn as in the peers' gmm_make.py.
 EmCase make_case(const std::string& name, Index points, Index features, Index components, CovarianceType type,
                  int iterations) {
   auto generator = make_generator(1, "compare_em " + std::to_string(features), static_cast<std::uint64_t>(components));
@@ -112,7 +112,7 @@ void compare(const EmCase& problem, int rounds) {
   std::fflush(stdout);
 }
 
-/// Different covariances for all points, each about a tenth of the components'.
+/// Different covariances for all points, each about a tenth of those of the components.
 Eigen::MatrixXd make_errors(const EmCase& problem) {
   auto generator = make_generator(1, "compare_em errors");
   std::normal_distribution<double> normal;
@@ -140,7 +140,7 @@ void compare_errors(const EmCase& problem, int rounds) {
   std::fflush(stdout);
 }
 
-/// Layout: int64 N, F, K, iterations; points F x N, each point together; weights; means; covariances.
+/// Layout: int64 N, F, K, iterations; points F x N, one point after the other; weights; means; covariances.
 void write_case(const EmCase& problem, const std::string& folder) {
   std::ofstream file(folder + "/" + problem.name + ".bin", std::ios::binary);
   const std::int64_t head[4] = {problem.points.cols(), problem.points.rows(), problem.start.components(),

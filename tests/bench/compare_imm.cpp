@@ -1,6 +1,6 @@
 // compare_imm [ROUNDS]: compares the filter's step with a straightforward program that uses dynamic Eigen matrices (the
 // project's peer imm_eigen.cpp: filters in a vector, S.inverse(), Joseph's form, likelihoods in the linear domain).
-// Rounds alternate on one thread; prints medians. Every number is checked against the peer's.
+// Rounds alternate on one thread. Prints medians. Every number is compared with that of the peer.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -24,7 +24,7 @@ using Eigen::VectorXd;
 
 constexpr Index steps = 4000;
 
-/// The peer's models: the first state switches and is measured; the other states follow it.
+/// The peer's models. The first state switches and is measured; the other states follow the first.
 Bank make_bank(Index n, Index K) {
   Bank bank;
   bank.structure = {n, 2, false};
@@ -78,7 +78,7 @@ struct PlainFilter {
   }
 };
 
-/// Log likelihood by the plain program, with our start.
+/// Log likelihood by the plain program, with the start of modebank.
 double plain(const Bank& bank, const Trajectory& run) {
   const Index K = bank.mode_count(), n = bank.structure.states;
   const StartMoments first = start_moments(bank);
@@ -156,7 +156,7 @@ struct Contestant {
   std::vector<double> ns = {};
 };
 
-/// CPU time of this thread; it does not depend on other programs.
+/// CPU time of this thread. It does not depend on other programs.
 double processor_ns() {
   timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -1,6 +1,6 @@
 // Window fits compared with other programs in one run: CPU time of one thread, programs in alternating order, medians
-// over the rounds. Ours includes what users get: robust scale, prior, rank, condition, information, R^2 and AIC. The
-// peers have a fixed scale and no prior; they compute theta, `model` covariance and status. Usage: compare_windows
+// over the rounds. modebank computes its full results: robust scale, prior, rank, condition, information, R^2 and AIC.
+// The peers have a fixed scale and no prior; they compute theta, `model` covariance and status. Usage: compare_windows
 // [ROUNDS]
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -92,7 +92,7 @@ struct JobResults {
   std::vector<batch::Verdict> verdict = std::vector<batch::Verdict>(job);
 };
 
-/// Fits all windows job by job, including staging; `consume` gets each job's results.
+/// Fits all windows job by job, including staging. `consume` gets the results of each job.
 void run_batch(const Trajectory& run, const BatchSolver& solver, Index windows,
                const std::function<void(Index, Index, const JobResults&)>& consume) {
   static BatchWorkspace workspace;
@@ -129,7 +129,7 @@ struct Entry {
   }
 };
 
-/// CPU time of this program's single thread, so that other programs are not measured.
+/// CPU time of this program's single thread. Other programs are not measured.
 double cpu_time_ns() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -145,7 +145,7 @@ void measure(std::vector<Entry>& entries, int rounds) {
     }
 }
 
-/// x[k+1] = x + A x + B u as a user would write it as a motion model.
+/// x[k+1] = x + A x + B u in the form of a user's own motion model.
 struct PlainModel {
   template <class T>
   void operator()(const T* theta, const T* x, const T* u, double, T* next) const {
@@ -166,7 +166,8 @@ void run_general(const Trajectory& run, Loss loss, Index windows, Eigen::MatrixX
   }
 }
 
-/// Compares theta of the first windows with naive Ceres, which stops within 1e-3 of the optimum at worst, usually 1e-5.
+/// Compares theta of the first windows with naive Ceres, which stops within 1e-3 of the optimum at worst, and usually
+/// within 1e-5.
 void check_against(const std::vector<PeerFit>& peers, const Trajectory& run, const BatchSolver& solver) {
   Index near = 0, solved = 0;
   const Index windows = static_cast<Index>(peers.size());
@@ -214,7 +215,7 @@ void compare(const Trajectory& run, const PeerData& data, Loss loss, int rounds)
     fmt::print("  {:<28} {:>10.1f} ns/window  {:>8.2f} x the batch\n", entry.name, entry.median(), entry.median() / ns);
 }
 
-/// Compares two threads with one for all of fit_windows, best of 5. Writes the file that the Python peers read.
+/// Compares fit_windows on two threads and on one, best of 5. Writes the file that the Python peers read.
 void compare_threads(const Trajectory& run) {
   Recording recording;
   recording.states = {{"x", ""}};

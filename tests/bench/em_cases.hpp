@@ -7,7 +7,7 @@
 
 namespace modebank::bench {
 
-/// One comparison: points, the start all programs share, and a fixed number of iterations.
+/// One comparison: points, the start that all programs share, and a fixed number of iterations.
 struct EmCase {
   std::string name;
   CovarianceType type = CovarianceType::full;

@@ -1,4 +1,5 @@
-// How often the number of modes of simulated systems is found: docs/results/mixture.md. Arguments: seeds (default 50).
+// Measures how often the number of modes of simulated systems is found (docs/results/mixture.md). Arguments: seeds
+// (default 50).
 #include <fmt/format.h>
 
 #include <cstdlib>

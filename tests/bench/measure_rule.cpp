@@ -1,5 +1,5 @@
-// How often the rule for additions to a model (filter/learn/left_out/rule.hpp) accepts a false and a true addition:
-// docs/results/rule.md. Prints CSV.
+// Measures how often the rule for additions to a model (filter/learn/left_out/rule.hpp) accepts a false and a true
+// addition (docs/results/rule.md). Prints CSV.
 //
 //   measure_rule SEEDS [FIRST]     both tables, from seed FIRST (1) on
 //   measure_rule worth RUNS        gain of each addition on that many runs, at sizes near those below
@@ -41,7 +41,7 @@ struct Step {
   double x, u, memory;  // memory: further state of a system
 };
 using Draw = std::function<double()>;
-/// The next x; may change the step's memory.
+/// Returns the next x. May change the memory of the step.
 using Motion = std::function<double(Step&, double size, const Draw& normal, const Draw& uniform)>;
 
 Recording simulate(const Motion& motion, double size, double start_memory_sd, Index runs, int seed,

@@ -1,6 +1,6 @@
-// track_latency PROGRAM [SECONDS]: time from a line in to the line out of `modebank track`, over pipes at 1 kHz with a
-// bank of 25 modes. For comparison it runs a program that only echoes lines. Both are queried in every millisecond, in
-// alternating order. Then measures the filter's step alone at the same rate.
+// track_latency PROGRAM [SECONDS]: time from an input line to the output line of `modebank track`, over pipes at 1 kHz
+// with a bank of 25 modes. For comparison it also runs a program that only echoes lines. Every millisecond both get a
+// line, in alternating order. Then measures the filter's step alone at the same rate.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -61,7 +61,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Microseconds from a line to its answer, which is stored in `answer`.
+  /// Microseconds from a line to its answer. Stores the answer in `answer`.
   double ask(const std::string& line) {
     const auto begin = Clock::now();
     if (write(to_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))

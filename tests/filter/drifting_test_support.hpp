@@ -37,7 +37,7 @@ inline Bank example_drifting(Index n, Index m, Index lags) {
   return model;
 }
 
-/// The same model with constant motion and noise.
+/// The same model with constant coefficients and noise.
 inline Bank fixed(Bank model) {
   model.drift = {};
   model.running_noise = {};
@@ -50,7 +50,7 @@ inline double draw_noise(double nu, std::mt19937_64& generator) {
   return boost::random::student_t_distribution<double>(nu)(generator) * std::sqrt((nu - 2.0) / nu);
 }
 
-/// A run of the model with its variance held at v0. It starts at zero with coefficients drawn from cov(theta[first]).
+/// A run of the model with constant variance v0. It starts at zero with coefficients drawn from cov(theta[first]).
 inline Trajectory simulate_drifting(const Bank& model, Index samples, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;

@@ -54,7 +54,7 @@ inline Eigen::Index draw_index(const Eigen::VectorXd& probability, std::mt19937_
   return i;
 }
 
-/// A run of the bank's switching system: y = C x + v as the filter assumes.
+/// A run of the bank's switching system: y = C x + v, the assumption of the filter.
 inline Trajectory simulate_bank(const Bank& bank, Eigen::Index samples, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::uniform_01<double> uniform;

@@ -65,7 +65,7 @@ TEST(Em, LogLikelihoodNeverFallsWithActiveFloorEither) {
   }
 }
 
-/// Restarts use extrapolated steps. They must end at the optimum of plain EM, no lower and without remaining gain.
+/// Restarts use extrapolated steps. They must end at the optimum of plain EM or higher, without remaining gain.
 TEST(Em, AcceleratedRestartsEndWherePlainEmDoes) {
   for (const CovarianceType type : {CovarianceType::full, CovarianceType::diagonal})
     for (const bool noise : {false, true}) {

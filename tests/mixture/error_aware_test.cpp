@@ -115,7 +115,7 @@ TEST(ErrorAware, ZeroErrorsGiveThePlainFit) {
 
 TEST(ErrorAware, EqualErrorsAddToTheCovariances) {
   // If all points share one S, a mixture of inflated components has the same density N(mu, Sigma + S).
-  for (const Index features : {2, 4, 9}) {  // the last one exceeds the unrolled kernels
+  for (const Index features : {2, 4, 9}) {  // the last size exceeds the unrolled kernels
     const GaussianMixture mixture = any_mixture(features, 3);
     GaussianMixture inflated = mixture;
     const Eigen::MatrixXd error = random_errors(features, 1, 0.8, 3);

@@ -42,8 +42,8 @@ TEST(Features, AllLeavesOutOnlyFailedAndNonFiniteWindows) {
   EXPECT_EQ(cloud.windows, (std::vector<Index>{0, 1, 4}));
 }
 
-/// Three full-rank windows of length one. If one begins at every second sample, they are worth two independent windows
-/// per feature (of three); if at every sample, they are not.
+/// Three full-rank windows of length one. If a window begins at every second sample, they are worth two independent
+/// windows per feature (of three). If a window begins at every sample, they are worth less.
 TEST(Features, AutomaticTakesAllWindowsOnlyWhereTooFewHaveFullRank) {
   WindowFits fits = five_windows();
   const auto automatic = [&] {

@@ -47,7 +47,7 @@ TEST(GaussianMixture, DensityFollowsItsFormulaForAnyNumberOfFeatures) {
     for (Eigen::Index i = 0; i < features; ++i)
       for (Eigen::Index j = 0; j < features; ++j)
         mixture.covariances[0](i, j) = std::pow(0.5, static_cast<double>(std::abs(i - j)));
-    // d' Sigma^-1 d = d_1^2 + sum (d_i - 0.5 d_(i-1))^2 / 0.75, as for a first-order autoregression.
+    // d' Sigma^-1 d = d_1^2 + sum (d_i - 0.5 d_(i-1))^2 / 0.75, the formula of a first-order autoregression.
     const Eigen::VectorXd d = Eigen::VectorXd::LinSpaced(features, 0.3, -1.7).array().sin();
     double distance = d(0) * d(0);
     for (Eigen::Index i = 1; i < features; ++i) distance += std::pow(d(i) - 0.5 * d(i - 1), 2) / 0.75;

@@ -1,5 +1,5 @@
-// The mixture library on its own, without windows or files. Draws points from a known mixture and recovers it. Exit
-// status 0 on success.
+// The mixture library on its own, without windows or files. Draws points from a known mixture and fits a mixture to
+// them. Exit status 0 if it equals the known one.
 #include <cstdio>
 #include <random>
 

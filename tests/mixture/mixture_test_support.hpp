@@ -28,7 +28,7 @@ inline Eigen::MatrixXd draw(const GaussianMixture& mixture, Eigen::Index count, 
   return sample(mixture, count, generator);
 }
 
-/// Options for exactly that many iterations, converged or not.
+/// Options for exactly this number of iterations, converged or not.
 inline EmOptions fixed_iterations(int iterations, CovarianceType type = CovarianceType::full) {
   EmOptions options;
   options.covariance = type;

@@ -33,7 +33,7 @@ TEST_P(Robustness, IdenticalPoints) {
   const EmResult result = fit(points, 4);
   expect_sound(result, points);
   EXPECT_TRUE(result.floor_active);
-  // A constant feature keeps its unit, and the floor is 1e-6 of that.
+  // A constant feature keeps its unit, and the floor is 1e-6 of that unit.
   EXPECT_TRUE(near(result.mixture.means, points.leftCols(4), 1e-9));
   EXPECT_TRUE(near(result.mixture.covariances[0], 1e-6 * Eigen::Matrix3d::Identity(), 1e-18));
 }
@@ -75,7 +75,7 @@ TEST_P(Robustness, ExtremeOutlier) {
     points.col(17).setConstant(distance);
     const EmResult result = fit(points, 2);
     expect_sound(result, points);
-    // Expected: one component for the outlier, one for the rest.
+    // One component is expected for the outlier, and one for the other points.
     EXPECT_NEAR(result.mixture.weights(0), 499.0 / 500.0, 1e-6);
     EXPECT_NEAR(result.mixture.means(0, 1) / distance, 1.0, 1e-6);
   }
@@ -134,7 +134,7 @@ TEST_P(Robustness, TinyAndHugeUnits) {
 TEST_P(Robustness, StarvedComponentKeepsItsPlace) {
   const Eigen::MatrixXd points = draw(three_clusters(3.0), 300, 5);
   GaussianMixture start = three_clusters(3.0);
-  start.means.col(2).setConstant(1e4);  // explains no point
+  start.means.col(2).setConstant(1e4);  // this component explains no point
   EmOptions options;
   options.covariance = GetParam();
   const EmResult result = fit_em(points, unweighted, start, options);
@@ -211,7 +211,7 @@ TEST(RobustnessErrors, CallersMistakesThrow) {
   EXPECT_THROW(fit_em(points, unweighted, 2, wrong, 1), std::invalid_argument);
 }
 
-/// The floor is a share of each feature's error variance, whatever the points are.
+/// The floor is a share of each feature's error variance. The points have no effect.
 TEST(Robustness, TheFloorIsRelativeToThePointsErrors) {
   EmOptions options;
   options.covariance_floor = 1e-4;

@@ -73,7 +73,7 @@ TEST(Select, EveryCriterionFindsThreeSeparatedClusters) {
   const FeatureCloud cloud = cloud_of(draw(three_clusters(12.0), 1500, 1), 6);
   for (const Criterion criterion : {Criterion::bic, Criterion::icl, Criterion::heldout, Criterion::bic_naive}) {
     const MixtureResult result = select_mixture(fits_of(cloud, 1, 1), cloud, up_to(5, criterion), 1);
-    // A held-out score hardly falls with superfluous components, but must fall with too few.
+    // A held-out score hardly falls with superfluous components. It must fall with too few components.
     if (criterion == Criterion::heldout)
       EXPECT_GE(selected(result), 3);
     else
@@ -167,8 +167,8 @@ TEST(Select, OtherCandidatesDoNotChangeARow) {
   EXPECT_EQ(one.candidates[0].iterations, all.candidates[3].iterations);
 }
 
-/// For 120,000 points of three clusters: a part chooses, all points are fitted, and the number of threads has no
-/// effect.
+/// 120,000 points of three clusters. A part of the points chooses, all points are fitted, and the number of threads has
+/// no effect.
 TEST(Select, OfManyPointsAPartIsComparedAndAllAreFitted) {
   const FeatureCloud cloud = cloud_of(draw(three_clusters(6.0), 120'000, 8), 4);
   SelectionOptions options = up_to(4);
@@ -186,7 +186,7 @@ TEST(Select, OfManyPointsAPartIsComparedAndAllAreFitted) {
   EXPECT_EQ(result.candidates[1].bic, again.candidates[1].bic);
   EXPECT_NE(result.candidates[1].bic, other.candidates[1].bic) << "another part";
   EXPECT_DOUBLE_EQ(result.candidates[0].effective_samples, 4800.0) << "what all windows are worth";
-  // The result must be the maximum for all points, so EM gains nothing from there.
+  // The result must be the maximum for all points. So more EM gains nothing.
   const double found = log_density(result.mixture, cloud.points).sum();
   const EmResult on = fit_em(PointSet(cloud.points), result.mixture, options.em);
   EXPECT_LT(on.log_likelihood - found, 0.01);

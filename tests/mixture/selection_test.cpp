@@ -47,12 +47,12 @@ TEST(Selection, FindsThreeClustersAmongIndependentPoints) {
   for (const Candidate& row : result.candidates) {
     EXPECT_DOUBLE_EQ(row.effective_samples, 600.0);
     EXPECT_DOUBLE_EQ(row.bic, row.bic_naive);
-    EXPECT_TRUE(std::isnan(row.heldout));  // without runs nothing can be left out
+    EXPECT_TRUE(std::isnan(row.heldout));  // without runs no held-out score is possible
   }
 }
 
 TEST(Selection, OverlapTakesEvidenceAway) {
-  // 600 independent points show these clusters; points worth 30 do not.
+  // 600 independent points show these clusters. If the points are worth only 30, they do not.
   const Eigen::MatrixXd points = draw(three_clusters(3.0), 600, 2);
   SampleDesign design;
   design.effective_samples = 30.0;
@@ -151,8 +151,8 @@ TEST(SelectionWarnings, NameWhatSpeaksAgainstTheChoice) {
   EXPECT_NE(warnings[2].find("likelier under 3 components than under 2: by 0.5 +- 0.2"), std::string::npos);
 }
 
-/// The likelihood of a fit on the floor depends on the floor. It is chosen only if all fits are on the floor, and with
-/// a warning.
+/// The likelihood of a fit at the covariance floor depends on the floor. Such a fit is chosen, with a warning, only if
+/// all fits are at the floor.
 TEST(SelectionWarnings, TheFloorIsNamedWhereNothingElseIsLeft) {
   std::vector<Candidate> rows(3);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -171,8 +171,8 @@ TEST(SelectionWarnings, TheFloorIsNamedWhereNothingElseIsLeft) {
   EXPECT_TRUE(named);
 }
 
-/// Twenty windows at one point, as from a stretch of standstill. By BIC they would be worth a component, whatever the
-/// floor.
+/// Twenty windows at one point, like those of a stretch of standstill. By BIC they would be worth a component, whatever
+/// the floor.
 TEST(Selection, AClusterWithoutExtentIsNotChosen) {
   Eigen::MatrixXd points(2, 220);
   points.leftCols(200) = draw(three_clusters(0.0), 200, 6);

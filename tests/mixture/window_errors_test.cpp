@@ -1,4 +1,4 @@
-// Windows of unequal excitation: effect of their covariances on the mixture of their parameters.
+// Windows of unequal excitation, and the effect of their covariances on the mixture of their parameters.
 #include <gtest/gtest.h>
 
 #include "ident/base/not_a_number.hpp"
@@ -15,8 +15,8 @@ using Eigen::Index;
 
 constexpr Index window_length = 25;
 
-/// Runs as long as a window. In each the parameters are drawn from one of two modes, and the inputs have their own
-/// amplitude, log-uniform from 0.03 to 1.
+/// Runs of the length of one window. In each run the parameters are drawn from one of two modes. The inputs of each run
+/// have their own amplitude, log-uniform from 0.03 to 1.
 struct WindowRuns {
   GaussianMixture truth;
   Recording recording;
@@ -103,7 +103,7 @@ TEST(WindowErrors, ThePriorIsTakenOffAgain) {
   ASSERT_EQ(a.points.cols(), b.points.cols());
   double pull = 0.0, left = 0.0;  // sums of squares in standard errors
   for (Index i = 0; i < a.points.cols(); ++i) {
-    // with less information the prior is not taken off completely
+    // with less information the prior is not removed completely
     if (held.information.col(i).minCoeff() < 0.3) continue;
     const Eigen::ArrayXd sd = a.covariances.col(i).reshaped(3, 3).diagonal().array().sqrt();
     pull += ((a.points.col(i) - held.parameters.col(i)).array() / sd).square().sum();
@@ -113,7 +113,7 @@ TEST(WindowErrors, ThePriorIsTakenOffAgain) {
   EXPECT_LT(left, 1e-16 * pull);
 }
 
-/// Robust losses weigh samples by their residuals, which depend on the prior's pull; only the mean weight is known.
+/// Robust losses weight samples by their residuals, which depend on the prior's pull. Only the mean weight is known.
 TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
   const WindowRuns stretches(100);
   FitOptions options;
@@ -123,7 +123,7 @@ TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
   options.prior = Prior::global;
   options.prior_sd = {0.1};
   const WindowFits held = fit_windows(stretches.recording, options);
-  WindowFits alike = held;  // as if the weight in the fit equalled the stated information
+  WindowFits alike = held;  // result for a weight in the fit that equals the stated information
   alike.weighed_information.setOnes();
   const FeatureCloud a = cloud_with(free, WindowErrors::include), b = cloud_with(held, WindowErrors::include),
                      c = cloud_with(alike, WindowErrors::include);
@@ -142,7 +142,7 @@ TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
 }
 
 /// Closed form for two states of one parameter each. The data have information d_i, weighed s_i times in the fit. The
-/// prior pulls the data's estimate y_i to s d / (1 + s d) y_i about its mean.
+/// prior pulls the data's estimate y_i towards its mean, to s d / (1 + s d) y_i.
 TEST(WindowErrors, ThePriorIsTakenOffStateByState) {
   WindowFits fits;
   fits.structure = LinearStructure{2, 0, false};

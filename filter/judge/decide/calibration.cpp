@@ -12,7 +12,7 @@ namespace modebank {
 namespace {
 
 constexpr double nis_level = 0.99;     // level of the interval that decides
-constexpr double nis_tolerance = 0.1;  // of the variance; one tenth is one twentieth of the interval's width
+constexpr double nis_tolerance = 0.1;  // share of the variance; a tenth of it is a twentieth of the interval's width
 constexpr double outside_level = 0.99;
 
 bool within(double value, double least, double largest) { return value >= least && value <= largest; }

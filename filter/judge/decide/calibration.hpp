@@ -11,18 +11,20 @@
 
 namespace modebank {
 
-/// Verdict about a filter's stated uncertainty, from the share of samples outside its 95 % band (5 % in a true filter).
-/// overconfident: more than 6 % lie outside, and more than 5 % with 99 % confidence.
-/// underconfident: fewer than 2.5 % lie outside, and fewer than 5 % with 99 % confidence. Also if fewer than 5 % lie
-/// outside, and more than 4 % lie in the central band that should hold 2.5 % (too_close), with 95 % confidence.
-/// If neither applies, the mean NIS decides: it lies outside the 99 % interval of a true filter's mean and differs from
-/// it by more than a tenth. This holds only if every prediction is one Gaussian of known variance. The NIS of a
-/// mixture, or of a filter with adaptive noise, is not chi-square, so it is only flagged.
-/// calibrated: 2.5 to 7.5 % lie outside and 1 to 4 % too close, and neither interval contains its whole band.
-/// undecided: all other cases, such as a few hundred samples.
+/// Verdict about a filter's stated uncertainty, from the share of samples outside its 95 % band. If the model is
+/// correct, 5 % lie outside.
+/// - overconfident: more than 6 % lie outside, and more than 5 % with 99 % confidence.
+/// - underconfident: fewer than 2.5 % lie outside, and fewer than 5 % with 99 % confidence. Or fewer than 5 % lie
+///   outside, and more than 4 % lie in the central band that should hold 2.5 % (too_close), with 95 % confidence.
+/// - calibrated: 2.5 to 7.5 % lie outside, 1 to 4 % lie too close, and neither interval contains its whole band.
+/// - undecided: all other cases, such as a few hundred samples.
+/// If neither of the first two applies, the mean NIS decides. It must lie outside the 99 % interval for a correct model
+/// and differ from the expected mean by more than a tenth. This rule holds only if every prediction is one Gaussian of
+/// known variance. Otherwise (mixture, adaptive noise) the NIS is not chi-square and only sets a flag.
 ///
-/// Autocorrelated samples count as fewer. Their number follows from the autocorrelation time of a band's misses or of
-/// all samples' sizes, whichever is longer, with a margin for its own error. (Misses alone are too few in short runs.)
+/// Autocorrelated samples count as fewer. The effective number follows from an autocorrelation time with a margin for
+/// its own error. This time is the longer of two: that of the band's misses, and that of the sizes of all samples.
+/// (Short runs have too few misses.)
 enum class Calibration { undecided, calibrated, overconfident, underconfident };
 
 template <>
@@ -30,13 +32,14 @@ struct EnumNames<Calibration> {
   static constexpr Names<4> values{"undecided", "calibrated", "overconfident", "underconfident"};
 };
 
-/// Limits for `calibrated`: shares outside the deciding band, and shares too close to the middle.
+/// Limits for `calibrated`: share outside the deciding band, and share too close to the middle.
 inline constexpr double least_outside = 0.025, largest_outside = 0.075, least_close = 0.01, largest_close = 0.04;
 
 /// Shares outside the band that decide a verdict if they are significant (calibration_of).
 inline constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 0.025;
 
-/// 1 where a signal is a hit, else 0: run by run, in time order. One byte each, because each sample has six.
+/// 1 where a signal is a hit, else 0; run by run, in time order. An element has one byte, because each sample has six
+/// elements.
 using HitsByRun = std::vector<std::vector<char>>;
 SeriesByRun as_numbers(const HitsByRun& hits);
 
@@ -44,18 +47,18 @@ SeriesByRun as_numbers(const HitsByRun& hits);
 struct BandCounts {
   std::array<HitsByRun, coverage_levels.size()> outside;  ///< 1 where a signal lies outside the band, else 0
   HitsByRun far, close;         ///< 1 where z^2 lies above the 97.5 % or below the 2.5 % quantile of chi-square(1)
-  SeriesByRun sizes;            ///< sizes of the same signals; they increase with the distance of the PIT from 1/2
+  SeriesByRun sizes;            ///< sizes of the same signals; a size increases with the distance of the PIT from 1/2
   SquaredDistances nis;         ///< NIS of each sample
   double nis_degrees = 1.0;     ///< n_y
-  bool chi_square_nis = false;  ///< whether a true filter's NIS is chi-square
+  bool chi_square_nis = false;  ///< whether the NIS is chi-square for a correct model
 };
 
 /// Autocorrelation time of hits, from the sizes of all signals, with a margin. NaN without signals.
 double time_by_sizes(const SeriesByRun& sizes);
-/// Interval of a fraction of hits, for the number of independent samples. `time`: from time_by_sizes.
+/// Interval of a fraction of hits, for the effective number of independent samples. `time`: from time_by_sizes.
 Interval fraction_interval(const SeriesByRun& hits, double time, double level = 0.95);
 
-/// Whether an interval contains the whole calibrated band and more, so that the data are inconclusive.
+/// Whether an interval contains the whole calibrated band and more. If so, the data are inconclusive.
 bool says_nothing(const Interval& interval, double least, double largest);
 
 /// The verdict for these counts. `time`: from time_by_sizes.

@@ -17,7 +17,7 @@ using Eigen::Index;
 
 constexpr double negligible_R = 1e-6;  // share of the innovations' variance
 
-/// Sets a fraction of hits and its interval.
+/// Sets a fraction of hits and its confidence interval.
 void set_fraction(const HitsByRun& hits, double time, double& fraction, double& lower, double& upper) {
   const SeriesByRun numbers = as_numbers(hits);
   fraction = mean_of(numbers);
@@ -40,7 +40,7 @@ void set_fractions(const BandCounts& e, double time, DiagnosticsRow& row) {
   set_fraction(e.close, time, row.too_close, row.too_close_lower, row.too_close_upper);
 }
 
-/// The states whose measurement noise is not negligible, so that their covariance after the measurement differs from R.
+/// The states whose measurement noise is not negligible. For these the covariance after the measurement differs from R.
 std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vector<Trajectory>& runs,
                                      const std::vector<RunEvaluation>& evaluations) {
   const Index n_y = bank.C.rows();
@@ -93,14 +93,14 @@ DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   return row;
 }
 
-constexpr double takes_all = 0.99;              // smallest usage of one mode for the flag
+constexpr double takes_all = 0.99;              // usage of a mode above which it is flagged
 constexpr double unused = 1e-3;                 // usage
-constexpr double flat_entropy = 0.95;           // of log K
+constexpr double flat_entropy = 0.95;           // share of log K
 constexpr double dominating_differences = 0.5;  // share of trace S
 
 void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
 
-/// "mode 3 unused", "modes 1, 3 unused"; empty if all are used.
+/// "mode 3 unused", "modes 1, 3 unused"; empty if all modes are used.
 std::string unused_modes(const std::vector<DiagnosticsRow>& modes) {
   std::string list;
   int count = 0;

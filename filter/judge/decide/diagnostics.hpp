@@ -11,22 +11,21 @@
 
 namespace modebank {
 
-/// One row of /evaluation/diagnostics: a filter, or one of its modes, on the pooled runs of a role.
-/// A mode is judged on the samples where it was the most probable before the measurement. A true filter is calibrated
-/// there, too, because the transform is uniform given all earlier information (Rosenblatt 1952; Diebold, Gunther & Tay
-/// 1998).
-/// Intervals have 95 % confidence. Fractions: Clopper & Pearson (1934), for the number of independent samples
-/// (calibration.hpp). Mean NIS and NEES: chi-square (squared_distances.hpp). The intervals hold for a true filter; the
-/// error of a learned filter is not included. NaN: unknown.
+/// One row of /evaluation/diagnostics: a filter, or one of its modes, on the pooled runs of a role. A mode is judged on
+/// the samples where it was the most probable before the measurement. If the model is correct, these samples are
+/// calibrated, too, because the transform is uniform given all earlier information (Rosenblatt 1952; Diebold, Gunther &
+/// Tay 1998). Intervals have 95 % confidence. Fractions: Clopper & Pearson (1934), for the effective number of
+/// independent samples (calibration.hpp). Mean NIS and NEES: chi-square (squared_distances.hpp). The intervals hold for
+/// a correct model; they exclude the error of a learned filter. NaN means unknown.
 struct DiagnosticsRow {
   std::string filter;
   Role role = Role::train;
-  Eigen::Index mode = -1;    ///< -1: the whole filter
+  Eigen::Index mode = -1;    ///< mode; -1 for the whole filter
   Eigen::Index samples = 0;  ///< scored samples
-  double usage = 0.0;        ///< mean probability after the measurement; for the whole filter: of its most probable
-                             ///< mode
+  double usage = 0.0;        ///< mean probability of the mode after the measurement; for the whole filter, of its most
+                             ///< probable mode
   double entropy = 0.0;      ///< mean entropy of the probabilities after the measurement, over log K; 0 for K = 1
-  double dwell = 0.0;        ///< mean stay in a mode along viterbi_mode (or the most probable modes) [samples]
+  double dwell = 0.0;  ///< mean stay in a mode along viterbi_mode (without it, along the most probable modes) [samples]
   double dwell_model = 0.0;  ///< 1 / (1 - T_jj), the stay by the transition matrix; NaN for the whole filter
   // Share of the signals inside the central bands, with intervals that allow for autocorrelation.
   double coverage_50 = 0.0, coverage_50_lower = 0.0, coverage_50_upper = 0.0;
@@ -35,25 +34,25 @@ struct DiagnosticsRow {
   double coverage_99 = 0.0, coverage_99_lower = 0.0, coverage_99_upper = 0.0;
   double too_far = 0.0, too_far_lower = 0.0, too_far_upper = 0.0;        ///< z^2 above its 97.5 % quantile
   double too_close = 0.0, too_close_lower = 0.0, too_close_upper = 0.0;  ///< z^2 below its 2.5 % quantile
-  double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< mean_distance, and its interval for a true filter
+  double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< mean_distance, and its interval for a correct model
   double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< NEES of the state after the measurement, if the
-  ///< truth is known; NaN if R is negligible, because the state is then the measurement itself
-  Eigen::VectorXd state_rmse;    ///< n_y, state minus truth; NaN without truth
-  double whiteness_p = 0.0;      ///< Ljung & Box, as in the summary
-  double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value, at this lag; only for the whole
-                                 ///< filter, else 0
+                                                               ///< truth is known. NaN if R is negligible, because the
+                                                               ///< state then equals the measurement
+  Eigen::VectorXd state_rmse;                                  ///< n_y, state minus truth; NaN without truth
+  double whiteness_p = 0.0;                                    ///< p value of Ljung & Box's test, as in the summary
+  double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value, at this lag; 0 for a mode
   Eigen::Index autocorrelation_lag = 0;
   double spread_share = 0.0;  ///< mean share of the modes' differences in the trace of S
   Calibration verdict = Calibration::undecided;
   std::string flags;  ///< remarkable facts, separated by "; "
 };
 
-/// Rows of one filter: for each role with runs the whole filter, then each mode if there are several. `options`: of the
-/// filter that made the evaluations; `scores`: of the evaluations (score_runs).
+/// Rows of one filter. Each role with runs has a row for the whole filter, then one for each mode if there are several
+/// modes. `options`: of the filter that made the evaluations; `scores`: of the evaluations (score_runs).
 std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
                                      const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
                                      const std::vector<RunScores>& scores);
-/// The rows of one role; only its runs need an evaluation.
+/// The rows of one role. Only the runs of this role need an evaluation.
 std::vector<DiagnosticsRow> diagnose_role(const std::string& filter, Role role, const Bank& bank,
                                           const FilterOptions& options, const std::vector<Trajectory>& runs,
                                           const std::vector<RunEvaluation>& evaluations,

@@ -17,11 +17,12 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double coarse_share = 0.25;  // of the innovation's standard deviation; above it densities peak between quanta
+constexpr double coarse_share = 0.25;  // share of the innovation's standard deviation; above it densities peak between
+                                       // quanta
 constexpr Index free_run_horizon = 0;
-constexpr double noticeable_rmse = 1e-3;  // relative; visible in a table with three digits
-constexpr double rounding_rmse = 1e-8;    // of a state's standard deviation; half of a double's digits
-// samples; smallest stay of 60 systems with modes: 8.4; systems without modes: 1.6
+constexpr double noticeable_rmse = 1e-3;  // relative difference; visible in a table with three digits
+constexpr double rounding_rmse = 1e-8;    // share of a state's standard deviation; half of a double's digits
+// samples; the smallest stay of 60 systems with modes was 8.4, that of systems without modes 1.6
 constexpr double fewest_stay = 5.0;
 
 Index scored_runs(const Densities& densities) {
@@ -57,12 +58,13 @@ const PairedGain* gain_over(const Finding& finding, const std::string& competito
   return found == finding.gains.end() ? nullptr : &*found;
 }
 
-/// Finds the simplest competitor that is as good as the best one and as the bank, and its loss against the best.
+/// Finds the simplest competitor that is as good as the best competitor and as the bank. Also returns its loss against
+/// the best competitor.
 void set_better_description(const std::vector<Densities>& competitors, Finding& finding) {
   const Densities* leader = named(competitors, finding.best_competitor);
   for (const char* name : competitor_names) {
     const Densities* candidate = named(competitors, name);
-    if (finding.best_competitor == name) break;  // the remaining ones are less simple
+    if (finding.best_competitor == name) break;  // the remaining competitors are less simple
     if (!leader || !candidate) continue;
     const PairedGain loss = paired_gain(name, leader->of_runs, candidate->of_runs);
     if (!is_as_good(*gain_over(finding, name)) || !is_as_good(loss)) continue;
@@ -87,7 +89,7 @@ bool is_coarse(const Resolution& state) {
   return state.repeated > repeated_share || state.quantum > coarse_share * state.innovation_sd;
 }
 
-/// The answer by scores, once lags and time steps raise no objection.
+/// The answer by scores, if neither lags nor time steps raise an objection.
 Answer answer_by_scores(const Finding& finding) {
   if (finding.modes < 2 || finding.without_noise) return Answer::one_mode;
   if (!finding.coarse.empty()) return Answer::not_comparable;
@@ -101,7 +103,8 @@ Answer answer_by_scores(const Finding& finding) {
   return finding.stay < finding.stay_asked ? Answer::cannot_tell : Answer::evidence;
 }
 
-/// The answer. Competitors have the bank's lags, so while lags are missing, gains over them do not prove modes.
+/// The answer. Competitors have the lags of the bank, so while lags are missing, gains over competitors do not prove
+/// modes.
 Answer answer_of(const Finding& finding) {
   if (finding.step_scatter > most_step_scatter) return Answer::not_yet;
   const Answer answer = answer_by_scores(finding);
@@ -110,8 +113,8 @@ Answer answer_of(const Finding& finding) {
   return by_gains && finding.pattern.told() ? Answer::not_yet : answer;
 }
 
-/// Mean stay of the bank in a mode: one over the rate of leaving it. State-dependent transition probabilities need the
-/// state, so the most probable sequence replaces them.
+/// Mean stay of the bank in a mode: one over the rate of leaving it. State-dependent transition probabilities are
+/// functions of the state. For these the stay comes from the most probable sequence of modes.
 double stay_of(const FindingInputs& in) {
   const bool by_sequence = !in.bank.transition_logit.empty();
   double used = 0.0, left = 0.0;
@@ -135,7 +138,8 @@ Description description_of(const Finding& finding, const Bank& bank) {
   return drifts ? Description::one_drifting_motion : Description::one_linear_motion;
 }
 
-/// Gains of modes and of one nonlinear motion over one linear motion, if both count and one of them describes the runs.
+/// Gains of modes and of one nonlinear motion over one linear motion. Set if both gains count and one of the two
+/// describes the runs.
 void set_gains_over_linear(const std::vector<Densities>& competitors, Finding& finding) {
   const Densities* bent = named(competitors, "nonlinear");
   const bool one_of_both =
@@ -165,7 +169,7 @@ bool leaves_rounding(const FindingInputs& in) {
   return false;
 }
 
-/// The competitor of least RMSE at each horizon and state, if it is below the bank's.
+/// The competitor of least RMSE at each horizon and state, if its RMSE is below that of the bank.
 class BestMeans {
  public:
   void add(const std::string& filter, Index horizon, const Eigen::VectorXd& rmse) {
@@ -216,7 +220,7 @@ Eigen::ArrayXd variances(const Bank& bank, Index mode) {
                                     : Eigen::ArrayXd::Constant(parameters, not_a_number);
 }
 
-/// Whether `holds` is true for the difference of two modes' theta and its variance, for some pair.
+/// Whether `holds` is true for some pair of modes, given the difference of their theta and its variance.
 template <class Holds>
 bool any_pair(const Bank& bank, Holds holds) {
   for (Index a = 0; a < bank.mode_count(); ++a)

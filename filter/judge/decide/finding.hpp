@@ -17,12 +17,11 @@
 #include "ident/data/trajectory.hpp"
 #include "modebank/base/names.hpp"
 
-/// Decides whether held-out runs require modes of motion (method: section 6). No other code decides it; all output uses
-/// this result.
+/// Decides whether held-out runs require modes of motion (method: section 6). All output uses this result.
 namespace modebank {
 
-/// not_yet: a simpler fact must be settled first (Finding::step_scatter, Finding::pattern). not_comparable:
-/// measurements are so coarse, or repeated so often, that log densities mean little.
+/// not_yet: a simpler fact must be settled first (Finding::step_scatter, Finding::pattern). not_comparable: log
+/// densities mean little, because measurements are too coarse or repeated too often.
 enum class Answer { one_mode, not_comparable, cannot_tell, no_evidence, evidence, not_yet };
 
 template <>
@@ -47,9 +46,11 @@ struct EnumNames<Description> {
                                    "several modes"};
 };
 
-/// Why an answer is `cannot tell`. errors_unknown: modes may be alike, because parameters lack standard errors.
-/// within_chance: the gain over some competitor is not significant. small_gain: it is significant but too small.
-/// short_stays: Finding::stay is below stay_asked.
+/// Why an answer is `cannot tell`.
+/// - errors_unknown: parameters lack standard errors, so modes may be alike.
+/// - within_chance: the gain over some competitor is not significant.
+/// - small_gain: the gain is significant but too small.
+/// - short_stays: Finding::stay is below stay_asked.
 enum class Doubt {
   nothing_held_out,
   no_competitor,
@@ -60,14 +61,15 @@ enum class Doubt {
   short_stays
 };
 
-/// Descriptions that lose less are equally good [nats per sample]. The count of modes uses the same value (rule.hpp).
+/// Loss below which a description counts as equally good [nats per sample]. The choice of the number of modes uses the
+/// same value (rule.hpp).
 inline constexpr double negligible_gain = 0.02;
 
-/// The part of a bank's training errors that past errors and inputs predict.
+/// The part of a bank's training errors that can be predicted from past errors and inputs.
 struct ErrorPattern {
-  double gain = not_a_number;            ///< gain from predicting the errors, on left-out parts [nats/sample]; NaN:
-                                         ///< unknown
-  double standard_error = not_a_number;  ///< of the gain, over those parts [nats/sample]
+  double gain = not_a_number;  ///< gain from predicting the errors, on parts that were left out [nats/sample]; NaN
+                               ///< means unknown
+  double standard_error = not_a_number;  ///< standard error of the gain, over those parts [nats/sample]
 
   /// Whether the gain is not negligible and exceeds two standard errors.
   bool told() const { return gain >= negligible_gain && gain > 2.0 * standard_error; }
@@ -82,20 +84,20 @@ struct Densities {
 /// Resolution of a state's measurement.
 struct Resolution {
   std::string state;
-  double quantum = 0.0;        ///< spacing of the values; 0: none found
+  double quantum = 0.0;        ///< spacing of the values; 0 if none was found
   double repeated = 0.0;       ///< share of samples in motion equal to the previous one
   double innovation_sd = 0.0;  ///< median standard deviation of the bank's predictions in motion [state unit]
   double sd = 0.0;             ///< standard deviation of the samples [state unit]; 0: unknown
 };
 
-/// Share of repeated samples above which densities are not compared. Measured noise hardly ever repeats to the last
-/// digit.
+/// Share of repeated samples above which densities are not compared. In noisy measurements two samples are hardly ever
+/// equal to the last digit.
 inline constexpr double repeated_share = 0.1;
 
 /// A competitor with a smaller root mean square error than the bank over the judged runs.
 struct BetterMean {
   std::string competitor;
-  Eigen::Index horizon = 1;  ///< samples ahead; 0: free run
+  Eigen::Index horizon = 1;  ///< samples ahead; 0 for a free run
   std::string state;
   double rmse_bank = 0.0, rmse = 0.0;  ///< [state unit]
 };
@@ -103,24 +105,24 @@ struct BetterMean {
 struct Finding {
   Answer answer = Answer::cannot_tell;
   Role role = Role::test;
-  Eigen::Index runs = 0;           ///< number of judged runs with scored samples
-  Eigen::Index modes = 0;          ///< number of modes of the bank
-  bool modes_differ = false;       ///< whether they differ in theta by more than their errors
-  bool errors_known = true;        ///< errors_known of the bank; if false, modes may differ anyway
-  double step_scatter = 0.0;       ///< standard deviation of the time steps over their median
-  ErrorPattern pattern;            ///< pattern in the bank's errors
-  double stay = not_a_number;      ///< stay in a mode, harmonic mean over the judged samples [samples]; NaN: unknown
-  double stay_asked = 0.0;         ///< stay required for evidence [samples]
+  Eigen::Index runs = 0;       ///< number of judged runs with scored samples
+  Eigen::Index modes = 0;      ///< number of modes of the bank
+  bool modes_differ = false;   ///< whether the modes differ in theta by more than their errors
+  bool errors_known = true;    ///< errors_known of the bank; if false, modes may differ although modes_differ is false
+  double step_scatter = 0.0;   ///< standard deviation of the time steps over their median
+  ErrorPattern pattern;        ///< pattern in the errors of the bank
+  double stay = not_a_number;  ///< stay in a mode, harmonic mean over the judged samples [samples]; NaN: unknown
+  double stay_asked = 0.0;     ///< stay required for evidence [samples]
   std::vector<Resolution> coarse;  ///< states for which densities are not comparable
-  bool without_noise = false;      ///< one linear model explains the runs up to rounding
+  bool without_noise = false;      ///< whether one linear model explains the runs up to rounding
   bool one_motion_drifts = false;  ///< whether the competitor one_motion drifts within a run, as the bank does
   bool terms_asked = false;        ///< whether terms of one nonlinear motion were searched on the training runs
   std::vector<PairedGain> gains;   ///< gains of the bank over each competitor
   std::string best_competitor;     ///< competitor with the highest log score; empty without competitors
   double gain = 0.0, standard_error = 0.0;  ///< gain over best_competitor [nats/sample]; NaN: unknown
   Description description = Description::none;
-  std::string better_description;  ///< competitor that describes the runs instead of modes; empty if there is none
-  double description_loss = 0.0;   ///< its loss against the best competitor [nats/sample]
+  std::string better_description;  ///< competitor that describes the runs instead of modes; empty if no competitor does
+  double description_loss = 0.0;   ///< loss of that competitor against the best competitor [nats/sample]
   /// Competitor that one nonlinear motion and several modes both beat: the better of baseline and noise_only. It is set
   /// if either describes the runs, because modes that switch by state and input are a nonlinear motion, too. Else
   /// empty.
@@ -136,15 +138,15 @@ struct Finding {
 };
 
 /// Whether some pair of modes differs significantly in a parameter. The level is 95 % for all pairs and parameters
-/// together (Bonferroni). Parameters without a standard error do not count.
+/// together (Bonferroni). Parameters without a standard error are ignored.
 bool modes_differ(const Bank& bank);
 /// Whether every parameter that differs between modes has a standard error.
 bool errors_known(const Bank& bank);
 
-/// The first reason in a finding's numbers for the answer `cannot tell`.
+/// The first reason for the answer `cannot tell` in the numbers of a finding.
 Doubt doubt_of(const Finding& finding);
-/// The competitor with the least significant gain of the bank: an insignificant one if there is one, in units of its
-/// margin. Null without a margin.
+/// The competitor over which the gain of the bank is least significant, in units of the margin of the gain. A
+/// competitor with an insignificant gain comes first. Null without a margin.
 const PairedGain* least_beaten(const Finding& finding);
 
 struct FindingInputs {
@@ -157,23 +159,24 @@ struct FindingInputs {
   const std::vector<Resolution>& states;
   const std::vector<FreeRunRow>& free_runs;
   bool one_motion_drifts = false;
-  double step_scatter = 0.0;  ///< as in Finding
+  double step_scatter = 0.0;  ///< same meaning as in Finding
   std::vector<DiagnosticsRow> diagnostics = {};
   ErrorPattern pattern = {};
 };
 
 /// Decides whether the runs require modes.
-/// not yet: the steps scatter beyond most_step_scatter, or further lags would remove a pattern in the errors.
-/// one mode: the bank has one mode, or one linear model leaves no noise (scores are then those of rounding).
-/// evidence: the gain over each competitor is significant (paired_gain.hpp) and not negligible, the modes differ, and
-/// they stay for at least five samples and for the model's memory. Shorter stays appear with noisy inputs or a delay
-/// that differs between runs; competitors do not model these.
-/// no evidence: a competitor has at least the bank's score, the gain over one is known to be negligible, or all modes
-/// have the same theta.
-/// cannot tell: all other cases, nothing held out, too few samples for a margin, or modes with unknown errors.
-/// If the bank is not significantly better than the best competitor, better_description is the simplest competitor as
-/// good as both. As good means: it loses less than 0.02 nats, or neither a t-test nor Wilcoxon's test over runs
-/// separates them.
+/// - not yet: the steps scatter beyond most_step_scatter, or further lags would remove a pattern in the errors.
+/// - one mode: the bank has one mode, or one linear model leaves no noise (scores are then scores of rounding).
+/// - evidence: the gain over each competitor is significant (paired_gain.hpp) and not negligible, the modes differ,
+///   and stays are long enough. A stay must last at least five samples and the memory of the model. Shorter stays
+///   appear with noisy inputs or a delay that differs between runs; competitors do not model these effects.
+/// - no evidence: a competitor has at least the score of the bank, the gain over one is known to be negligible, or
+///   all modes have the same theta.
+/// - cannot tell: all other cases, such as no held-out runs, too few samples for a margin, or modes with unknown
+///   errors.
+/// If the bank is not significantly better than the best competitor, better_description is the simplest competitor that
+/// is as good as both. A competitor is as good if it loses less than 0.02 nats, or if neither a t-test nor Wilcoxon's
+/// test over runs separates the two.
 Finding judge_modes(const FindingInputs& in);
 
 }  // namespace modebank

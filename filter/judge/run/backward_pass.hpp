@@ -6,18 +6,19 @@
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"
 
-/// Kim's (1994) smoother on the modes' filtered estimates, moment by moment. smooth_run stores its results;
-/// expectation-maximisation with measurement noise takes its expectations from them.
+/// Kim's (1994) smoother on the modes' filtered estimates, moment by moment. smooth_run stores its results.
+/// Expectation-maximisation with measurement noise takes its expectations from this smoother.
 namespace modebank {
 
 /// The filter's estimates at every moment of a run. Exactly known rows (those beyond Gaussian::uncertain) are stored
-/// once for all modes, without covariances. Lags of an exact sensor then take n numbers per moment, not K (n + n^2).
+/// once for all modes, without covariances. The lags of an exact sensor then take n numbers per moment instead of K (n
+/// + n^2).
 template <int N, int NY>
 class FilteredHistory {
  public:
   FilteredHistory(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory)
       : n_(model.structure.dimension()), K_(model.mode_count()) {
-    const Eigen::Index uncertain = model.exact ? 0 : n_;  // largest number over the moments
+    const Eigen::Index uncertain = model.exact ? 0 : n_;  // largest number of uncertain rows over the moments
     values_.reserve(static_cast<std::size_t>(run.count() * numbers_of(uncertain)));
     first_.resize(run.count());
     probability_.resize(K_, run.count());
@@ -41,7 +42,8 @@ class FilteredHistory {
 
  private:
   Eigen::Index n_, K_;
-  std::vector<double> values_;  ///< per moment: means of the known rows; per mode mean and covariance of the others
+  std::vector<double> values_;  ///< per moment: means of the known rows; then mean and covariance of the other rows,
+                                ///< per mode
   Eigen::VectorX<Eigen::Index> first_;  ///< index of each moment's first value
   Eigen::MatrixXd probability_;
   Eigen::VectorXd noise_scale_;
@@ -73,7 +75,7 @@ class FilteredHistory {
   }
 };
 
-/// Two successive moments with their modes, given the whole run.
+/// Two successive moments and their modes, given the whole run.
 template <int N>
 struct SmoothedPair {
   std::size_t from, to;                     ///< mode at t, mode at t + 1
@@ -167,7 +169,7 @@ class BackwardPass {
     }
   }
 
-  /// As in the filter (imm.hpp).
+  /// Same meaning as in the filter (imm.hpp).
   template <class U>
   double noise_of_step(Eigen::Index t, const U& input) {
     if (model_.noise_factor.empty()) return history_.noise_scale(t);
@@ -199,7 +201,7 @@ class BackwardPass {
     probability = weights_.rowwise().sum();
   }
 
-  /// Step of the Rauch-Tung-Striebel smoother if mode k is next. The covariance is a sum of squares, which stays
+  /// Step of the Rauch-Tung-Striebel smoother if mode k is next. The covariance is a sum of squares, so it stays
   /// definite under rounding.
   template <class U>
   void smooth_pair(const Gaussian<N>& filtered, const U& input, std::size_t k, double noise_scale) {
@@ -225,7 +227,7 @@ class BackwardPass {
     if (!is_finite(result)) result = filtered;
   }
 
-  /// Number of rows that the next state repeats (lags). Their gain is a shift and leaves no uncertainty.
+  /// Number of rows that the next state repeats (lags). The gain of these rows is a shift and leaves no uncertainty.
   Eigen::Index repeated() const { return n() - model_.full_rows; }
 
   /// Computes the gain P F' P_next^-1.
@@ -255,7 +257,7 @@ class BackwardPass {
       }
   }
 
-  /// out += (I - gain F) P (I - gain F)'; its repeated rows are zero.
+  /// out += (I - gain F) P (I - gain F)'; repeated rows are zero.
   void add_what_is_left(const Gaussian<N>& filtered, const Eigen::Matrix<double, N, N>& F,
                         Eigen::Matrix<double, N, N>& out) {
     for (Eigen::Index i = repeated(); i < n(); ++i) {

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Errors over their standard deviations, decorrelated in order, with the log determinant of that map.
+/// Errors divided by their standard deviations and decorrelated in order, with the log determinant of this map.
 struct WhitenedError {
   Eigen::VectorXd error;
   double log_scale = 0.0;
@@ -24,7 +24,7 @@ struct WhitenedError {
 WhitenedError whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
   const Cholesky factor(covariance);
   if (factor.definite()) return {factor.whiten(error), factor.L().diagonal().array().log().sum()};
-  // below it only by rounding
+  // a value below the limit can only come from rounding
   const Eigen::ArrayXd deviation = covariance.diagonal().array().max(least_variance).sqrt();
   return {error.array() / deviation, deviation.log().sum()};
 }

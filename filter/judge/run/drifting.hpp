@@ -15,7 +15,7 @@ namespace modebank {
 
 /// Predictions some samples ahead (DriftingForecast), without the factor of their horizon.
 struct DriftingForecasts {
-  HorizonEvaluation predictions;  ///< its log densities have factor 1
+  HorizonEvaluation predictions;  ///< log densities in it have factor 1
   /// Per horizon n x N: errors whitened to unit variance and no correlation, L^-1 error with L L' = cov(error).
   std::vector<Eigen::MatrixXd> whitened;
 };
@@ -24,7 +24,7 @@ DriftingForecasts drifting_forecasts(const Bank& bank, const Trajectory& run, st
 /// Advances the recursion from the previous moment to moment t of a run.
 void follow(const RunInstants& instants, Eigen::Index t, const Trajectory& run, DriftingRecursion& recursion);
 
-/// Log density of a prediction error [nats]: outputs are decorrelated in order, each then has Student's density.
+/// Log density of a prediction error [nats]. Outputs are decorrelated in order; each then has Student's density.
 double log_density(const StudentNoise& noise, const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
 
 /// Change of the log density of whitened errors if their variance is multiplied by `factor`.

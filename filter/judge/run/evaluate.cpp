@@ -65,7 +65,7 @@ void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions&
                                          });
 }
 
-/// `bank`: a bank with the sizes of the filter's results.
+/// `bank`: any bank with the sizes of the filter's results.
 template <class Filter>
 RunEvaluation evaluate_samples(const Bank& bank, Filter&& filter, const Trajectory& run) {
   RunEvaluation evaluation = sized_evaluation(bank, run.samples());
@@ -97,7 +97,7 @@ double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptio
   check_run(bank, run);
   double total = 0.0;
   score_samples(bank, run, options, [&](Index, const Eigen::VectorXd& log_density) {
-    double sum = total;  // summed sample by sample, so that stretches do not change the rounding
+    double sum = total;  // summed sample by sample, so that the division into stretches does not change the rounding
     for (const double value : log_density) sum += std::isnan(value) ? 0.0 : value;
     total = sum;
   });

@@ -11,23 +11,21 @@
 namespace modebank {
 
 /// Estimates of a filter at every sample of a run, one sample per column. Column 0 is the start; its scores are NaN.
-/// The n states are those of the sample itself (LinearStructure::states); lagged samples of a bank's state are in
+/// The n states are those of the sample itself (LinearStructure::states). The lagged samples of a bank's state are in
 /// earlier columns.
 struct RunEvaluation {
-  Eigen::MatrixXd prediction;                  ///< n x N, combined one-step prediction of the state
-  Eigen::MatrixXd innovation;                  ///< n_y x N, measurement minus combined prediction
-  Eigen::MatrixXd innovation_covariance;       ///< n_y*n_y x N, of the combined prediction
-  Eigen::MatrixXd state;                       ///< n x N, after the measurement
-  Eigen::MatrixXd covariance;                  ///< n*n x N, after the measurement
-  Eigen::VectorXd nis;                         ///< N
-  Eigen::MatrixXd pit;                         ///< n_y x N, Rosenblatt's transform; drawn by draw_pit for quantised
-                                               ///< signals
-  Eigen::MatrixXd pit_width;                   ///< n_y x N, width of the interval of pit; empty if nothing is quantised
-  Eigen::VectorXd log_density;                 ///< N, nats
+  Eigen::MatrixXd prediction;             ///< n x N, combined one-step prediction of the state
+  Eigen::MatrixXd innovation;             ///< n_y x N, measurement minus combined prediction
+  Eigen::MatrixXd innovation_covariance;  ///< n_y*n_y x N, of the combined prediction
+  Eigen::MatrixXd state;                  ///< n x N, after the measurement
+  Eigen::MatrixXd covariance;             ///< n*n x N, after the measurement
+  Eigen::VectorXd nis;                    ///< N
+  Eigen::MatrixXd pit;                    ///< n_y x N, Rosenblatt's transform; drawn by draw_pit for quantised signals
+  Eigen::MatrixXd pit_width;              ///< n_y x N, width of the interval of pit; empty if no signal is quantised
+  Eigen::VectorXd log_density;            ///< N, nats
   Eigen::MatrixXd mode_probability_predicted;  ///< K x N, before the measurement
   Eigen::MatrixXd mode_probability;            ///< K x N, after the measurement
-  Eigen::VectorXd spread_share;                ///< N, share of the modes' differences in the trace of
-                                               ///< innovation_covariance
+  Eigen::VectorXd spread_share;  ///< N, share of the modes' differences in the trace of innovation_covariance
   // Filled by smooth_run; otherwise empty.
   Eigen::MatrixXd smoothed_state;       ///< n x N, given the whole run
   Eigen::MatrixXd smoothed_covariance;  ///< n*n x N
@@ -45,15 +43,15 @@ RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const Filter
 /// Evaluates any filter whose estimates have the sizes of `frame`.
 RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& filter);
 
-/// Draws the transforms of quantised measurements within their intervals (pit_draw.hpp), from the seed, the run's name
-/// and the sample number.
+/// Draws the transforms of quantised measurements within their intervals (pit_draw.hpp). The draw depends on the seed,
+/// the run's name and the sample number.
 void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation);
 
 /// Sum of log predictive densities over the scored samples of a run [nats]: the log-likelihood of theta, Q, R and T.
 /// Stores nothing, so maximum likelihood can call it thousands of times. Conditions as for evaluate_run.
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
-/// The log predictive density of every sample of a run [nats], N; NaN if there is none.
+/// The log predictive density of every sample of a run [nats], N; NaN where it does not exist.
 Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 }  // namespace modebank

@@ -10,13 +10,13 @@
 /// The interface between free runs and the models that predict (filter/step/forecast.hpp).
 namespace modebank {
 
-/// A model's prediction of the measurement some steps ahead: each signal's distribution and the joint density.
+/// A model's prediction of the measurement some steps ahead: the distribution of each signal, and the joint density.
 class Forecast {
  public:
   virtual ~Forecast() = default;
   /// Advances by one model step under these acting inputs.
   virtual void step(const Eigen::Ref<const Eigen::VectorXd>& inputs) = 0;
-  /// Must precede the queries below for a sample; `samples`: number of samples ahead, at least 1.
+  /// Call this before the queries below for a sample; `samples`: number of samples ahead, at least 1.
   virtual void arrive(Eigen::Index /*samples*/) {}
 
   virtual Eigen::VectorXd mean() const = 0;                ///< n_y

@@ -46,7 +46,7 @@ std::vector<SampleRange> stretches_of(const Trajectory& run, double dt_s) {
   return stretches;
 }
 
-/// A run, the samples that a free run may use, and its start.
+/// A run, the samples that a free run may use, and the start of the free run.
 class Given {
  public:
   Given(const Bank& bank, const Trajectory& run, const FreeRunOptions& options)
@@ -62,8 +62,9 @@ class Given {
   const Trajectory& run() const { return run_; }
   const RunInstants& instants() const { return *instants_; }
 
-  /// Calls from(first, last, end) for every stretch that can be predicted: the moments from the filter's start to the
-  /// last measured sample, and the end of the predictions. Notes the reason for other stretches.
+  /// Calls from(first, last, end) for every stretch that can be predicted. first to last are the moments from the
+  /// filter's start to the last measured sample; end is the end of the predictions. Records the reason for stretches
+  /// that cannot be predicted.
   template <class From>
   void for_each(FreeRun& out, From from) const {
     for (const SampleRange& stretch : stretches_) {
@@ -110,7 +111,7 @@ class Given {
   }
 };
 
-/// Stores the prediction of sample k, at which `forecast` is.
+/// Stores the prediction of sample k; `forecast` has been advanced to k.
 void record(const Forecast& forecast, const Eigen::VectorXd& mean, Index k, FreeRun& out) {
   out.mean.col(k) = mean;
   out.deviation.col(k) = forecast.standard_deviation();
@@ -121,7 +122,7 @@ void record(const Forecast& forecast, const Eigen::VectorXd& mean, Index k, Free
   }
 }
 
-/// Predicts from moment t, where the filter is, to the sample before `end`.
+/// Predicts from the filter's moment t to the sample before `end`.
 void predict_on(Forecast& forecast, const Given& given, Index t, Index end, FreeRun& out) {
   look_ahead(forecast, given.instants(), t, [&](Index ahead, Index k) {
     interruption_point();
@@ -141,7 +142,7 @@ void predict_on(Forecast& forecast, const Given& given, Index t, Index end, Free
   });
 }
 
-/// Filters the samples before each start of a free run and passes the state on: from(state, t, end).
+/// Filters the samples before each start of a free run, then calls from(state, t, end).
 template <int N, int NY, class From>
 void from_each_start(const FilterModel<N, NY>& model, const Given& given, FreeRun& out, From from) {
   FilterStep<N, NY> step(model);

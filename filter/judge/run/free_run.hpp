@@ -14,7 +14,8 @@ namespace modebank {
 
 /// Method of a bank's free run. moments: probability, mean and covariance of every mode, exact for a constant
 /// transition matrix. Bands and densities treat every mode's distribution as Gaussian. paths: sample paths. Bands are
-/// their quantiles; densities use their moments as above. Both have the sampling noise of that many paths.
+/// quantiles of the paths; densities use the moments of the paths as above. Both have the sampling noise of that number
+/// of paths.
 enum class FreeRunMethod { moments, paths };
 
 template <>
@@ -22,8 +23,8 @@ struct EnumNames<FreeRunMethod> {
   static constexpr Names<2> values{"moments", "paths"};
 };
 
-/// Start of a free run. estimated: the filter's estimate after the measured samples. fixed: the last measured sample as
-/// a filter's first measurement, without earlier ones.
+/// Start of a free run. estimated: the filter's estimate after the measured samples. fixed: the last measured sample
+/// alone, as the first measurement of a filter.
 enum class FreeRunStart { estimated, fixed };
 
 template <>
@@ -32,8 +33,8 @@ struct EnumNames<FreeRunStart> {
 };
 
 struct FreeRunOptions {
-  Eigen::Index samples = 0;  ///< measured samples at the beginning; 0: no free run
-  Eigen::Index horizon = 0;  ///< samples to predict after them; 0: to the end of the run
+  Eigen::Index samples = 0;  ///< measured samples at the beginning; 0 turns free runs off
+  Eigen::Index horizon = 0;  ///< samples to predict after them; 0 predicts to the end of the run
   FreeRunStart start = FreeRunStart::estimated;
   FreeRunMethod method = FreeRunMethod::moments;
   Eigen::Index paths = 400;
@@ -46,12 +47,12 @@ struct FreeRunOptions {
 inline Eigen::Index fewest_start_samples(const LinearStructure& structure) { return structure.first_transition() + 1; }
 
 /// Predictions of a run from its first samples and the inputs alone. Column k belongs to sample k; NaN (-1) where
-/// nothing was predicted. The free run restarts after a gap at which filters restart.
+/// nothing was predicted. The free run restarts after each gap at which filters restart.
 struct FreeRun {
-  Eigen::MatrixXd mean;            ///< n_y x N
-  Eigen::MatrixXd deviation;       ///< n_y x N, standard deviation of the measurement about `mean`
-  Eigen::MatrixXd lower, upper;    ///< n_y x N, central 95 % band
-  Eigen::MatrixXd pit;             ///< n_y x N, of each signal separately; NaN unless the measurement is complete
+  Eigen::MatrixXd mean;          ///< n_y x N
+  Eigen::MatrixXd deviation;     ///< n_y x N, standard deviation of the measurement about `mean`
+  Eigen::MatrixXd lower, upper;  ///< n_y x N, central 95 % band
+  Eigen::MatrixXd pit;  ///< n_y x N, log density of each signal separately; NaN unless the measurement is complete
   Eigen::VectorXd log_density;     ///< N, joint log density of the measurement [nats]
   Eigen::VectorXi mode;            ///< N, most probable mode
   Eigen::Index lost_paths = 0;     ///< number of paths that diverged and were removed
@@ -68,7 +69,7 @@ FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& f
 struct FreeRunRow {
   std::string filter;  ///< bank or a competitor
   Role role = Role::train;
-  std::string run;  ///< "*": all runs of the role pooled
+  std::string run;  ///< name of the run; "*": all runs of the role pooled
   FreeRunMethod method = FreeRunMethod::moments;
   Eigen::Index start = 0;    ///< measured samples at the beginning
   Eigen::Index samples = 0;  ///< scored samples

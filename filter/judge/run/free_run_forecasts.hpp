@@ -18,7 +18,7 @@
 /// Forecasts of each kind of model for free runs.
 namespace modebank {
 
-/// Forecast of a bank by moments.
+/// Forecast of a bank by the moments of its modes.
 template <int N, int NY>
 class MomentForecast final : public Forecast {
  public:
@@ -77,13 +77,13 @@ class MomentForecast final : public Forecast {
 };
 
 /// Forecast of a bank by sample paths. Bands are quantiles of the paths with measurement noise. The joint density has
-/// one Gaussian per mode with the moments of the mode's paths. The noise of the last step enters by its known
-/// covariance, not by samples.
+/// one Gaussian per mode, with the moments of the mode's paths. The noise of the last step enters by its known
+/// covariance instead of samples.
 class PathForecast final : public Forecast {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
-  /// `row`: as for SamplePaths.
+  /// `row`: same meaning as for SamplePaths.
   PathForecast(const Bank& bank, Eigen::Index paths, std::uint64_t seed, TransitionRow row = {});
   void start(const FilterMemory& origin) { paths_.start(origin); }
   void step(const Vector& inputs) override { paths_.step(inputs); }

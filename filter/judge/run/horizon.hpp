@@ -10,9 +10,9 @@
 
 namespace modebank {
 
-/// Predictions of a run's measurements, each made some samples earlier from the measurements by then and the inputs
-/// recorded since. Column k belongs to sample k. NaN if no filter was running that long before, or if the measurement
-/// is incomplete.
+/// Predictions of a run's measurements. A prediction is made some samples earlier, from the measurements up to that
+/// time and the inputs recorded since. Column k belongs to sample k. NaN if no filter was running at that time, or if
+/// the measurement is incomplete.
 struct HorizonEvaluation {
   std::vector<Eigen::Index> horizons;  ///< samples ahead, ascending
   std::vector<Eigen::MatrixXd> error;  ///< per horizon n_y x N: measurement minus combined prediction
@@ -23,8 +23,8 @@ struct HorizonEvaluation {
 /// std::invalid_argument for a horizon below 1.
 HorizonEvaluation empty_horizons(std::vector<Eigen::Index> horizons, Eigen::Index n_y, Eigen::Index samples);
 
-/// Evaluates predictions at several horizons, each at least 1; horizon 1 equals evaluate_run. Conditions as for
-/// evaluate_run. The cost per sample is as many steps as the longest horizon has.
+/// Evaluates predictions at several horizons, each at least 1; horizon 1 equals evaluate_run. Conditions are those of
+/// evaluate_run. The cost per sample is one step per sample of the longest horizon.
 HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,
                                     std::vector<Eigen::Index> horizons);
 
@@ -32,7 +32,7 @@ HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, con
 struct HorizonRow {
   std::string filter;  ///< bank or a competitor
   Role role = Role::train;
-  std::string run;           ///< "*": all runs of the role pooled
+  std::string run;           ///< name of the run; "*": all runs of the role pooled
   Eigen::Index horizon = 1;  ///< samples ahead
   Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample]
@@ -48,10 +48,10 @@ struct HorizonSums {
 
   HorizonSums& operator+=(const HorizonSums& other);
 };
-/// The sums of a run, one per horizon.
+/// The sums of a run, one element per horizon.
 std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run);
 
-/// Rows of one filter in the order of summarize(), each with all horizons. `sums`: of every run.
+/// Rows of one filter in the order of summarize(), each with all horizons. `sums`: the sums of every run.
 std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,
                                            const std::vector<std::vector<HorizonSums>>& sums);
 

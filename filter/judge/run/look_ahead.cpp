@@ -30,7 +30,7 @@ class FarScores {
   void from(Index t, const FilterState<N>& state) {
     forecast_.start(state);
     look_ahead(forecast_, instants_, t, [&](Index ahead, Index k) {
-      // One sample ahead, the filter itself has already scored every sample by its density.
+      // One sample ahead, the filter itself has already computed the density of every sample.
       if (ahead > 1 || look_.counts_errors()) count(k);
       return ahead < look_.samples;
     });

@@ -10,9 +10,9 @@ namespace modebank {
 
 /// Horizon and score of look-ahead learning.
 struct LookAhead {
-  Eigen::Index samples = 1;         ///< h: predictions 1, 2, ... h samples ahead
-  Eigen::VectorXd error_unit = {};  ///< n_y, positive: scores are minus half the squared errors in these units; empty:
-                                    ///< densities
+  Eigen::Index samples = 1;         ///< h: predictions 1, 2, ... h samples ahead are scored
+  Eigen::VectorXd error_unit = {};  ///< n_y, positive units; scores are minus half the squared errors in these units.
+                                    ///< If empty, scores are densities
 
   bool counts_errors() const { return error_unit.size() > 0; }
   bool is_likelihood() const { return samples == 1 && !counts_errors(); }
@@ -21,16 +21,16 @@ struct LookAhead {
 /// Scores of look-ahead learning, N; NaN where a filter has no score.
 /// Densities: for each sample the mean of its log predictive densities 1, 2, ... h samples ahead [nats]. Their sum is a
 /// composite likelihood (Varin, Reid & Firth 2011, Statistica Sinica 21(1)). h = 1 equals log_densities.
-/// Errors: minus half the squared errors of the predicted means in given units, the objective of simulation error
-/// methods (Farina & Piroddi 2010, International Journal of Control 83(7)); 0 where there are none.
-/// Near a run's start a sample has fewer predictions; missing ones count as zero. Predictions from neighbouring origins
-/// are nearly the same. So beyond one sample ahead (for errors at all horizons) only every look_ahead_stride(h)-th
-/// origin is used, from the filter's start on. Conditions as for evaluate_run; throws std::invalid_argument for h below
-/// 1.
+/// Errors: minus half the squared errors of the predicted means in given units. This is the objective of simulation
+/// error methods (Farina & Piroddi 2010, International Journal of Control 83(7)). 0 where no prediction exists.
+/// Near a run's start a sample has fewer predictions; missing predictions count as zero. Predictions from neighbouring
+/// origins are nearly the same. So beyond one sample ahead only every look_ahead_stride(h)-th origin is used, from the
+/// filter's start on; for errors this applies to all horizons. Conditions are those of evaluate_run; throws
+/// std::invalid_argument for h below 1.
 Eigen::VectorXd look_ahead_scores(const Bank& bank, const Trajectory& run, const FilterOptions& options,
                                   const LookAhead& look);
 
-/// Sum of look_ahead_scores over a run. For densities one sample ahead it equals log_likelihood to the bit.
+/// Sum of look_ahead_scores over a run. For densities one sample ahead it is bit-identical to log_likelihood.
 double look_ahead_score(const Bank& bank, const Trajectory& run, const FilterOptions& options, const LookAhead& look);
 
 /// Samples between origins: a quarter of the longest horizon, rounded up.

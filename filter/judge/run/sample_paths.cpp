@@ -21,7 +21,7 @@ Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
 
 namespace {
 
-/// Mode probabilities by the bank's transition matrix, at each path's own state if they depend on it.
+/// Mode probabilities by the bank's transition matrix; evaluated at the state of each path if they depend on the state.
 TransitionRow bank_row(const Bank& bank) {
   if (bank.mode_count() == 1)
     return [](Index mode, const auto&, const auto&, Eigen::VectorXd& row) { row.setZero()(mode) = 1.0; };

@@ -23,11 +23,11 @@ class SamplePaths {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
-  /// `row`: transition probabilities if not constant; empty: the bank's.
+  /// `row`: transition probabilities that are not constant; if empty, those of the bank are used.
   SamplePaths(const Bank& bank, Eigen::Index paths, std::uint64_t seed, TransitionRow row = {});
 
   void start(const FilterMemory& origin);
-  /// Advances every path by one model step. A path that leaves the finite range (beyond largest_mean) is removed.
+  /// Advances every path by one model step. Removes a path that leaves the finite range (beyond largest_mean).
   void step(const Vector& inputs);
 
   Eigen::Index lost() const { return lost_; }
@@ -57,8 +57,8 @@ class SamplePaths {
   void keep(const std::vector<Eigen::Index>& which);
 };
 
-/// A square root of the covariance: its product with its transpose. For a singular covariance it has fewer columns than
-/// rows.
+/// A square root of the covariance: its product with its transpose is the covariance. For a singular covariance it has
+/// fewer columns than rows.
 Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance);
 
 }  // namespace modebank

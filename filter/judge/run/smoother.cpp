@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Pairs of modes below this probability do not change a digit of the smoothed values.
+/// A pair of modes below this probability does not change a digit of the smoothed values.
 constexpr double negligible_pair = 1e-18;
 constexpr double rounding = 1e-6;  // nats, far above the rounding of a log density
 
@@ -40,7 +40,7 @@ void smooth(const Bank& bank, const Trajectory& run, const FilterOptions& option
   }
 }
 
-/// The noise factors that the filter used at every moment; ones unless noise adapts or depends on state and input.
+/// The noise factors of the filter at every moment; ones unless noise adapts or depends on state and input.
 template <int N, int NY>
 Eigen::VectorXd noise_scales(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory) {
   Eigen::VectorXd scales = Eigen::VectorXd::Ones(run.count());
@@ -55,8 +55,9 @@ Eigen::VectorXd noise_scales(const FilterModel<N, NY>& model, const RunInstants&
   return scales;
 }
 
-/// The best history of every mode, moment by moment. `scales`: from noise_scales. This pass cannot adapt its own scale:
-/// its modes count as equally probable at every moment, so it would mistake a change of mode for one of scale.
+/// The best history of every mode, moment by moment. `scales`: from noise_scales. This pass cannot adapt a scale of its
+/// own. Its modes count as equally probable at every moment, so it would mistake a change of mode for a change of
+/// scale.
 template <int N, int NY>
 class BestHistories {
  public:
@@ -108,9 +109,9 @@ class BestHistories {
   PartialSensor<N, NY> partial_;
   small::Ldl<NY> least_;
   Eigen::VectorXd score_;                        ///< score of every mode's best history
-  std::vector<Gaussian<N>> modes_, next_modes_;  ///< states that these histories have reached
+  std::vector<Gaussian<N>> modes_, next_modes_;  ///< states at the end of these histories
 
-  /// Each row at the state of its mode's best history.
+  /// Each row holds for the state of its mode's best history.
   template <class U>
   void set_transition(const U& input) {
     if (model_.transition_logit.empty()) return;
@@ -158,8 +159,9 @@ class BestHistories {
   }
 
   /// Finds the best history into every mode. `most(mode)`: upper bound of the log density of a step into the mode,
-  /// since no S is smaller than that of the mode's own noise. Histories that cannot reach the best one with this bound
-  /// are skipped. `take_in(estimate)`: updates with the measurement after the prediction and returns its log density.
+  /// because S is at least that of the mode's own noise. The bound excludes histories that cannot reach the best one.
+  /// `take_in(estimate)`: updates with the measurement after the prediction and returns the log density of the
+  /// measurement.
   template <class U, class Most, class TakeIn>
   void choose(Index t, const U& u, double scale, Most most, TakeIn take_in) {
     Eigen::VectorXd next(K_);
@@ -203,7 +205,7 @@ Eigen::VectorXi best_histories_sequence(const Bank& bank, const Trajectory& run,
   return BestHistories<N, NY>(model, scales, instants, run).trace(instants);
 }
 
-/// Allows every transition between modes, whatever the variant.
+/// Allows every transition between modes, in all variants.
 Eigen::VectorXi viterbi(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   const RunInstants instants(bank, run);
   const Eigen::VectorXi modes = with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() {

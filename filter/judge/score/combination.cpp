@@ -30,7 +30,7 @@ class CombinedHorizon {
   CombinedHorizon(const std::vector<const HorizonEvaluation*>& members, std::size_t horizon, std::vector<double> start)
       : members_(members), horizon_(horizon), start_(std::move(start)), said_(members.size()) {}
 
-  /// Fills in the forecasts of all samples; those of sample k use the weights of sample k - h.
+  /// Fills in the forecasts of all samples. The forecast of sample k has the weights of sample k - h.
   void fill(CombinedForecasts& out) {
     const Index h = members_.front()->horizons[horizon_], N = members_.front()->log_density.cols();
     ForecastWeights now(start_, h);
@@ -194,7 +194,7 @@ std::vector<HorizonRow> ForecastTables::horizons() const {
   return rows;
 }
 
-/// Sums over the runs of a role that have been added.
+/// Sums over the runs of a role that have been added so far.
 ForecastTables::Weights ForecastTables::weights_of(Role role) const {
   Weights total;
   for (std::size_t i = 0; i < runs_.size(); ++i) {

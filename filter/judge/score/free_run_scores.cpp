@@ -12,8 +12,8 @@ using Eigen::Index;
 
 namespace {
 
-/// Sums over the scored samples of one or more runs. Measurements are taken relative to the first one, which limits
-/// rounding if they are large against their standard deviation.
+/// Sums over the scored samples of one or more runs. Measurements are relative to the first one. This limits rounding
+/// if they are large against their standard deviation.
 class FreeRunSums {
  public:
   FreeRunSums(Index n_y)

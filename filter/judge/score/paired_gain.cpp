@@ -21,7 +21,7 @@ constexpr double fewest_blocks = 8.0;
 constexpr double times_per_block = 2.0;
 constexpr double upper_probability = 0.975;
 
-/// Differences at the samples that both have, run by run; runs without any are left out.
+/// Differences at the samples that both filters have scored, run by run. Runs without such samples are skipped.
 SeriesByRun differences(const std::vector<Eigen::VectorXd>& better, const std::vector<Eigen::VectorXd>& other) {
   SeriesByRun result;
   for (std::size_t r = 0; r < better.size(); ++r) {
@@ -41,7 +41,7 @@ double stretch_sum(const std::vector<double>& values, std::size_t first, std::si
   return sum;
 }
 
-/// Means of adjacent stretches of `length` samples; 0: of whole runs.
+/// Means of adjacent stretches of `length` samples; 0 means whole runs.
 std::vector<double> means(const SeriesByRun& d, std::size_t length) {
   std::vector<double> result;
   for (const std::vector<double>& run : d) {

@@ -11,30 +11,29 @@ struct PairedGain {
   std::string competitor;
   Eigen::Index samples = 0;     ///< samples that both scored
   double gain = 0.0;            ///< mean difference of log density [nats/sample]; NaN without samples
-  double standard_error = 0.0;  ///< of the gain; NaN if unknown
+  double standard_error = 0.0;  ///< standard error of the gain; NaN if unknown
   double degrees_of_freedom = 0.0;
   double margin = 0.0;     ///< smallest significant gain: t(0.975, degrees of freedom) standard errors; NaN if unknown
-  bool by_blocks = false;  ///< clustered by blocks of samples instead of runs
+  bool by_blocks = false;  ///< whether clusters are blocks of samples instead of runs
   double rank_p = 1.0;     ///< signed_rank_p of the mean differences of runs, or of adjacent blocks
 
-  /// False if the error is unknown.
+  /// False if the standard error is unknown.
   bool exceeds() const { return gain > margin; }
   bool ranks_tell() const { return rank_p < 0.05; }
-  /// Significant by the paired t-test (one-sided at 2.5 %) and by signed ranks (one-sided at 5 %), because a single
-  /// unusual run can distort the t-test.
+  /// Whether the gain is significant by two tests: the paired t-test (one-sided at 2.5 %) and signed ranks (one-sided
+  /// at 5 %). The second test is needed because a single unusual run can distort the t-test.
   bool told() const { return exceeds() && ranks_tell(); }
   bool falls_short() const { return gain < -margin; }
 };
 
-/// Computes the gain. `better`, `other`: log densities of each run's samples [nats], NaN if missing; only samples with
-/// both count. The standard error of the mean m of N differences d is clustered by run r, with n_r samples and sum d_r
-/// (linearised ratio: Cochran 1977, section 6.3):
-///   SE^2 = G / (G - 1) sum_r (d_r - m n_r)^2 / N^2,   df = G - 1.
-/// Below five runs the clusters are moving blocks inside runs (Kuensch 1989, Annals of Statistics 17), at least two
-/// autocorrelation times of the differences long:
-///   SE^2 = B / (B - 1) mean_i (S_i - b m)^2 / (b N),   df = B - 1.
-/// S_i is the sum over block i of b samples, B the number of blocks that fit side by side. With fewer than eight blocks
-/// the error is unknown (NaN).
+/// Computes the gain. `better`, `other`: log densities of each run's samples [nats], NaN if missing. Only samples with
+/// both densities are used. The standard error of the mean m of N differences d is clustered by run r, with n_r samples
+/// and sum d_r (linearised ratio: Cochran 1977, section 6.3):
+///   SE^2 = G / (G - 1) sum_r (d_r - m n_r)^2 / N^2,   df = G - 1. With fewer than five runs the clusters are moving
+///   blocks inside runs (Kuensch 1989, Annals of Statistics 17), at least two autocorrelation times of the differences
+///   long:
+///   SE^2 = B / (B - 1) mean_i (S_i - b m)^2 / (b N),   df = B - 1. S_i is the sum over block i of b samples, B the
+///   number of blocks that fit side by side. With fewer than eight blocks the error is unknown (NaN).
 PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::VectorXd>& better,
                        const std::vector<Eigen::VectorXd>& other);
 

@@ -20,7 +20,7 @@ struct SummaryRow {
   Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample], higher is better
   Eigen::VectorXd rmse;      ///< n_y, of the one-step prediction [state unit]
-  double nis_mean = 0.0;     ///< sum of NIS over the number of scored signals, times n_y; n_y in a true filter
+  double nis_mean = 0.0;     ///< sum of NIS over the number of scored signals, times n_y; n_y for a correct model
   double nis_above = 0.0;    ///< share of NIS above the 97.5 % quantile of chi-square for the sample's signals
   double nis_below = 0.0;    ///< share of NIS below the 2.5 % quantile
   double too_far = 0.0;      ///< share of z^2 above the 97.5 % quantile of chi-square(1), z = Phi^-1(pit)
@@ -36,12 +36,12 @@ struct SummaryRow {
 /// has no rows. `scores`: of the evaluations (score_runs).
 std::vector<SummaryRow> summarize(const std::string& filter, const std::vector<Trajectory>& runs,
                                   const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores);
-/// The rows of one role; only its runs need an evaluation.
+/// The rows of one role. Only the runs of this role need an evaluation.
 std::vector<SummaryRow> summarize_role(const std::string& filter, Role role, const std::vector<Trajectory>& runs,
                                        const std::vector<RunEvaluation>& evaluations,
                                        const std::vector<RunScores>& scores);
 
-/// Cost of a limit on the number of modes on the runs of one role: a row of /bank/merged.
+/// Cost of a limit on the number of modes on the runs of one role. One row of /bank/merged.
 struct MergingCost {
   Role role = Role::train;
   Eigen::Index components = 0;       ///< components of the mixture before merging
@@ -57,18 +57,19 @@ struct MergingCost {
 std::vector<MergingCost> merging_costs(const Bank& unlimited, const Bank& limited, Eigen::Index components,
                                        const Recording& recording, const FilterOptions& options);
 
-/// Which values of a score are good. `nominal`: the nearer to a true filter's value, the better.
+/// Which values of a score are good. `nominal`: values near the value of a correct model are good.
 struct ScoreGoal {
   enum class Kind { higher, lower, nominal } kind = Kind::higher;
   double nominal = 0.0;
 
-  /// Loss of a score; smaller is better, NaN for NaN.
+  /// Loss of a score, NaN for NaN. A smaller loss is better.
   double loss(double score) const;
   std::string text() const;  ///< "higher", "lower" or "nearest 0.025"
 };
 
-/// Goal of a score by its name in the summary, or by `<filter>_<role>_<score>` (studies). Empty for columns that are
-/// neither good nor bad (samples, modes). `states`: number of measured states, the mean NIS of a true filter.
+/// Goal of a score. Its name is that in the summary, or `<filter>_<role>_<score>` (studies). Empty for columns that are
+/// neither good nor bad (samples, modes). `states`: number of measured states, which is the mean NIS of a correct
+/// model.
 std::optional<ScoreGoal> goal_of(const std::string& score, int states);
 
 /// The row of a filter over all runs of a role; null if there is none.

@@ -8,10 +8,10 @@
 
 namespace modebank {
 
-/// Options of a filter's evaluation, besides how it steps.
+/// Options of a filter's evaluation. The options of its steps are separate.
 struct ScoringOptions {
   static inline const std::vector<Eigen::Index> default_horizon{1, 10};
-  std::vector<Eigen::Index> horizon = default_horizon;  ///< samples ahead; 1 alone is already in the summary
+  std::vector<Eigen::Index> horizon = default_horizon;  ///< samples ahead; the summary already has horizon 1
   bool smooth = true;            ///< whether to compute smoothed states and the most probable sequence of modes
   FreeRunOptions free_run = {};  ///< options of free runs; their seed is that of the whole chain
   std::uint64_t seed = 1;        ///< for transforms of quantised measurements; the seed of the whole chain

@@ -8,7 +8,7 @@
 namespace modebank {
 namespace {
 
-/// Twice the ranks of increasing sizes; they are whole numbers even if equal sizes share ranks.
+/// Twice the ranks of increasing sizes. Doubled ranks are whole numbers even if equal sizes share ranks.
 std::vector<std::size_t> double_ranks(const std::vector<double>& sizes) {
   std::vector<std::size_t> ranks(sizes.size());
   for (std::size_t first = 0, next = 0; first < sizes.size(); first = next) {

@@ -15,7 +15,7 @@ double mean_per_degree(const SquaredDistances& d) {
   return sample_count(d.value) > 0.0 ? sum_of(d.value) / sum_of(d.degrees) : not_a_number;
 }
 
-/// Deviations of the distances from their degrees times the mean per degree; their overall mean is zero.
+/// Deviation of each distance from its degrees times the mean per degree. The mean of all deviations is zero.
 SeriesByRun deviations(const SquaredDistances& d) {
   const double share = mean_per_degree(d);
   SeriesByRun result = d.value;

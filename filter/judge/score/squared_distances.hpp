@@ -12,8 +12,8 @@ struct Interval {
 };
 
 /// Squared distances of single samples relative to the filter's covariance: NIS of the available signals, or NEES of
-/// the judged states. A distance of d signals has mean d in a true filter. It is chi-square with d degrees of freedom
-/// if the prediction is one Gaussian of known variance.
+/// the judged states. For a correct model a distance of d signals has mean d. It is chi-square with d degrees of
+/// freedom if the prediction is one Gaussian of known variance.
 struct SquaredDistances {
   SeriesByRun value;
   SeriesByRun degrees;  ///< d of each distance
@@ -26,23 +26,23 @@ struct SquaredDistances {
 /// Number of scored signals of a sample.
 Eigen::Index scored_signals(const RunEvaluation& evaluation, Eigen::Index sample);
 
-/// Sum of distances over sum of degrees, times `of_all`, the degrees of a complete sample. `of_all` is therefore a true
-/// filter's mean even with missing signals. Samples count by their degrees. NaN without samples.
+/// Sum of distances over sum of degrees, times `of_all`, the degrees of a complete sample. For a correct model the mean
+/// is therefore `of_all`, even with missing signals. Samples count by their degrees. NaN without samples.
 double mean_distance(const SquaredDistances& distances, double of_all);
 
 /// Variance of the distances about their share of the mean, over that of chi-square terms with the same mean and
-/// degrees. It is 1 for a true filter with single Gaussian predictions. It is larger if rare terms are large, as with
-/// rare and distant modes. A factor on the distances does not change it. 1 without values or variance.
+/// degrees. For a correct model with single Gaussian predictions it is 1. It is larger if a few terms are large, as
+/// with modes that are rare and distant. A factor on the distances does not change it. 1 without values or variance.
 double dispersion(const SquaredDistances& distances);
 
-/// Interval that contains mean_distance of a true filter with probability `level`. It is a chi-square law for the sum's
-/// degrees divided by the autocorrelation time of the distances about their share of the mean, with its margin
+/// Interval that contains mean_distance of a correct model with probability `level`. The sum is treated as chi-square.
+/// Its degrees are divided by the autocorrelation time of the distances about their share of the mean, with a margin
 /// (cautious_time). If a single distance is not `chi_square`, the degrees are also divided by the dispersion (matching
 /// of moments: Satterthwaite 1946, Biometrics Bulletin 2). NaN without samples.
 Interval mean_distance_interval(const SquaredDistances& distances, double of_all, bool chi_square, double level = 0.95);
 
-/// NIS of every sample on the scale of all signals, N, so that one region applies to all. With missing signals it is
-/// the NIS of all signals that a true filter exceeds equally often. NaN where nothing was measured.
+/// NIS of every sample on the scale of all signals, N, so that one region applies to all samples. With missing signals
+/// it is the NIS of all signals with the same tail probability. NaN where nothing was measured.
 Eigen::VectorXd nis_of_all_signals(const RunEvaluation& evaluation);
 
 }  // namespace modebank

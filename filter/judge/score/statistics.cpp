@@ -55,7 +55,7 @@ namespace {
 
 constexpr Eigen::Index most_lags = 20;
 
-/// The runs of a series, about the mean of all runs.
+/// The runs of a series, relative to the mean of all runs.
 class CentredSeries {
  public:
   explicit CentredSeries(const SeriesByRun& series) {
@@ -128,7 +128,8 @@ constexpr double root_two_pi = 2.506628274631000502415765284811;
 constexpr double near_one = 0.999;    // the series below converges too slowly for larger correlations
 constexpr double negligible = 1e-10;  // smallest power of the correlation in the sum
 
-/// Autocorrelations at lags 1, 2, ... as long as the sums of successive pairs (the first with lag 0) are positive.
+/// Autocorrelations at lags 1, 2, ... as long as the sums of successive pairs are positive. The first pair includes lag
+/// 0.
 std::vector<double> autocorrelations(const SeriesByRun& series) {
   const CentredSeries centred(series);
   std::vector<double> result;

@@ -8,11 +8,11 @@
 
 namespace modebank {
 
-/// Statistics of a run derived from RunEvaluation's nis, pit and log_density. They are computed once per sample here
-/// and used by all judgements.
+/// Statistics of a run derived from RunEvaluation's nis, pit and log_density. They are computed here once per sample,
+/// and all judgements use them.
 struct RunScores {
-  /// n_y x N, Phi^-1(pit): standard normal and white for any true filter (innovations of a mixture are not Gaussian).
-  /// NaN where nothing was measured.
+  /// n_y x N, Phi^-1(pit): standard normal and white if the model is correct (innovations of a mixture are not
+  /// Gaussian). NaN where nothing was measured.
   Eigen::MatrixXd z;
   /// N, mode most probable before the measurement; 0 for samples without a score.
   Eigen::VectorXi likeliest;
@@ -21,7 +21,7 @@ struct RunScores {
   double whiteness_p = 0.0;
 };
 RunScores score_run(const RunEvaluation& evaluation);
-/// Phi^-1 of each transform, NaN if there is none.
+/// Phi^-1 of each transform, NaN if the transform is missing.
 Eigen::MatrixXd normal_scores(const Eigen::MatrixXd& pit);
 std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations);
 
@@ -40,8 +40,8 @@ double kolmogorov_distance(std::vector<double> values);
 /// Ljung & Box's test of the series with min(20, N/5) lags. NaN if the series is constant or too short for one lag.
 double ljung_box_p(const std::vector<double>& series);
 
-/// Fisher's method: combined p value of all tests; -2 sum log p is chi-square with two degrees per test. NaN entries
-/// are ignored; NaN if all are.
+/// Fisher's method: combined p value of all tests. -2 sum log p is chi-square with two degrees per test. NaN entries
+/// are ignored; the result is NaN if all are NaN.
 double fisher_p(const std::vector<double>& p_values);
 
 /// A series per run, in time order.
@@ -50,7 +50,7 @@ using SeriesByRun = std::vector<std::vector<double>>;
 double sample_count(const SeriesByRun& series);
 double sum_of(const SeriesByRun& series);
 
-/// Mean over all values; NaN without any.
+/// Mean over all values; NaN without values.
 double mean_of(const SeriesByRun& series);
 
 /// An autocorrelation and its lag.
@@ -58,16 +58,16 @@ struct Autocorrelation {
   Eigen::Index lag = 0;
   double value = 0.0;
 };
-/// The autocorrelation of largest absolute value at lags 1 to min(20, N / 5), over all series together; 0 at lag 0 if
-/// they are too short.
+/// The autocorrelation of largest absolute value at lags 1 to min(20, N / 5), over all series together. The result has
+/// lag 0 if the series are too short.
 Autocorrelation largest_autocorrelation(const SeriesByRun& series);
 
 /// Autocorrelation time: variance of the mean over that for independent terms, at least 1 (initial positive sequence:
 /// Geyer 1992, Statistical Science 7). NaN without values.
 double autocorrelation_time(const SeriesByRun& series);
 
-/// Autocorrelation time of the indicator that a value is among the largest (or smallest) 2.5 %. These are too few for a
-/// direct estimate. So it follows from the autocorrelations of all values' normal scores, assumed jointly normal
+/// Autocorrelation time of the indicator that a value is among the largest (or smallest) 2.5 %. Such values are too few
+/// for a direct estimate. So it follows from the autocorrelations of all values' normal scores, assumed jointly normal
 /// (tetrachoric series: Pearson 1900). NaN without values.
 double autocorrelation_time_of_tail(const SeriesByRun& series);
 

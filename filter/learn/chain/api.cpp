@@ -67,7 +67,7 @@ LearningOptions learning_of(const LearnOptions& options, bool linear) {
   return learning;
 }
 
-/// Runs the chain of `modebank run`. `own`: a motion model of the caller's, or null.
+/// Runs the chain of `modebank run`. `own`: the caller's motion model, or null.
 Learned learn_from(const Recording& recording, const LearnOptions& options, const MotionModel* own) {
   Learning learned;
   Origin origin;

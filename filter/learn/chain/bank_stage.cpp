@@ -68,9 +68,10 @@ void tell_of(const Refinement& refined, const Progress& progress) {
     progress.progress("refine: fit to predictions up to the look-ahead: " + worth_of(ahead));
 }
 
-/// Warns of modes that the mixture made from windows between two other modes. Refinement separates these.
+/// Warns of modes that the mixture made from windows between two other modes. Refinement separates such windows.
 void warn_of_passing_modes(const LearnedFrom& from, const Bank& bank, const Progress& progress) {
-  constexpr double most = 0.75;  // with flickering labels about half of a true mode's windows seem to be between others
+  constexpr double most = 0.75;  // with flickering labels about half of a true mode's windows seem to be between other
+                                 // modes
   const Eigen::VectorXd shares = passing_shares(from.windows, from.mixture);
   for (Index k = 0; k < shares.size(); ++k) {
     const bool screened = std::any_of(bank.screened.begin(), bank.screened.end(),
@@ -98,7 +99,7 @@ Refinement learn_modes(const LearnedFrom& from, const BankInputs& inputs, const 
   return refined;
 }
 
-/// Cost of a limit on the number of modes: learns the same bank without the limit.
+/// Measures the cost of a limit on the number of modes: learns the same bank without the limit.
 std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& inputs, const Bank& limited) {
   const Index components = from.mixture.mixture.components();
   if (inputs.bank.modes == 0 || components <= inputs.bank.modes) return {};

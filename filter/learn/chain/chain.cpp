@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-/// Takes one run of the chain through its stages.
+/// Takes one call of the chain through its stages.
 class Run {
  public:
   Run(const Recording& recording, const LearningHooks& hooks, const Progress& progress, Learning& learned)
@@ -102,7 +102,7 @@ class Run {
   }
 };
 
-/// Sets the options that are to be found from the data.
+/// Sets the options that must be found from the data.
 LearningOptions found_in(const Recording& recording, LearningOptions options,
                          const std::optional<FoundStructure>& structure) {
   if (structure) options = with_structure(options, *structure);

@@ -21,8 +21,9 @@ BankInputs bank_inputs(const LearningOptions& options, const FitOptions& window)
   return inputs;
 }
 
-/// Whether to look for noise that follows the input. Everything learned from it must support it: no logit, no drift, no
-/// look-ahead, no R that is given or estimated beside rounding, and an IMM with no other noise adaptation.
+/// Whether to look for noise that follows the input. Everything learned from this noise must support it. The conditions
+/// are: no logit, no drift, no look-ahead, no R that is given or estimated beside rounding, and an IMM without adaptive
+/// noise.
 NoiseByInput noise_by_input(const LearningOptions& options, const FitOptions& window) {
   const BankOptions& bank = options.bank;
   const bool can = refinement_asked(bank, is_linear(window)) == Refine::em &&
@@ -33,7 +34,7 @@ NoiseByInput noise_by_input(const LearningOptions& options, const FitOptions& wi
 }
 
 CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOptions& window) {
-  // A single Kalman filter needs no competitors that are learned as a bank is.
+  // A single Kalman filter has no use for the competitors that are learned like a bank.
   const bool rivals = options.filter.variant != FilterVariant::kf;
   RefineOptions em = options.bank.em;
   em.seed = options.seed;
@@ -79,7 +80,7 @@ FitOptions window_inputs(const LearningOptions& options) {
   return window;
 }
 
-/// Free runs must not need more measured samples than they start from.
+/// The measured samples at the start of a free run must suffice for the model.
 std::optional<StructureInputs> structure_inputs(const LearningOptions& options) {
   if (!options.searched_lags.any()) return std::nullopt;
   StructureInputs inputs{options.searched_lags, {}, options.filter.variant != FilterVariant::kf};

@@ -7,7 +7,7 @@
 
 #include "filter/learn/chain/options.hpp"
 
-/// The inputs of each stage of learning. The key of a stored stage is made from its struct, field by field, so a stage
+/// The inputs of each stage of learning. The key of a stored stage is made from its struct, field by field. So a stage
 /// cannot depend on anything outside its key.
 namespace modebank {
 
@@ -16,52 +16,53 @@ struct WindowInputs {
 };
 
 struct MixtureInputs {
-  FitOptions window;  ///< for fits of the same windows with one lag
+  FitOptions window;  ///< used to fit the same windows with one lag
   ClusterOptions mixture;
   std::uint64_t seed = 1;
 };
 
-/// Inputs of the bank's competitors. All but one_motion depend on the windows alone; one_motion has at most as many
-/// noise levels as the mixture has components.
+/// Inputs of the bank's competitors. Except for one_motion, competitors depend on the windows alone. one_motion has at
+/// most as many noise levels as the mixture has components.
 struct CompetitorInputs {
   FitOptions window;
-  FilterOptions filter;                              ///< filter of the competitors, for the memory of the noise scale
-  std::vector<Index> horizon;                        ///< horizons for which `drifting` widens its predictions
-  Index transitions = 0;                             ///< largest number of transitions to learn from, as for the bank;
-                                                     ///< 0: all
-  std::uint64_t seed = 1;                            ///< selects these transitions
-  std::string terms = "auto";                        ///< terms of `nonlinear`
-  RefineOptions em = {};                             ///< how `nonlinear` is learned
-  std::optional<Lags> linear = {};                   ///< lags of baseline, noise_only and nonlinear; empty: the
-                                                     ///< windows'
-  std::optional<Lags> drifting = {};                 ///< lags of `drifting`; empty: the windows'
-  NoiseByInput noise_by_input = NoiseByInput::none;  ///< for all but baseline and drifting, and for the bank
+  FilterOptions filter;               ///< filter of the competitors, for the memory of the noise scale
+  std::vector<Index> horizon;         ///< horizons for which `drifting` widens its predictions
+  Index transitions = 0;              ///< largest number of transitions to learn from, as for the bank; 0 takes all
+  std::uint64_t seed = 1;             ///< selects these transitions
+  std::string terms = "auto";         ///< terms of `nonlinear`
+  RefineOptions em = {};              ///< how `nonlinear` is learned
+  std::optional<Lags> linear = {};    ///< lags of baseline, noise_only and nonlinear; empty: the
+                                      ///< windows'
+  std::optional<Lags> drifting = {};  ///< lags of `drifting`; empty: the windows'
+  NoiseByInput noise_by_input = NoiseByInput::none;  ///< delay of all competitors but baseline and drifting, and of the
+                                                     ///< bank
   bool all = true;                                   ///< false: only the baseline and the decision on the noise factor
 };
 
-/// Inputs of the competitor one_motion, which is learned as the bank is.
+/// Inputs of the competitor one_motion, which is learned like the bank.
 struct OneMotionInputs {
   BankOptions bank;
   FilterOptions filter;             ///< its filter
   std::vector<Index> horizon = {};  ///< horizons at which left-out training runs are predicted, besides one sample
                                     ///< ahead
-  std::optional<Lags> lags = {};    ///< empty: the windows'
+  std::optional<Lags> lags = {};    ///< if empty, those of the windows
 };
 
 struct BankInputs {
   FitOptions window;
-  BankOptions bank;                     ///< with the chain's seed
-  bool one_model = false;               ///< the bank is the baseline, because a single Kalman filter was requested
-  std::optional<FilterOptions> filter;  ///< set where learning runs the filter: in refinement, and for the cost of
-                                        ///< merged modes
-  std::optional<OneMotionInputs> one_motion = {};  ///< empty for a single Kalman filter, which does not need it
-  bool terms_stated = false;                       ///< terms of `nonlinear` are given, not chosen on left-out runs
+  BankOptions bank;        ///< with the chain's seed
+  bool one_model = false;  ///< whether the bank is the baseline, because a single Kalman filter was requested
+  std::optional<FilterOptions> filter;  ///< set if learning runs the filter: in refinement, and for the cost of merged
+                                        ///< modes
+  std::optional<OneMotionInputs> one_motion = {};  ///< empty for a single Kalman filter
+  bool terms_stated = false;  ///< whether the terms of `nonlinear` are given instead of chosen on runs that were left
+                              ///< out
 };
 
 /// The inputs of the search for a structure.
 struct StructureInputs {
   SearchedLags searched;
-  FitOptions window;       ///< the lags that are not searched, and the fit of a model; all else has default values
+  FitOptions window;  ///< the lags that are not searched, and the fit of a model; all other fields have default values
   bool with_modes = true;  ///< whether modes, and one motion with switching noise, choose their own structure
 };
 

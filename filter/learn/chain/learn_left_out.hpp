@@ -7,19 +7,20 @@
 #include "filter/learn/chain/inputs.hpp"
 #include "filter/learn/left_out/folds.hpp"
 
-/// Cross-validation of the chain: learns banks as `run` does, without some training runs, and predicts these.
+/// Cross-validation of the chain: learns banks in the same way as `run`, without some training runs, and predicts those
+/// runs.
 namespace modebank {
 
-/// Predictions of one run while it was left out.
+/// Predictions of one run by a bank that was learned without it.
 struct LeftOutRun {
   Eigen::VectorXd time_s;       ///< N, increasing
-  Eigen::VectorXd one_step;     ///< N, log density [nats] one sample ahead; NaN if there is none
+  Eigen::VectorXd one_step;     ///< N, log density [nats] one sample ahead; NaN where it does not exist
   Eigen::VectorXd common_step;  ///< N, log density `ahead` samples ahead; empty if not requested
   std::string run = {};
 };
 
 /// Learns a bank from the training part of each split and predicts the split's left-out runs with it. Returns the runs
-/// of each split in their order. `filter`: filter for the predictions. `ahead`: horizon of common_step, 0: none. The
+/// of each split in order. `filter`: filter for the predictions. `ahead`: horizon of common_step; 0 means none. The
 /// result is the same for any number of threads. Throws what the stages throw.
 std::vector<std::vector<LeftOutRun>> predict_left_out(const std::vector<ValidationSplit>& splits,
                                                       const LearningInputs& inputs, const FilterOptions& filter,

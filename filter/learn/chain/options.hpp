@@ -21,9 +21,9 @@ struct AutomaticWindows {
   bool any() const { return length || step; }
 };
 
-/// Lags and delay of stages that differ from the windows'; empty: the same.
+/// Lags and delay of stages that differ from those of the windows. Empty if there is no difference.
 struct OtherLags {
-  std::optional<Lags> linear = {};      ///< baseline, noise_only and the search for terms
+  std::optional<Lags> linear = {};      ///< for baseline, noise_only and the search for terms
   std::optional<Lags> one_motion = {};  ///< one motion with switching noise
   std::optional<Lags> drifting = {};
 };
@@ -36,10 +36,10 @@ struct LearningOptions {
   FilterOptions filter = {};
   ScoringOptions scoring = {};
   std::uint64_t seed = 1;
-  SearchedLags searched_lags = {};                        ///< lags chosen on left-out runs, ignoring `window`
-  AutomaticWindows automatic_windows = {};                ///< set from the data, ignoring `window`
-  std::string terms = "auto";                             ///< terms of `nonlinear`: auto, none, or a list for
-                                                          ///< read_terms
+  SearchedLags searched_lags = {};          ///< lags are chosen on runs that were left out; replaces those in `window`
+  AutomaticWindows automatic_windows = {};  ///< set from the data; replaces the value in `window`
+  std::string terms = "auto";               ///< terms of `nonlinear`: auto, none, or a list for
+                                            ///< read_terms
   NoiseByInput noise_by_input = NoiseByInput::automatic;  ///< whether noise may depend on state and input
   OtherLags other_lags = {};
   bool competitors = true;  ///< false: only the baseline, from which the bank starts

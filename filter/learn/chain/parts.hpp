@@ -29,27 +29,26 @@ struct MixturePart {
 
 struct CompetitorsPart {
   std::optional<Bank> baseline;        ///< one Kalman filter
-  std::optional<Bank> noise_only;      ///< only its noise switches
+  std::optional<Bank> noise_only;      ///< one motion of which only the noise switches
   std::optional<Bank> drifting;        ///< one linear motion whose coefficients drift, with running noise
   std::optional<Bank> nonlinear = {};  ///< one nonlinear motion; empty if no term gains on the training runs
 };
 
 struct BankPart {
   std::optional<Bank> bank;
-  std::optional<Bank> one_motion;  ///< the competitor that is learned as the bank is, with one theta
+  std::optional<Bank> one_motion;  ///< one_motion: learned like the bank, with one theta
   std::optional<Bank> unrefined;   ///< the bank before expectation-maximisation
   MeasuredFit measured_fit = MeasuredFit::none;
-  Index learned_transitions = 0;          ///< number of transitions that the bank was refined on; 0: all training
-                                          ///< transitions
-  std::vector<LeftOutRow> left_out = {};  ///< filled if filters were learned without some training runs
-  std::vector<MergingCost> merging = {};  ///< filled if bank.modes merged components
+  Index learned_transitions = 0;  ///< number of transitions that refined the bank; 0 means all training transitions
+  std::vector<LeftOutRow> left_out = {};  ///< present if filters were learned without some training runs
+  std::vector<MergingCost> merging = {};  ///< present if bank.modes merged components
 };
 
 /// All results of learning from runs.
 struct Learning : StructurePart, WindowsPart, MixturePart, CompetitorsPart, BankPart {
   bool terms_asked = false;  ///< whether terms of `nonlinear` were searched, even if none gained
 
-  /// The bank of a filter by name, if there is one; for the combination its combined_frame.
+  /// The bank of a filter by name, if it exists; for the combination, its combined_frame.
   std::optional<Bank> bank_of(const std::string& filter) const;
 };
 

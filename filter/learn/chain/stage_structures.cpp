@@ -33,7 +33,7 @@ void mark(Rows& rows, Flag flag, std::size_t at) {
   rows[at].*flag = true;
 }
 
-/// Position of these lags in the table. If absent, they are added without a score.
+/// Position of these lags in the table. Adds missing lags without a score.
 std::size_t position_of(Rows& rows, Index state_lags, Index input_lags, Index delay) {
   const auto found = std::find_if(rows.begin(), rows.end(), [&](const StructureScore& s) {
     return s.state_lags == state_lags && s.input_lags == input_lags && s.input_delay == delay;
@@ -45,8 +45,8 @@ std::size_t position_of(Rows& rows, Index state_lags, Index input_lags, Index de
   return rows.size() - 1;
 }
 
-/// The delay of one linear motion, and the usual delay. Input effects of opposite sign in different modes cancel in one
-/// common model, which then prefers a later sample of that input.
+/// Delays to test: that of one linear motion, and the usual delay. Input effects of opposite sign in different modes
+/// cancel in one common model. That model then prefers a later sample of the input.
 std::vector<Index> delays_of(const StructureScore& linear, const SearchedLags& searched) {
   constexpr Index usual = 1;
   std::vector<Index> delays{linear.input_delay};
@@ -54,8 +54,8 @@ std::vector<Index> delays_of(const StructureScore& linear, const SearchedLags& s
   return delays;
 }
 
-/// Positions of 1 to `most` equal state and input lags (of the searched ones), if runs have enough samples before their
-/// first prediction.
+/// Positions of 1 to `most` equal state and input lags (of the searched ones). Runs must have enough samples before
+/// their first prediction.
 std::vector<std::size_t> positions_of_equal(Rows& rows, Index most, const SearchedLags& searched) {
   const StructureScore linear = marked(rows, &StructureScore::linear);
   std::vector<std::size_t> positions;

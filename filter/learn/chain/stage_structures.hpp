@@ -5,15 +5,16 @@
 
 namespace modebank {
 
-/// Chooses a structure for each stage among those that were compared. A linear model needs lags wherever a motion is
-/// nonlinear or switches; models that are nonlinear or switch lose by these lags. Marks rows of the table. Adds rows
-/// that are tested only here: one lag and two, with the found delay and with a delay of one sample.
+/// Chooses a structure for each stage among those that were compared. If a motion is nonlinear or switches, a linear
+/// model needs additional lags. Models that are themselves nonlinear or switch lose by these lags. Marks rows of the
+/// table. Adds rows that are tested only here: one lag and two, with the found delay and with a delay of one sample.
 ///
 /// - One linear motion: the result of the search.
 /// - `drifting`: a one-standard-error rule over few, different runs is unstable. Instead the causal score of a model
 ///   with drifting coefficients decides, if it predicts the training runs better than the constant one by 0.02 nats per
 ///   sample. Candidates are the finalists, and equal state and input lags from 1 to 8. The fewest lags within 0.001
-///   nats per sample (or 6 nats in all) of the highest score are taken. Above 20,000 training transitions the search's
+///   nats per sample (or 6 nats in all) of the highest score are taken. With more than 20,000 training transitions the
+///   search's
 ///   result is kept, because runs are not few then.
 /// - Modes, and one motion with switching noise: the result of the search, unless one lag, two lags or those of
 ///   `drifting` gain (compare_structures).

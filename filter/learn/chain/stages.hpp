@@ -13,7 +13,7 @@
 #include "ident/data/trajectory.hpp"
 #include "mixture/features.hpp"
 
-/// The stages of learning: functions of the data, of earlier results and of their inputs struct. They throw
+/// The stages of learning. Each is a function of the data, of earlier results and of its inputs struct. Throws
 /// ConfigurationError for inputs that do not fit the data, and DataError for unusable data.
 namespace modebank {
 
@@ -30,11 +30,12 @@ GlobalModel linear_global(const Recording& recording, const WindowFits& windows,
 
 /// One linear model of the training runs.
 struct OneModel {
-  std::string model;  ///< name of the windows' model, if it has these lags
+  std::string model;  ///< name of the model of the windows, if it has these lags
   LinearStructure structure;
   GlobalModel global;
 };
-/// Fits one model with these lags; empty: the windows'. `motion`: motion model of the windows, null for linear ones.
+/// Fits one model with these lags; if empty, with those of the windows. `motion`: motion model of the windows, null for
+/// linear ones.
 OneModel one_model(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
                    const std::optional<Lags>& lags);
 
@@ -57,15 +58,17 @@ struct LearnedFrom {
 /// Learns the bank, and refines it if the options require.
 Refinement learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Progress& progress);
 
-/// Learns the competitor one_motion: as the bank, with one theta, also starting from the bank's noises.
+/// Learns the competitor one_motion. It is learned like the bank but with one theta, and also starts from the noises of
+/// the bank.
 Refinement learn_one_motion(const LearnedFrom& from, const Bank& bank, const BankInputs& inputs,
                             const Progress& progress);
 
-/// Cost of a limit on the number of modes: learns the same bank without the limit.
+/// Measures the cost of a limit on the number of modes: learns the same bank without the limit.
 std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& inputs, const Bank& limited);
 
-/// Scores of bank, competitors and their combination on the training runs, each run by filters learned without it.
-/// Empty if nothing was left out. `of_splits`: banks and one_motion per split; the other filters are learned anew.
+/// Scores of bank, competitors and their combination on the training runs. Each run is scored by filters learned
+/// without it. Empty if no run was left out. `of_splits`: banks and one_motion per split; the other filters are learned
+/// here.
 std::vector<LeftOutRow> score_left_out(const Recording& recording, const CompetitorsPart& learned,
                                        const BankInputs& inputs,
                                        const std::vector<std::pair<std::string, std::vector<Bank>>>& of_splits,

@@ -9,17 +9,17 @@
 /// Checks of the training runs before anything is fitted.
 namespace modebank {
 
-/// Throws DataError for a state that is constant in all training runs: it contains no motion, and any filter predicts
-/// it without error.
+/// Throws DataError for a state that is constant in all training runs. Such a state contains no motion, and any filter
+/// predicts it without error.
 void refuse_constant_states(const Recording& recording);
 
-/// Throws DataError for a given horizon (samples ahead) that is longer than the longest judged run. Judged runs are
-/// held-out runs, or else the training runs. Its errors would come from no sample.
+/// Throws DataError for a given horizon (samples ahead) that is longer than the longest judged run. No sample could be
+/// scored at this horizon. Judged runs are held-out runs, or else the training runs.
 void refuse_unreached_horizons(const Recording& recording, const std::vector<Index>& horizons);
 
 /// A message about regressors of the linear model that the training runs do not determine; empty if there is none.
 std::string unidentifiable_effects(const Recording& recording, const LinearStructure& structure);
-/// unidentifiable_effects for the fitted model.
+/// The effects in unidentifiable_effects for the fitted model.
 std::string unidentifiable_effects(const Recording& recording, const FitOptions& options);
 
 }  // namespace modebank

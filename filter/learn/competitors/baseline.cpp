@@ -21,11 +21,11 @@ constexpr double bound_tolerance = 1e-5;   // nats per sample; acceptable loss w
 constexpr double least_gain = 1e-9;        // nats per sample; a better start must exceed rounding
 constexpr AscentLimits limits{200, 1e-12};
 constexpr AscentLimits rough_limits{200, 1e-6};  // for comparing starts and bounds
-constexpr std::array<std::pair<double, double>, 2> noise_starts{{{1.0, 0.1}, {0.01, 0.5}}};  // shares of Q, R
+constexpr std::array<std::pair<double, double>, 2> noise_starts{{{1.0, 0.1}, {0.01, 0.5}}};  // shares of Q and R
 
-/// Lower bound of R's diagonal. An output's noise enters the innovations of every state, through the measurement and
-/// through each lag by its squared coefficient. The bound limits the sum of these effects to a share of the residual
-/// variance. A share of var(y) is unsuitable: with clean data and many lags it exceeds the residuals.
+/// Lower bound of R's diagonal. An output's noise enters the innovations of every state: through the measurement, and
+/// through each lag by the squared coefficient of that lag. The bound limits the sum of these effects to a share of the
+/// residual variance. A share of var(y) is unsuitable: with clean data and many lags it exceeds the residuals.
 Eigen::VectorXd measurement_bound(const LinearStructure& structure, const Eigen::VectorXd& theta,
                                   const Eigen::VectorXd& residual_variance) {
   const Index n = structure.states;
@@ -60,8 +60,8 @@ struct NoiseSearch {
   }
 };
 
-/// The likelihood can have one maximum with the noise in Q and another with it in R. So several starts are compared;
-/// NaN counts as lowest.
+/// The likelihood can have one maximum with the noise in Q and another with the noise in R. So several starts are
+/// compared; NaN counts as lowest.
 LikelihoodMaximum best_of_starts(const NoiseSearch& search, Bank bank, const std::vector<Index>& outputs) {
   std::optional<LikelihoodMaximum> best;
   for (const auto& [q_share, r_share] : noise_starts) {
@@ -79,8 +79,8 @@ struct HeldNoise {
   std::vector<Index> free;  ///< outputs whose R is not at its bound
 };
 
-/// Holds each output's R at its bound if that costs no likelihood: first all outputs at once, with Q of exactly
-/// measured states, then one by one.
+/// Holds each output's R at its bound if that costs no likelihood. First tries all outputs at once, with Q of exactly
+/// measured states. Then tries the outputs one by one.
 HeldNoise hold_at_bounds(const NoiseSearch& search, const Bank& exact, LikelihoodMaximum best,
                          const std::vector<Index>& outputs) {
   const auto costs_nothing = [&](const LikelihoodMaximum& held, const LikelihoodMaximum& free) {
@@ -105,7 +105,7 @@ HeldNoise hold_at_bounds(const NoiseSearch& search, const Bank& exact, Likelihoo
 }  // namespace
 
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
-  // All samples have equal weight, because other filters' scores are compared with this likelihood.
+  // All samples have equal weight, because this likelihood is compared with the scores of other filters.
   const Recording training = unweighted_training_part(recording);
   if (training.transitions(Role::train) == 0)
     throw DataError("no training run has a usable transition (two successive samples without missing values)");
@@ -121,7 +121,7 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
   const Eigen::VectorXd scale = global.noise_variance().unaryExpr(&positive_variance);
   NoiseSearch search{
       {training, {FilterVariant::kf}, std::nullopt}, scale, measurement_bound(structure, global.theta, scale)};
-  if (bank.is_quantised())  // least squares attribute rounding to the process
+  if (bank.is_quantised())  // least squares attributes rounding to the process
     search.theta_unit = global.covariance.diagonal().cwiseSqrt().unaryExpr(&positive_variance);
   std::vector<Index> outputs(static_cast<std::size_t>(n));
   std::iota(outputs.begin(), outputs.end(), Index{0});

@@ -52,8 +52,8 @@ void take_own_variance(Bank& bank, const Recording& recording) {
   bank.noise_variance() = bank.noise_variance().unaryExpr(&positive_variance).eval();
 }
 
-/// Settings at the ends of the grid that may be better beyond it. A floor that gives the same score as the next one has
-/// no effect and does not count.
+/// Settings at the ends of the grid whose optimum may lie beyond the grid. A floor that gives the same score as the
+/// next one has no effect and does not count.
 std::vector<std::string> grid_ends(const DriftingGrid& grid, const DriftingScores& scores, Index best) {
   const std::array<Index, 6> at = grid.point(best), size = grid.sizes();
   const auto last = [&](std::size_t i) { return size[i] > 1 && at[i] == size[i] - 1; };
@@ -95,7 +95,7 @@ std::vector<DriftingForecasts> training_forecasts(const Bank& bank, const Record
   return forecasts;
 }
 
-/// The grid position of the factor that makes the errors most likely; of equal ones the nearest to 1.
+/// The grid position of the factor that makes the errors most likely. Among equal positions, the nearest to factor 1.
 Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts>& runs, std::size_t horizon) {
   const auto gain = [&](Index i) {
     const double factor = std::exp2(0.25 * static_cast<double>(i));
@@ -150,7 +150,9 @@ Bank relearn_drifting(const Bank& like, const Recording& recording, const Global
   Bank bank = like;
   bank.modes.front().model = own.modes.front().model;
   bank.drift.scale = own.drift.scale;
-  if (like.drift.wandering == Wandering::gain) return bank;  // its variance comes from its own errors
+  if (like.drift.wandering == Wandering::gain)
+    return bank;  // the variance of the drifting model comes from its own
+                  // errors
   const Eigen::ArrayXd share = like.running_noise.floor.array() / like.noise_variance().array();
   bank.running_noise.floor = share * own.noise_variance().array();
   bank.modes.front().Q = own.modes.front().Q;

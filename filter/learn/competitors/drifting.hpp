@@ -10,15 +10,15 @@
 
 namespace modebank {
 
-/// The settings of a drifting model to choose from (method: section 6). Values are in order of preference among equals;
-/// q, p0 and floor ascend, leak descends.
+/// The settings of a drifting model to choose from (method: section 6). Among equal values, the earlier one is
+/// preferred. q, p0 and floor ascend, leak descends.
 struct DriftingGrid {
   std::vector<double> q{0.0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
   std::vector<double> p0{0.0, 1e-2, 1e-1, 1.0, 10.0};
   std::vector<double> leak{1.0, 0.97, 0.9};
   std::vector<double> lam{0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.92, 0.96};
   std::vector<double> nu{0.0, 3.0, 5.0, 8.0, 15.0};
-  std::vector<double> floor{1e-6, 1e-5, 1e-4, 1e-3};  ///< as a share of the training residuals' variance
+  std::vector<double> floor{1e-6, 1e-5, 1e-4, 1e-3};  ///< share of the variance of the training residuals
 
   /// Sizes in the order q, p0, leak, lam, nu, floor; the last index runs fastest.
   std::array<Eigen::Index, 6> sizes() const {
@@ -44,34 +44,34 @@ struct DriftingScores {
 /// densities from these. Throws std::invalid_argument for an empty grid, and DataError if nothing can be scored.
 DriftingScores score_drifting_grid(const Bank& start, const Recording& recording, const DriftingGrid& grid);
 
-/// Root mean square of every regressor over the training transitions, with equal weights; 1 for a regressor that is
-/// always zero. Throws DataError without transitions.
+/// Root mean square of every regressor over the training transitions, with equal weights; 1 if a regressor is always
+/// zero. Throws DataError without transitions.
 Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructure& structure);
 
-/// Learns the competitor `drifting`. `global`: least squares of this structure on the training runs. Its settings are
-/// the best of the grid by the training runs' log score one sample ahead. For each of `horizons` from 2 on, the factor
-/// of its variance is the one of 2^(-4), 2^(-3.75), ..., 2^8 that makes the training errors most likely. All samples
-/// have equal weight. If one common factor drifts, v0 is the variance of the drifting model's own errors, because the
-/// errors of constant coefficients contain the drift.
+/// Learns the competitor `drifting`. `global`: least squares of this structure on the training runs. The settings are
+/// those of the grid with the best log score of the training runs one sample ahead. Each of `horizons` from 2 on has a
+/// factor on the variance: the one of 2^(-4), 2^(-3.75), ..., 2^8 that makes the training errors most likely. All
+/// samples have equal weight. If one common factor drifts, v0 is the variance of the drifting model's own errors,
+/// because the errors of constant coefficients contain the drift.
 Bank learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
                     const std::vector<Eigen::Index>& horizons, const DriftingGrid& grid = {},
                     Wandering wandering = Wandering::all);
 
-/// A model with the settings of `like`, and theta0 and variances from these training runs.
+/// A model with the settings of `like`; theta0 and the variances come from these training runs.
 Bank relearn_drifting(const Bank& like, const Recording& recording, const GlobalModel& global);
 
-/// A grid with fewer settings, for comparing models, not for forecasting.
+/// A grid with fewer settings. It is used to compare models; forecasts use the full grid.
 DriftingGrid coarse_drifting_grid();
-/// Causal log score of the training transitions from `latest` on, by the drifting model of this structure learned from
-/// them. `latest` is the first transition that the model with the longest memory predicts. Minus infinity if it cannot
-/// be learned.
+/// Causal log score of the training transitions from `latest` on. The score is that of the drifting model with this
+/// structure, learned from these transitions. `latest` is the first transition that the model with the longest memory
+/// predicts. Minus infinity if the model cannot be learned.
 double drifting_training_score(const Recording& recording, Eigen::Index latest, const LinearStructure& structure,
                                const DriftingGrid& grid, Wandering wandering = Wandering::all);
 
-/// learn_drifting with the choice of drifting coefficients that is most likely on the training runs. Candidates: all
-/// coefficients of `structure`; its constant (added if absent); one factor on its input coefficients; or each of these
-/// with one lag. The causal score of at most 20,000 transitions and settings of the coarse grid decides. All
-/// coefficients of `structure` are kept unless another candidate gains 0.02 nats per sample.
+/// learn_drifting with the choice of drifting coefficients that is most likely on the training runs. The candidates
+/// are: all coefficients of `structure`; its constant (added if absent); one factor on its input coefficients; or each
+/// of these with one lag. The causal score of at most 20,000 transitions and settings of the coarse grid decides. All
+/// coefficients of `structure` stay unless another candidate gains 0.02 nats per sample.
 Bank learn_likeliest_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
                               const std::vector<Eigen::Index>& horizons);
 

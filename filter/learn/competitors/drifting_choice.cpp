@@ -21,7 +21,7 @@ struct Wanderer {
   Wandering wandering;
 };
 
-/// The candidates; the first is kept if none gains.
+/// The candidates. The first one is kept if no other gains.
 std::vector<Wanderer> candidates_of(const LinearStructure& structure) {
   const LinearStructure one_lag = structure.with_one_lag();
   std::vector<Wanderer> candidates{{structure, Wandering::all}};
@@ -57,7 +57,7 @@ Bank learn_likeliest_drifting(const Recording& recording, const GlobalModel& glo
   const std::vector<Wanderer> candidates = candidates_of(structure);
   const Wanderer* chosen = &candidates.front();
   DriftingGrid grid = coarse_drifting_grid();
-  grid.p0.push_back(10.0);  // differences between runs are learned anew in each run
+  grid.p0.push_back(10.0);  // each run learns its own coefficients, so differences between runs cost nothing here
   double best = -std::numeric_limits<double>::infinity();
   for (const Wanderer& candidate : candidates) {
     const double score = drifting_training_score(fewer ? *fewer : recording, structure.first_transition(),

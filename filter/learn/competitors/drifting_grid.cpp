@@ -33,8 +33,8 @@ std::vector<GridRun> training_instants(const Bank& bank, const Recording& record
   return runs;
 }
 
-/// Inputs of all running variances and densities of one (q, p0, leak): for each scored signal e^2 / (1 + h'Ph) over v0,
-/// by output, and the restarts of the running variance.
+/// Inputs of all running variances and densities of one (q, p0, leak). They are e^2 / (1 + h'Ph) over v0 of each scored
+/// signal, by output, and the restarts of the running variance.
 struct DriftTrace {
   std::vector<std::vector<double>> ratio;       ///< per output
   std::vector<std::vector<std::size_t>> start;  ///< per output: positions in `ratio`

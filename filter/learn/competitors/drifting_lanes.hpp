@@ -11,7 +11,7 @@
 
 namespace modebank {
 
-/// Sums of logarithms, one per lane. It takes the logarithm of the product of eight values, which cannot overflow or
+/// Sums of logarithms, one per lane. Takes the logarithm of products of eight values; such a product cannot overflow or
 /// underflow.
 class LogSum {
  public:
@@ -19,7 +19,7 @@ class LogSum {
 
   explicit LogSum(Eigen::Index lanes) : sum_(Eigen::ArrayXd::Zero(lanes)), product_(lanes) {}
 
-  /// Adds the first `count` columns of lanes x block positive values.
+  /// Adds the first `count` columns of positive values (lanes x block).
   void add(const Eigen::ArrayXXd& values, Eigen::Index count) {
     product_ = values.col(0);
     for (Eigen::Index j = 1; j < count; ++j) product_ *= values.col(j);
@@ -36,7 +36,7 @@ class LogSum {
 };
 
 /// Running variances of all (lam, floor) of a grid, one per lane (floor runs fastest), and the sums of densities for
-/// all nu. All in units of v0.
+/// all nu. All values are in units of v0.
 class DriftingLanes {
  public:
   explicit DriftingLanes(const DriftingGrid& grid)
@@ -57,7 +57,7 @@ class DriftingLanes {
     for (const double nu : grid.nu) noise_.emplace_back(nu);
   }
 
-  /// Processes a signal's e^2 / (1 + h'Ph) from a start on.
+  /// Processes e^2 / (1 + h'Ph) of one signal from a start on.
   void follow(const double* ratio, std::size_t count) {
     v_.setOnes();
     for (std::size_t k = 0; k < count; k += LogSum::block)
@@ -65,8 +65,8 @@ class DriftingLanes {
     signals_ += static_cast<double>(count);
   }
 
-  /// Writes the sums of log densities in the grid's order (lam, nu, floor), without the half of log v0 and log (1 +
-  /// h'Ph).
+  /// Writes the sums of log densities in the grid's order (lam, nu, floor). They exclude the half of log v0 and log (1
+  /// + h'Ph).
   void write(Eigen::Ref<Eigen::VectorXd> out) const {
     const Eigen::Index nus = std::ssize(noise_);
     for (Eigen::Index d = 0; d < nus; ++d) {
@@ -81,7 +81,7 @@ class DriftingLanes {
   Eigen::ArrayXd floor_, keep_, v_, squares_;
   Eigen::ArrayXXd variance_, square_, tail_;  ///< lanes x block
   LogSum log_variance_;
-  std::vector<LogSum> log_tail_;  ///< per nu of 1 + z^2 / (nu - 2)
+  std::vector<LogSum> log_tail_;  ///< per nu: sums of the logarithm of 1 + z^2 / (nu - 2)
   std::vector<StudentNoise> noise_;
   double signals_ = 0.0;
 

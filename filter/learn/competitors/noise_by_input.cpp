@@ -36,14 +36,15 @@ constexpr double nu = 5.0;                // degrees of freedom of the residuals
 constexpr double ridge = 4.0;             // information of one sample about each standardised logarithm
 constexpr double largest_exponent = 6.0;  // limit of a scale's exponent during the search
 constexpr int most_scoring_steps = 25;
-constexpr std::array<double, 4> noise_levels{1.0 / 16.0, 0.25, 1.0, 4.0};  // of the residuals' variance, at the start
+constexpr std::array<double, 4> noise_levels{1.0 / 16.0, 0.25, 1.0, 4.0};  // share of the residuals' variance, at the
+                                                                           // start
 constexpr double start_stay = 0.9;
 constexpr int most_em_steps = 15;
 
 /// Directions over [z; v] that noise may depend on, one per row. `coefficients`: q x n.
 MatrixXd candidate_directions(const LinearStructure& s, const MatrixXd& coefficients) {
   const Index n = s.dimension(), m = s.acting_inputs();
-  const bool changes = s.input_lags > 1, sums = m > 1;  // a single input is its own sum
+  const bool changes = s.input_lags > 1, sums = m > 1;  // a single input is equal to the sum of inputs
   MatrixXd D = MatrixXd::Zero(s.states + s.inputs + (changes ? s.inputs : 0) + (sums ? s.states : 0), n + m);
   Index row = 0;
   for (Index i = 0; i < s.states; ++i) D(row++, i) = 1.0;
@@ -70,7 +71,7 @@ MatrixXd standardised(const MatrixXd& residuals) {
   return E(Eigen::all, kept);
 }
 
-/// g of scales exp(z'g); the last column of z is one. Fisher scoring for a Student t, with a small ridge.
+/// Returns g of the scales exp(z'g); the last column of z is one. Fisher scoring for a Student t, with a small ridge.
 VectorXd fit_scales(const MatrixXd& z, const MatrixXd& E) {
   VectorXd g = VectorXd::Zero(z.cols());
   const double per_sample = 2.0 * nu / (nu + 3.0) * static_cast<double>(E.cols());
@@ -92,7 +93,7 @@ VectorXd fit_scales(const MatrixXd& z, const MatrixXd& E) {
   return g;
 }
 
-/// Only the usable rows, for a structure with terms as additional regressors.
+/// Returns the usable rows, for a structure with terms as additional regressors.
 Transitions regression_rows(const TrainingTransitions& all, const MotionTerms& terms) {
   std::vector<Index> usable;
   for (Index k = 0; k < all.count(); ++k)
@@ -139,9 +140,9 @@ NoiseFactor fit(const TrainingTransitions& transitions, const MotionTerms& terms
   return factor;
 }
 
-/// One motion whose noise switches between levels, by expectation-maximisation. Noise that is larger for a while can be
-/// followed without an input, so levels must be learned. With fixed levels a factor seemed to gain .15 nats per sample
-/// on DART's training runs.
+/// One motion whose noise switches between levels, by expectation-maximisation. If noise is larger for a while, a
+/// filter can follow it without an input. So the levels must be learned: with fixed levels a factor seemed to gain .15
+/// nats per sample on DART's training runs.
 SwitchingRegression switching_noise(const Recording& recording, const TrainingTransitions& transitions) {
   const GlobalModel global = fit_global(recording, transitions.structure);
   const SwitchingPrior prior = switching_prior(transitions, global, {}, refine_tuning.Q_transitions, refine_tuning);
@@ -155,7 +156,7 @@ SwitchingRegression switching_noise(const Recording& recording, const TrainingTr
   return em.model();
 }
 
-/// Sums per run of the log density that the factor adds on rows of `judged`, and the number of these rows.
+/// Sums per run, over rows of `judged`, of the log density that the factor adds. Also returns the number of these rows.
 std::pair<VectorXd, VectorXd> gains(const Recording& learned, const Recording& judged, const LinearStructure& s) {
   if (stack_training(judged, s).count() == 0) return {};
   const TrainingTransitions rows = gather_training_transitions(learned, s),
@@ -180,8 +181,8 @@ FoundNoiseFactor find_noise_factor(const Recording& all, const LinearStructure& 
   if (all.quantum.size() > 0 || all.weighted() || folds < 2) return found;
   const std::optional<Recording> part = learning_part(all, most_transitions, seed);
   const Recording training = training_part(part ? *part : all);
-  // Left-out runs gain less than the runs that chose the factor. If the latter gain too little, the factor is rejected
-  // without cross-validation.
+  // Runs that are left out gain less than the runs that chose the factor. If even the latter gain too little, the
+  // factor is rejected without cross-validation.
   const auto [of_all, rows] = gains(training, training, structure);
   const PairedLoss seen = paired_loss(of_all, VectorXd::Zero(of_all.size()), rows);
   found.gain = seen.mean;

@@ -11,8 +11,8 @@
 
 namespace modebank {
 
-/// automatic: one factor on all process noise depends on state and input if left-out training runs gain by it. none: no
-/// factor.
+/// automatic: one factor on all process noise depends on state and input, if training runs that were left out gain by
+/// it. none: no factor.
 enum class NoiseByInput { automatic, none };
 
 template <>
@@ -27,17 +27,17 @@ struct EnumNames<NoiseByInput> {
 NoiseFactor fit_noise_factor(const Recording& recording, const LinearStructure& structure,
                              const MotionTerms& terms = {});
 
-/// The factor, if left-out training runs gain by it.
+/// The factor, if training runs that were left out gain by it.
 struct FoundNoiseFactor {
-  NoiseFactor factor;                    ///< empty: rejected
-  double gain = not_a_number;            ///< on left-out runs, or on all runs if that is already too small
-                                         ///< [nats/sample]
-  double standard_error = not_a_number;  ///< over the left-out runs; NaN if none was left out
+  NoiseFactor factor;          ///< empty: rejected
+  double gain = not_a_number;  ///< gain on left-out runs; on all runs if that is already too small [nats/sample]
+  double standard_error = not_a_number;  ///< standard error of the gain over the left-out runs; NaN if no run was left
+                                         ///< out
 };
 
 /// Compares one motion whose noise switches between four levels with and without the factor. The factor is accepted if
-/// it is worth it on left-out runs (left_out/rule.hpp). Rounded or weighted samples are not tested. Learns from at most
-/// 20,000 transitions drawn by the seed.
+/// the rule for additions accepts it on runs that were left out (left_out/rule.hpp). Rounded or weighted samples are
+/// not tested. Learns from at most 20,000 transitions drawn by the seed.
 FoundNoiseFactor find_noise_factor(const Recording& recording, const LinearStructure& structure, Eigen::Index folds,
                                    std::uint64_t seed);
 

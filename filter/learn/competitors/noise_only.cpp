@@ -50,7 +50,7 @@ struct Regression {
   Eigen::MatrixXd coefficients, standard_error;
 };
 
-/// Huber's regression; least squares for rounded states. Where values repeat, Huber's scale is zero and x[k+1] = x[k]
+/// Huber's regression; least squares for rounded states. If many values repeat, Huber's scale is zero and x[k+1] = x[k]
 /// looks exact.
 Regression regression(const Recording& recording, const LinearStructure& structure, const Transitions& transitions) {
   if (recording.quantum.size() == 0) {
@@ -99,12 +99,12 @@ Bank learn_noise_levels(const Recording& recording, const LinearStructure& struc
 
 namespace {
 
-/// Improves theta and noise levels of rounded states by the likelihood of their intervals. The residuals of rounded
-/// values, where it starts, include the rounding.
+/// Improves theta and noise levels of rounded states by the likelihood of their intervals. The search starts from the
+/// residuals of rounded values, which include the rounding.
 Bank by_intervals(Bank bank, const Recording& recording) {
   const Recording unweighted = unweighted_training_part(recording);
   FreeParameters free;
-  // Directions that the runs do not determine may have any unit, because nothing depends on them.
+  // Directions that the runs do not determine may have any unit, because nothing depends on these directions.
   free.theta_unit = bank.modes.front().standard_error.unaryExpr(
       [](double error) { return std::isnan(error) ? 1.0 : positive_variance(error); });
   free.transition = false;

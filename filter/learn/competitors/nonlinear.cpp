@@ -21,11 +21,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index most_levels = 4;  // besides the wide level
+constexpr Index most_levels = 4;  // number of levels besides the wide one
 constexpr std::ptrdiff_t most_em_iterations = 35;
-// Not sensitive: factors of 4 to 25, shares of .001 to .01 and stays of .5 to .98 gave mean held-out scores within .016
-// nats on eleven nonlinear motions.
-constexpr double wide_factor = 9.0;  // of the widest level's variance
+// The results are not sensitive to these values: factors of 4 to 25, shares of .001 to .01 and stays of .5 to .98 gave
+// mean held-out scores within .016 nats on eleven nonlinear motions.
+constexpr double wide_factor = 9.0;  // factor on the widest level's variance
 constexpr double wide_share = 0.01;  // share of steps that enter the wide level
 constexpr double wide_stay = 0.9;
 
@@ -45,7 +45,8 @@ void fill_unknown(MatrixXd& columns) {
   }
 }
 
-/// The run from the start of filters with lags on; each sample has the acting inputs and the terms of its transition.
+/// The run from the sample at which filters with lags start. Each sample has the acting inputs and the terms of its
+/// transition.
 Trajectory with_known_terms(const Trajectory& run, const LinearStructure& s, const MotionTerms& terms) {
   const Index first = s.first_transition() - (s.state_lags - 1);
   Trajectory known = stretch(run, first, run.samples() - first);
@@ -56,7 +57,7 @@ Trajectory with_known_terms(const Trajectory& run, const LinearStructure& s, con
   known.input.leftCols(phi.rows()).bottomRows(terms.count()) = term_columns(terms, phi).transpose();
   for (Index k = 0; k < phi.rows(); ++k)
     if (!phi.row(k).allFinite()) known.input.col(k).setConstant(not_a_number);
-  known.input.rightCols(1).setConstant(not_a_number);  // has no effect
+  known.input.rightCols(1).setConstant(not_a_number);  // this value has no effect
   fill_unknown(known.input);
   return known;
 }
@@ -87,7 +88,7 @@ SplitParameters split(const VectorXd& all, const LinearStructure& s, Index terms
   return parts;
 }
 
-/// The factor for a bank whose terms are further inputs; it does not depend on these.
+/// The factor for a bank whose terms are further inputs. The factor does not depend on the terms.
 NoiseFactor of_known(NoiseFactor factor, const MotionTerms& terms) {
   if (factor.empty()) return factor;
   const Index before = factor.directions.cols();
@@ -124,8 +125,8 @@ Bank with_terms(Bank known, const Recording& recording, const LinearStructure& s
   return known;
 }
 
-/// Adds one more noise level that the training runs do not require. Where inputs move differently, terms may err by
-/// several times their training error, and a bank without such a level gives these errors no density. On fourteen
+/// Adds one more noise level, which the training runs do not require. If inputs move differently later, terms may err
+/// by several times their training error. A bank without such a level gives these errors almost no density. On fourteen
 /// nonlinear systems (two seeds of seven kinds) the mean gain is .13 held-out nats per sample (backlash: .73 and 1.07);
 /// the loss is .007 without large errors. noise_only and one_motion lose .009 by such a level, even if the pole differs
 /// by run, so they have none.

@@ -21,7 +21,9 @@ WindowFits linear_frame(const WindowFits& fits, const GlobalModel& global) {
   frame.length = fits.length;
   frame.step = fits.step;
   frame.global = global;
-  if (fits.model_parameters.empty()) frame.prior_sd = fits.prior_sd;  // a motion model's prior is for other parameters
+  if (fits.model_parameters.empty())
+    frame.prior_sd = fits.prior_sd;  // the prior of a motion model is for other
+                                     // parameters
   return frame;
 }
 

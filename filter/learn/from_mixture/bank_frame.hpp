@@ -10,8 +10,9 @@
 namespace modebank {
 
 /// A bank without modes: structure, measurement, names and sample period of the training data. C = [I 0] selects the
-/// newest sample of z; R is given, the quanta are the recording's. A lagged state is called "wz[k-1]". Throws
-/// std::invalid_argument unless R has one row per measured state and the structure is the recording's.
+/// newest sample of z; R is given; the quanta are those of the recording. A lagged state is called "wz[k-1]". Throws
+/// std::invalid_argument unless R has one row per measured state and the structure has the states and inputs of the
+/// recording.
 Bank bank_frame(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R);
 
 /// Names of a bank's states and inputs, from the recording's columns.
@@ -22,8 +23,8 @@ std::vector<std::string> input_names(const Recording& recording, const LinearStr
 Mode make_mode(const LinearStructure& structure, const Eigen::VectorXd& theta, const Eigen::MatrixXd& Q,
                const Eigen::MatrixXd& parameter_covariance, const Eigen::VectorXd& standard_error, double weight);
 
-/// Removes the standard errors of parameters that the training runs do not determine. They are recognised by a missing
-/// value in the covariance of the global model, where others have one. A prior does not change this.
+/// Removes the standard errors of parameters that the training runs do not determine. The covariance of the global
+/// model has missing values for these parameters. A prior does not change this.
 void clear_unidentifiable(Bank& bank, const Eigen::MatrixXd& global_covariance);
 
 /// Sets the transition matrix, with uniform initial probabilities.

@@ -10,8 +10,8 @@
 
 namespace modebank {
 
-/// Clusters windows by the features of the options (FeatureSet), which may come from one-lag fits of the same windows.
-/// `window`: the options of `fits`.
+/// Clusters windows by the features of the options (FeatureSet). The features may come from one-lag fits of the same
+/// windows. `window`: the options of `fits`.
 MixtureResult cluster_windows(const Recording& recording, const WindowFits& fits, const FitOptions& window,
                               const ClusterOptions& options, std::uint64_t seed);
 

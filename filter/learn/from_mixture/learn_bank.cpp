@@ -42,7 +42,7 @@ std::optional<ParameterPrior> prior_of(const WindowFits& fits) {
   return ParameterPrior{fits.global.theta, fits.prior_sd};
 }
 
-/// A component's linear estimate, with the motion model's estimate if there is one.
+/// A component's linear estimate, and the motion model's estimate if there is one.
 struct ComponentEstimate {
   ModeEstimate linear;
   std::optional<MotionMode> motion;
@@ -56,7 +56,7 @@ struct EstimationInput {
   ThetaSource source;
 };
 
-/// Method of [S25]: theta is the component's mean, and Q is computed about it.
+/// Method of [S25]: theta is the component's mean, and Q is computed from the residuals about this theta.
 Eigen::VectorXd component_mean(const EstimationInput& in, Index k) {
   return in.mixture.mixture.means.col(k).head(in.fits.parameter_count());
 }
@@ -98,7 +98,7 @@ std::vector<ComponentEstimate> estimate_components(const EstimationInput& in, co
   return estimates;
 }
 
-/// Positions of the components that become modes, possibly none; the others are added to `screened`.
+/// Positions of the components that become modes, possibly none. The other components are added to `screened`.
 std::vector<Index> screen(const LinearStructure& structure, const std::vector<ComponentEstimate>& modes,
                           const Eigen::VectorXd& weights, std::vector<ScreenedMode>& screened) {
   std::vector<Index> kept;
@@ -112,7 +112,7 @@ std::vector<Index> screen(const LinearStructure& structure, const std::vector<Co
   return kept;
 }
 
-/// Sets Q of the bank's modes from the chosen source. theta and its errors always use the mode's own noise.
+/// Sets Q of the bank's modes from the chosen source. theta and its standard errors always use the mode's own noise.
 void set_process_noise(std::vector<ComponentEstimate>& modes, const BankOptions& options) {
   const Index n = modes.front().linear.Q.rows();
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
@@ -175,8 +175,8 @@ std::vector<Index> all_positions(Index count) {
   return positions;
 }
 
-/// One mode from all components, used if no component can be a mode. It may be unstable, as the global model may be
-/// that it competes with. One step ahead it may still be right; the summary warns of the rest.
+/// One mode from all components, used if no component can be a mode. It may be unstable, like the global model that it
+/// competes with. Its predictions one step ahead may still be right; the summary warns of the instability.
 Bank bank_of_all(const Recording& recording, const WindowFits& fits, const MixtureResult& whole, BankOptions options,
                  const Bank& without_modes, const MotionModel* motion) {
   options.modes = 1;
@@ -219,7 +219,7 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
 
 namespace {
 
-/// Score of the chosen fit with its measurement noise; NaN if nothing was left out.
+/// Score of the chosen fit with its measurement noise; NaN if no run was left out.
 double left_out_score(const Refinement& refined) {
   if (!std::isnan(refined.measurement.score)) return refined.measurement.score;
   double score = std::numeric_limits<double>::quiet_NaN();
@@ -239,7 +239,7 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   };
   for (Index modes = fewer(starts.front().mode_count()); modes >= 1; modes = fewer(modes)) {
     of_start.modes = modes;
-    of_start.screen = options.screen && modes > 1;  // a single mode is a start in any case; refinement screens it
+    of_start.screen = options.screen && modes > 1;  // a single mode is always a start; refinement screens it
     starts.push_back(learn_bank(recording, fits, mixture, of_start, R));
   }
   RefineOptions em = options.em;

@@ -20,11 +20,11 @@ void check_sizes(const WindowFits& fits, const MixtureResult& mixture) {
                               std::to_string(mixture.mixture.components()) + " components");
 }
 
-/// A run's clustered windows by increasing start, including those that are noise, with their responsibilities.
+/// A run's clustered windows by increasing start, with their responsibilities. Includes windows that are noise.
 struct RunWindows {
   std::vector<Index> windows;
   Index first = 0;                   ///< window of the first column
-  Eigen::MatrixXd responsibilities;  ///< K x the windows from the run's first to its last
+  Eigen::MatrixXd responsibilities;  ///< K x number of windows, from the run's first to its last
 };
 
 RunWindows windows_of_run(const std::vector<Index>& all, const WindowFits& fits, const MixtureResult& mixture) {
@@ -49,7 +49,7 @@ std::vector<std::vector<Index>> windows_by_run(const WindowFits& fits) {
   return by_run;
 }
 
-/// The clustered window nearest to a transition that no window covers. `windows` is not empty.
+/// The clustered window nearest to a transition that no window covers. `windows` must contain at least one window.
 Index nearest_window(Index transition, const std::vector<Index>& windows, const WindowFits& fits) {
   const auto after = std::partition_point(windows.begin(), windows.end(),
                                           [&](Index i) { return fits.windows[i].start <= transition; });
@@ -99,7 +99,7 @@ Eigen::MatrixXd transition_memberships(const TrainingTransitions& transitions, c
       of_run.rowwise() = mixture.mixture.weights.transpose();
   }
   if (mixture.mixture.noise.present()) return transitions.usable.asDiagonal() * memberships;
-  // Every row already sums to one up to rounding. Exact sums make the modes' weights add up to N.
+  // Every row already sums to one up to rounding. With exact sums, the weights of the modes add up to N.
   return transitions.usable.cwiseQuotient(memberships.rowwise().sum()).asDiagonal() * memberships;
 }
 

@@ -8,12 +8,11 @@
 
 namespace modebank {
 
-/// Membership of each training transition in each mixture component, N x K. A usable transition's row sums to one, or
-/// to its sample weight. It is the mean responsibility of the clustered windows that cover the transition. Without such
-/// a window it is that of the nearest clustered window of its run (the earlier one on a tie), or the mixture weights in
-/// a run without clustered windows.
-/// With a noise component the row excludes the probability of noise, so noise does not influence any mode. Rows of
-/// unusable transitions are zero.
+/// Membership of each training transition in each mixture component, N x K. The row of a usable transition sums to one,
+/// or to its sample weight. It is the mean responsibility of the clustered windows that cover the transition. If no
+/// window covers it, the row is that of the nearest clustered window of its run (the earlier one on a tie). In a run
+/// without clustered windows the row holds the mixture weights. With a noise component the row excludes the probability
+/// of noise, so noise does not influence any mode. Rows of unusable transitions are zero.
 Eigen::MatrixXd transition_memberships(const TrainingTransitions& transitions, const WindowFits& fits,
                                        const MixtureResult& mixture);
 

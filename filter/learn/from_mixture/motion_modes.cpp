@@ -13,10 +13,10 @@ namespace modebank {
 namespace {
 
 constexpr int max_passes = 50;
-constexpr double pass_tolerance = 1e-10;  // relative change of Q's diagonal
+constexpr double pass_tolerance = 1e-10;  // relative change of the diagonal of Q
 constexpr int search_iterations = 200;
 
-/// sum g r r' / sum g, floored; the global covariance if no transition has weight.
+/// sum g r r' / sum g, with a floor; the global covariance if no transition has weight.
 Eigen::MatrixXd weighted_scatter(const ModelResiduals& residuals, const Eigen::VectorXd& theta,
                                  const GlobalModel& global) {
   const Index n = residuals.states();
@@ -38,7 +38,7 @@ double sum_of_weights(const ModelResiduals& residuals) {
   return sum;
 }
 
-/// (sum g J' Q^-1 J + prior)^-1, with Q corrected for the number of fitted parameters; NaN if theta is not determined.
+/// (sum g J' Q^-1 J + prior)^-1, with Q corrected for the number of fitted parameters. NaN if theta is not determined.
 Eigen::MatrixXd motion_covariance(const ModelResiduals& residuals, const MotionMode& mode,
                                   const ParameterPrior* prior) {
   const Index n = residuals.states(), p = residuals.unknowns();

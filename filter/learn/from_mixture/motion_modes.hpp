@@ -10,8 +10,8 @@
 
 namespace modebank {
 
-/// One mode of a motion model: its own parameters, and their linearisation as a ModeEstimate. theta is the vec of [A B
-/// c] at the mode's weighted mean state and input; standard errors are propagated by the derivative.
+/// One mode of a motion model: its own parameters, and a ModeEstimate of its linearisation. theta is the vec of [A B c]
+/// at the mode's weighted mean state and input. Standard errors are propagated by the derivative.
 struct MotionMode {
   Eigen::VectorXd theta;           ///< p_motion
   Eigen::VectorXd standard_error;  ///< p_motion
@@ -20,8 +20,8 @@ struct MotionMode {
 };
 
 /// fit_weighted_mode for motion models: weighted least squares of the one-step residuals and the prior, alternating
-/// with the residual variances (`weights`: one per training transition). `given`: theta to be assessed, not estimated;
-/// else null. Q is the weighted scatter / sum of weights, floored like a linear mode's.
+/// with the residual variances (`weights`: one per training transition). `given`: a fixed theta that is only assessed;
+/// null to estimate theta. Q is the weighted scatter / sum of weights, with the floor of a linear mode.
 MotionMode fit_motion_mode(const Recording& recording, const MotionModel& model, const Eigen::VectorXd& weights,
                            const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd* given);
 

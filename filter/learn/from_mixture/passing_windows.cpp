@@ -8,7 +8,7 @@
 namespace modebank {
 namespace {
 
-/// Clustered windows of one run in order of start that have the same label: [first, end) of `windows`.
+/// Successive clustered windows of one run with the same label, in order of start: [first, end) of `windows`.
 struct SameLabel {
   std::size_t first = 0, end = 0;
 };
@@ -29,8 +29,8 @@ class LabelStretches {
   const std::vector<SameLabel>& stretches() const { return stretches_; }
   int label(std::size_t at) const { return labels_(windows_[at]); }
 
-  /// Whether the stretch is too short: the next window after it begins before any window could that shares no
-  /// transition with the last window before it.
+  /// Whether the stretch of one label is too short. Consider a window that shares no transition with the last window
+  /// before the stretch. The stretch is too short if the next stretch begins before any such window could.
   bool passes(const SameLabel& stretch) const {
     if (stretch.first == 0 || stretch.end == windows_.size()) return false;
     const std::size_t before = stretch.first - 1;

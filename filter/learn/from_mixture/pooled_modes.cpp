@@ -19,13 +19,13 @@ constexpr double smallest_weight = 1e-9;         // transitions; a smaller sum h
 constexpr double alternation_tolerance = 1e-12;  // relative change of Q; rounding is three decades smaller
 constexpr int max_alternations = 500;
 
-/// Sums of the weighted transitions about their own least squares, which avoids cancellation.
+/// Sums of the weighted transitions about their own least squares fit. This avoids cancellation.
 struct WeightedRegression {
-  Eigen::MatrixXd beta;  // q x n, least-squares coefficients; directions without data stay at the global model
+  Eigen::MatrixXd beta;  // q x n, least-squares coefficients; directions without data are those of the global model
   RegressionSums sums;   // H is zero except for rounding and directions without data
 };
 
-/// Number of transitions per decomposition; a long recording then needs no copy.
+/// Number of transitions per decomposition. With blocks, a long recording needs no copy.
 constexpr Index block_rows = Index{1} << 18;
 
 WeightedRegression regress(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,

@@ -10,12 +10,12 @@
 
 namespace modebank {
 
-/// Smallest eigenvalue of a mode's Q, as a share of the global residual variance of each state. A smaller one would
-/// mean that transitions are exact, which a handful of transitions can suggest by chance.
+/// Smallest eigenvalue of a mode's Q, as a share of the global residual variance of each state. A handful of
+/// transitions can be fitted almost exactly by chance; without this floor they would count as exact.
 inline constexpr double process_noise_floor = 1e-6;
 
 /// Share of a variance that is rounding (a millionth of the standard deviation). It keeps a variance positive if the
-/// data suggest zero, without changing other variances.
+/// data suggest zero, and leaves other variances unchanged.
 inline constexpr double rounding_share = 1e-12;
 
 /// A residual variance as the unit of the two shares above; positive even for exact data, so that inverses stay finite.
@@ -25,7 +25,7 @@ inline double positive_variance(double variance) { return std::max(variance, 1e-
 struct ModeEstimate {
   Eigen::VectorXd theta;  ///< p
   Eigen::MatrixXd Q;      ///< n x n, weighted scatter about theta / sum of weights; at least process_noise_floor
-  Eigen::VectorXd standard_error;      ///< p, of theta; NaN if neither data nor prior determine theta
+  Eigen::VectorXd standard_error;      ///< p, standard errors of theta; NaN if neither data nor prior determine theta
   double effective_transitions = 0.0;  ///< sum of weights
   bool converged = true;               ///< whether theta and Q converged within the iteration limit, with Q definite
 };
@@ -43,17 +43,17 @@ ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eig
 ModeEstimate assess_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
                                   const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd& theta);
 
-/// Raises the eigenvalues of a process noise covariance, in units of the global residual variances, to the floor.
+/// Raises the eigenvalues of a process noise covariance to the floor, in units of the global residual variances.
 Eigen::MatrixXd floored_process_noise(const Eigen::MatrixXd& Q, const GlobalModel& global);
 
-/// Tolerance above 1 for the spectral radius of I + A, so that an integrator (A = 0) passes in spite of rounding.
+/// Limit above 1 for the spectral radius of I + A, so that an integrator (A = 0) passes in spite of rounding.
 inline constexpr double spectral_radius_slack = 1e-9;
 
 /// Largest absolute eigenvalue of I + A; infinite if A is not finite.
 double spectral_radius(const LinearModel& model);
 
-/// Why a mode is unusable in a bank: "starved" (fewer effective transitions than regressors + 1) or "unstable"
-/// (spectral radius of I + A above 1). Empty if it is usable.
+/// Reason why a bank cannot use a mode: "starved" (fewer effective transitions than regressors + 1) or "unstable"
+/// (spectral radius of I + A above 1). Empty if the mode is usable.
 std::string screening_reason(const LinearStructure& structure, const ModeEstimate& mode);
 
 /// Fits one mode per column of `memberships` (N x K), in parallel; mode k depends on column k alone.

@@ -24,7 +24,7 @@ std::vector<RunRows> number_rows(const Recording& recording) {
   return runs;
 }
 
-/// Sets rows to zero that are not finite or have no weight.
+/// Sets rows to zero if they are not finite or have no weight.
 void blank_unusable(TrainingTransitions& transitions) {
   Transitions& data = transitions.data;
   const bool weighted = data.weight.size() > 0;
@@ -106,7 +106,7 @@ Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::
 
 RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& weights,
                                const Eigen::MatrixXd& residuals) {
-  constexpr double negligible = 1e-12;  // most transitions have less weight than this in any mode
+  constexpr double negligible = 1e-12;  // most transitions have a smaller weight than this in any mode
   const Index q = regressors.cols(), n = residuals.cols();
   std::vector<Index> rows;
   for (Index k = 0; k < weights.size(); ++k)

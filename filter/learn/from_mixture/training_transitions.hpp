@@ -18,26 +18,26 @@ struct RunRows {
 };
 
 /// All transitions of the training runs, run by run. A transition with a missing (non-finite) sample keeps its row, so
-/// that positions match the run. Such a row holds zeros and is not usable; neither is one of sample weight zero. Sample
-/// weights are stored in `usable`, not applied to the rows.
+/// that positions match the run. Such a row holds zeros and is not usable. A row of sample weight zero is not usable
+/// either. Sample weights are stored in `usable` and not applied to the rows.
 struct TrainingTransitions {
   LinearStructure structure;
   Transitions data;           ///< N rows
   Eigen::VectorXd usable;     ///< N, 0 or the sample weight (1 without weights; mean 1 over usable rows)
-  std::vector<RunRows> runs;  ///< training runs, in the recording's order
-  /// N, logarithm of the factor by whose square root each row was divided, so that all rows have equal noise; empty: no
-  /// factor.
+  std::vector<RunRows> runs;  ///< training runs, in the order of the recording
+  /// N, logarithm of the noise factor. Each row was divided by the square root of its factor, so that all rows have
+  /// equal noise. Empty: no factor.
   Eigen::VectorXd log_noise_factor = {};
 
   Index count() const { return data.count(); }
 };
 
-/// Throws std::invalid_argument if the structure's states and inputs differ from the recording's.
+/// Throws std::invalid_argument if states and inputs of the structure differ from those of the recording.
 void check_structure(const Recording& recording, const LinearStructure& structure);
 
-/// Collects the training transitions. Throws as check_structure does, and DataError if no training run has a usable
-/// transition. `factor`: rows are divided by its square root, so that least squares and expectation-maximisation need
-/// no change.
+/// Collects the training transitions. Throws the errors of check_structure, and DataError if no training run has a
+/// usable transition. `factor`: rows are divided by its square root. Least squares and expectation-maximisation then
+/// need no change.
 TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure,
                                                 const NoiseFactor& factor = {});
 
@@ -72,7 +72,7 @@ inline Eigen::MatrixXd coefficients(const LinearStructure& s, const Eigen::Vecto
 
 /// A copy of the recording with the training runs only.
 Recording training_part(const Recording& recording);
-/// training_part with equal sample weights.
+/// training_part, with equal weights for all samples.
 Recording unweighted_training_part(const Recording& recording);
 
 }  // namespace modebank

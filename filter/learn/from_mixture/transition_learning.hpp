@@ -12,8 +12,9 @@ namespace modebank {
 inline constexpr double label_count_smoothing = 0.1;
 
 /// K x K counts of (label i, then label j) over neighbouring windows: same run, starts one `step` apart. `kept` lists
-/// the mixture components that are modes (mode j is component kept[j]). Labels: M, -1: none. A window without a mode,
-/// such as one that contains a switch, counts as the previous mode. So the switch is counted once, after that window.
+/// the mixture components that are modes (mode j is component kept[j]). Labels: M values, -1 for none. A window without
+/// a mode, such as one that contains a switch, counts as the previous mode. So the switch is counted once, after that
+/// window.
 Eigen::MatrixXd count_label_transitions(const WindowFits& fits, const Eigen::VectorXi& labels,
                                         const std::vector<Index>& kept);
 

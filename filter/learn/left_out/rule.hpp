@@ -12,13 +12,13 @@ namespace modebank {
 /// Scores of a candidate on the left-out runs.
 struct LeftOutScores {
   Eigen::Index modes = 0;
-  Eigen::VectorXd log_likelihood;  ///< of each left-out run [nats]
+  Eigen::VectorXd log_likelihood;  ///< log-likelihood of each left-out run [nats]
 };
 
 /// Difference of two candidates' scores, sample by sample on the same runs.
 struct PairedLoss {
   double mean = 0.0;            ///< nats per sample; infinite if a score is not finite
-  double standard_error = 0.0;  ///< of the mean, clustered by run; 0 for a single run
+  double standard_error = 0.0;  ///< standard error of the mean, clustered by run; 0 for a single run
 };
 
 /// Computes m = sum d_r / N and its standard error sqrt(R / (R - 1) sum (d_r - m n_r)^2) / N. d_r is the difference of
@@ -26,18 +26,17 @@ struct PairedLoss {
 /// section 6.4).
 PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& worse, const Eigen::VectorXd& samples);
 
-/// Smallest gain per sample for accepting an addition to a model: refine_tuning.least_gain, and over all samples
-/// together log(refine_tuning.proposals / taken_by_chance). By chance a left-out log-likelihood gains that much with
-/// probability at most taken_by_chance / proposals. The reason: a likelihood ratio has expectation one, and Markov's
-/// inequality bounds its tail.
+/// Smallest gain per sample for accepting an addition to a model. It is refine_tuning.least_gain, and over all samples
+/// together log(refine_tuning.proposals / taken_by_chance). By chance, the log-likelihood of left-out runs gains that
+/// much with probability at most taken_by_chance / proposals. The reason: a likelihood ratio has expectation one, and
+/// Markov's inequality bounds its tail.
 double least_worth(double samples);
 
 /// The rule for accepting every addition to a model: more modes, noise by input, transitions by state, drift, a
-/// look-ahead fit. The `gain` on left-out runs must exceed least_worth and its standard error by run, of which at most
-/// `most_error` counts.
-/// Other rules are worse (docs/results/rule.md). The standard error alone accepts additions to three of ten systems
-/// that have none. A t-test over six runs rejects drift worth 0.06 nats in four of five. `samples`: of each left-out
-/// run.
+/// look-ahead fit. The `gain` on left-out runs must exceed least_worth. It must also exceed its standard error by run,
+/// which is capped at `most_error`. Other rules are worse (docs/results/rule.md). The standard error alone accepts
+/// additions to three of ten systems that have none. A t-test over six runs rejects drift worth 0.06 nats in four of
+/// five. `samples`: number of samples of each left-out run.
 bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples,
                  double most_error = std::numeric_limits<double>::infinity());
 
@@ -45,11 +44,11 @@ bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples,
 std::size_t best_candidate(const std::vector<LeftOutScores>& candidates);
 
 /// Whether the simpler candidate may replace the best: its loss is within one standard error (Breiman et al. 1984,
-/// section 3.4.3), of which at most tuning.most_loss counts. samples: of each left-out run.
+/// section 3.4.3), which is capped at tuning.most_loss. `samples`: number of samples of each left-out run.
 bool as_good(const LeftOutScores& candidate, const LeftOutScores& best, const Eigen::VectorXd& samples,
              const RefineTuning& tuning);
 
-/// The candidate with the fewest modes that is as good as the best; of equally many modes, the best.
+/// The candidate with the fewest modes that is as good as the best one. Among equal numbers of modes, the best.
 std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,
                                  const RefineTuning& tuning);
 

@@ -11,10 +11,10 @@ namespace {
 
 using Eigen::Index;
 
-// Step of central differences for the coordinates' own formulas, which are exponentials: error 2e-9.
+// Step of central differences for the formulas of the coordinates. These are exponentials; the error is 2e-9.
 constexpr double jacobian_step = 1e-4;
 
-// exp of a bounded logarithm, so that nothing overflows.
+// exp of a bounded logarithm; cannot overflow.
 double bounded_exp(double z) { return std::exp(std::clamp(z, -30.0, 30.0)); }
 
 }  // namespace
@@ -77,7 +77,7 @@ const double* BankCoordinates::set_process_noise(const double* at, Bank& bank) c
 
 const double* BankCoordinates::set_measurement_noise(const double* at, Bank& bank) const {
   for (const Index i : free_.R)
-    // A value below its bound could only fall further, through zero, so it is set to the bound.
+    // A value below its bound could only fall further, through zero. So it is set to the bound.
     bank.R(i, i) = free_.least_R(i) + std::max(origin_.R(i, i) - free_.least_R(i), 0.0) * bounded_exp(*at++);
   return at;
 }

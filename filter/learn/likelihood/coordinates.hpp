@@ -9,26 +9,30 @@ namespace modebank {
 
 /// Which parameters of a bank are estimated, and their units.
 struct FreeParameters {
-  Eigen::MatrixXd theta_unit = {};   ///< p x K, or p x 1 for one theta of all modes; positive; empty: theta is known
+  Eigen::MatrixXd theta_unit = {};   ///< p x K, or p x 1 for one theta of all modes; positive; empty if theta is known
   bool Q = true;                     ///< false: every Q is known
   bool Q_by_one_factor = false;      ///< one common factor on every Q, instead of separate Q
-  Eigen::VectorXd least_Q = {};      ///< n, lower bounds of every Q's diagonal [state unit^2]; empty: none
-  std::vector<Eigen::Index> R = {};  ///< outputs with estimated variance
+  Eigen::VectorXd least_Q = {};      ///< n, lower bounds of every Q's diagonal [state unit^2]; empty if there are none
+  std::vector<Eigen::Index> R = {};  ///< outputs whose variance is estimated
   Eigen::VectorXd least_R = {};      ///< n_y, lower bounds of R's diagonal [state unit^2]
   bool transition = true;            ///< false: T is known
-  Eigen::VectorXd weight_unit = {};  ///< d, units of the weights of T's logit; empty: no weights
+  Eigen::VectorXd weight_unit = {};  ///< d, units of the weights of T's logit; empty without weights
 };
 
-/// Layout of a bank's free parameters in one vector: theta of every mode; the lower triangle of every Q (column by
-/// column, measured states); R of the estimated outputs; T row by row. Last come the logit's weights, mode by mode,
-/// about their mean over the modes (which does not change probabilities).
+/// Layout of a bank's free parameters in one vector:
+/// - theta of every mode;
+/// - the lower triangle of every Q (column by column, measured states);
+/// - R of the estimated outputs;
+/// - T row by row;
+/// - the logit's weights, mode by mode, relative to their mean over the modes (the mean does not change
+///   probabilities).
 struct ParameterPlaces {
-  Eigen::Index parameters = 0;  ///< p; 0: theta is known
-  Eigen::Index triangle = 0;    ///< n (n + 1) / 2; 0: Q is known
+  Eigen::Index parameters = 0;  ///< p; 0 if theta is known
+  Eigen::Index triangle = 0;    ///< n (n + 1) / 2; 0 if Q is known
   Eigen::Index modes = 0;
   Eigen::Index outputs = 0;  ///< number of outputs with estimated R
   bool transition = false;
-  Eigen::Index regressors = 0;  ///< d, number of the logit's regressors; 0: none
+  Eigen::Index regressors = 0;  ///< d, number of the logit's regressors; 0 if there are none
 
   Eigen::Index theta(Eigen::Index mode) const { return mode * parameters; }
   Eigen::Index Q(Eigen::Index mode) const { return modes * parameters + mode * triangle; }
@@ -44,8 +48,8 @@ struct ParameterPlaces {
 ///                   & Bates 1996), its diagonal at least least_Q; or Q0_j exp(z) with one z for all modes;
 ///   R_ii          = least_R_i + max(R0_ii - least_R_i, 0) exp(z);
 ///   row i of T    proportional to T0_ij exp(z_j), z = 0 for its largest entry;
-///   weights_ja    = weights0_ja + unit_a z, the last coordinates, regressor by regressor.
-/// Initial probabilities and all else of the bank are constant.
+///   weights_ja    = weights0_ja + unit_a z, the last coordinates, regressor by regressor. Initial probabilities and
+///   all other fields of the bank are constant.
 class BankCoordinates {
  public:
   BankCoordinates(Bank origin, FreeParameters free);
@@ -59,7 +63,7 @@ class BankCoordinates {
   Bank decode(const Eigen::VectorXd& at) const;
 
   ParameterPlaces places() const;
-  /// Derivative of the free parameters by the coordinates at the origin, places().size() x size().
+  /// Derivative of the free parameters with respect to the coordinates at the origin, places().size() x size().
   Eigen::MatrixXd jacobian() const;
 
  private:

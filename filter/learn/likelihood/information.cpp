@@ -9,9 +9,9 @@
 namespace modebank {
 namespace {
 
-constexpr double least_probability = 1e-100;  // its square can still be a divisor
+constexpr double least_probability = 1e-100;  // smallest value whose square can still be a divisor
 
-/// One row per sample, one column per coordinate; zero if a sample has no density.
+/// One row per sample, one column per coordinate. A row is zero if the sample has no density.
 Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::VectorXd& steps, const Trajectory& run,
                                  const FilterOptions& filter, const LookAhead& look) {
   Eigen::MatrixXd gradients(run.samples(), around.size());
@@ -24,8 +24,8 @@ Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::Vec
   return gradients.array().isNaN().select(0.0, gradients);
 }
 
-/// Inverse variances of Q and T under the prior alone: a scatter of that many transitions, and that many counts of
-/// every switch except the row's most frequent one, which balances the others.
+/// Inverse variances of Q and T under the prior alone. For Q they are those of a scatter of that number of transitions.
+/// For T every switch has that number of counts, except the row's most frequent switch, which balances the others.
 Eigen::VectorXd information_of_noise_and_switches(const BankCoordinates& around, const SwitchingPrior& prior) {
   const ParameterPlaces at = around.places();
   const Bank& bank = around.origin();
@@ -104,7 +104,7 @@ Eigen::MatrixXd prior_information(const BankCoordinates& around, const Switching
     const auto of_T = J.middleRows(at.T(0), at.modes * at.modes);
     information.noalias() += of_T.transpose() * information_of_memory(around, prior) * of_T;
   }
-  // The logit's weights are the last coordinates, and the prior is directly on these.
+  // The weights of the logit are the last coordinates. Their prior is directly on these coordinates.
   for (Index a = 0; a < at.regressors; ++a) {
     const double share = around.weight_unit()(a) / prior.weight_sd(a);
     information.diagonal().segment(around.size() - (at.regressors - a) * at.modes, at.modes).array() += share * share;

@@ -14,25 +14,27 @@ namespace modebank {
 /// error is about 1e-4.
 inline constexpr double difference_step = 1e-2;
 
-/// Derivatives of single training samples' log predictive densities by a bank's coordinates, at the origin.
+/// Derivatives of the log predictive densities of single training samples with respect to a bank's coordinates, at the
+/// origin.
 struct SampleGradients {
   Eigen::VectorXd sum;          ///< gradient of the training runs' log-likelihood [nats per coordinate]
   Eigen::MatrixXd information;  ///< sum of their outer products: Berndt, Hall, Hall & Hausman (1974, Annals of Economic
                                 ///< and Social Measurement 3(4)), the observed information if the model is true
 };
 
-/// Gradients by central differences with `steps` (one per coordinate) in the bank's filter. A sample of weight w (in
-/// units of the mean weight) counts as w samples. `look`: score of look-ahead learning.
+/// Gradients by central differences with `steps` (one per coordinate) in the bank's filter. A sample of weight w,
+/// relative to the mean weight, counts as w samples. `look`: score of look-ahead learning.
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                  const Recording& recording, const FilterOptions& filter, const LookAhead& look = {});
 
-/// Gradients for exactly measured states (R = 0) and equal sample weights, by the switching regression. It has the
-/// filter's densities at a fraction of the cost; the saving grows with the number of lags.
+/// Gradients for exactly measured states (R = 0) and equal sample weights, by the switching regression. The densities
+/// equal those of the filter, at a fraction of the cost. The saving grows with the number of lags.
 SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                        const TrainingTransitions& transitions);
 
-/// Information of the prior about the coordinates, at the origin. Exact for theta and the logit's memory. Q counts as
-/// observations of a normal scatter, T as counts. A prior on one theta shared by all modes counts once.
+/// Information of the prior about the coordinates, at the origin. It is exact for theta and the logit's memory. For Q
+/// the prior counts as observations of a normal scatter, for T as counts. A prior on one theta shared by all modes
+/// counts once.
 Eigen::MatrixXd prior_information(const BankCoordinates& around, const SwitchingPrior& prior);
 
 }  // namespace modebank

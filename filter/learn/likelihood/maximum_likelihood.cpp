@@ -16,13 +16,14 @@
 namespace modebank {
 namespace {
 
-constexpr double step_share = 1e-2;       // of a standard error, for central differences
-constexpr double first_step = 1e-3;       // used until standard errors are known
-constexpr double least_curvature = 1e-2;  // of an undetermined coordinate; these are logarithms
+constexpr double step_share = 1e-2;       // share of a standard error, for central differences
+constexpr double first_step = 1e-3;       // step that is used until standard errors are known
+constexpr double least_curvature = 1e-2;  // standard error of an undetermined coordinate; such coordinates are
+                                          // logarithms
 constexpr double remaining_gain = 1e-3;   // nats
 constexpr Index iterations_per_metric = 40;
 
-/// The target in the neighbourhood of one bank.
+/// The target near one bank.
 class Neighbourhood {
  public:
   Neighbourhood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& origin,
@@ -35,7 +36,7 @@ class Neighbourhood {
   Bank decode(const Eigen::VectorXd& at) const { return coordinates_.decode(at); }
   double value(const Eigen::VectorXd& at) const { return target_.value(decode(at)); }
 
-  /// Gradient, and the value if requested. Uses the adjoint of the filter's steps if there is one, else differences.
+  /// Gradient, and the value if requested. Uses the adjoint of the filter's steps if it exists, else differences.
   Eigen::VectorXd gradient(const Eigen::VectorXd& at) const {
     if (!is_exact()) return differences(at, [this](const Bank& bank) { return target_.value(bank); });
     const BankGradient by_bank = training_gradient(decode(at), target_.recording, target_.filter);
@@ -50,8 +51,8 @@ class Neighbourhood {
     return result;
   }
 
-  /// Gradient and information of likelihood and prior at the origin. The search follows the same gradient, so it
-  /// vanishes where the search ends.
+  /// Gradient and information of likelihood and prior at the origin. The search follows the same gradient. So the
+  /// gradient vanishes where the search ends.
   SampleGradients gradients() const {
     SampleGradients result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look);
     const Eigen::VectorXd origin = Eigen::VectorXd::Zero(size());
@@ -112,7 +113,7 @@ class WhitenedTarget final : public ceres::FirstOrderFunction {
 struct Metric {
   Eigen::VectorXd steps;               ///< steps of central differences from here on
   Eigen::MatrixXd by_standard_errors;  ///< maps whitened coordinates to coordinates
-  Eigen::VectorXd gradient;            ///< by whitened coordinates
+  Eigen::VectorXd gradient;            ///< gradient with respect to whitened coordinates
 
   /// Expected gain of a Newton step.
   double expected_gain() const { return 0.5 * gradient.squaredNorm(); }
@@ -131,10 +132,10 @@ std::optional<Metric> metric_of(const SampleGradients& gradients) {
 struct BfgsEnd {
   Eigen::VectorXd at;
   Index iterations = 0;
-  double expected_gain = 0.0;  ///< of a Newton step at the end, by the metric at the beginning
+  double expected_gain = 0.0;  ///< expected gain of a Newton step at the end, by the metric at the beginning
 };
 
-/// `small_gain`: expected gain at which the search ends.
+/// `small_gain`: the search ends if the expected gain is smaller.
 BfgsEnd bfgs(const Neighbourhood& nearby, const Metric& metric, double origin_value, double small_gain, Index limit) {
   const ceres::GradientProblem problem(new WhitenedTarget(nearby, metric.by_standard_errors, origin_value));
   ceres::GradientProblemSolver::Options options;
@@ -197,7 +198,7 @@ LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const Free
     best.bank = std::move(next);
     best.value = value;
     best.rose = true;
-    // A new metric costs two filter passes per coordinate, a gradient three in all.
+    // A new metric costs two filter passes per coordinate; a gradient costs three passes in total.
     if (end.expected_gain <= small_gain) {
       best.end = MeasuredFit::converged;
       return best;

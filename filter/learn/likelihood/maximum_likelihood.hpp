@@ -13,17 +13,18 @@
 
 namespace modebank {
 
-/// Largest number of state lags beside which R is estimated. The coefficients of more lags predict what R would
-/// otherwise allow a filter to predict. On ICE with 17 lags the search took a minute for the bank and another for
-/// one_motion, without finding any R.
+/// Largest number of state lags with which R is estimated. With more lags, their coefficients can make the predictions
+/// that R would otherwise allow. On ICE with 17 lags the search took a minute for the bank and another for one_motion,
+/// without finding any R.
 inline constexpr Eigen::Index most_lags_beside_R = 8;
 
 /// The objective: the filter's log-likelihood of the training runs plus the prior's log density. A sample's weight is
-/// the power of its density. The likelihood is exact for one mode, and the IMM's approximation for several.
+/// the power of its density. The likelihood is exact for one mode. For several modes it is the approximation of the
+/// IMM.
 struct LikelihoodTarget {
   const Recording& recording;
   FilterOptions filter;                 ///< variant imm for several modes
-  std::optional<SwitchingPrior> prior;  ///< empty: likelihood only
+  std::optional<SwitchingPrior> prior;  ///< if empty, the target is the likelihood alone
   bool one_theta = false;               ///< whether the prior on theta counts only once
   LookAhead look = {};                  ///< replaces the likelihood in look-ahead learning
 
@@ -35,22 +36,23 @@ struct LikelihoodTarget {
 
 struct AscentLimits {
   Index max_iterations = 100;
-  double tolerance = 1e-6;  ///< nats per transition: converged if no larger gain is expected
+  double tolerance = 1e-6;  ///< nats per transition; converged if the expected gain is at most this
 };
 
 struct LikelihoodMaximum {
   Bank bank;
-  double value = 0.0;  ///< value of the target at the result; never below the start's
+  double value = 0.0;  ///< value of the target at the result; never below the value at the start
   Index iterations = 0;
   MeasuredFit end = MeasuredFit::stalled;
-  bool rose = false;  ///< converged at the start, or moved to a better point
+  bool rose = false;  ///< whether the search converged at the start, or moved to a better point
 };
 
-/// The target's maximum near `start`, by BFGS (ceres::GradientProblemSolver) over BankCoordinates in units of the
-/// standard errors. Gradients of single samples give the gradient and the information (information.hpp); in this metric
-/// the problem is nearly round. Gradients come from the adjoint of the filter's steps (likelihood_gradient.hpp), or
-/// else from central differences. Converged means: a Newton step is expected to gain less than the tolerance, and less
-/// than 1e-3 nats in all, a twentieth of a standard error.
+/// Finds the target's maximum near `start`, by BFGS (ceres::GradientProblemSolver) over BankCoordinates in units of the
+/// standard errors. In these units all directions of the problem curve about equally. The gradient is computed by the
+/// adjoint of the filter's steps (likelihood_gradient.hpp), or else by central differences. The information is computed
+/// from the gradients of single samples (information.hpp). Converged: a Newton step is expected to gain less than the
+/// tolerance per transition, and less than 1e-3 nats over all samples. A gain of 1e-3 nats corresponds to a step of
+/// about a twentieth of a standard error.
 LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start,
                                       const AscentLimits& limits);
 

@@ -17,12 +17,13 @@
 namespace modebank {
 namespace {
 
-constexpr double weight_unit_share = 0.1;  // of the prior's standard deviation
-// Standard errors need an accuracy of a few per cent; their relative error falls with the square root of the samples.
+constexpr double weight_unit_share = 0.1;  // share of the prior's standard deviation
+// Standard errors need an accuracy of a few per cent. Their relative error falls with the square root of the number of
+// samples.
 constexpr double most_numbers = 4e6;  // samples times coordinates: 32 MB
 constexpr Index fewest_samples = 2000, most_samples = 20000;
 
-/// Samples for estimating standard errors: stretches of all training runs if these are long. The information is
+/// Samples for the standard errors. Long training runs are reduced to stretches of all runs. The information is
 /// multiplied by `factor`.
 struct ErrorSamples {
   std::optional<Recording> part;  ///< empty: all
@@ -55,7 +56,7 @@ void add_weights_gradient(const BankCoordinates& around, const SwitchingPrior& p
         around.origin().transition_logit.weights.col(a);
 }
 
-/// Whether states count as measured exactly, because R is at its bound.
+/// Whether states count as measured exactly because R is at its bound.
 bool is_exact(const LikelihoodTarget& target, const BankCoordinates& around) {
   const Bank& bank = around.origin();
   return around.places().outputs == 0 && (bank.R.diagonal().array() <= around.least_R().array()).all() &&
@@ -76,7 +77,7 @@ std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordi
           : sample_gradients(around, steps, recording, target.filter);
   const Eigen::MatrixXd information = samples.factor * gradients.information + prior_information(around, *target.prior);
   if (!information.allFinite()) return std::nullopt;
-  // Coordinates differ in scale by orders of magnitude, so correlations are factorised.
+  // Coordinates differ in scale by orders of magnitude, so the correlation matrix is factorised.
   const Eigen::VectorXd unit =
       information.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
   const Cholesky factor(unit.asDiagonal() * information * unit.asDiagonal());
@@ -90,8 +91,8 @@ std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordi
   return observed;
 }
 
-/// Standard errors given the smoothed modes: of theta by its posterior covariance, of Q by that of a normal scatter,
-/// (Q_ii Q_jj + Q_ij^2) / W, of T by the binomial's.
+/// Standard errors given the smoothed modes. theta: by its posterior covariance. Q: that of a normal scatter, (Q_ii
+/// Q_jj + Q_ij^2) / W. T: that of a binomial distribution.
 void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior, bool with_R, Bank& bank) {
   const std::vector<Eigen::MatrixXd> covariances = parameter_covariances(sums, prior, switching_model(bank));
   for (std::size_t j = 0; j < bank.modes.size(); ++j) {
@@ -112,9 +113,9 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
     bank.R_standard_error = Eigen::VectorXd::Constant(bank.R.rows(), not_a_number).asDiagonal().toDenseMatrix();
 }
 
-/// Whether the training runs contradict borders between modes that are twice as sharp. All log odds are doubled, which
-/// does not move any border. If no sample lies near a border, the data do not contradict, however small the prior makes
-/// the standard errors.
+/// Whether the training runs contradict borders between modes that are twice as sharp. The test doubles all log odds,
+/// which does not move any border. If no sample lies near a border, the data do not contradict, however small the prior
+/// makes the standard errors.
 bool against_harder_borders(const LikelihoodTarget& target, const Bank& bank) {
   constexpr double clearly = 1.92;  // nats: 95 % of a chi-square with one degree of freedom
   Bank harder = bank;
@@ -126,10 +127,11 @@ bool against_harder_borders(const LikelihoodTarget& target, const Bank& bank) {
 }
 
 /// Standard errors of those weights of the logit that the data determine. If no sample lies on a mode's border, the
-/// data show only that weights are large. Their error is then about the prior's standard deviation, or they were still
-/// growing at the end of expectation-maximisation. Such errors become NaN.
+/// data only show that weights are large. The standard error of such a weight is then about the prior's standard
+/// deviation, or the weight was still growing at the end of expectation-maximisation. Such errors become NaN.
 Eigen::VectorXd determined(const Eigen::VectorXd& error, const Eigen::VectorXd& step, const Eigen::VectorXd& prior_sd) {
-  constexpr double most = 0.5;  // of the prior's standard deviation, and of the error by the remaining step
+  constexpr double most = 0.5;  // limit of the standard error as a share of the prior's standard deviation, and of the
+                                // remaining step as a share of the standard error
   const bool all = (error.array() < most * prior_sd.array()).all() && (step.array().abs() < most * error.array()).all();
   return all ? error : Eigen::VectorXd::Constant(error.size(), not_a_number);
 }
@@ -152,7 +154,7 @@ void set_observed_errors(const ParameterPlaces& at, const Observed& observed, co
                      observed.newton_step.segment(at.weights(j), at.regressors), prior.weight_sd)
               .transpose();
   }
-  // Weights of modes are relative to each other: if one is unknown, all are.
+  // Weights of modes are relative to each other. If one is unknown, all are unknown.
   if (!bank.transition_weight_error.allFinite()) bank.transition_weight_error.setConstant(not_a_number);
   if (at.outputs > 0) bank.R_standard_error = error.segment(at.R(), at.outputs).asDiagonal().toDenseMatrix();
 }
@@ -166,7 +168,7 @@ FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, c
   free.theta_unit.resize(bank.structure.parameters(), one_theta ? 1 : bank.mode_count());
   for (Index j = 0; j < free.theta_unit.cols(); ++j)
     free.theta_unit.col(j) = covariances[static_cast<std::size_t>(j)].diagonal().unaryExpr([](double variance) {
-      if (std::isnan(variance)) return 1.0;  // nothing is known of it
+      if (std::isnan(variance)) return 1.0;  // nothing is known about this parameter
       return std::sqrt(std::max(variance, std::numeric_limits<double>::min()));
     });
   if (estimate_R) free.R.resize(static_cast<std::size_t>(bank.R.rows()));

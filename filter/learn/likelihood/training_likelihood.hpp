@@ -13,14 +13,15 @@ namespace modebank {
 double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
                                const LookAhead& look = {});
 
-/// training_log_likelihood with every sample's density to the power of its weight, in units of mean_training_weight.
+/// training_log_likelihood with every sample's density raised to the power of its weight, in units of
+/// mean_training_weight.
 double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
                                         const LookAhead& look = {});
 
 /// The gradient of weighted_training_log_likelihood; requires has_likelihood_gradient (filter/step).
 BankGradient training_gradient(const Bank& bank, const Recording& recording, const FilterOptions& options);
 
-/// Mean positive weight of the training samples; only ratios of weights matter. 1 without weights.
+/// Mean positive weight of the training samples; 1 without weights. Only ratios of weights matter.
 double mean_training_weight(const Recording& recording);
 
 }  // namespace modebank

@@ -14,15 +14,15 @@
 
 namespace modebank {
 
-/// Scores of left-out training runs for every start, number of iterations and noise adaptation. For each start it keeps
-/// the fit after the best number of iterations. Refers to its inputs.
+/// Scores of training runs that were left out, for every start, number of iterations and noise adaptation. For each
+/// start it stores the fit after the best number of iterations. Holds references to its inputs.
 class CrossValidation {
  public:
   explicit CrossValidation(const RefineInput& in);
 
-  /// Tries all candidates, adds a row for each to the table and chooses among all rows so far: the fewest modes that
-  /// are as good as the best (fewest_modes_as_good). If nothing can be left out, the first candidate is chosen and run
-  /// to convergence.
+  /// Tries all candidates and adds a row for each to the table. Then chooses among all rows so far: the fewest modes
+  /// that are as good as the best (fewest_modes_as_good). If no run can be left out, the first candidate is chosen and
+  /// run to convergence.
   void consider(const std::vector<RefineStart>& candidates);
 
   /// Whether any run can be left out.
@@ -48,8 +48,8 @@ class CrossValidation {
   /// Mean over all samples [nats]; minus infinity if a score is NaN.
   double mean_score(const LeftOutScores& scores) const;
 
-  /// Chooses the noise adaptation for the filter of these banks, one per split: among those that the left-out runs do
-  /// not separate, the one that leaves its start soonest.
+  /// Chooses the noise adaptation for the filter of these banks, one per split. If the left-out runs cannot separate
+  /// several, the one that leaves its start soonest is chosen.
   NoiseAdaptation adaptation(const std::vector<Bank>& of_splits) const;
 
  private:
@@ -60,7 +60,7 @@ class CrossValidation {
   RefineInput in_;
   LookAhead look_;  ///< horizon of the densities
   std::vector<SplitData> splits_;
-  Eigen::VectorXd samples_;  ///< of each left-out run
+  Eigen::VectorXd samples_;  ///< number of samples of each left-out run
   std::vector<Fit> fits_;
   std::size_t chosen_ = 0;
 };

@@ -14,14 +14,14 @@
 namespace modebank {
 namespace {
 
-/// Shares of R in the residual variance of exact states. R enters it once by the newest sample, and again by every
-/// lagged one.
+/// Shares of R in the residual variance of exact states. R enters this variance once by the newest sample, and again by
+/// every lagged sample.
 constexpr std::array<double, 2> R_shares{0.6, 0.25};
 constexpr double Q_share = 0.05;
 constexpr AscentLimits climb_limits{100, 1e-7};
 /// Above this number of state coefficients, a search over all of them takes minutes.
 constexpr Index most_coefficients = 4;
-/// Two lags determine a velocity; the coefficients of more lags take the place of R.
+/// Two lags determine a velocity; with more lags, their coefficients replace R.
 constexpr Index most_lags = 2;
 
 /// One model with the bank's structure and these shares of R.

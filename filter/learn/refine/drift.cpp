@@ -22,13 +22,13 @@ Fit tried(const CrossValidation& validation, Fit fit) {
 
 double total(const Fit& fit) { return fit.scores.log_likelihood.sum(); }
 
-/// One setting: its grid and position.
+/// One setting: its grid and its position in the grid.
 struct Coordinate {
   std::span<const double> grid;
   double& value;
 };
 
-/// Moves to better neighbours on each grid in turn until there are none. NaN is never better.
+/// Moves to better neighbours on each grid in turn until no neighbour is better. NaN is never better.
 Fit climbed(const RefineInput& in, const CrossValidation& validation, const Fit& start) {
   const RefineTuning& tuning = refine_tuning;
   Fit best = tried(validation, start);
@@ -75,7 +75,7 @@ Fit start_of(Fit fit, const Eigen::VectorXd& scale) {
   return fit;
 }
 
-/// Scores of the runs without drift, with the best noise adaptation for that case.
+/// Scores of the runs without drift, with the best noise adaptation for this case.
 Eigen::VectorXd scores_without(const CrossValidation& validation, const Fit& constant) {
   std::vector<Bank> banks = constant.of_splits;
   const NoiseAdaptation adaptation = validation.adaptation(banks);

@@ -19,8 +19,8 @@ struct RefineStart {
   double theta_transitions = 0.0;  ///< weight of the prior towards one motion, in transitions (switching/shrinkage.hpp)
 };
 
-/// The model accepted so far, with all additions. Each refinement step takes a fit and returns one, with the same fit
-/// on every split of the cross-validation. The rule (left_out/rule.hpp) decides by these.
+/// The model accepted so far, with all additions. Each refinement step takes a Fit and returns a Fit. A Fit contains
+/// the same fit for every split of the cross-validation; the rule (left_out/rule.hpp) decides by these.
 struct Fit {
   RefineStart start;
   SwitchingRegression model;         ///< start of expectation-maximisation, or a model with a logit
@@ -28,9 +28,9 @@ struct Fit {
   std::size_t row = 0;               ///< row of the start in the table
   Eigen::Index iterations = 0;       ///< iterations of expectation-maximisation that score best on left-out runs
   LeftOutScores scores = {};         ///< scores on the left-out runs
-  std::vector<Bank> of_splits = {};  ///< the fit without each split's runs; empty if nothing is left out
-  BankDrift drift = {};              ///< drift of the modes; empty: none
-  NoiseAdaptation adaptation = {};   ///< of the filter with drifting modes
+  std::vector<Bank> of_splits = {};  ///< the fit without the left-out runs of each split; empty if no run is left out
+  BankDrift drift = {};              ///< drift of the modes; empty without drift
+  NoiseAdaptation adaptation = {};   ///< noise adaptation of the filter with drifting modes
   // Set after expectation-maximisation on all training runs:
   Bank bank = {};
   SwitchingPrior prior = {};

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index stretches = 100;         // smallest number in long runs; folds and restarts draw from them
+constexpr Index stretches = 100;         // smallest number of stretches in long runs; folds and restarts draw from them
 constexpr Index shortest_stretch = 100;  // transitions: several dwell times and the filter's first steps
 
 struct Piece {

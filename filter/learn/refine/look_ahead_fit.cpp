@@ -20,8 +20,8 @@ namespace modebank {
 namespace {
 
 constexpr Index most_iterations = 40;
-// Every coordinate needs a difference at every gradient. With 200 (twelve modes on ICE) one fit would take ten minutes,
-// and each fold needs a fit.
+// Every coordinate needs a difference for every gradient. With 200 coordinates (twelve modes on ICE) one fit would take
+// ten minutes, and each fold needs a fit.
 constexpr Index most_coordinates = 50;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -47,8 +47,8 @@ struct LookAheadFit {
         .bank;
   }
 
-  /// Densities fit all parameters. Errors fit theta only; the likelihood then determines noise and transitions for that
-  /// theta.
+  /// `densities` fits all parameters. `errors` fits theta only; the likelihood then determines noise and transitions
+  /// for that theta.
   Bank continued(const Recording& recording, const SwitchingPrior& prior, const Bank& bank) const {
     const FreeParameters all = free_parameters(in, recording, prior, R_estimated, bank);
     if (!look.counts_errors()) return climbed(recording, prior, look, all, bank);
@@ -60,7 +60,7 @@ struct LookAheadFit {
   }
 };
 
-/// Root mean square of the scored errors of the present bank. With this unit all signals have equal weight, and gains
+/// Root mean square of the scored errors of the present bank. With this unit, all signals have equal weight and gains
 /// are roughly in nats.
 Eigen::VectorXd error_unit(const RefineInput& in, const Bank& bank) {
   const Index outputs = bank.C.rows();
@@ -75,7 +75,7 @@ Eigen::VectorXd error_unit(const RefineInput& in, const Bank& bank) {
   return unit;
 }
 
-/// Empty if there is nothing to score.
+/// Empty if there are no samples to score.
 std::optional<LookAhead> look_of(const RefineInput& in, const Bank& bank) {
   if (in.options.look_ahead_score == LookAheadScore::density)
     return in.options.look_ahead > 1 ? std::optional<LookAhead>{{in.options.look_ahead}} : std::nullopt;
@@ -94,7 +94,7 @@ Bank without_errors(Bank bank) {
   return bank;
 }
 
-/// Whether left-out runs, each scored by a fit without them, gain enough (left_out/rule.hpp).
+/// Whether the left-out runs gain enough (left_out/rule.hpp). Each run is scored by a fit without it.
 bool gains(const LookAheadFit& search, const CrossValidation& validation, LookAheadStage& stage, Fit& fit) {
   std::vector<Bank> banks = fit.of_splits;
   const LeftOutScores before = validation.scores(banks, search.look);

@@ -21,7 +21,7 @@
 namespace modebank {
 namespace {
 
-// For the search for R alone; the fit of all parameters starts at its end.
+// Options of the search for R alone. The fit of all parameters starts at the end of this search.
 constexpr AscentLimits search_limits{30, 1e-7};
 
 /// Smallest increase of the log-likelihood of these training runs by R [nats].
@@ -52,7 +52,7 @@ FreeParameters free_noise(Index n_y) {
   return free;
 }
 
-/// Whether a Newton step from `start`, with the information of single samples, is expected to exceed `level`.
+/// Whether a Newton step from `start`, with the information of single samples, is expected to gain more than `level`.
 bool promises(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start, double level) {
   const BankCoordinates around(start, free);
   const SampleGradients gradients = sample_gradients(around, Eigen::VectorXd::Constant(around.size(), difference_step),
@@ -62,13 +62,14 @@ bool promises(const LikelihoodTarget& target, const FreeParameters& free, const 
   return target.value(start) + 0.5 * information.whiten(gradients.sum).squaredNorm() > level;
 }
 
-/// With more states a filter pass is slow. R is then searched from one start, and together with theta only if that has
+/// With more states a filter pass is slow. Then R is searched from one start, and together with theta only if theta has
 /// few coordinates.
 constexpr Index most_states_of_wide_search = 4, most_coordinates_of_large_filters = 40;
 
 bool is_large(const Bank& bank) { return bank.structure.dimension() > most_states_of_wide_search; }
 
-/// All shares in the tuning. For a large filter only the most likely one, if its gradient promises a gain.
+/// Starting shares: all shares in the tuning. For a large filter only the most likely share, if its gradient promises a
+/// gain.
 std::vector<Bank> starts_of_R(const LikelihoodTarget& target, const FreeParameters& free, const Bank& bank,
                               double level, const RefineTuning& tuning) {
   std::vector<Bank> starts;
@@ -82,9 +83,9 @@ std::vector<Bank> starts_of_R(const LikelihoodTarget& target, const FreeParamete
   return starts;
 }
 
-/// Searches theta with R and one factor on Q, if the gradient promises a gain. The fit with exactly measured states has
-/// a theta biased by errors in variables; with it R = 0 may be the most likely. Empty if this gains less than
-/// least_rise over the bank, too. `transitions`: of the target's recording.
+/// Searches theta with R and one factor on Q, if the gradient promises a gain. The reason: theta of exactly measured
+/// states is biased by errors in variables. With this theta R = 0 may be the most likely. Empty if the search gains
+/// less than least_rise over the bank, too. `transitions`: those of the target's recording.
 std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const RefineInput& in,
                                         const TrainingTransitions& transitions, const SwitchingPrior& prior,
                                         const Bank& bank) {
@@ -113,9 +114,10 @@ LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const Refi
   return maximise_likelihood(target, free, bank, {in.options.max_iterations, in.options.tolerance});
 }
 
-/// R of a bank: by the search for R alone, or with theta if the theta of exact states makes R = 0 most likely. If R
-/// dominates, theta of exact states is so wrong that both searches miss the maximum. So a bank that starts from one
-/// model with a large R competes with them, each at its maximum over theta, Q and R.
+/// R of a bank. It comes from the search for R alone. If the theta of exact states makes R = 0 most likely, R is
+/// searched together with theta. If R dominates, theta of exact states is so wrong that both searches miss the maximum.
+/// So a third bank competes: one that starts from a single model with a large R. Each candidate is compared at its
+/// maximum over theta, Q and R.
 MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, const TrainingTransitions& transitions,
                         const GlobalModel& global, const SwitchingPrior& prior, const Bank& bank) {
   MeasurementNoise noise = estimate_measurement_noise(target, bank, refine_tuning);
@@ -133,8 +135,8 @@ MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, c
   return noise;
 }
 
-/// The fits to the splits' training runs with measurement noise. No part of a fit (theta, T, R, prior) uses the runs
-/// that score it.
+/// The fits to the training runs of the splits, with measurement noise. No part of a fit (theta, T, R, prior) uses the
+/// runs that score it.
 class MeasuredSplits {
  public:
   MeasuredSplits(const RefineInput& in, const CrossValidation& validation, const Fit& exact)
@@ -146,7 +148,7 @@ class MeasuredSplits {
   /// Mean log score of the left-out runs.
   double score() const { return validation_.mean_score(validation_.scores(banks_)); }
 
-  /// Estimates R of each split; it may be zero for some.
+  /// Estimates R of each split; R may be zero for some splits.
   void estimate_R() {
     for_each([&](const SplitData& split, Bank& bank) {
       const LikelihoodTarget target{split.runs.training, in_.filter, std::nullopt};
@@ -227,7 +229,7 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 
 namespace {
 
-/// Accepts R, for the bank and the splits, if the data require it and the left-out runs do not lose by it.
+/// Accepts R, for the bank and the splits, if the data require R and the left-out runs do not lose by it.
 bool take_R(const RefineInput& in, const SwitchingPrior& exact, std::optional<MeasuredSplits>& splits, Fit& fit,
             MeasurementStage& stage) {
   const RefineTuning& tuning = refine_tuning;
@@ -247,7 +249,7 @@ bool take_R(const RefineInput& in, const SwitchingPrior& exact, std::optional<Me
   return true;
 }
 
-/// Continues to the maximum, for the bank and the splits, unless the left-out runs lose by it.
+/// Continues to the maximum, for the bank and the splits. Returns to the previous fits if the left-out runs lose.
 void go_on(const RefineInput& in, const SwitchingPrior& exact, std::optional<MeasuredSplits>& splits, Fit& fit,
            MeasurementStage& stage) {
   fit.prior = prior_with_states_unknown(exact, fit.bank, refine_tuning);
@@ -279,7 +281,7 @@ Fit fit_untimed(const RefineInput& in, const CrossValidation& validation, const 
   if (asks_for_R && (with_R || quantised ||
                      (fit.bank.R.diagonal().array() > least_measurement_noise(in.fits, refine_tuning).array()).any()))
     go_on(in, exact.prior, splits, fit, stage);
-  // With states taken as exact, Q contains the rounding. Only a fit by intervals separates R from it.
+  // If states count as exact, Q contains the rounding. Only a fit by intervals separates the rounding from Q.
   if (with_R && quantised && take_R(in, exact.prior, splits, fit, stage)) go_on(in, exact.prior, splits, fit, stage);
   if (splits) fit.of_splits = splits->banks();
   return fit;

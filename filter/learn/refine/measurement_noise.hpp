@@ -14,31 +14,33 @@ namespace modebank {
 
 /// Result of a search for R.
 struct MeasurementNoise {
-  std::optional<Bank> bank;  ///< bank with R and a smaller Q; empty: the data require no R, or every start failed
+  std::optional<Bank> bank;  ///< bank with R and a smaller Q; empty if the data require no R, or if every start failed
   Index starts = 0;
-  Index failed_starts = 0;  ///< starts with a likelihood that is not finite, or without any step that raised it
+  Index failed_starts = 0;  ///< starts that failed: the likelihood is not finite, or no step raised it
 };
 
-/// The bank with maximum-likelihood R (diagonal). The target is maximised over R and one factor on every Q (which
-/// contained the measurement noise before); theta and T are constant. The best of several starting shares of Q is
-/// taken. Empty unless it gains more than least_gain nats per sample over the bank without R. For R > 0 the IMM's
-/// likelihood is itself approximate.
+/// The bank with maximum-likelihood R (diagonal). The target is maximised over R and one factor on every Q, because Q
+/// contained the measurement noise before. theta and T are constant. Several starting shares of Q are tried and the
+/// best result is taken. Empty unless it gains more than least_gain nats per sample over the bank without R. For R > 0
+/// the likelihood of an IMM is itself approximate.
 MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
                                             const RefineTuning& tuning);
 
-/// The prior for unknown states. It equals that of the fit with exactly measured states, except for Q: one additional
-/// transition with the harmonic mean covariance of the modes in `start`. The global residual covariance includes the
-/// modes' differences and would outweigh the data of very different modes. A harmonic mean is at most a few times the
-/// smallest Q, so no mode rises by more than about its share of one transition.
+/// The prior for unknown states. It equals that of the fit with exactly measured states, except for Q. Q has one
+/// additional transition, with the harmonic mean covariance of the modes in `start`. (The global residual covariance
+/// would include the differences between modes and outweigh the data of very different modes.) A harmonic mean is at
+/// most a few times the smallest Q. So no mode's Q rises by more than about its share of one transition.
 SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank& start, const RefineTuning& tuning);
 
-/// Continues the fit with unknown states if R is not negligible. R is given, or estimated in the bank's filter
-/// (estimate_measurement_noise) and accepted unless left-out runs lose more than least_gain. theta, Q, R and T then
-/// maximise the filter's likelihood together. The result is kept if it gains on left-out runs, each scored by a fit
-/// whose R, prior and other parameters come from the other runs.
-/// Rounded states are unknown for any R: their fit always continues so, and R is searched afterwards, because the
-/// likelihood then already explains the rounding. R is not searched beside more than eight state lags. `exact`: the fit
-/// with exact states, with its bank and prior. `stage` records the result.
+/// Continues the fit with unknown states if R is not negligible.
+/// - R is given, or estimated in the bank's filter (estimate_measurement_noise). An estimate is accepted unless
+///   left-out runs lose more than least_gain.
+/// - theta, Q, R and T then maximise the filter's likelihood together. The result is kept if it gains on left-out
+///   runs. Each run is scored by a fit whose R, prior and other parameters come from the other runs.
+/// - Rounded states are unknown for any R. Their fit always continues in this way, and R is searched afterwards,
+///   because the likelihood then already explains the rounding.
+/// - With more than eight state lags, R is not searched.
+/// `exact`: the fit with exact states, with its bank and prior. `stage` records the result.
 Fit fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation, const Fit& exact,
                                MeasurementStage& stage);
 

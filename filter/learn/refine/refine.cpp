@@ -17,16 +17,15 @@
 namespace modebank {
 namespace {
 
-/// The parts that are not refined. The fit takes states as measured exactly, so R of a start would be counted twice: Q
-/// then includes it.
+/// The parts that are not refined. The fit treats states as measured exactly, so its Q includes the R of a start.
+/// Keeping that R would count it twice.
 Bank frame_of(const Bank& start, const RefineOptions& options) {
   Bank frame = start;
   if (options.measurement_noise) frame.R.setZero();
   return frame;
 }
 
-/// Numbers of modes for starts from stretches: larger ones than the mixture's bank has, if requested, and the same
-/// number.
+/// Numbers of modes for starts from stretches: that of the mixture's bank and, if requested, larger numbers.
 std::vector<Index> stretch_modes(const RefineOptions& options, Index of_mixture) {
   std::vector<Index> counts;
   const double kept = refine_tuning.modes_kept;
@@ -121,7 +120,8 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   const bool drifts = !chosen.drift.empty();
   chosen.bank = bank_of_fit(in, fit, drifts ? chosen.adaptation : validation.adaptation(chosen.of_splits));
   if (!drifts) chosen = fit_with_measurement_noise(in, validation, chosen, result.measurement);
-  // For drifting modes, standard errors are those of the likelihood without drift, which the fit maximises.
+  // For drifting modes, standard errors are those of the likelihood without drift, which is the likelihood that the fit
+  // maximises.
   const FilterOptions maximised = result.measurement.iterations > 0 ? learning_filter(filter) : exact_filter(filter);
   chosen.bank = with_errors(in, fit, chosen.prior, chosen.R_estimated, maximised, chosen.bank);
   if (drifts)

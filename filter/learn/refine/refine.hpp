@@ -16,45 +16,47 @@ namespace modebank {
 /// Gain of a look-ahead fit (look_ahead_fit.hpp).
 struct LookAheadStage {
   double score_before = 0.0;         ///< mean look-ahead score of the left-out runs before [nats per sample]
-  double score = 0.0;                ///< after the fit; equal to score_before if not tried
-  double gain_standard_error = 0.0;  ///< of the difference, clustered by run
+  double score = 0.0;                ///< the same after the fit; equal to score_before if no fit was tried
+  double gain_standard_error = 0.0;  ///< standard error of the difference, clustered by run
   bool taken = false;
   bool of_errors = false;  ///< whether scores are minus half of mean squared errors, without unit
 };
 
 struct Refinement {
   Bank bank;
-  Bank start;                               ///< the mixture's bank
+  Bank start;                               ///< the bank of the mixture
   std::vector<RefineCandidate> candidates;  ///< best number of iterations for each start
   std::vector<double> objective;  ///< penalised log-likelihood of the training transitions before each iteration
   MeasurementStage measurement;
   SwitchingStage switching = {};
   DriftStage drift = {};
   LookAheadStage look_ahead = {};
-  /// The same fit to the training part of each split (validation_splits), in their order, for scores on unseen runs;
-  /// empty if nothing was left out.
+  /// The same fit to the training part of each split (validation_splits), in the order of the splits, for scores on
+  /// unseen runs. Empty if no run was left out.
   std::vector<Bank> of_splits = {};
-  Eigen::Index learned_transitions = 0;  ///< transitions of the part of the training runs that was used
+  Eigen::Index learned_transitions = 0;  ///< number of transitions in the part of the training runs that was used
                                          ///< (learning_part.hpp); 0: all
 };
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp), starting from banks of mixtures.
-/// The score of left-out training runs in the bank's own filter decides the start, the number of iterations and, for an
-/// adaptive filter, how the noise scale adapts; held-out runs are never used. Among starts that are as good as the
-/// best, the one with the fewest modes is chosen (fewest_modes_as_good). The last fit uses all training runs. Unstable,
-/// starved and duplicate modes are then screened and listed, and the other modes refined further.
+/// - The score of left-out training runs, in the bank's own filter, decides the start and the number of iterations.
+///   For an adaptive filter it also decides how the noise scale adapts. Held-out runs are never used.
+/// - Among starts that are as good as the best, the one with the fewest modes is chosen (fewest_modes_as_good).
+/// - The last fit uses all training runs. Unstable, starved and duplicate modes are then removed and listed, and the
+///   other modes are refined further.
 ///
-/// Prior: theta is normal about the global model with the windows' prior_sd, or worth one transition without it (unit
-/// information: Kass & Wasserman 1995). Q has 1, 4 or 16 additional transitions of the global residual covariance,
-/// chosen by cross-validation. Every count of T and of first modes has 0.1 added.
+/// The prior: theta is normal about the global model. Its standard deviation is prior_sd of the windows; without
+/// prior_sd, the prior is worth one transition (unit information: Kass & Wasserman 1995). Q has 1, 4 or 16 additional
+/// transitions of the global residual covariance, chosen by cross-validation. Every count of T and of first modes has
+/// 0.1 added.
 ///
 /// States first count as measured exactly, which is exact for R = 0. Otherwise Q contains the measurement noise and
-/// theta is biased (errors in variables). R, and the remaining Q, are then estimated by the filter's likelihood
-/// (measurement_noise.hpp) and kept if that is better. With R estimated or given, the fit continues with unknown
-/// states: theta, Q, R and T together maximise the filter's likelihood of the training runs (exact for one mode, the
-/// IMM's for several). The result is kept unless it costs more than least_gain (tuning.hpp) on the left-out runs. If
-/// modes drift (choose_drift, drift.hpp), R is zero. Requires linear or lagged linear banks of one structure; throws
-/// std::invalid_argument for a motion model.
+/// theta is biased (errors in variables). R and the remaining Q are then estimated by the filter's likelihood
+/// (measurement_noise.hpp) and kept if the result is better. If R is estimated or given, the fit continues with unknown
+/// states: theta, Q, R and T together maximise the filter's likelihood of the training runs. This likelihood is exact
+/// for one mode; for several it is the approximation of the IMM. The result is kept unless it costs more than
+/// least_gain (tuning.hpp) on the left-out runs. If modes drift (choose_drift, drift.hpp), R is zero. Requires linear
+/// or lagged linear banks of one structure; throws std::invalid_argument for a motion model.
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& starts,
                        const RefineOptions& options, const FilterOptions& filter);
 

@@ -16,7 +16,7 @@ namespace modebank {
 struct SplitData {
   ValidationSplit runs;
   TrainingTransitions transitions;  ///< of runs.training
-  GlobalModel global;               ///< of the same transitions
+  GlobalModel global;               ///< global model of the same transitions
 };
 
 std::vector<SplitData> split_data(const RefineInput& in);
@@ -24,7 +24,8 @@ std::vector<SplitData> split_data(const RefineInput& in);
 SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, double noise_transitions);
 SwitchingPrior prior_of_split(const RefineInput& in, const SplitData& split, const RefineStart& start);
 
-/// The fits from one start: one per split with that split's prior, iteration by iteration. Refers to its inputs.
+/// The fits from one start: one per split, with the prior of that split, iteration by iteration. Holds references to
+/// its inputs.
 class SplitFits {
  public:
   SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, const RefineStart& start);
@@ -32,7 +33,7 @@ class SplitFits {
   SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, std::vector<SwitchingPrior> priors,
             std::vector<SwitchingRegression> starts);
 
-  /// Continues to this number of iterations in all, or fewer if the objective converges.
+  /// Continues to this total number of iterations, or fewer if the objective converges.
   void advance_to(Index iterations);
   /// Whether all fits have converged.
   bool converged() const;

@@ -17,7 +17,7 @@ namespace {
 
 /// A model with a logit, fitted to all training runs.
 struct LogitStart {
-  const Fit* constant;  ///< the fit with constant T that it started from, whose priors it keeps
+  const Fit* constant;  ///< the fit with constant T from which this model started; its priors are kept
   SwitchingRegression model;
   double log_likelihood;
 };
@@ -29,7 +29,7 @@ LogitStart gone_on(const RefineInput& in, const Fit& constant, SwitchingRegressi
   return {&constant, em.model(), em.posterior().log_likelihood};
 }
 
-/// Continues every start's fit with constant T as a logit; empty for one mode, which does not switch.
+/// Continues every start's fit with constant T as a logit. Empty for one mode, which does not switch.
 std::vector<LogitStart> from_constant_fits(const RefineInput& in, const std::vector<Fit>& fits) {
   std::vector<std::optional<LogitStart>> all(fits.size());
   tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t f) {
@@ -46,8 +46,8 @@ std::vector<LogitStart> from_constant_fits(const RefineInput& in, const std::vec
 
 bool likelier(const LogitStart& a, const LogitStart& b) { return a.log_likelihood > b.log_likelihood; }
 
-/// The most likely model of each number of modes, the most modes first. Candidates are the continued constant fits, and
-/// the best of these with one pair of modes after another merged.
+/// The most likely model of each number of modes, the most modes first. The candidates are the continued fits with
+/// constant T. Further candidates come from the best of these, by merging one pair of modes after another.
 std::vector<LogitStart> logit_starts(const RefineInput& in, const std::vector<Fit>& fits) {
   std::vector<LogitStart> all = from_constant_fits(in, fits);
   if (all.empty()) return all;

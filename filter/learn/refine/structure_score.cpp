@@ -37,7 +37,7 @@ struct LeftOutRuns {
   VectorXd log_likelihood, transitions;
 };
 
-/// Predicts left-out runs by one fit to the others.
+/// Predicts the left-out runs by one fit to the other runs.
 LeftOutRuns predict(const TrainingTransitions& learned, const TrainingTransitions& left_out,
                     const SwitchingPrior& prior, const ModesAndStart& fit, bool one_theta, std::uint64_t seed) {
   const Index length = std::max(shortest_start, start_per_regressor * learned.structure.regressors());
@@ -47,7 +47,8 @@ LeftOutRuns predict(const TrainingTransitions& learned, const TrainingTransition
   return {sum_by_run(left_out, predictive_log_densities(left_out, em.model())), sum_by_run(left_out, left_out.usable)};
 }
 
-/// Predictions of a split's left-out runs by every fit with one structure; empty if there is nothing to learn from.
+/// Predictions of the left-out runs of a split by every fit with one structure. Empty if there are no transitions to
+/// learn from.
 std::vector<LeftOutRuns> ask(const ValidationSplit& split, const LinearStructure& structure, Index latest,
                              bool one_theta, std::uint64_t seed) {
   const Index earlier = latest - structure.first_transition();
@@ -78,7 +79,8 @@ VectorXd joined(const std::vector<VectorXd>& parts) {
   return all;
 }
 
-/// The best number of modes of a structure: log-likelihoods of all runs; NaN if a split had nothing to learn from.
+/// The best number of modes of a structure: log-likelihoods of all runs. NaN if a split has no transitions to learn
+/// from.
 LeftOutRuns best_of(const std::vector<std::vector<LeftOutRuns>>& splits) {
   LeftOutRuns best{VectorXd::Constant(1, not_a_number), VectorXd::Ones(1)};
   if (std::any_of(splits.begin(), splits.end(), [](const auto& said) { return said.empty(); })) return best;

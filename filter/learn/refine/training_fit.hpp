@@ -15,7 +15,7 @@
 
 namespace modebank {
 
-/// Inputs of the refinement of a bank. Refers to them.
+/// Inputs of the refinement of a bank. Holds references to the inputs.
 struct RefineInput {
   const Recording& recording;
   const WindowFits& fits;
@@ -35,20 +35,20 @@ SwitchingEmOptions em_options(const RefineOptions& options);
 struct TrainingFit {
   SwitchingRegression model;
   ModePosterior posterior;
-  std::vector<ScreenedMode> screened;  ///< modes screened from the frame and from the fit
-  std::vector<double> objective;       ///< before each iteration until modes are screened
-  Shrinking shrinking = {};            ///< of the present model
+  std::vector<ScreenedMode> screened;  ///< modes removed from the frame and from the fit
+  std::vector<double> objective;       ///< penalised log-likelihood before each iteration, until modes are removed
+  Shrinking shrinking = {};            ///< penalised log-likelihood of the present model
 };
 
-/// Expectation-maximisation from `model` for a number of iterations, or fewer if the objective converges. Starved,
-/// unstable and duplicate modes are then removed one by one, each followed by some more iterations.
+/// Runs expectation-maximisation from `model` for a number of iterations, or fewer if the objective converges. Starved,
+/// unstable and duplicate modes are then removed one by one. A few more iterations follow each removal.
 TrainingFit fit_training_runs(const RefineInput& in, const SwitchingRegression& model, const SwitchingPrior& prior,
                               Index iterations);
 
-/// The fit as a bank; modes have the weight of their share of the transitions. Without standard errors.
+/// The fit as a bank, without standard errors. The weight of a mode is its share of the transitions.
 Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit, const NoiseAdaptation& adaptation);
 
-/// The bank of this fit with standard errors (likelihood/standard_errors.hpp), in the filter whose likelihood it
+/// The bank of this fit with standard errors (likelihood/standard_errors.hpp), in the filter whose likelihood the fit
 /// maximises: exact_filter or learning_filter. `estimated_R`: whether R is among the estimated parameters.
 Bank with_errors(const RefineInput& in, const TrainingFit& fit, const SwitchingPrior& prior, bool estimated_R,
                  const FilterOptions& filter, const Bank& bank);
@@ -56,13 +56,13 @@ Bank with_errors(const RefineInput& in, const TrainingFit& fit, const SwitchingP
 /// The smallest R in refinement, which is negligible. n_y.
 Eigen::VectorXd least_measurement_noise(const WindowFits& fits, const RefineTuning& tuning);
 
-/// The filter whose likelihood is maximised with measurement noise: the bank's filter, but an IMM without adaptation of
-/// parameters.
+/// The filter whose likelihood is maximised with measurement noise. It is the bank's filter, as an IMM without
+/// adaptation of parameters.
 FilterOptions learning_filter(const FilterOptions& filter);
 
 /// The filter whose likelihood expectation-maximisation raises: learning_filter with equal noise in every run. An
-/// adaptive filter would weigh rough runs less, which this estimate does not; its standard errors are then too small.
-/// Over draws of runs with sd 0.4 and 2 they are half of theta's actual error (standard_errors_test.cpp).
+/// adaptive filter would give rough runs less weight; this estimate does not, so its standard errors are then too
+/// small. Over draws of runs with sd 0.4 and 2 they are half of theta's actual error (standard_errors_test.cpp).
 FilterOptions exact_filter(const FilterOptions& filter);
 
 }  // namespace modebank

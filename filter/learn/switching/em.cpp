@@ -10,14 +10,14 @@
 namespace modebank {
 namespace {
 
-/// Maximises theta and Q of all modes, each given the other.
+/// Maximises over theta and Q of all modes alternately, each with the other fixed.
 class ConditionalMaximiser {
  public:
   ConditionalMaximiser(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
                        SwitchingRegression& model)
       : structure_(structure), sums_(sums), prior_(prior), model_(model) {}
 
-  // If a Q is singular, theta stays: the objective is then minus infinity, and such a fit is never chosen.
+  // If a Q is singular, theta stays. The objective is then minus infinity, and such a fit is never chosen.
   void set_theta(Index j) {
     if (const auto best = best_theta(j, j + 1)) model_.theta.col(j) = *best;
   }
@@ -47,7 +47,7 @@ class ConditionalMaximiser {
       const Eigen::MatrixXd of_mode = at(j).H * *Q_inverse;
       pull += of_mode.reshaped();
     }
-    const Cholesky factor(information);  // an LDLT of 128 coefficients takes four times as long
+    const Cholesky factor(information);  // an LDLT of 128 coefficients takes four times the time
     return prior_.mean + (factor.definite() ? factor.solve(pull) : solve_semidefinite(information, pull));
   }
 

@@ -8,31 +8,31 @@
 namespace modebank {
 
 struct SwitchingEmOptions {
-  bool one_theta = false;   ///< all modes share theta and differ in Q
-  double tolerance = 1e-6;  ///< nats per transition: converged if the objective gains less
-  int alternations = 3;     ///< between theta and Q in one maximisation
+  bool one_theta = false;   ///< whether all modes share theta and differ in Q
+  double tolerance = 1e-6;  ///< nats per transition; converged if the objective gains less
+  int alternations = 3;     ///< alternations between theta and Q in one maximisation
 };
 
-/// The model with the largest expected log posterior near `model`, whose parameters were used for the sums. theta given
-/// Q and Q given theta alternate a few times (ECM: Meng & Rubin 1993). T and initial probabilities are exact, except T
-/// of a logit (transition_regression.hpp).
+/// The model with the largest expected log posterior near `model`. The sums must come from the parameters of `model`. A
+/// few alternations maximise over theta given Q, and over Q given theta (ECM: Meng & Rubin 1993). T and initial
+/// probabilities are exact, except T of a logit (transition_regression.hpp).
 SwitchingRegression maximise(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
                              const SwitchingEmOptions& options, SwitchingRegression model);
 
-/// Expectation-maximisation of the switching regression on one set of runs, iteration by iteration. Refers to the
-/// transitions and the prior.
+/// Expectation-maximisation of the switching regression on one set of runs, iteration by iteration. Holds references to
+/// the transitions and the prior.
 class ExpectationMaximisation {
  public:
   ExpectationMaximisation(const TrainingTransitions& transitions, const SwitchingPrior& prior,
                           const SwitchingEmOptions& options, SwitchingRegression start);
 
-  /// One iteration; does nothing after convergence.
+  /// Makes one iteration. Does nothing after convergence.
   void step();
 
   bool converged() const { return converged_; }
   const SwitchingRegression& model() const { return model_; }
   const ModePosterior& posterior() const { return posterior_; }
-  const std::vector<double>& objective() const { return objective_; }  ///< before each iteration
+  const std::vector<double>& objective() const { return objective_; }  ///< objective before each iteration
 
  private:
   const TrainingTransitions& transitions_;

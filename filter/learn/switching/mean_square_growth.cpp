@@ -64,10 +64,10 @@ double mean_square_growth(const LinearStructure& structure, const SwitchingRegre
   const SecondMoments moments(structure, model);
   if (!moments.finite()) return std::numeric_limits<double>::infinity();
   // With one motion, the sum of all modes' moments evolves like that of a single mode, because rows of T sum to one. A
-  // root of the n x n matrix is exact even where the eigenvalues of the larger operator are multiple.
+  // root of the n x n matrix is exact even if eigenvalues of the larger operator are multiple.
   if (moments.one_motion()) return std::pow(spectral_radius(unpack(structure, model.theta.col(0))), 2);
-  // The operator maps positive semidefinite matrices to such matrices. So its spectral radius is one of its eigenvalues
-  // (Krein & Rutman 1948), and no other has a larger real part.
+  // The operator maps positive semidefinite matrices to positive semidefinite matrices. So its spectral radius is an
+  // eigenvalue (Krein & Rutman 1948), and no other eigenvalue has a larger real part.
   return largest_real_eigenvalue([&](const Eigen::VectorXd& x) { return moments.after_a_step(x); },
                                  moments.of_white_noise());
 }

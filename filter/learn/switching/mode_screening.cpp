@@ -16,9 +16,9 @@
 namespace modebank {
 namespace {
 
-constexpr double power_ridge = 1e-12;  // share of the regressors' power; keeps unexcited regressions solvable
+constexpr double power_ridge = 1e-12;  // share of the regressors' power; makes regressions without excitation solvable
 
-/// 1/2 W log det of the residual covariance of these transitions' least squares. Sums of pooled modes add up.
+/// 1/2 W log det of the residual covariance of these transitions' least squares. The sums of pooled modes are added.
 double cost(const RegressionSums& sums) {
   Eigen::MatrixXd normal = sums.G;
   normal.diagonal().array() += power_ridge * std::max(sums.G.trace(), std::numeric_limits<double>::min());
@@ -30,7 +30,7 @@ double cost(const RegressionSums& sums) {
 std::vector<RegressionSums> sums_of_modes(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                           const SwitchingRegression& model) {
   const Eigen::MatrixXd& X = transitions.data.regressors;
-  const Eigen::VectorXd middle = model.theta.rowwise().mean();  // near every mode, which limits cancellation
+  const Eigen::VectorXd middle = model.theta.rowwise().mean();  // a point near every mode, which limits cancellation
   const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, middle);
   std::vector<RegressionSums> modes;
   for (Index j = 0; j < model.modes(); ++j)
@@ -47,7 +47,7 @@ Index free_parameters(const LinearStructure& structure, bool one_theta) {
   return (one_theta ? 0 : theta) + noise;
 }
 
-/// The pair of modes whose pooling loses least, if it loses less than `least` nats.
+/// The pair of modes whose pooling loses least, if the loss is below `least` nats.
 std::optional<DuplicateModes> closest_duplicates(const std::vector<RegressionSums>& modes, double least) {
   std::optional<DuplicateModes> duplicates;
   for (std::size_t i = 0; i < modes.size(); ++i)
@@ -79,7 +79,7 @@ void drop_mode(Index mode, SwitchingRegression& model) {
   model.initial /= model.initial.sum();
 }
 
-/// Adds the dropped mode's data to the remaining mode of the pair, weighted as the modes are.
+/// Adds the data of the removed mode to the remaining mode of the pair, with the weights of the modes.
 void merge(const DuplicateModes& duplicates, const std::vector<RegressionSums>& modes, SwitchingRegression& model) {
   const double kept = modes[static_cast<std::size_t>(duplicates.kept)].weight;
   const double dropped = modes[static_cast<std::size_t>(duplicates.dropped)].weight;
@@ -98,7 +98,7 @@ double radius(const LinearStructure& structure, const SwitchingRegression& model
   return spectral_radius(unpack(structure, model.theta.col(j)));
 }
 
-/// The mode with the fewest effective transitions, if these are fewer than a regression needs.
+/// The mode with the fewest effective transitions, if they are too few for a regression.
 std::optional<Index> starved_mode(const LinearStructure& structure, const std::vector<RegressionSums>& modes) {
   const auto least =
       std::min_element(modes.begin(), modes.end(), [](const auto& a, const auto& b) { return a.weight < b.weight; });

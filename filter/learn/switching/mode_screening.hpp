@@ -8,7 +8,7 @@
 
 namespace modebank {
 
-/// A model after the removal of a mode, and that mode.
+/// A model after the removal of a mode, and the removed mode.
 struct ScreenedModel {
   SwitchingRegression model;
   ScreenedMode mode;
@@ -27,8 +27,8 @@ std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& trans
                                                 const SwitchingRegression& model, bool one_theta,
                                                 const RefineTuning& tuning);
 
-/// The model with its closest pair of modes merged: the pair whose pooling loses least, however much that is (see
-/// "duplicate" above). Requires at least two modes.
+/// The model with its closest pair of modes merged, whatever the loss. The closest pair is the one whose pooling loses
+/// least (see "duplicate" above). Requires at least two modes.
 SwitchingRegression with_closest_pair_merged(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                              const SwitchingRegression& model);
 

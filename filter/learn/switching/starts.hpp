@@ -14,14 +14,14 @@ SwitchingPrior switching_prior(const TrainingTransitions& transitions, const Glo
                                const Eigen::VectorXd& prior_sd, double noise_transitions,
                                const RefineTuning& tuning = {});
 
-/// Average information of one transition about theta for residuals of covariance Q, p x p. It is made definite by
-/// `least_information` of its largest entry. Throws DataError if Q is singular.
+/// Average information of one transition about theta for residuals of covariance Q, p x p. `least_information` of its
+/// largest entry is added to make it definite. Throws DataError if Q is singular.
 Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const Eigen::MatrixXd& Q,
                                  double least_information);
 
-/// A start with `modes` modes, each the prior-regularised regression of a random stretch of `length` transitions.
-/// Stretches do not overlap if there is room. The transition matrix favours staying. Restart `index` derives its
-/// generator from the seed.
+/// A start with `modes` modes. Each is the regression, regularised by the prior, of a random stretch of `length`
+/// transitions. Stretches do not overlap if there is room. The transition matrix favours staying. Restart `index`
+/// derives its generator from the seed.
 SwitchingRegression start_from_stretches(const TrainingTransitions& transitions, const SwitchingPrior& prior,
                                          Index modes, Index length, std::uint64_t seed, Index index,
                                          const RefineTuning& tuning = {});

@@ -17,7 +17,7 @@
 namespace modebank {
 namespace {
 
-/// log N(r_k; 0, Q) of every transition under one mode, times its sample weight.
+/// log N(r_k; 0, Q) of every transition under one mode, times the sample weight of the transition.
 Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eigen::VectorXd& theta,
                               const Eigen::MatrixXd& Q) {
   const Eigen::MatrixXd r =
@@ -25,7 +25,7 @@ Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eige
   const Eigen::MatrixXd whitened = Cholesky(Q).whiten(Eigen::MatrixXd(r.transpose()));
   const double constant = static_cast<double>(Q.rows()) * log_two_pi + log_determinant(Q);
   Eigen::ArrayXd log_density = -0.5 * (whitened.colwise().squaredNorm().array() + constant).transpose();
-  if (transitions.log_noise_factor.size() > 0)  // density of the rows before the division
+  if (transitions.log_noise_factor.size() > 0)  // density of the rows before the division by the noise factor
     log_density -= (transitions.usable.array() > 0.0)
                        .select(0.5 * static_cast<double>(Q.rows()) * transitions.log_noise_factor.array(), 0.0);
   return log_density * transitions.usable.array();
@@ -55,7 +55,7 @@ class RunSmoother {
     backward(rows, posterior);
   }
 
-  /// log p(transition | previous ones) for the run's rows.
+  /// log p(transition | previous transitions) for the run's rows.
   void predict(const RunRows& all, Eigen::VectorXd& log_density) {
     const RunRows rows = from_first_usable(all);
     if (rows.count == 0) return;
@@ -64,7 +64,7 @@ class RunSmoother {
   }
 
  private:
-  /// The rows without leading unusable transitions; the filter starts after these.
+  /// The rows without leading unusable transitions. The filter starts after these leading ones.
   RunRows from_first_usable(RunRows rows) const {
     while (rows.count > 0 && transitions_.usable(rows.first) == 0.0) {
       ++rows.first;

@@ -16,8 +16,8 @@ struct SwitchingRegression {
   Eigen::MatrixXd theta;           ///< p x K
   std::vector<Eigen::MatrixXd> Q;  ///< K of n x n, covariances of the measured states' noise
   Eigen::MatrixXd transition;      ///< K x K, row = from
-  Eigen::VectorXd initial;         ///< K, probabilities before a run's first transition, as in the filter
-  TransitionLogit logit = {};      ///< dependence of T on x[k] and the acting inputs; empty: constant
+  Eigen::VectorXd initial;         ///< K, probabilities before the first transition of a run, as in the filter
+  TransitionLogit logit = {};      ///< dependence of T on x[k] and the acting inputs; empty if T is constant
 
   Index modes() const { return theta.cols(); }
 };
@@ -35,11 +35,11 @@ struct SwitchingPrior {
   Eigen::MatrixXd noise;           ///< n x n, covariance of the `noise_transitions` additional transitions for Q
   double noise_transitions = 0.0;  ///< >= 0
   double counts = 0.0;             ///< >= 0, added to every expected count of switches and first modes
-  Eigen::VectorXd weight_sd = {};  ///< d, standard deviations of the logit's weights, normal about zero; empty: T is
+  Eigen::VectorXd weight_sd = {};  ///< d, standard deviations of the logit's weights, normal about zero; empty if T is
                                    ///< constant
-  /// Standard deviation of the logit's memory (memory_of), the part of log T beyond its row and column means; normal
-  /// about zero. If it is small, the previous mode hardly matters, and the mode is a function of state and input, as in
-  /// a piecewise affine system.
+  /// Standard deviation of the logit's memory, normal about zero. The memory (memory_of) is the part of log T beyond
+  /// its row and column means. If it is small, the previous mode hardly matters. The mode is then a function of state
+  /// and input, as in a piecewise affine system.
   double memory_sd = std::numeric_limits<double>::infinity();
 };
 
@@ -57,8 +57,8 @@ struct ModePosterior {
 /// weight is the power of its density. The log-likelihood equals that of the IMM filter for R = 0.
 ModePosterior smooth_modes(const TrainingTransitions& transitions, const SwitchingRegression& model);
 
-/// log p(transition | previous ones in its run) of every row, N; 0 for rows before a run's first usable one. The sum is
-/// the log-likelihood of smooth_modes.
+/// log p(transition | previous transitions of its run) for every row, N; 0 for rows before a run's first usable row.
+/// The sum equals the log-likelihood of smooth_modes.
 Eigen::VectorXd predictive_log_densities(const TrainingTransitions& transitions, const SwitchingRegression& model);
 
 /// Expected sums over the transitions. For each mode: the sums of its regression, weighted with its probability, about
@@ -77,7 +77,7 @@ SwitchingSums sum_transitions(const TrainingTransitions& transitions, const Mode
 std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, const SwitchingPrior& prior,
                                                    const SwitchingRegression& model);
 
-/// Effect of the previous mode on the log odds of the next: log T minus the means of its rows and columns. K x K.
+/// Effect of the previous mode on the log odds of the next mode: log T minus the means of its rows and columns. K x K.
 Eigen::MatrixXd memory_of(const Eigen::MatrixXd& log_T);
 /// The matrix that maps log T (row by row) to memory_of. K^2 x K^2.
 Eigen::MatrixXd memory_projection(Index modes);

@@ -10,8 +10,8 @@
 namespace modebank {
 namespace {
 
-constexpr double negligible_share = 1e-12;  // of a transition that starts from a mode
-// of the largest curvature; adding a constant to a row of log T has no effect
+constexpr double negligible_share = 1e-12;  // smallest weight of a transition that starts from a mode
+// share of the largest curvature; adding a constant to a row of log T has no effect
 constexpr double curvature_ridge = 1e-10;
 constexpr int most_halvings = 30;
 
@@ -29,7 +29,7 @@ class SwitchObjective {
         d_(regressor_count(transitions.structure)),
         memory_information_(1.0 / (prior.memory_sd * prior.memory_sd)),
         z_((transitions.data.regressors.leftCols(d_).rowwise() - model.logit.reference.transpose()).transpose()) {
-    // A transition with a missing sample has switched by T alone.
+    // A transition with a missing sample switches by T alone.
     for (Index k = 0; k < z_.cols(); ++k)
       if (transitions.usable(k) == 0.0) z_.col(k).setZero();
   }
@@ -104,7 +104,7 @@ class SwitchObjective {
   const SwitchingPrior& prior_;
   Index K_, d_;
   double memory_information_;
-  Eigen::MatrixXd z_;  ///< d x N, about the reference
+  Eigen::MatrixXd z_;  ///< d x N, relative to the reference
 
   Index weights_at(Index regressor) const { return K_ * K_ + regressor * K_; }
 

@@ -7,7 +7,7 @@
 #include "filter/step/equations/bounds.hpp"
 
 /// Products and factorisation of small matrices with a fixed order of summation and without allocation. Eigen's
-/// products sum in different orders for fixed and dynamic sizes; these give the same bits for both.
+/// products sum in different orders for fixed and dynamic sizes. The functions here give the same bits for both.
 namespace modebank::small {
 
 using Eigen::Index;
@@ -31,7 +31,7 @@ void multiply_transposed(Out& out, const A& a, const B& b) {
 
 /// out = a b for an `a` whose rows i >= full are shifts: row i is e_{i - full}'. b is zero outside its first `inner`
 /// rows and columns; the corresponding columns of `out` are not written. The bits equal those of multiply if b is
-/// finite. full = a.rows(): any a.
+/// finite. With full = a.rows(), `a` may be any matrix.
 template <class Out, class A, class B>
 void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
   for (Index j = 0; j < std::min(inner, b.cols()); ++j) {
@@ -55,8 +55,8 @@ void multiply(Out& out, const A& a, const B& b) {
     }
 }
 
-/// out += a b' for b as above and an `a` whose columns from `inner` on are zero, where the product is known to be
-/// symmetric (add_symmetric_product).
+/// out += a b' for b as above and an `a` whose columns from `inner` on are zero. The product must be symmetric
+/// (add_symmetric_product).
 template <class Out, class A, class B>
 void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
   const Index rows = std::min(a.rows(), inner + full);
@@ -75,7 +75,7 @@ void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full
 }
 
 /// out = a b, where `a` differs from the identity only in its first `seen` columns. The bits equal those of multiply if
-/// b is finite. seen = a.cols(): any a.
+/// b is finite. With seen = a.cols(), `a` may be any matrix.
 template <class Out, class A, class B>
 void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.cols(); ++j)
@@ -86,7 +86,7 @@ void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
     }
 }
 
-/// out += a b' for b as above, where the product is known to be symmetric (add_symmetric_product).
+/// out += a b' for b as above. The product must be symmetric (add_symmetric_product).
 template <class Out, class A, class B>
 void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.rows(); ++j)
@@ -98,14 +98,14 @@ void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) 
     }
 }
 
-/// out += a b' for a product that is known to be symmetric. The lower triangle is computed and mirrored, so `out` stays
+/// out += a b' for a product that must be symmetric. The lower triangle is computed and mirrored, so `out` stays
 /// symmetric to the bit.
 template <class Out, class A, class B>
 void add_symmetric_product(Out& out, const A& a, const B& b) {
   add_symmetric_product_shifting(out, a, b, b.rows(), a.cols());
 }
 
-/// out += weight (P + d d'), all symmetric.
+/// out += weight (P + d d'); all matrices are symmetric.
 template <class Out, class Matrix, class D>
 void add_about_mean(Out& out, double weight, const Matrix& P, const D& d) {
   for (Index j = 0; j < d.size(); ++j)
@@ -118,7 +118,7 @@ void add_about_mean(Out& out, double weight, const Matrix& P, const D& d) {
 /// Root-free Cholesky factorisation S = L D L', L unit lower triangular.
 template <int Size>
 struct Ldl {
-  Eigen::Matrix<double, Size, Size> L;       ///< strictly lower part used
+  Eigen::Matrix<double, Size, Size> L;       ///< only the strictly lower part is used
   Eigen::Matrix<double, Size, 1> D;          ///< pivots, all positive
   Eigen::Matrix<double, Size, 1> D_inverse;  ///< 1 / D
 
@@ -139,7 +139,7 @@ struct Ldl {
     }
   }
 
-  /// v := L^-1 v: each component minus its prediction from earlier ones; its variance is D.
+  /// v := L^-1 v: subtracts from each component its prediction from earlier components. The remainder has variance D.
   template <class Vector>
   void decorrelate(Vector&& v) const {
     for (Index i = 1; i < D.size(); ++i)

@@ -9,14 +9,14 @@ namespace modebank {
 /// Lower bound of mode probabilities after a measurement (then renormalised), so that every mode can recover.
 inline constexpr double mode_probability_floor = 1e-12;
 
-/// A mode with a smaller probability before a measurement is impossible (T forbids it) and takes no part.
+/// A mode with a smaller probability before a measurement is impossible (T forbids it) and is skipped.
 inline constexpr double impossible_probability = 1e-100;
 
-/// Upper bound of variances (and, by its square root, of means) in a diverging prediction, so that squares stay finite.
+/// Upper bound of variances in a diverging prediction, so that squares stay finite. Its square root bounds the means.
 inline constexpr double largest_variance = 1e60;
 inline constexpr double largest_mean = 1e30;
 
-/// Smallest variance (a standard deviation of 1e-20 in the signal's unit), for S = 0.
+/// Smallest variance (a standard deviation of 1e-20 in the signal's unit), used if S = 0.
 inline constexpr double least_variance = 1e-40;
 
 /// Lower bound of log densities.
@@ -35,8 +35,8 @@ auto missing_entries(const Y& y) {
   return count;
 }
 
-/// Smallest pivot of a covariance as a share of its diagonal entry; smaller ones are rounding. Raising a pivot to it
-/// equals adding that much to the diagonal.
+/// Smallest pivot of a covariance as a share of its diagonal entry; smaller pivots are rounding. Raising a pivot to
+/// this bound is the same as adding the difference to the diagonal.
 inline constexpr double relative_pivot_floor = 1e-14;
 
 /// Largest innovation for adaptive noise, in standard deviations, so that one outlier does not inflate the scale.

@@ -5,8 +5,8 @@
 #include "filter/step/equations/imm.hpp"
 
 /// Modes with coefficients that drift within a run, for an exactly measured state (R = 0). Each mode k has its own
-/// Gaussian of theta with mean m_k and covariance s P_k, where s is the noise scale. It starts from theta_k and P0_k,
-/// and is never mixed with another mode's. G is the regressors' matrix in x[k+1] = x + G' theta + w.
+/// Gaussian of theta with mean m_k and covariance s P_k, where s is the noise scale. The Gaussian starts from theta_k
+/// and P0_k. It is never mixed with that of another mode. G is the matrix of regressors in x[k+1] = x + G' theta + w.
 ///
 /// - Prediction of y: the mean of mode k uses m_k for theta; S_k = s (Q_k + G_k' P_k G_k).
 /// - Update: if mode k ruled the step, theta has mean m_k + g and covariance P_k - D, with the Kalman filter's g and D.
@@ -15,11 +15,11 @@
 ///       m_k + mu_k g,   P_k - mu_k D + mu_k (1 - mu_k) g g' / s.
 /// - Then time passes: m_k <- theta_k + leak (m_k - theta_k),   P_k <- leak^2 P_k + W_k.
 ///
-/// Without a measurement the state's error is correlated with theta's (`cross`). Predictions several steps ahead
-/// include this to first order, as the extended Kalman filter of (theta, x) does. W = P0 = 0 gives the bank without
-/// drift. One mode of diagonal Q is DriftingRecursion.
+/// Without a measurement the state's error is correlated with that of theta (`cross`). Predictions several steps ahead
+/// include this correlation to first order, like the extended Kalman filter of (theta, x). With W = P0 = 0 the filter
+/// equals that of the bank without drift. With one mode of diagonal Q it equals DriftingRecursion.
 ///
-/// Modes that share theta (`one_motion`) have one Gaussian of it. g_k and D_k are the change of mean and covariance if
+/// Modes that share theta (`one_motion`) have one common Gaussian. g_k and D_k are the change of mean and covariance if
 /// mode k ruled the step:
 ///   m + sum_k mu_k g_k,   P + sum_k mu_k ((g_k - g)(g_k - g)' / s - D_k),  g = sum_k mu_k g_k.
 namespace modebank::drift {
@@ -38,8 +38,8 @@ void set_coefficients(const LinearStructure& s, const Theta& theta, Mode& mode) 
   }
 }
 
-/// step.drift.mixed: covariance of mode j's theta with the error of the state at which its prediction starts. Only mode
-/// j's own part of that state is correlated with its theta; with a shared theta, all of it.
+/// step.drift.mixed: covariance of mode j's theta with the error of the state at which its prediction starts. Only the
+/// part of this state that comes from mode j is correlated with theta_j. If theta is shared, the whole state is.
 template <int N, int NY>
 void mix_cross(const FilterModel<N, NY>& model, const FilterState<N>& state, std::size_t j, FilterStep<N, NY>& step) {
   const auto k = static_cast<Eigen::Index>(j);
@@ -54,7 +54,8 @@ void mix_cross(const FilterModel<N, NY>& model, const FilterState<N>& state, std
     mixed = step.mixing.matrix(k, k) * state.drift.cross[j];
 }
 
-/// Adds the effect of theta's errors to the prediction of mode j made with its mean; call after mix_cross.
+/// Adds the effect of theta's errors to the prediction of mode j that was made with the mean of theta. Call after
+/// mix_cross.
 template <int N, int NY, class U>
 void add_errors(const FilterModel<N, NY>& model, const FilterState<N>& state, std::size_t j, const Gaussian<N>& from,
                 const U& u, FilterStep<N, NY>& step) {
@@ -114,14 +115,14 @@ inline void pass_time(const DriftModel& model, DriftState& state) {
     for (Eigen::MatrixXd& cross : state.cross) cross *= model.leak;
 }
 
-/// Without a measurement theta is unchanged; the predicted state's error stays correlated with theta's.
+/// Without a measurement theta is unchanged; the error of the predicted state stays correlated with that of theta.
 template <int N, int NY>
 void keep_prediction(const FilterModel<N, NY>& model, const FilterStep<N, NY>& step, FilterState<N>& state) {
   for (std::size_t j = 0; j < state.drift.cross.size(); ++j) state.drift.cross[j] = step.drift.cross[j];
   pass_time(model.drift, state.drift);
 }
 
-/// step.drift.gain and .move: the update of mode j's theta if mode j made the measurement.
+/// step.drift.gain and .move: the update of mode j's theta if mode j produced the measurement.
 template <int N, int NY, class Sensor>
 void match(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step) {
   DriftWorkspace<N, NY>& at = step.drift;
@@ -157,7 +158,8 @@ void learn_cross(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step, D
     state.cross[j].noalias() -= at.gain.col(i) * at.seen.col(i).transpose();
 }
 
-/// Updates mode j's theta with a measurement that it made with probability mu; `scale`: noise scale of its prediction.
+/// Updates mode j's theta with a measurement; mu is the probability that mode j produced it. `scale`: noise scale of
+/// the prediction.
 template <int N, int NY, class Sensor>
 void learn_mode(const Sensor& sensor, std::size_t j, double mu, double scale, FilterStep<N, NY>& step,
                 DriftState& state) {
@@ -172,7 +174,7 @@ void learn_mode(const Sensor& sensor, std::size_t j, double mu, double scale, Fi
   learn_cross(sensor, j, step, state);
 }
 
-/// Updates the shared theta with a measurement that the modes made with probabilities mu.
+/// Updates the shared theta with a measurement; mu are the probabilities that the modes produced it.
 template <int N, int NY, class Sensor>
 void learn_together(const Sensor& sensor, const Eigen::VectorXd& mu, double scale, FilterStep<N, NY>& step,
                     DriftState& state) {
@@ -196,7 +198,7 @@ void learn_together(const Sensor& sensor, const Eigen::VectorXd& mu, double scal
   make_usable(state.P[0]);
 }
 
-/// After Bayes' rule: updates every mode's theta by its probability.
+/// Updates every mode's theta by its probability, after Bayes' rule.
 template <int N, int NY, class Sensor>
 void learn(const FilterModel<N, NY>& model, const Sensor& sensor, double scale, FilterStep<N, NY>& step,
            FilterState<N>& state) {

@@ -19,20 +19,20 @@ struct DriftState {
   Eigen::MatrixXd theta = {};               ///< p x K
   std::vector<Eigen::MatrixXd> P = {};      ///< K of p x p
   std::vector<Eigen::MatrixXd> cross = {};  ///< K of p x n: covariance of theta with the state's error; 0 if the state
-                                            ///< is known
+                                            ///< is known exactly
   Eigen::VectorXd variance = {};            ///< n, running noise variance; empty otherwise
 };
 
 /// The bank's drift in the layout for stepping.
 struct DriftModel {
   double leak = 1.0;
-  bool shared = false;              ///< modes differ in noise alone and share all learning of theta
-  Eigen::MatrixXd theta0;           ///< p x K, p x 1 if shared; empty: no drift
+  bool shared = false;              ///< whether modes differ in noise alone and share all learning of theta
+  Eigen::MatrixXd theta0;           ///< p x K, p x 1 if shared; empty without drift
   std::vector<Eigen::MatrixXd> W;   ///< K (1) of p x p, added to P per step
   std::vector<Eigen::MatrixXd> P0;  ///< K (1) of p x p, P at a start
 
-  /// W_k = q Q_k (x) D^-2 and P0_k = p0 Q_k (x) D^-2. D holds the regressors' scales, Q_k is that of the measured
-  /// states. Modes that share theta use their mean Q, weighted as the modes are.
+  /// W_k = q Q_k (x) D^-2 and P0_k = p0 Q_k (x) D^-2. D holds the scales of the regressors; Q_k is that of the measured
+  /// states. Modes that share theta use their mean Q, weighted with the weights of the modes.
   explicit DriftModel(const Bank& bank) : modes_(bank.modes.size()) {
     if (bank.drift.empty()) return;
     leak = bank.drift.rates.leak;
@@ -84,7 +84,7 @@ struct DriftModel {
 /// Workspace for a step of modes that drift, sized once.
 template <int N, int NY>
 struct DriftWorkspace {
-  std::vector<typename FilterModel<N, NY>::Mode> modes;  ///< K, with their present coefficients
+  std::vector<typename FilterModel<N, NY>::Mode> modes;  ///< K modes with their present coefficients
   std::vector<Eigen::MatrixXd> cross;                    ///< K of p x n, covariance of theta with the predicted state's
                                                          ///< error
   Eigen::VectorXd regressor, move, together;             ///< r, p, p
@@ -113,8 +113,8 @@ struct DriftWorkspace {
 
 namespace drift {
 
-/// Repairs a covariance that rounding made indefinite (samples of very different sizes): it keeps its variances and
-/// loses its correlations. So variances grow only by the additions per step, and nothing overflows.
+/// Repairs a covariance that rounding made indefinite (samples of very different sizes). The variances stay and the
+/// correlations are set to zero. So variances grow only by the additions per step, and nothing overflows.
 inline void make_usable(Eigen::MatrixXd& P) {
   if (P.diagonal().minCoeff() >= 0.0) return;
   for (Eigen::Index j = 0; j < P.cols(); ++j)

@@ -26,7 +26,7 @@ void save(const FilterState<N>& state, FilterMemory& memory) {
   memory.drift = state.drift;
 }
 
-/// Number of uncertain rows of these estimates; in later rows all have the same mean and no covariance.
+/// Number of uncertain rows of these estimates. Later rows have the same mean in all estimates and no covariance.
 template <int N>
 Eigen::Index uncertain_rows_of(const std::vector<Gaussian<N>>& modes) {
   Eigen::Index rows = modes.front().mean.size();
@@ -39,7 +39,7 @@ Eigen::Index uncertain_rows_of(const std::vector<Gaussian<N>>& modes) {
   return rows;
 }
 
-/// `state` has the memory's sizes. `exact`: that of FilterModel.
+/// `state` must have the sizes of the memory. `exact`: as in FilterModel.
 template <int N>
 void restore(const FilterMemory& memory, bool exact, FilterState<N>& state) {
   const Eigen::Index n = memory.means.rows();

@@ -10,8 +10,8 @@
 #include "filter/step/equations/salvi2025.hpp"
 
 /// One step of the filters of FilterVariant, as a function of model, state, input and measurement. Only FilterState
-/// persists between calls, and nothing is allocated once FilterState and FilterStep exist. After start, each sample is
-/// predict and then update, or skip_measurement if nothing was measured.
+/// persists between calls. Nothing is allocated once FilterState and FilterStep exist. After start, call predict for
+/// each sample, then update, or skip_measurement if nothing was measured.
 namespace modebank {
 
 /// A state of the model's sizes.
@@ -69,7 +69,7 @@ void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const
   predict_modes(model, mix(model, state, u, step), noise_of_step(model, state, u, step), u, step);
 }
 
-/// For a missing measurement: the prediction becomes the estimate.
+/// For a missing measurement: makes the prediction the estimate.
 template <int N, int NY>
 void skip_measurement(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, FilterState<N>& state) {
   keep_prediction(step, state);
@@ -78,11 +78,11 @@ void skip_measurement(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, 
   if (model.drift.on()) drift::keep_prediction(model, step, state);
 }
 
-/// Updates with the measurement of `sensor`: the model, or its part for the available signals.
+/// Updates with the measurement of `sensor`. `sensor` is the model, or its part for the available signals.
 template <int N, int NY, class Sensor, class Y>
 double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y, FilterStep<N, NY>& step,
                FilterState<N>& state) {
-  const double noise_scale = state.noise_scale;  // scale of the prediction
+  const double noise_scale = state.noise_scale;  // noise scale of the prediction
   correct(sensor, y, step, state.modes);
   if (model.adaptive) adapt_noise_scale(model, sensor, step.predicted_probability, step, state);
   if (model.mode_count() == 1) {
@@ -96,9 +96,9 @@ double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y
   return log_density;
 }
 
-/// Updates with the measurement after `predict`. Returns the log predictive density of the available signals, which
-/// uses only information from before the measurement. Without any signal it is a prediction only, and the result is
-/// NaN.
+/// Updates with the measurement after `predict`. Returns the log predictive density of the available signals. The
+/// density uses only information from before the measurement. Without signals the prediction becomes the estimate and
+/// the result is NaN.
 template <int N, int NY, class Y>
 double update(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, FilterState<N>& state) {
   step.partial.missing = missing_entries(y);

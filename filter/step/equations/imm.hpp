@@ -34,11 +34,11 @@ struct FilterState {
   std::vector<Gaussian<N>> modes;    ///< K
   Eigen::VectorXd mode_probability;  ///< K, mu
   double noise_scale = 1.0;          ///< multiplies every mode's Q in the next prediction
-  double noise_samples = 0.0;        ///< number of samples behind the scale (noise_scale.hpp)
+  double noise_samples = 0.0;        ///< number of samples in the scale (noise_scale.hpp)
   DriftState drift = {};             ///< estimates of drifting coefficients (drift.hpp); empty otherwise
 };
 
-/// Column j holds the contribution of each mode i to the start of mode j: mu_{i|j}. Unlike a TransitionMatrix, its
+/// Column j holds mu_{i|j}, the contribution of each mode i to the start of mode j. Unlike a TransitionMatrix, the
 /// columns sum to one.
 struct MixingWeights {
   Eigen::MatrixXd matrix;  ///< K x K
@@ -53,7 +53,7 @@ struct FilterStep {
   MixingWeights mixing;
   TransitionWorkspace transition;
   Eigen::VectorXd log_likelihood;          ///< K
-  PartialSensor<N, NY> partial;            ///< of the last measurement; `missing` is 0 if it was complete
+  PartialSensor<N, NY> partial;            ///< sensor of the last measurement; `missing` is 0 if it was complete
   Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
   double noise_factor = 1.0;               ///< NoiseFactor of the last prediction
   Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
@@ -105,7 +105,7 @@ const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const
 }
 
 /// Step 1: c_j = sum_i T_ij mu_i (11.6.6-8) and mu_{i|j} = T_ij mu_i / c_j (11.6.6-7). An impossible mode keeps its own
-/// state. T is row-stochastic.
+/// state. The rows of T sum to one.
 inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, Eigen::VectorXd& c,
                            MixingWeights& weights) {
   for (Eigen::Index j = 0; j < mu.size(); ++j) {
@@ -119,7 +119,7 @@ inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, 
   }
 }
 
-/// Number of rows that are uncertain in any of `parts` (Gaussian::uncertain).
+/// Number of rows that are uncertain in at least one of `parts` (Gaussian::uncertain).
 template <int N>
 Eigen::Index uncertain_rows(std::span<const Gaussian<N>> parts) {
   Eigen::Index most = 0;
@@ -133,11 +133,12 @@ bool has_one_mean(std::span<const Gaussian<N>> parts, Eigen::Index row) {
                      [&](const Gaussian<N>& part) { return part.mean(row) == parts.front().mean(row); });
 }
 
-/// Steps 2 and 5: mean and covariance of the mixture sum_i weights(i) N(parts[i]) (moment matching). With mu_{i|j} it
-/// is the start of mode j (11.6.6-9, -10), with mu the combined estimate (11.6.6-17, -18). Differences of means are
-/// taken about the final mean. Weights need not sum to one: [S25, eq. 12-13] is the same sum with other weights.
-/// The loops run sum by sum, not part by part, so that sums stay in registers. `exact`: that of FilterModel. A row with
-/// the same mean in all parts then keeps it without rounding, which would look like a difference that other rows share.
+/// Steps 2 and 5: mean and covariance of the mixture sum_i weights(i) N(parts[i]) (moment matching). With weights
+/// mu_{i|j} the result is the start of mode j (11.6.6-9, -10). With mu it is the combined estimate (11.6.6-17, -18).
+/// Differences of means are relative to the final mean. The sum of the weights may differ from one: [S25, eq. 12-13] is
+/// the same sum with other weights. The outer loops run over sums and the inner loops over parts, so that sums stay in
+/// registers. `exact`: as in FilterModel. A row with the same mean in all parts then keeps this mean without rounding.
+/// Rounding would look like a difference that other rows share.
 template <int N, class Weights>
 void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights, Gaussian<N>& merged,
            bool exact = false) {
@@ -182,7 +183,7 @@ void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N
 }
 
 /// Step 3, after the measurement: updates every mode's estimate with `y` of `sensor`. Computes its log likelihood log
-/// Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) for the available signals; interval.hpp for quantised ones.
+/// Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) for the available signals. Quantised signals use interval.hpp.
 template <int N, int NY, class Sensor, class Y>
 void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vector<Gaussian<N>>& estimates) {
   const double excess = 0.5 * log_two_pi * static_cast<double>(step.partial.missing);

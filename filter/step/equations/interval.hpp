@@ -8,18 +8,18 @@
 #include "filter/step/equations/kalman.hpp"
 #include "filter/step/truncated_normal.hpp"
 
-/// Quantised measurements: a value in multiples of q means only that C x + v lies in [y - q/2, y + q/2]. A mode
+/// Quantised measurements: a value in multiples of q only shows that C x + v lies in [y - q/2, y + q/2]. A mode
 /// predicts the signal as N(C x, s). So the interval's probability is a difference of normal distribution functions,
 /// and the signal's posterior is a truncated normal. Its mean and variance update the state by the Kalman gain:
-///   x <- x + K (E[C x + v | interval] - C x),   P <- P + K (Var[C x + v | interval] - s) K',   K = P C' / s.
-/// For one signal these moments are exact. Several signals are processed one after another, each time approximating the
-/// posterior by a Gaussian (assumed density filtering: Maybeck 1982, "Stochastic Models, Estimation and Control",
-/// volume 2, chapter 12). A signal of quantum zero is measured exactly as recorded.
+///   x <- x + K (E[C x + v | interval] - C x),   P <- P + K (Var[C x + v | interval] - s) K',   K = P C' / s. For one
+///   signal these moments are exact. Several signals are processed one after another, each time approximating the
+///   posterior by a Gaussian (assumed density filtering: Maybeck 1982, "Stochastic Models, Estimation and Control",
+///   volume 2, chapter 12). A signal of quantum zero has exactly the recorded value.
 namespace modebank {
 
-/// Observes and corrects in one (kalman.hpp); call after expect. `sensor` has C, diagonal R and quantum. Stores the
-/// signals' innovations given the previous signals in `decorrelated` and their variances in `cholesky.D`; the rest of
-/// the factor is overwritten.
+/// Combines observe and correct (kalman.hpp); call after expect. `sensor` has C, diagonal R and quantum. Stores the
+/// signals' innovations given the previous signals in `decorrelated`, and the variances of these in `cholesky.D`. The
+/// rest of the factor is overwritten.
 template <int N, int NY, class Sensor, class Y>
 void correct_intervals(const Sensor& sensor, const Y& y, KalmanStep<N, NY>& kalman, Gaussian<N>& posterior) {
   const Eigen::Index n = posterior.mean.size();
@@ -56,8 +56,8 @@ void correct_intervals(const Sensor& sensor, const Y& y, KalmanStep<N, NY>& kalm
   bound_variances(kalman.predicted, posterior);
 }
 
-/// The noise scale's sums of one Kalman step (noise_scale.hpp) after correct_intervals: for each signal e^2 / s is
-/// replaced by its expectation given the interval.
+/// The sums of one Kalman step for the noise scale (noise_scale.hpp), after correct_intervals. For each signal the
+/// expectation of e^2 / s given the interval replaces e^2 / s.
 struct IntervalSums {
   double share = 0.0, square = 0.0;
 };

@@ -18,8 +18,8 @@ template <int N>
 struct Gaussian {
   Eigen::Matrix<double, N, 1> mean;
   Eigen::Matrix<double, N, N> covariance;
-  /// Rows from this index on are known: zero covariance, and the same mean in every mode. Lags of an exact sensor are
-  /// known.
+  /// Rows from this index on are known: they have zero covariance, and the same mean in every mode. The lags of an
+  /// exact sensor are known.
   Eigen::Index uncertain;
 
   explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size), uncertain(size) {
@@ -32,16 +32,17 @@ struct Gaussian {
 template <int N, int NY>
 struct KalmanStep {
   Gaussian<N> predicted;                                ///< x, P before the measurement
-  Eigen::Matrix<double, N, N> process_noise;            ///< Q as added to P
+  Eigen::Matrix<double, N, N> process_noise;            ///< Q, in the form in which it is added to P
   Eigen::Matrix<double, NY, 1> measured;                ///< y of an exact sensor
   Eigen::Matrix<double, NY, 1> innovation;              ///< e = y - C x
-  Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e, with variance cholesky.D
+  Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e; its variance is cholesky.D
   Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S = C P C' + R
-  small::Ldl<NY> cholesky;                              ///< of S; a singular S is regularised
+  small::Ldl<NY> cholesky;                              ///< factor of S; a singular S is regularised
   double log_density = 0.0;                             ///< log N(e; 0, S)
   // For quantised measurements only (interval.hpp).
-  Eigen::Matrix<double, NY, 1> signal_log_density;  ///< of each signal given the previous ones
-  Eigen::Matrix<double, NY, 1> second_moment;       ///< E[e^2 / s | interval] of each signal given the previous ones
+  Eigen::Matrix<double, NY, 1> signal_log_density;  ///< log likelihood and moments of each signal given the previous
+                                                    ///< signals
+  Eigen::Matrix<double, NY, 1> second_moment;       ///< E[e^2 / s | interval] of each signal given the previous signals
   Eigen::Matrix<double, N, 1> column;               ///< workspace
 
   KalmanStep(Eigen::Index n, Eigen::Index n_y, Eigen::Index regressors)
@@ -67,8 +68,8 @@ struct KalmanStep {
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
                const U& u, double noise_scale = 1.0);
-  /// Predicts the measurement: S and its factor. Here and below `sensor` has C and R: the model, or its part for the
-  /// available signals.
+  /// Predicts the measurement: S and its factor. Here and in the functions below, `sensor` has C and R. It is the
+  /// model, or its part for the available signals.
   template <class Sensor>
   void expect(const Sensor& sensor);
   /// Innovation e and its log density.
@@ -77,7 +78,7 @@ struct KalmanStep {
   /// State after the measurement, covariance in Joseph's form.
   template <class Sensor>
   void correct(const Sensor& sensor, Gaussian<N>& posterior);
-  /// log N(residual; 0, S) of any residual; `residual` is decorrelated in place.
+  /// log N(residual; 0, S) of any residual. Decorrelates `residual` in place.
   template <class Vector>
   double log_normal(Vector& residual) const;
 
@@ -100,8 +101,8 @@ struct KalmanStep {
                                           const Eigen::Matrix<double, N, 1>& x, const U& u);
 };
 
-/// Repairs a prediction. Diverging values are scaled down. A covariance that rounding made indefinite (possible if
-/// variances differ by more than double precision) keeps its variances and loses its correlations.
+/// Repairs a prediction. Diverging values are scaled down. Rounding can make a covariance indefinite if variances
+/// differ by more than double precision. The variances then stay, and the correlations are set to zero.
 template <int N>
 void make_usable(Gaussian<N>& g) {
   double largest = g.covariance(0, 0), least = largest, mean = std::abs(g.mean(0));
@@ -119,8 +120,9 @@ void make_usable(Gaussian<N>& g) {
   if (mean > largest_mean) g.mean *= largest_mean / mean;
 }
 
-/// Bounds the variances after a measurement, which cannot enlarge them. If rounding made one negative (S near singular:
-/// R = 0 and singular Q), the estimate keeps its variances within those bounds and loses its correlations.
+/// Bounds the variances after a measurement, because a measurement cannot enlarge them. Rounding can make a variance
+/// negative if S is near singular (R = 0 and singular Q). The variances are then kept within the bounds, and the
+/// correlations are set to zero.
 template <int N>
 void bound_variances(const Gaussian<N>& predicted, Gaussian<N>& posterior) {
   if ((posterior.covariance.diagonal().array() >= 0.0).all()) return;
@@ -130,7 +132,7 @@ void bound_variances(const Gaussian<N>& predicted, Gaussian<N>& posterior) {
           i == j ? std::clamp(posterior.covariance(i, i), 0.0, std::max(0.0, predicted.covariance(i, i))) : 0.0;
 }
 
-/// Whether every number is finite, by their sum (terms are far below overflow).
+/// Whether every number is finite. Tests the sum of the numbers (terms are far below overflow).
 template <int N>
 bool is_finite(const Gaussian<N>& g) {
   double sum = 0.0;
@@ -200,7 +202,7 @@ double KalmanStep<N, NY>::log_normal(Vector& residual) const {
   cholesky.decorrelate(residual);
   const double value = -0.5 * (static_cast<double>(residual.size()) * log_two_pi + cholesky.log_determinant() +
                                cholesky.squared_distance(residual));
-  return value > lowest_log_density ? value : lowest_log_density;  // NaN from overflow also gives the lowest
+  return value > lowest_log_density ? value : lowest_log_density;  // NaN from overflow also gives the lowest value
 }
 
 template <int N, int NY>

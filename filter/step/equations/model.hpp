@@ -39,9 +39,10 @@ struct FilterModel {
   Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0]; with lags y[0] is all of z
   Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
   DriftModel drift;                                     ///< drift of the modes' coefficients
-  MotionTerms terms;                                    ///< nonlinear terms; empty: none
-  NoiseFactor noise_factor;                             ///< factor on every mode's Q; empty: one
-  /// Rows of every F that are not a shift of older samples by one: the measured states if there are lags, else n.
+  MotionTerms terms;                                    ///< nonlinear terms; empty if there are none
+  NoiseFactor noise_factor;                             ///< factor on every mode's Q; empty if it is one
+  /// Rows of every F that are not shifts of older samples by one. These are the measured states if there are lags, else
+  /// all n rows.
   Eigen::Index full_rows;
   /// Number of leading columns of C that contain all nonzero entries.
   Eigen::Index seen_columns;
@@ -108,8 +109,8 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
 }
 
 /// Calls f.template operator()<N, NY>() with fixed sizes where they pay. One state and one signal run three times as
-/// fast (K = 9, GPB2: 1.5 us against 4.9 us). Two and three states gain only 1.7 and 1.5 times, and the IMM of those
-/// sizes has vector kernels. This is the only place where run-time sizes become compile-time sizes.
+/// fast (K = 9, GPB2: 1.5 us instead of 4.9 us). Two and three states run only 1.7 and 1.5 times as fast, and the IMM
+/// has vector kernels for those sizes. This is the only place where run-time sizes become compile-time sizes.
 template <class F>
 auto with_sizes(Eigen::Index states, Eigen::Index measurements, F&& f) {
   if (states == 1 && measurements == 1) return f.template operator()<1, 1>();

@@ -15,9 +15,9 @@
 /// one as older samples are forgotten:
 ///   weight  <- f weight + (1 - f) n0 + sum_j mu_j tr(G_j) / n_y,      G_j = S_j^-1 C s Q_j C'
 ///   squares <- f squares + (1 - f) n0 + s sum_j mu_j e_j' S_j^-1 C s Q_j C' S_j^-1 e_j / n_y,   s = squares / weight.
-/// With R = 0 and a known state the squares are those of the standardised innovations. The part of an innovation that
-/// measurement noise or an uncertain state explains is left out in proportion. n_y counts the available signals. The
-/// estimate s replaces the Student t of the exact conjugate update.
+///   With R = 0 and a known state the squares are those of the standardised innovations. If measurement noise or an
+///   uncertain state explain part of an innovation, that part is excluded in proportion. n_y counts the available
+///   signals. (The exact conjugate update would give a Student t distribution instead of the estimate s.)
 namespace modebank {
 
 inline constexpr double largest_noise_scale = 1e8;
@@ -61,7 +61,7 @@ double explained_square(const Sensor& sensor, const Matrix& P, const Kalman& kal
   return nis > most ? sum * (most / nis) : sum;
 }
 
-/// Updates the scale with one sample. `share`, `square`: the sums over modes above; no update if they overflow.
+/// Updates the scale with one sample. `share`, `square`: the sums over modes above. Does nothing if these overflow.
 inline void move_noise_scale(const NoiseAdaptation& adaptation, double share, double square, double n_y, double& scale,
                              double& samples) {
   if (!std::isfinite(share) || !std::isfinite(square)) return;
@@ -71,13 +71,13 @@ inline void move_noise_scale(const NoiseAdaptation& adaptation, double share, do
   scale = std::clamp(squares / samples, 1.0 / largest_noise_scale, largest_noise_scale);
 }
 
-/// Updates state.noise_scale after the measurement. `prior`: probability of every mode before it (step.log_likelihood
-/// has the likelihoods). `sensor` has the C of the measurement.
+/// Updates state.noise_scale after the measurement. `prior`: probability of every mode before the measurement
+/// (step.log_likelihood has the likelihoods). `sensor` has the C of the measurement.
 template <class Model, class Sensor, class Step, class State>
 void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::VectorXd& prior, Step& step,
                        State& state) {
   const double s = state.noise_scale, n_y = static_cast<double>(step.residual.size() - step.partial.missing);
-  // As in Bayes' rule (imm.hpp), an impossible mode does not take part, however well it fits.
+  // An impossible mode is excluded, however well it fits, like in Bayes' rule (imm.hpp).
   double largest = -std::numeric_limits<double>::infinity();
   for (Eigen::Index h = 0; h < prior.size(); ++h)
     if (prior(h) >= impossible_probability) largest = std::max(largest, step.log_likelihood(h));
@@ -87,7 +87,7 @@ void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::Ve
     const double weight =
         prior(i) >= impossible_probability ? prior(i) * std::exp(step.log_likelihood(i) - largest) : 0.0;
     if (!(weight > 0.0)) continue;
-    // Errors of drifting coefficients are in units of the noise, so the scale applies to them, too.
+    // Errors of drifting coefficients are in units of the noise. So the scale also applies to these errors.
     const auto& Q = model.drift.on() ? step.kalman[h].process_noise : model.modes[h].Q;
     const double scaled = model.drift.on() ? weight : weight * s * step.noise_factor;
     total += weight;

@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// Replaces signal i of a covariance by one of variance one without correlation.
+/// Replaces signal i of a covariance by a signal of variance one without correlation.
 template <class Matrix>
 void detach(Matrix& S, Eigen::Index i) {
   S.row(i).setZero();
@@ -14,9 +14,9 @@ void detach(Matrix& S, Eigen::Index i) {
   S(i, i) = 1.0;
 }
 
-/// A sensor with missing signals. Their rows of C and R become those of a signal that is always zero, has variance one
-/// and no correlation, and is measured as zero. Gains, NIS and the other signals' densities are then exactly those of
-/// the available signals. The log density is too small by log(2 pi) / 2 per missing signal.
+/// A sensor with missing signals. The rows of C and R for a missing signal become those of a signal that is always
+/// zero, has variance one and no correlation, and is measured as zero. Gains, NIS and the other signals' densities are
+/// then exactly those of the available signals. The log density is too small by log(2 pi) / 2 per missing signal.
 template <int N, int NY>
 struct PartialSensor {
   Eigen::Matrix<double, NY, N> C;

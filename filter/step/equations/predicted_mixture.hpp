@@ -12,7 +12,7 @@
 /// measurement.
 namespace modebank {
 
-/// Cap on normalised squares.
+/// Upper limit of normalised squares.
 inline constexpr double largest_nis = 1e300;
 
 /// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)').
@@ -39,10 +39,10 @@ double combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&&
   return total > 0.0 ? std::min(1.0, scatter / total) : 0.0;
 }
 
-/// The innovation of a predicted mixture, and its normalised square; sized once.
+/// The innovation of a predicted mixture, and its normalised square. Memory is allocated once.
 struct CombinedInnovation {
   Eigen::VectorXd innovation;  ///< n_y, e = y - C x; NaN for missing signals
-  double nis = 0.0;            ///< e' S^-1 e of the available signals; NaN without any
+  double nis = 0.0;            ///< e' S^-1 e of the available signals; NaN if there are none
 
   explicit CombinedInnovation(Eigen::Index n_y)
       : innovation(n_y), covariance_(n_y, n_y), residual_(n_y), cholesky_(n_y) {}
@@ -78,8 +78,8 @@ struct CombinedInnovation {
 inline double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 /// Probability integral transform of the last measurement (Rosenblatt 1952). Component i is the predictive distribution
-/// function of y_i given y_1 .. y_(i-1), which have updated the mixture weights. NaN if y_i is missing. `weights`:
-/// workspace, K. Overwrites step.log_likelihood.
+/// function of y_i given y_1 .. y_(i-1). These earlier signals have updated the mixture weights. NaN if y_i is missing.
+/// `weights`: workspace, K. Overwrites step.log_likelihood.
 template <int N, int NY, class Y, class Pit>
 void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
   weights = step.predicted_probability;
@@ -96,20 +96,20 @@ void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd&
       sum += weights(j) * normal_cdf(z / std::sqrt(v));
       if (more) step.log_likelihood(j) = -0.5 * (std::log(v) + z * z / v);
     }
-    pit(i) = sum < 1.0 ? sum : 1.0;  // limits rounding of the weights' sum
+    pit(i) = sum < 1.0 ? sum : 1.0;  // limits the rounding of the sum of weights
     if (more) bayes(weights, step.log_likelihood, weights);
   }
 }
 
-/// A mode's innovation of a signal given the previous ones, its variance and the signal's log density.
+/// A mode's innovation of a signal given the previous signals, with its variance and the signal's log density.
 struct ModeSignal {
   double e = 0.0, s = 0.0, log_density = 0.0;
 };
 
-/// Transform of quantised measurements. Component i lies between the predictive distribution function at the lower end
-/// of y_i's interval and that at its upper end, given the intervals of y_1 .. y_(i-1). `pit`: their mean; `width`:
-/// their difference, 0 for a continuous or missing signal. `signal`(i, j): ModeSignal of mode j. `weights`: the modes'
-/// probabilities before the measurement, overwritten, as is `log_likelihood`.
+/// Transform of quantised measurements. Component i lies between the values of the predictive distribution function at
+/// the two ends of y_i's interval, given the intervals of y_1 .. y_(i-1). `pit`: mean of these values. `width`: their
+/// difference, 0 for a continuous or missing signal. `signal`(i, j): ModeSignal of mode j. `weights`: the modes'
+/// probabilities before the measurement. Overwrites `weights` and `log_likelihood`.
 template <class Quantum, class Y, class Signal, class Pit, class Width>
 void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen::VectorXd& weights,
                         Eigen::VectorXd& log_likelihood, Pit&& pit, Width&& width) {
@@ -136,7 +136,7 @@ void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen
   }
 }
 
-/// For the general steps, after the update with y.
+/// Version for the general steps; call after the update with y.
 template <int N, int NY, class Y, class Pit, class Width>
 void interval_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights,
                         Pit&& pit, Width&& width) {

@@ -5,10 +5,10 @@
 #include "filter/step/equations/imm.hpp"
 
 /// The filter as published in Salvi et al. (2025), arXiv 2505.00200, eq. 12-18, for comparison with the paper. This
-/// header has its differences from the IMM (imm.hpp).
+/// header contains the differences from the IMM (imm.hpp).
 namespace modebank::salvi2025 {
 
-/// Weights w(k-1)_i T_ij of [S25, eq. 12-13]; they are not normalised, so mixed states shrink towards zero.
+/// Weights w(k-1)_i T_ij of [S25, eq. 12-13]. These are not normalised, so mixed states shrink towards zero.
 inline void mixing_weights(const TransitionMatrix& transition, const Eigen::VectorXd& w, MixingWeights& weights) {
   weights.matrix.noalias() = w.asDiagonal() * transition.matrix();
 }

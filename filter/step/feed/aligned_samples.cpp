@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Times that differ by less are equal up to rounding, as in io/import.
+/// Times that differ by less are equal up to rounding, like in io/import.
 double tolerance_s(double time_s, double spacing_s) {
   constexpr double share_of_spacing = 1e-6, units_in_last_place = 4.0;
   return std::max(share_of_spacing * spacing_s,
@@ -54,7 +54,7 @@ void AlignedSamples::learn_rate(double since_s) {
   if (!resamples_) return;
   averages_ = alignment_.averaged.any() && is_averaged_at(alignment_.rate_hz, period_s);
   if (steps_ > 0.0) first_s_ = ready_s_;
-  if (steps_ > 0.0 || averages_) steps_ = 1.0;  // no whole step ends at the first sample
+  if (steps_ > 0.0 || averages_) steps_ = 1.0;  // no complete step leads up to the first sample
 }
 
 /// Time of the next output sample; infinite before the first input sample.
@@ -82,7 +82,7 @@ const TimedSample* AlignedSamples::next() {
     ready_.input = samples_[next_].sample.input;
   else
     take_input_of(time_s - alignment_.lag_s);
-  // Counts the first sample, too, which passes before it is known whether samples come faster than the rate.
+  // Counts the first sample, too. It passes before it is known whether samples come faster than the rate.
   steps_ += 1.0;
   ++next_;
   return &ready_;
@@ -95,7 +95,7 @@ bool AlignedSamples::in_gap(double time_s) const {
   return after->at_s - std::prev(after)->at_s > gap_periods * spacing_s_;
 }
 
-/// One signal from the last sample at or before `from_s` to the first one at or after `to_s`.
+/// The samples of one signal, from the last one at or before `from_s` to the first one at or after `to_s`.
 Stream AlignedSamples::between(double from_s, double to_s, VectorXd TimedSample::*signal) const {
   auto first = std::upper_bound(samples_.begin(), samples_.end(), from_s,
                                 [](double t, const Kept& kept) { return t < kept.at_s; });
@@ -110,7 +110,7 @@ Stream AlignedSamples::between(double from_s, double to_s, VectorXd TimedSample:
   return stream;
 }
 
-/// Replaces picked values by means over the step that ends at `time_s`.
+/// Replaces the picked values by means over the step that ends at `time_s`.
 void AlignedSamples::average(VectorXd TimedSample::*signal, const std::vector<Eigen::Index>& rows, double time_s) {
   if (!averages_ || rows.empty()) return;
   MatrixXd values = ready_.*signal;

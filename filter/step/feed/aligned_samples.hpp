@@ -10,46 +10,46 @@
 
 namespace modebank {
 
-/// A sample as recorded, or as passed to a filter.
+/// A sample in the form in which it is recorded or passed to a filter.
 struct TimedSample {
   double time_s = 0.0;
   Eigen::VectorXd input;        ///< m
   Eigen::VectorXd measurement;  ///< n_y, NaN where missing
-  double rest_s = 0.0;          ///< added to time_s: the part of a time since 1970 that a double cannot hold
+  double rest_s = 0.0;          ///< added to time_s; the part of a time since 1970 that a double cannot hold
 };
 
 /// Conversion of live samples to the form from which a bank was learned.
 struct Alignment {
-  double rate_hz = 0.0;  ///< above 0: faster samples are reduced to this rate; 0: samples keep their times
-  double lag_s = 0.0;    ///< the input acting at time t is the one recorded at t - lag_s
+  double rate_hz = 0.0;  ///< above 0, faster samples are reduced to this rate; with 0, samples keep their times
+  double lag_s = 0.0;    ///< the input that acts at time t is the one recorded at t - lag_s
   AveragedColumns averaged = {};
 
-  /// How far before an estimate samples are needed for later ones.
+  /// Age up to which samples before an estimate are stored, because later estimates need them.
   double reach_s() const {
     const double oldest_s = lag_s + (averaged.inputs.empty() ? 0.0 : averaged.further_lag_s);
     return std::max(0.0, oldest_s) + (rate_hz > 0.0 && averaged.any() ? 1.0 / rate_hz : 0.0);
   }
 };
 
-/// Applies a lag between inputs and states, and a rate, to live samples, as io/import does with whole runs. States are
-/// interpolated and inputs held. If samples come fast enough for averages (is_averaged_at), columns are averaged over
-/// the step that ends at the new sample. The early stream waits for the other: with a negative lag a state waits for
-/// the input that acts on it, which arrives -lag_s later. Samples slower than three quarters of the rate pass
-/// unchanged.
+/// Applies a lag between inputs and states, and a rate, to live samples. io/import does the same with whole runs.
+/// States are interpolated and inputs held. If samples come fast enough for averages (is_averaged_at), columns are
+/// averaged over the step that ends at the new sample. The early stream waits for the other one. With a negative lag a
+/// state waits for the input that acts on it, which arrives -lag_s later. Samples slower than three quarters of the
+/// rate pass unchanged.
 class AlignedSamples {
  public:
   explicit AlignedSamples(const Alignment& alignment) : alignment_(alignment) {}
 
   /// Adds the next sample in time order.
   void push(const TimedSample& sample);
-  /// The next finished sample, valid until the next call; null if none is ready. Samples that a positive lag leaves
-  /// without an input are dropped, as is the first sample if no whole step ends at it.
+  /// Returns the next finished sample, valid until the next call; null if none is ready. Drops samples that have no
+  /// input because of a positive lag. Also drops the first sample if no complete step leads up to it.
   const TimedSample* next();
   /// Forgets all samples.
   void restart() { *this = AlignedSamples(alignment_); }
   /// Call before the first sample: times at the rate continue from an earlier sample.
   void go_on_after(double time_s) { before_s_ = time_s; }
-  /// Time of the last sample added; NaN if there is none.
+  /// Time of the last sample added; NaN if no sample was added.
   double newest_s() const { return samples_.empty() ? not_a_number : samples_.back().sample.time_s; }
 
  private:
@@ -60,13 +60,13 @@ class AlignedSamples {
 
   Alignment alignment_;
   double origin_s_ = 0.0;
-  std::deque<Kept> samples_;  ///< samples still needed; always the last one
+  std::deque<Kept> samples_;  ///< samples that are still needed; always includes the last one
   std::size_t next_ = 0;      ///< index of the next output sample, if samples keep their times
   std::size_t pushed_ = 0;
   bool resamples_ = false, averages_ = false;
-  double before_s_ = not_a_number;  ///< in the user's time
+  double before_s_ = not_a_number;  ///< time of the user's clock
   double first_s_ = 0.0, spacing_s_ = 0.0;
-  std::deque<double> recent_s_;  ///< steps, until samples prove faster than the rate
+  std::deque<double> recent_s_;  ///< counts steps until samples prove faster than the rate
   double steps_ = 0.0;           ///< number of steps at the rate from first_s_ to the next output sample
   double ready_s_ = 0.0;
   TimedSample ready_;

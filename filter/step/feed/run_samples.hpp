@@ -20,11 +20,11 @@ inline double sample_time_s(const Trajectory& run, Eigen::Index k) {
   return run.time_s.size() > 0 ? run.time_s(k) : not_a_number;
 }
 
-/// Samples of a run that are one model step apart; the first may have a longer distance from the previous one.
+/// Samples of a run that are one model step apart. Only the first may be further from its predecessor.
 struct SampleStretch {
   Eigen::Index first = 0;                      ///< sample of the run
   Eigen::Index steps = 1;                      ///< model steps to the first sample
-  Eigen::Ref<const Eigen::MatrixXd> inputs;    ///< acting inputs x samples: acting on the step to each sample
+  Eigen::Ref<const Eigen::MatrixXd> inputs;    ///< acting inputs x samples; column k acts on the step to sample k
   Eigen::Ref<const Eigen::MatrixXd> measured;  ///< n_y x samples
 };
 
@@ -34,7 +34,8 @@ class RunSamples {
   RunSamples(const Bank& bank, const Trajectory& run)
       : run_(run), feed_(bank), acting_(bank.structure.acting_inputs(), most_at_once) {}
 
-  /// Calls visit(feed, k, starts) for every sample k from the first start on; `starts`: the filter (re)starts here.
+  /// Calls visit(feed, k, starts) for every sample k from the first start on. `starts`: whether the filter (re)starts
+  /// at this sample.
   template <class Visit>
   void for_each(Visit visit) {
     bool started = false;
@@ -47,7 +48,8 @@ class RunSamples {
     }
   }
 
-  /// Visits many samples at a time: start(feed) where the filter (re)starts, follow(stretch) for all others.
+  /// Visits many samples at a time. Calls start(feed) at samples where the filter (re)starts, and follow(stretch) for
+  /// all other samples.
   template <class Start, class Follow>
   void for_each_stretch(Start start, Follow follow) {
     Eigen::Index first = 0, count = 0, steps = 1;
@@ -73,20 +75,20 @@ class RunSamples {
   static constexpr Eigen::Index most_at_once = 128;
   const Trajectory& run_;
   SampleFeed feed_;
-  Eigen::MatrixXd acting_;  ///< of the present stretch
+  Eigen::MatrixXd acting_;  ///< samples of the present stretch
 };
 
-/// One moment of a filtered run: a sample, or a step between two distant samples.
+/// One moment of a filtered run: a sample, or a model step between two distant samples.
 struct Instant {
-  Eigen::Index sample = -1;    ///< -1: between samples
+  Eigen::Index sample = -1;    ///< sample; -1 between samples
   bool starts = false;         ///< whether the filter (re)starts here
-  Eigen::VectorXd start = {};  ///< measurements for the start; empty elsewhere
+  Eigen::VectorXd start = {};  ///< measurements for the start; empty at other moments
 };
 
 /// All moments of a run with the acting inputs, in the order of the filter.
 struct RunInstants {
   std::vector<Instant> instants;
-  Eigen::MatrixXd inputs;  ///< m x instants: acting on the step to each
+  Eigen::MatrixXd inputs;  ///< m x instants; column t acts on the step to moment t
 
   RunInstants(const Bank& bank, const Trajectory& run) {
     std::vector<Eigen::VectorXd> acting;
@@ -109,7 +111,7 @@ struct RunInstants {
   }
 };
 
-/// Advances `state` from the previous moment to moment t of a run; false if nothing was measured there.
+/// Advances `state` from the previous moment to moment t of a run. Returns false if nothing was measured at t.
 template <int N, int NY>
 bool step_to(const FilterModel<N, NY>& model, const RunInstants& run, Eigen::Index t, const Trajectory& trajectory,
              FilterState<N>& state, FilterStep<N, NY>& step) {

@@ -15,7 +15,7 @@ SampleFeed::SampleFeed(const Bank& bank)
       acting_inputs_(bank.structure.acting_inputs()),
       first_transition_(bank.structure.first_transition()),
       dt_s_(bank.dt_s),
-      // The acting inputs of sample k are u[k-d], u[k-d-1], ...: input_lags of them, d back.
+      // The acting inputs of sample k are the `input_lags` inputs u[k-d], u[k-d-1], ..., where d is the delay.
       recent_(Eigen::MatrixXd::Zero(inputs_, input_delay_ + bank.structure.input_lags)),
       measurements_(Eigen::MatrixXd::Zero(bank.C.rows(), bank.structure.state_lags)) {}
 

@@ -9,8 +9,8 @@
 
 namespace modebank {
 
-/// After more steps without a sample, a filter restarts from the next complete measurement. Its knowledge has then
-/// decayed, and predictions with an input held so long are worthless.
+/// After more steps than this without a sample, a filter restarts from the next complete measurement. Its information
+/// is then outdated, and predictions with an input held for that long are worthless.
 inline constexpr Eigen::Index longest_gap_steps = 50;
 
 /// Converts samples in time order to the inputs of a filter step: the acting inputs of the transition to each sample
@@ -22,7 +22,7 @@ class SampleFeed {
   /// Adds the next sample: time (NaN: one step after the last), input (m) and measurement (n_y).
   void push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
             const Eigen::Ref<const Eigen::VectorXd>& measurement);
-  /// `push` for m inputs and n_y measurements without checks of the sizes.
+  /// Like `push`, for m inputs and n_y measurements without checks of the sizes.
   void push(double time_s, const double* input, const double* measurement);
   /// Model steps between two times, at most longest_gap_steps + 1; 1 without times.
   static Eigen::Index steps_between(double from_s, double to_s, double dt_s) {
@@ -34,9 +34,10 @@ class SampleFeed {
 
   /// Model steps from the previous sample to this one; above longest_gap_steps the filter restarts.
   Eigen::Index steps() const { return steps_; }
-  /// Whether the filter can start at this sample: it and all lagged samples are complete, and all lagged inputs known.
+  /// Whether the filter can start at this sample. Requires that it and all lagged samples are complete, and that all
+  /// lagged inputs are known.
   bool can_start() const { return samples_ > first_transition_ && whole_ >= measurements_.cols(); }
-  /// Data for a start: the measurement, or with lags the measurements of all of z.
+  /// Data for a start: the measurement; with lags, the measurements of all of z.
   auto start() const { return measurements_.reshaped(); }
   /// The acting inputs v of the transition to this sample.
   Eigen::Map<const Eigen::VectorXd> inputs() const { return {recent_.data() + inputs_ * input_delay_, acting_inputs_}; }
@@ -55,13 +56,13 @@ class SampleFeed {
  private:
   Eigen::Index inputs_, input_delay_, acting_inputs_, first_transition_;
   double dt_s_;
-  Eigen::MatrixXd recent_;        ///< inputs u[k], u[k-1], ...; the acting ones are last
+  Eigen::MatrixXd recent_;        ///< inputs u[k], u[k-1], ...; the acting inputs come last
   Eigen::MatrixXd measurements_;  ///< newest first
   Eigen::Index samples_ = 0, whole_ = 0, steps_ = 1;
   double time_s_ = 0.0;
 
   static Eigen::Index whole_steps(double periods);
-  /// Shifts every column one place back; the newest stays in the first.
+  /// Shifts every column one place back. The first column keeps the newest values.
   static void shift(Eigen::MatrixXd& newest_first) {
     double* column = newest_first.data();
     for (Eigen::Index i = newest_first.size() - 1; i >= newest_first.rows(); --i)
@@ -69,8 +70,7 @@ class SampleFeed {
   }
 };
 
-// Inlined, with plain loops: a filter step is shorter than function calls, or Eigen expressions of dynamic size, would
-// take.
+// Inlined, with plain loops. Function calls or Eigen expressions of dynamic size would take longer than a filter step.
 [[gnu::always_inline]] inline void SampleFeed::push(double time_s, const double* input, const double* measurement) {
   steps_ = samples_ == 0 ? 1 : steps_between(time_s_, time_s, dt_s_);
   if (steps_ > longest_gap_steps) clear();

@@ -27,10 +27,10 @@ using batch::HWY_NAMESPACE::splat;
 inline constexpr double log2_e = 1.4426950408889634074, log2_e_rest = 2.0355273740931033e-17;
 inline constexpr double ln_2 = 0.69314718055994530942;
 
-/// Smaller arguments of exp are raised to this value, to avoid denormal numbers, which are slow.
+/// Smaller arguments of exp are raised to this value. This avoids denormal numbers, which are slow.
 inline constexpr double smallest_log_ratio = -690.0;
 
-/// Keeps the value in a register; otherwise the compiler loads it at every use.
+/// Keeps the value in a register; without this the compiler loads it at every use.
 HWY_INLINE V in_register(V value) {
 #if HWY_TARGET == HWY_AVX3
   asm("" : "+v"(value.raw));
@@ -38,7 +38,7 @@ HWY_INLINE V in_register(V value) {
   return value;
 }
 
-/// c[0] + c[1] x + ... (Horner) for several vectors side by side, which hides the latency.
+/// c[0] + c[1] x + ... (Horner) for several vectors side by side. This hides the latency.
 template <int terms, int count>
 HWY_INLINE void polynomial(const double (&c)[terms], const V (&x)[count], V (&sum)[count]) {
   for (int v = 0; v < count; ++v) sum[v] = splat(c[terms - 1]);
@@ -205,7 +205,7 @@ class Exp {
 
  private:
   static HWY_INLINE V power(V t, V rest) {
-    const V rounder = splat(6755399441055744.0);  // adding it leaves n in the low bits of the mantissa
+    const V rounder = splat(6755399441055744.0);  // adding this leaves n in the low bits of the mantissa
     const V shifted = hn::Add(t, rounder);
     // Scaled to the natural logarithm, so that Taylor coefficients apply.
     const V r = hn::Mul(hn::Add(hn::Sub(t, hn::Sub(shifted, rounder)), rest), splat(ln_2));

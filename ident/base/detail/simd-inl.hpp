@@ -21,7 +21,7 @@ HWY_INLINE V zero() { return hn::Zero(D()); }
 HWY_INLINE bool any(M mask) { return !hn::AllFalse(D(), mask); }
 HWY_INLINE M none() { return hn::FirstN(D(), 0); }
 
-/// 1 / x within one or two units in the last place. x must not be denormal, nor 1 / x.
+/// 1 / x within one or two units in the last place. Neither x nor 1 / x may be denormal.
 HWY_INLINE V reciprocal(V x) {
 #if HWY_TARGET == HWY_AVX3
   V y{_mm512_rcp14_pd(x.raw)};
@@ -33,7 +33,7 @@ HWY_INLINE V reciprocal(V x) {
 #endif
 }
 
-/// 1 / sqrt(x) with the same accuracy and conditions.
+/// 1 / sqrt(x), with the accuracy and conditions of the reciprocal above.
 HWY_INLINE V reciprocal_root(V x) {
 #if HWY_TARGET == HWY_AVX3
   V y{_mm512_rsqrt14_pd(x.raw)};
@@ -61,7 +61,7 @@ template <int Q>
 struct Ldl {
   V l[Q * (Q + 1) / 2];
   V inverse_d[Q];
-  M ok;  ///< every pivot exceeds `least` times the diagonal of `reference`
+  M ok;  ///< whether every pivot exceeds `least` times the diagonal of `reference`
 };
 
 template <int Q>
@@ -137,8 +137,8 @@ HWY_INLINE V dot(const V (&a)[Q], const V (&b)[Q]) {
   return sum;
 }
 
-/// Singular values of Q columns of Q entries by one-sided Jacobi rotations (Hestenes 1958). Small singular values are
-/// as accurate as the entries. A lane that needs no rotation keeps its bits.
+/// Singular values of Q columns of Q entries by one-sided Jacobi rotations (Hestenes 1958). The accuracy of small
+/// singular values is that of the entries. A lane that needs no rotation keeps its bits.
 template <int Q>
 HWY_NOINLINE void singular_values(V (&column)[Q][Q], V (&sigma)[Q]) {
   constexpr double orthogonal = 1e-15;

@@ -40,7 +40,7 @@ struct LateralIcrModel {
   }
 };
 
-/// IcrModel with the yaw rate as its only state; its parameter is the distance y_l - y_r of the two centres.
+/// IcrModel with the yaw rate as its only state. Its parameter is the distance y_l - y_r of the two centres.
 struct YawIcrModel {
   double wheel_radius_m = 1.0;
 

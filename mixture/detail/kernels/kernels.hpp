@@ -6,7 +6,7 @@
 /// instruction set, so no class with inline code may cross this border.
 namespace modebank {
 
-/// Points per block: long enough to hide call overhead, short enough that a block of 12 components stays in L1.
+/// Points per block. A block is long enough to hide call overhead, and with 12 components short enough to stay in L1.
 inline constexpr std::ptrdiff_t block_size = 128;
 
 namespace em {
@@ -32,13 +32,13 @@ struct Block {
 struct Components {
   int features = 0;
   int count = 0;
-  bool diagonal = false;  ///< all Sigma_k are diagonal
+  bool diagonal = false;  ///< whether all Sigma_k are diagonal
   const double* means = nullptr;
   const double* whitening = nullptr;  ///< `stride` doubles per component, in the kernel's Packing
   Index stride = 0;
   const double* log_constants = nullptr;
-  /// One flag per component: the origin is so near the mean (in standard deviations) that squares about it lose little
-  /// to rounding.
+  /// One flag per component: whether the origin is so near the mean (in standard deviations) that squares about the
+  /// origin lose little to rounding.
   const bool* central = nullptr;
 };
 
@@ -49,8 +49,9 @@ enum class Packing { diagonal, affine, whole, tiles };
 
 /// Working memory of one thread, aligned to 64 bytes.
 struct Scratch {
-  double* relative = nullptr;  ///< block_size x K, one more column for noise: w_k N_k(x) divided by the point's largest
-  double* sum = nullptr;       ///< block_size: sum of `relative` over the components, at least one
+  double* relative = nullptr;     ///< block_size x K, one more column for noise: w_k N_k(x) divided by the largest such
+                                  ///< value of the point
+  double* sum = nullptr;          ///< block_size: sum of `relative` over the components, at least one
   double* log_density = nullptr;  ///< block_size; at least about -1e300, never NaN
   double* lanes = nullptr;        ///< sums per lane: log-likelihood, noise, then `entries` for each component
   double* work = nullptr;
@@ -73,16 +74,17 @@ struct Kernels {
 };
 
 Kernels plain_kernels(int features, bool diagonal);
-/// Kernels for points with errors. They are plain C++, compiled once for all instruction sets (points_with_errors.cpp).
+/// Kernels for points with errors. These are plain C++, compiled once for all instruction sets
+/// (points_with_errors.cpp).
 Kernels error_kernels(int features, bool diagonal);
 
 /// Number of doubles per vector in this machine's kernels.
 Index lanes();
 /// Sums the lanes of `count` entries, in lane order.
 void reduce_lanes(const double* lanes, Index count, double* sums);
-/// exp and log of `count` values in place, as the kernels compute them. `count` is a multiple of 8, `values` aligned.
-/// exp has a relative error of 1e-15 on [-690, 0]; smaller arguments count as -690. log has an error of 1e-15 on [1,
-/// 1e300].
+/// exp and log of `count` values in place, in the way the kernels compute these functions. `count` is a multiple of 8,
+/// and `values` are aligned. exp has a relative error of 1e-15 on [-690, 0]; smaller arguments count as -690. log has
+/// an error of 1e-15 on [1, 1e300].
 void exp_in_place(double* values, Index count);
 void log_in_place(double* values, Index count);
 

@@ -59,7 +59,7 @@ template <int F, bool diagonal>
 struct Small {
   static constexpr int seconds = Ellipsoid<F, diagonal>::seconds;
   static constexpr int entries = 1 + F + seconds;
-  /// Number of central components whose sums are computed together: as many as fit in registers.
+  /// Number of central components whose sums are computed together. It is limited so that the sums fit in registers.
   static constexpr int together = L == 8 ? (entries > 12       ? 1
                                             : 24 / entries > 4 ? 4
                                                                : 24 / entries)
@@ -102,7 +102,8 @@ struct Small {
         log2_densities<true>(ellipsoid, block.points, constant, out);
       else
         log2_densities<false>(ellipsoid, block.points, constant, out);
-      // A separate loop: the processor overlaps several short dependency chains, but not one long chain.
+      // A separate loop, because the processor overlaps several short dependency chains, but cannot speed up one long
+      // chain.
       for (Index n = 0; n < block_size; n += abreast * L) {
         V density[abreast];
         for (int v = 0; v < abreast; ++v) density[v] = load(out + n + v * L);

@@ -1,4 +1,4 @@
-// Verdicts on filters whose truth is known, and their intervals.
+// Verdicts on filters whose truth is known, and the intervals behind these verdicts.
 #include "filter/judge/decide/calibration.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(Calibration, VerdictsAreRightSeedBySeed) {
     EXPECT_GE(verdicts(bank, 1, 1, 1500, seeds)[Calibration::calibrated], nearly_all) << r;
     std::map<Calibration, int> few = verdicts(bank, 1, 1, 30, seeds);
     EXPECT_GE(few[Calibration::undecided] + few[Calibration::calibrated], nearly_all) << r;
-    if (r < 1e-3) {  // below ten times as much R, Q hardly shows
+    if (r < 1e-3) {  // with less than ten times that R, Q hardly shows
       EXPECT_GE(verdicts(bank, 0.25, 1, 500, seeds)[Calibration::overconfident], nearly_all) << r;
       EXPECT_GE(verdicts(bank, 4, 1, 500, seeds)[Calibration::underconfident], nearly_all) << r;
     }
@@ -58,13 +58,14 @@ TEST(Calibration, VerdictsAreRightSeedBySeed) {
   EXPECT_GE(verdicts(exact, 4, 1, 30, seeds)[Calibration::underconfident], nearly_all);
 }
 
-/// An adaptive noise scale has its own error. The mean NIS of a true filter then lies above n_y, significantly so with
-/// many samples.
+/// An adaptive noise scale has its own error. For a correct model the mean NIS then lies above n_y, significantly so
+/// with many samples.
 TEST(Calibration, AdaptiveNoiseIsJudgedByTailsAlone) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
-  for (const double factor : {1.0, 4.0})  // the adaptive scale compensates the factor
+  for (const double factor : {1.0, 4.0})  // the adaptive scale compensates for the factor
     EXPECT_EQ(verdicts(bank, factor, 1, 10000, 2, FilterNoise::adaptive)[Calibration::calibrated], 2) << factor;
-  const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // but not a factor on measurement noise
+  const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // but it does not compensate for a factor on
+                                                                           // measurement noise
   EXPECT_EQ(verdicts(noisy, 1, 4, 1500, 10, FilterNoise::adaptive)[Calibration::underconfident], 10);
 }
 
@@ -75,7 +76,7 @@ TEST(Calibration, AFewPercentOfVarianceAreNoVerdict) {
     EXPECT_EQ(verdicts(bank, factor, 1, 20000, 1)[Calibration::calibrated], 1) << factor;
 }
 
-/// Innovations of the right size with autocorrelation: hits come in groups, and a group counts as few samples.
+/// Innovations of the right size with autocorrelation. Hits then come in groups, and a group counts as few samples.
 TEST(Calibration, GroupsOfHitsAreFewSamples) {
   Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-12), 0);
   bank.modes[0].model.A(0, 0) = -1.0;
@@ -106,7 +107,7 @@ std::vector<double> related_scores(int samples, double rho, bool sizes_alone, st
   return scores;
 }
 
-/// Counts of a filter that states standard deviation 1 where it is `scale`.
+/// Counts of a filter that states standard deviation 1 where the true one is `scale`.
 BandCounts counts_of(const std::vector<double>& scores, double scale, bool with_nis) {
   BandCounts counts;
   for (HitsByRun* hits : {&counts.far, &counts.close}) hits->emplace_back();
@@ -138,8 +139,8 @@ std::map<Calibration, int> verdicts_of_related(int samples, double rho, bool siz
   return counts;
 }
 
-/// With the autocorrelation time of the hits alone up to half of these verdicts were wrong, because a few groups do not
-/// show it. Errors are most frequent where 120 samples are worth two or three.
+/// With the autocorrelation time of the hits alone, up to half of these verdicts were wrong, because a few groups of
+/// hits do not show it. Errors are most frequent if 120 samples are worth two or three independent ones.
 TEST(Calibration, ShortRelatedSamplesOfATrueFilterAreSeldomJudgedWrong) {
   for (const int samples : {120, 500, 1000})
     for (const double rho : {0.0, 0.5, 0.9, 0.97})
@@ -153,7 +154,7 @@ TEST(Calibration, ShortRelatedSamplesOfATrueFilterAreSeldomJudgedWrong) {
   EXPECT_GE(verdicts_of_related(3000, 0.9, false, 1.0, false)[Calibration::calibrated], 90);
 }
 
-/// Variances off by a factor of 1.7 or more must be found; otherwise the verdict must not be "calibrated".
+/// Variances that are wrong by a factor of 1.7 or more must be found; otherwise the verdict must not be "calibrated".
 TEST(Calibration, AWrongFilterIsNotCalledCalibrated) {
   EXPECT_GE(verdicts_of_related(1000, 0.5, false, 1.3, false)[Calibration::overconfident], 95);
   EXPECT_GE(verdicts_of_related(3000, 0.5, false, 0.75, false)[Calibration::underconfident], 95);
@@ -177,7 +178,7 @@ TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   EXPECT_EQ(calibration_on(counts), Calibration::overconfident);
 }
 
-/// The central bands of a true filter contain their nominal shares.
+/// If the model is correct, the central bands contain their nominal shares.
 TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
   const ScoreBands bands;
   for (const double side : {-1.0, 1.0}) {
@@ -196,7 +197,7 @@ TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
     EXPECT_NEAR(mean_of(as_numbers(counts.outside[b])), 1.0 - coverage_levels[b], 4e-3) << b;
 }
 
-/// For an autoregression it is the coefficient, at lag one.
+/// For an autoregression the largest autocorrelation is the coefficient, at lag one.
 TEST(Calibration, TheLargestAutocorrelationOfAnAutoregressionIsItsCoefficient) {
   for (const double rho : {-0.6, 0.3, 0.8}) {
     std::mt19937_64 generator(8);

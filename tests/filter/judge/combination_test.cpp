@@ -42,8 +42,8 @@ TEST(Combination, ALoneFilterAndEqualOnesAreThemselves) {
   }
 }
 
-/// Two filters, written out: the log odds of sample k's forecast are a sum over samples j up to k - h. Each term is
-/// 0.99^(k - h - j) times the difference of the log densities of j, divided by h.
+/// Two filters, with the formula written out. The log odds of sample k's forecast are a sum over samples j up to k - h.
+/// Each term is 0.99^(k - h - j) times the difference of the log densities of j, divided by h.
 TEST(Combination, AForecastHasTheWeightsOfItsOrigin) {
   const Index N = 60;
   const HorizonEvaluation a = forecasts(N, {1, 5}, 2, 1.0), b = forecasts(N, {1, 5}, 3, 1.3);
@@ -78,7 +78,7 @@ TEST(Combination, SamplesAreTheFirstFilters) {
   EXPECT_NEAR(all.predictions.error[0](0, 20), bank.error[0](0, 20), combined_digits);
 }
 
-/// A run unlike all runs that the bank has seen: the combination must find the competitor that fits it.
+/// A run that differs from all runs seen by the bank. The combination must find the competitor that fits this run.
 TEST(Combination, LosesLittleAgainstTheBestOfARun) {
   const Index N = 400;
   const HorizonEvaluation bad = forecasts(N, {10}, 6, 4.0), good = forecasts(N, {10}, 7, 1.0);
@@ -120,7 +120,7 @@ TEST(Combination, HeldOutRunsStartWithStackedWeights) {
   tables.add(0, {bad, good});
   tables.start_as_trained();
   tables.add(1, {bad, good});
-  const double start = tables.combination()[1].start;  // of the competitor drifting
+  const double start = tables.combination()[1].start;  // weight of the competitor drifting
   const std::vector<double> stacked =
       stacked_weights({(Eigen::MatrixXd(2, N) << bad.log_density.row(0), good.log_density.row(0)).finished()});
   EXPECT_NEAR(start, stacked[1], combined_digits);
@@ -132,7 +132,8 @@ TEST(Combination, HeldOutRunsStartWithStackedWeights) {
   EXPECT_NEAR(rows.back().log_score, run.predictions.log_density.row(0).tail(N - 1).mean(), combined_digits);
 }
 
-/// A run too short to separate the filters must lose almost nothing against the filter that was best in training.
+/// A run that is too short to separate the filters. Its loss against the filter that was best in training must be
+/// almost nothing.
 TEST(Combination, ShortRunsKeepWhatTrainingFound) {
   const HorizonEvaluation good = forecasts(30, {10}, 6, 1.0), bad = forecasts(30, {10}, 7, 3.0);
   const std::vector<double> start =

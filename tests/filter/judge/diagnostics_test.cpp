@@ -1,4 +1,4 @@
-// Diagnostics on simulated truth: a true filter passes, a wrong one fails.
+// Diagnostics on simulated truth: a correct filter passes, a wrong filter fails.
 #include "filter/judge/decide/diagnostics.hpp"
 
 #include <gmock/gmock.h>
@@ -120,7 +120,7 @@ TEST(Diagnostics, NoNeesWhereTheStateIsTheMeasurement) {
   EXPECT_THAT(row.flags, testing::HasSubstr("no NEES"));
 }
 
-/// One of two gyros is noise-free, so only the other one is judged.
+/// One of two gyros is noise-free, so only the other gyro is judged.
 TEST(Diagnostics, NeesIsAboutTheStatesThatAreNotTheMeasurement) {
   Bank bank = test::single_mode(example_bank(2, 1, 1, 1e-4), 0);
   const std::vector<Trajectory> runs = truth_runs(bank, 2, 1500);
@@ -173,7 +173,7 @@ TEST(Diagnostics, FlagsWhatStandsOut) {
   duplicates.modes[1] = duplicates.modes[0];
   EXPECT_THAT(flags(duplicates, truth_runs(test::single_mode(bank, 0), 1, 600)),
               testing::HasSubstr("probabilities flat"));
-  // Modes without process noise that differ in c, on a run that stays in neither for long.
+  // Modes without process noise that differ in c, on a run with short stays in both modes.
   Bank apart = bank;
   for (Mode& mode : apart.modes) mode.Q.setConstant(1e-6);
   apart.modes[0].model.c(0) = 1.0;

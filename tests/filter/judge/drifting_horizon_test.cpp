@@ -74,7 +74,7 @@ TEST(DriftingHorizon, FixedCoefficientsOfSeveralOutputsAreOneKalmanFilter) {
   for (std::size_t h = 0; h < 3; ++h) EXPECT_TRUE(near(drifting.error[h], bank.error[h], ahead_digits));
 }
 
-/// If the model is true and drifts slowly, errors have the stated variance.
+/// If the model is correct and drifts slowly, errors have the stated variance.
 TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
   Bank model = example_drifting(2, 1, 2);
   model.drift.rates = {2e-3, 0.05, 0.98};
@@ -92,7 +92,8 @@ TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
           ++count(h);
         }
   }
-  // 40,000 values; with their autocorrelation they are worth at least a tenth of that. Six standard errors are allowed.
+  // 40,000 values. With their autocorrelation they are worth at least a tenth of that number. Six standard errors are
+  // allowed.
   EXPECT_NEAR(squares(0) / count(0), 1.0, 6.0 * std::sqrt(2.0 / (0.1 * count(0))));
   EXPECT_NEAR(squares(1) / count(1), 1.0, 6.0 * std::sqrt(2.0 / (0.1 * count(1))));
 }

@@ -112,7 +112,7 @@ TEST(Finding, AGainBelowWhatCountsIsNoEvidence) {
   EXPECT_EQ(small.judged().answer, Answer::evidence);
 }
 
-/// The whole gain comes from one of six runs: it may be significant by t, but not by ranks.
+/// The whole gain comes from one of six runs. It may be significant by the t-test, but must not be by ranks.
 TEST(Finding, AGainOfOneOddRunIsNoEvidence) {
   Case odd;
   odd.bank_gain = 0.0;
@@ -126,8 +126,8 @@ TEST(Finding, AGainOfOneOddRunIsNoEvidence) {
   EXPECT_EQ(doubt_of(finding), Doubt::within_chance);
 }
 
-/// Modes used for 3/4 and 1/4 of the time, left every 10th and every 2nd sample: the stay is 1 / (.75 / 10 + .25 / 2) =
-/// 5.
+/// Modes that are used for 3/4 and 1/4 of the time and left every 10th and every 2nd sample. The stay is 1 / (.75 / 10
+/// + .25 / 2) = 5.
 TEST(Finding, ModesHaveToStayForFiveSamplesAndTheModelsMemory) {
   Case passing;
   for (const auto& [mode, usage, stay] : {std::tuple{0, 0.75, 10.0}, {1, 0.25, 2.0}}) {
@@ -188,7 +188,7 @@ TEST(Finding, ModesOfTheSameParametersAreNoModesOfMotion) {
   EXPECT_TRUE(modes_differ(Case().bank));
 }
 
-// A look-ahead fit has no standard errors, nor has an undetermined theta; the modes may then be alike.
+// Without standard errors (a look-ahead fit, or an undetermined theta), the modes may be alike.
 TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   Case unknown;
   unknown.bank = Case::with_errors(unknown.bank, std::nan(""));
@@ -198,7 +198,7 @@ TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   EXPECT_EQ(unknown.judged().answer, Answer::cannot_tell);
   unknown.bank.modes[1].model = unknown.bank.modes[0].model;
   EXPECT_EQ(unknown.judged().answer, Answer::no_evidence) << "the same, whatever the errors";
-  Case some;  // one known parameter separates them
+  Case some;  // one known parameter separates the modes
   some.bank.modes[0].standard_error(0) = std::nan("");
   EXPECT_EQ(some.judged().answer, Answer::evidence);
   Case worse = unknown;
@@ -207,7 +207,7 @@ TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   EXPECT_EQ(worse.judged().answer, Answer::no_evidence) << "a competitor has the higher score";
 }
 
-// The baseline loses 0.4 nats in each of six runs. In one run `drifting` gains 2.6 more, which makes the t-test
+// The baseline loses 0.4 nats in each of six runs. In one run `drifting` gains 2.6 nats more, which makes the t-test
 // insignificant.
 TEST(Finding, ADescriptionThatLosesInEveryRunIsNotAsGood) {
   Case even;

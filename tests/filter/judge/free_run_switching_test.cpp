@@ -160,7 +160,7 @@ TEST(FreeRun, SaysOfPathsThatLeaveTheFiniteRange) {
   EXPECT_TRUE(found.mean.middleCols(1, predicted).allFinite());
 }
 
-/// State-dependent transitions: mode 1 where x is positive. Without noise the path equals the piecewise recursion.
+/// State-dependent transitions: mode 1 if x is positive. Without noise the path equals that of the piecewise recursion.
 TEST(SamplePaths, ModesMayFollowStateAndInput) {
   Bank bank = two_modes();
   for (Mode& mode : bank.modes) mode.Q.setZero();

@@ -24,7 +24,7 @@ PairedGain gain_of(const std::vector<VectorXd>& differences) {
   return paired_gain("other", differences, zeros_like(differences));
 }
 
-/// A first-order autoregression with mean m and innovation variance one, started from its stationary distribution.
+/// A first-order autoregression with mean m and innovation variance one. It starts from its stationary distribution.
 VectorXd autoregression(double rho, double mean, Eigen::Index samples, std::mt19937_64& generator) {
   boost::random::normal_distribution<double> normal;
   VectorXd x(samples);
@@ -48,8 +48,8 @@ TEST(PairedGain, OfOneSamplePerRunIsTheMeanWithItsStandardError) {
   EXPECT_TRUE(gain.exceeds());
 }
 
-// Runs of unequal length: variance of the linearised ratio by hand. Sums 2, 8, 0, 6, 4 over 2, 4, 2, 1, 1 samples give
-// m = 2, residuals -2, 0, -4, 4, 2 and SE = sqrt(5 / 4 * 40) / 10.
+// Runs of unequal length, with the variance of the linearised ratio by hand. Sums 2, 8, 0, 6, 4 over 2, 4, 2, 1, 1
+// samples give m = 2, residuals -2, 0, -4, 4, 2 and SE = sqrt(5 / 4 * 40) / 10.
 TEST(PairedGain, RunsCountByTheirSamples) {
   const std::vector<VectorXd> runs{VectorXd::Constant(2, 1.0), VectorXd::Constant(4, 2.0), VectorXd::Zero(2),
                                    VectorXd::Constant(1, 6.0), VectorXd::Constant(1, 4.0)};
@@ -112,7 +112,7 @@ TEST(PairedGain, TooFewBlocksAndNoSamplesKnowNoError) {
   EXPECT_FALSE(none.exceeds());
 }
 
-// For two equally good filters a gain is significant in 2.5 % of the cases: 25 of 1000, binomial sd 4.9.
+// For two equally good filters a gain is significant in 2.5 % of the cases: 25 of 1000, with binomial sd 4.9.
 TEST(PairedGain, ChanceExceedsTheMarginAsOftenAsItSays) {
   std::mt19937_64 generator(43);
   for (const int runs : {6, 3}) {

@@ -14,8 +14,8 @@ namespace {
 
 /// Boost.Math against scipy; both are accurate to a few units in the last place.
 constexpr double special_function_tolerance = 1e-11;
-/// Allowed deviation of a simulated fraction from its expectation, in standard deviations. By chance about one in 16000
-/// exceeds it; seeds are fixed.
+/// Allowed deviation of a simulated fraction from its expectation, in standard deviations. By chance about one fraction
+/// in 16000 exceeds the limit; seeds are fixed.
 constexpr double sigmas = 4.0;
 
 nlohmann::json golden() { return test::read_golden("scores"); }
@@ -99,7 +99,7 @@ TEST(Summary, TheTrueKalmanFilterIsCalibrated) {
 }
 
 TEST(Summary, TheTrueBankIsCalibrated) {
-  // With almost no measurement noise the mixing of histories is exact, so the bank is a true filter.
+  // With almost no measurement noise the mixing of histories is exact, so the bank equals the correct filter.
   for (const Eigen::Index n : {1, 2}) {
     const Bank truth = test::example_bank(n, 1, 3, 1e-10);
     expect_calibrated(score(truth, truth, 20000, 12), static_cast<double>(n));
@@ -192,7 +192,7 @@ TEST(Summary, WhitenessIsPooledOverRunsByFisher) {
   std::vector<Trajectory> runs;
   std::vector<RunEvaluation> evaluations;
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    runs.push_back(test::simulate_bank(truth, seed == 2 ? 4 : 60, seed));  // the last one is too short for a lag
+    runs.push_back(test::simulate_bank(truth, seed == 2 ? 4 : 60, seed));  // the last series is too short for a lag
     evaluations.push_back(evaluate_run(truth, runs.back(), {}));
   }
   const auto rows = summarize("bank", runs, evaluations, score_runs(evaluations));

@@ -125,8 +125,8 @@ TEST(Smoother, StaysFiniteWhereNoiseIsSingular) {
   }
 }
 
-/// Two states with three lags each. `rounding`: deviation of the shift rows from exact shifts; with it they are treated
-/// as general rows.
+/// Two states with three lags each. `rounding`: deviation of the shift rows from exact shifts. With a deviation they
+/// are treated as general rows.
 Bank lagged_bank(double R, double rounding = 0.0) {
   Bank bank = example_bank(2, 1, 3, R);
   const LinearStructure one_lag = bank.structure;
@@ -175,11 +175,11 @@ void expect_alike(const Bank& a, const Bank& b, const FilterOptions& options, do
   }
 }
 
-/// Products use shorter loops for lags that only shift.
+/// If lags only shift, products use shorter loops.
 TEST(LaggedStates, ThatShiftAreThoseOfAnyRows) { expect_alike(lagged_bank(1e-4), lagged_bank(1e-4, 1e-14), {}, 1e-10); }
 
-/// Exactly measured states are known and skip computations. The result must be the limit of vanishing measurement
-/// noise.
+/// Exactly measured states are known, and the smoother skips computations. The result must be the limit of vanishing
+/// measurement noise.
 TEST(LaggedStates, MeasuredExactlyAreTheLimitOfLittleNoise) {
   expect_alike(lagged_bank(0.0), lagged_bank(1e-13), {}, 1e-7);
 }
@@ -234,7 +234,7 @@ TEST(Viterbi, IsTheBestOfAllSequencesWhenTheStateIsMeasuredExactly) {
     EXPECT_EQ(smoothed(bank, run, {variant}).viterbi_mode, expected) << name_of(variant);
 }
 
-/// With the filter's own noise scale at every step.
+/// This test uses the filter's own noise scale at every step.
 TEST(Viterbi, KeepsToTheFiltersNoiseScale) {
   Bank bank = example_bank(1, 1, 3, 1e-16);
   bank.transition = TransitionMatrix((Eigen::MatrixXd(3, 3) << 0.7, 0.2, 0.1, 0.1, 0.8, 0.1, 0.3, 0.1, 0.6).finished());
@@ -246,7 +246,7 @@ TEST(Viterbi, KeepsToTheFiltersNoiseScale) {
     for (Mode& mode : rough.modes) mode.Q *= 16.0;
     const Trajectory run = simulate_bank(rough, 7, seed);
     BankFilter filter(bank, options);
-    Eigen::VectorXd scale(7);  // of the step to each sample
+    Eigen::VectorXd scale(7);  // scale of the step to each sample
     for (Index k = 0; k < 7; ++k) {
       scale(k) = k > 0 ? filter.snapshot().noise_scale : 1.0;
       filter.step(run.time_s(k), run.input.col(k), run.state.col(k));

@@ -49,7 +49,7 @@ TEST(SquaredDistances, TheIntervalIsThatOfTheSum) {
   }
 }
 
-/// Every value twice: as wide as for half as many, apart from the margin.
+/// With every value twice, the interval has the width for half the number of values, apart from the margin.
 TEST(SquaredDistances, RelatedSamplesAreFewer) {
   std::mt19937_64 generator(1);
   std::vector<double> once, twice;
@@ -62,8 +62,8 @@ TEST(SquaredDistances, RelatedSamplesAreFewer) {
   EXPECT_NEAR((b.upper - b.lower) / (a.upper - a.lower), 1.0, 0.1);
 }
 
-/// 1 for chi-square with any degrees. For a mixture in closed form: variances 1 and 9 with equal probability, mean 5,
-/// variance 98.
+/// The dispersion is 1 for chi-square with any degrees. For a mixture it is known in closed form: variances 1 and 9
+/// with equal probability, mean 5, variance 98.
 TEST(SquaredDistances, DispersionIsThatOfTheLaw) {
   std::mt19937_64 generator(5);
   boost::random::normal_distribution<double> normal;
@@ -115,7 +115,7 @@ TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
   }
 }
 
-/// The interval contains a true filter's mean for 95 % of the seeds, within five standard errors of 400.
+/// The interval contains the mean of a correct model for 95 % of the seeds, within five standard errors of 400 seeds.
 TEST(SquaredDistances, TheIntervalCoversWithMissingSignals) {
   std::mt19937_64 generator(9);
   boost::random::normal_distribution<double> normal;
@@ -136,7 +136,8 @@ TEST(SquaredDistances, TheIntervalCoversWithMissingSignals) {
   EXPECT_NEAR(inside / 400.0, 0.95, 5.0 * std::sqrt(0.95 * 0.05 / 400.0));
 }
 
-/// On the scale of all signals, a NIS exceeds the region's edges exactly if it does with its own degrees.
+/// On the scale of all signals, a NIS exceeds the edges of the region exactly if it exceeds the edges for its own
+/// degrees.
 TEST(SquaredDistances, NisOfFewerSignalsIsDrawnWhereAllWouldBe) {
   RunEvaluation e;
   const double nan = std::nan("");

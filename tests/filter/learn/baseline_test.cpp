@@ -37,7 +37,7 @@ Recording simulated(const Bank& bank, Index runs, Index samples, std::uint64_t s
   return recording;
 }
 
-/// theta fixed at the true value; the test is about Q and R.
+/// theta is fixed at the true value, because the test is about Q and R.
 GlobalModel model_at(const Recording& recording, const Bank& truth) {
   GlobalModel global = fit_global(recording, test::structure_of(recording));
   global.theta = truth.theta(0);
@@ -149,18 +149,19 @@ TEST(Baseline, AgreesWithNelderMead) {
 TEST(Baseline, WithoutMeasurementNoiseStopsAtTheBound) {
   const Bank truth = single_filter(-0.3, 0.04, 1e-30);
   const Recording recording = simulated(truth, 3, 400);
-  // Measurement noise correlates successive errors negatively; a theta that forgets too fast makes them positive.
+  // Measurement noise makes successive errors negatively correlated. A theta that forgets too fast makes the
+  // correlation positive.
   GlobalModel global = fit_global(recording, test::structure_of(recording));
   global.theta(0) = -0.5;
   const Baseline fit = learn(recording, global);
   EXPECT_TRUE(fit.converged);
   EXPECT_TRUE(fit.at_bound);
-  // An error of y counts in the innovation of its own sample and, times 1 - 0.5, in that of the next one.
+  // An error of y enters the innovation of its own sample and, times 1 - 0.5, that of the next sample.
   EXPECT_NEAR(fit.bank.R(0, 0), 1e-8 * global.residual_covariance(0, 0) / (1.0 + 0.25), 1e-20);
 }
 
-/// Clean data of six lags, poles at 0.95: the residuals' variance is 1e-11 of the data's, and the coefficients' squares
-/// sum to some 600. R must be able to become nothing beside them.
+/// Clean data of six lags, with poles at 0.95. The variance of the residuals is 1e-11 of that of the data, and the
+/// squares of the coefficients sum to about 600. R must be able to become negligible against these residuals.
 TEST(Baseline, TheBoundOfRCostsNothingInDataOfManyLags) {
   const LinearStructure structure{1, 1, false, 6};
   Recording recording = test::empty_recording(1, 1);

@@ -1,4 +1,4 @@
-// Dominating measurement noise: one model with a large R is tried besides the search from exact states.
+// Dominating measurement noise: a model with a large R is tried, in addition to the search from exact states.
 #include "filter/learn/refine/dominating_noise.hpp"
 
 #include <gtest/gtest.h>

@@ -32,7 +32,7 @@ WindowFits affine_windows(const Recording& recording) {
   return fits;
 }
 
-/// Both ways of learning one motion: a bank of one mode, and the competitor.
+/// Two ways of learning one motion: as a bank of one mode, and as the competitor.
 Refinement refined(const Recording& recording, Drift drift, bool competitor) {
   const WindowFits fits = affine_windows(recording);
   BankOptions options;

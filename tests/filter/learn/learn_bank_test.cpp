@@ -37,7 +37,7 @@ Recording runs_in_modes(const std::vector<double>& a) {
   return recording;
 }
 
-/// Memberships in which windows of run i belong to component i alone.
+/// Memberships where windows of run i belong to component i alone.
 Eigen::MatrixXd memberships_by_run(const WindowFits& fits, Index components) {
   Eigen::MatrixXd gamma = Eigen::MatrixXd::Zero(components, fits.count());
   for (Index i = 0; i < fits.count(); ++i) gamma(fits.windows[i].run, i) = 1.0;
@@ -172,7 +172,7 @@ TEST(Screening, UnstableAndStarvedModesAreListedAndLeftOut) {
   Case data({-0.2, 0.1, -0.8});  // the second grows by a tenth per step
   Eigen::MatrixXd gamma = Eigen::MatrixXd::Zero(4, data.fits.count());
   gamma.topRows(3) = memberships_by_run(data.fits, 3);
-  gamma.col(0) << 0.9, 0.0, 0.0, 0.1;  // a tenth of one transition, shares of nine more
+  gamma.col(0) << 0.9, 0.0, 0.0, 0.1;  // a tenth of one transition, and shares of nine others
   data.mixture = test::mixture_of(data.fits, gamma);
   data.mixture.mixture.weights << 0.4, 0.2, 0.3, 0.1;
   const Bank bank = data.learn();
@@ -220,7 +220,8 @@ TEST(Screening, WhereNoComponentIsLeftAllOfThemTogetherAreOneMode) {
   EXPECT_EQ(bank.screened[1].reason, "unstable");
 }
 
-/// One step ahead such a mode may be right, as may the global model that it competes with. It is kept, with a warning.
+/// One step ahead the predictions of such a mode may be right, like those of the global model that it competes with.
+/// The mode is kept, with a warning.
 TEST(Screening, WhereAllTogetherAreUnstableTheyAreOneModeStill) {
   Case data({-0.2, -0.3});
   BankOptions options;

@@ -46,7 +46,7 @@ inline LinearStructure structure_of(const Recording& recording) {
   return {recording.state_count(), recording.input_count(), false};
 }
 
-/// Windows of every training run with only the global fit, as far as banks need them.
+/// Windows of every training run with only those fields that a bank needs: the global fit.
 inline WindowFits windows_of(const Recording& recording, Index length, Index step) {
   WindowFits fits;
   fits.structure = structure_of(recording);

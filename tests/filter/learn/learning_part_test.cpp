@@ -55,7 +55,7 @@ TEST(LearningPart, IsMadeOfWholeStretchesOfTheTrainingRuns) {
 TEST(LearningPart, HasEveryRunInProportionToItsLength) {
   const Recording recording = numbered({50000, 100000, 250000});
   const std::map<Index, Index> drawn = drawn_by_run(learning_part(recording, 40000, 3).value());
-  const double stretch = 400.0;  // a hundredth of the drawn transitions; a run's share is exact to two stretches
+  const double stretch = 400.0;  // a hundredth of the drawn transitions; the share of a run is exact to two stretches
   EXPECT_NEAR(static_cast<double>(drawn.at(0)), 5000.0, 2.0 * stretch);
   EXPECT_NEAR(static_cast<double>(drawn.at(1)), 10000.0, 2.0 * stretch);
   EXPECT_NEAR(static_cast<double>(drawn.at(2)), 25000.0, 2.0 * stretch);

@@ -85,7 +85,7 @@ Bank disturbed_start(const Recording& recording, const SystemTruth& truth) {
 
 class RefineMeasured : public testing::TestWithParam<Index> {};
 
-/// folds 1: to convergence; more: stopped by cross-validation.
+/// With 1 fold the fit runs to convergence; with more folds cross-validation stops it.
 TEST_P(RefineMeasured, RecoversEverythingWithinThreeStandardErrors) {
   const SystemTruth truth;
   const Recording recording = measured_runs(truth, 6, 600, 11);
@@ -168,7 +168,7 @@ std::optional<Bank> with_R(const Recording& recording, const Bank& bank) {
   return estimate_measurement_noise({recording, {}, std::nullopt}, bank, {}).bank;
 }
 
-/// The share of Q that is R must be found, whatever it is.
+/// The share of Q that is R must be found, for every share.
 TEST(EstimateMeasurementNoise, SplitsQAndR) {
   for (const double R : {0.005, 0.02, 0.2}) {
     const Recording recording = one_mode_with(R);
@@ -207,8 +207,8 @@ TEST(EstimateMeasurementNoise, AStartThatFailsIsCountedAndTheOthersDecide) {
   EXPECT_FALSE(all_failed.bank);
 }
 
-/// Regression test: of 50 known systems one got R = 0 and lost 0.12 nats, because R = 0 was most likely with the theta
-/// of exact states.
+/// Regression test: of 50 known systems one got R = 0 and lost 0.12 nats. With the theta of exact states, R = 0 was the
+/// most likely value.
 TEST(RefineMeasured, FindsRThatThetaHides) {
   SystemTruth truth;
   truth.theta.col(1) = truth.theta.col(0);
@@ -238,7 +238,7 @@ TEST(RefineMeasured, FindsRThatThetaHides) {
   EXPECT_NEAR(measured.bank.theta(0)(0), truth.theta(0, 0), 0.05);
 }
 
-/// No part of a fit, including R, may use the runs that score it. Here the last run is measured with ten times the
+/// No part of a fit, including R, may use the runs that score it. Here the last run has ten times the measurement
 /// noise.
 TEST(RefineMeasured, ScoresAreOfFitsThatLeaveTheRunOut) {
   SystemTruth truth;

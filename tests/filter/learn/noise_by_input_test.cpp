@@ -1,4 +1,4 @@
-// Noise that depends on state and input: the factor on every mode's Q, and when training runs accept it.
+// Noise that depends on state and input: the factor on every mode's Q, and whether training runs accept the factor.
 #include "filter/learn/competitors/noise_by_input.hpp"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(NoiseFactor, IsItsFormulaWithinItsBounds) {
   EXPECT_NEAR(factor.at(VectorXd::Zero(1), Eigen::Vector2d(0.0, 1e9)), 0.2, 1e-14);
 }
 
-/// One exactly measured mode: every density is that of a residual with covariance f Q.
+/// One exactly measured mode. Every density must be that of a residual with covariance f Q.
 TEST(NoiseFactor, MultipliesTheCovarianceOfEveryStep) {
   const Recording recording = runs_of(follows_input, 3, 1, 60);
   const LinearStructure s = test::structure_of(recording);
@@ -89,8 +89,8 @@ TEST(NoiseFactor, MultipliesTheCovarianceOfEveryStep) {
   }
 }
 
-/// With exactly measured states, the filter's likelihood is that of rows divided by the square root of their factor,
-/// minus half its logarithm.
+/// With exactly measured states, the filter's likelihood equals that of rows divided by the square root of their
+/// factor, minus half the logarithm of the factor.
 TEST(NoiseFactor, LikelihoodIsThatOfRowsOverTheirFactor) {
   const Recording recording = runs_of(follows_input, 4, 3, 200);
   for (const Index lags : {Index{1}, Index{2}}) {
@@ -108,7 +108,7 @@ TEST(NoiseFactor, LikelihoodIsThatOfRowsOverTheirFactor) {
 
 class ConstantNoiseFactor : public testing::TestWithParam<FilterNoise> {};
 
-/// A constant input gives a constant factor; the filter must then behave as with Q times that factor.
+/// A constant input gives a constant factor. The filter must then give the results for Q times that factor.
 TEST_P(ConstantNoiseFactor, IsAsAnotherQ) {
   Recording recording = runs_of(follows_input, 5, 1, 150);
   recording.runs.front().input.setOnes();
@@ -244,7 +244,8 @@ TEST(LearnRefinedBank, HasTheFactorWhereRunsLeftOutDoNotLoseByIt) {
   EXPECT_FALSE(bank.noise_factor.empty());
 }
 
-/// A bank whose start has a factor keeps it, with the Q of rows divided by their factor and negligible R.
+/// A bank whose start has a factor keeps the factor. Its Q is that of rows divided by their factor, and R is
+/// negligible.
 TEST(NoiseFactor, OfAStartIsKeptByRefinement) {
   const Recording recording = runs_of(follows_input, 8, 6, 300);
   WindowFits fits = test::windows_of(recording, 20, 10);

@@ -124,7 +124,7 @@ TEST(LearnNonlinear, RecoversCoefficientsWithinTheirErrors) {
   }
 }
 
-/// Log score of the bank learned from runs like `like`, on runs with another noise [nats/sample].
+/// Log score of a bank on runs with another noise [nats/sample]. The bank is learned from runs like `like`.
 double score_on(double sd, const Bent& like) {
   const Bank bank = learn_nonlinear(like.runs(8, 3), like.structure, like.terms, RefineOptions(), FilterOptions());
   Bent other = like;
@@ -138,8 +138,8 @@ double score_on(double sd, const Bent& like) {
   return sum / samples;
 }
 
-/// The true density scores -ln(sd sqrt(2 pi e)). If errors are three times as large, the level of the training runs
-/// would lose (9 - 1) / 2 - ln 3 = 2.9 nats.
+/// The true density scores -ln(sd sqrt(2 pi e)). If errors are three times larger than in training, the level of the
+/// training runs would lose (9 - 1) / 2 - ln 3 = 2.9 nats.
 TEST(LearnNonlinear, OneLevelIsWiderThanTheTrainingRuns) {
   const Bent bent;
   const auto truth = [](double sd) { return -std::log(sd * std::sqrt(2.0 * M_PI * std::exp(1.0))); };

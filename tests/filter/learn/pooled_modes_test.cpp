@@ -104,7 +104,7 @@ TEST(WeightedMode, WithoutWeightStaysAtTheGlobalModel) {
 }
 
 TEST(WeightedMode, UnexcitedDirectionsStayAtTheGlobalModel) {
-  // Two inputs that differ in the first half only: a mode of the second half determines only the sum of their gains.
+  // Two inputs that differ in the first half only. A mode of the second half determines only the sum of their gains.
   std::mt19937_64 generator(4);
   boost::random::normal_distribution<double> normal;
   const Index N = 121;

@@ -28,7 +28,8 @@ inline Bank true_bank(const LinearStructure& structure, const Eigen::MatrixXd& t
   return bank;
 }
 
-/// A pendulum (angle, rate) driven by a torque, with one mode per damping; R is `R_factor` times that of such sensors.
+/// A pendulum (angle, rate) that a torque drives, with one mode per damping. R is `R_factor` times that of typical
+/// sensors.
 inline Bank true_pendulum(const std::vector<double>& dampings, double R_factor) {
   const double dt = 0.02, torque = 70.0;
   Eigen::MatrixXd theta(6, std::ssize(dampings));
@@ -64,7 +65,8 @@ inline Recording simulated_recording(const Bank& truth, Index runs, Index sample
   return recording;
 }
 
-/// A start similar to one from clustered windows: theta shrunk, Q including measurement noise, short-lived modes.
+/// A start similar to one from clustered windows: theta is shrunk, Q includes measurement noise, and modes are
+/// short-lived.
 inline Bank blurred(const Bank& truth, const Recording& recording) {
   Bank start = bank_frame(recording, truth.structure, 1e-3 * truth.R);
   for (Index j = 0; j < truth.mode_count(); ++j)
@@ -84,8 +86,8 @@ inline Refinement refine_blurred(const Bank& truth, const Recording& recording, 
   return refine_bank(recording, windows_of(recording, 25, 1), {blurred(truth, recording)}, options, {});
 }
 
-/// Errors of all learned parameters in standard errors: theta, Q (lower triangles), R, T's diagonal. Modes are in the
-/// truth's order, which starts keep.
+/// Errors of all learned parameters in standard errors: theta, Q (lower triangles), R, T's diagonal. Modes have the
+/// order of the truth, which starts keep.
 inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
   std::vector<double> z;
   const Index n = truth.structure.states;
@@ -116,13 +118,13 @@ inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, 
   return diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front();
 }
 
-/// Interval for the mean NEES of a learned bank: about n, with the scatter of a true filter (`row`'s interval) and the
-/// effect of the bank's own error. That effect is g' Sigma g by the delta method. g is the derivative of log mean NEES
-/// on the held-out runs by the bank's coordinates. Sigma is the coordinates' covariance, the inverse of the training
-/// runs' information.
+/// Interval for the mean NEES of a learned bank. The mean is about n. The interval includes the scatter for a correct
+/// model (the interval of `row`) and the effect of the bank's own error. By the delta method this effect is g' Sigma g.
+/// g is the derivative of log mean NEES on the held-out runs with respect to the bank's coordinates. Sigma is the
+/// covariance of the coordinates, the inverse of the training runs' information.
 struct NeesInterval {
   double lower, upper;
-  double parameter_sd, filter_sd;  ///< of the logarithm
+  double parameter_sd, filter_sd;  ///< variance of the logarithm
 };
 
 inline NeesInterval learned_nees_interval(const Bank& bank, const Bank& truth, const Recording& training,

@@ -1,5 +1,5 @@
-// Statistics over many seeds. Standard errors are right. True filters lie in the intervals of mean NEES and NIS, and
-// wrong ones do not. Learned filters lie in them as far as their parameters are known.
+// Statistics over many seeds. Standard errors are right. Filters with the true parameters lie in the intervals of mean
+// NEES and NIS, and wrong filters lie outside. Learned filters lie inside if their parameters are known well enough.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -73,7 +73,7 @@ Inside count_inside(const Bank& filter, const Bank& truth, std::uint64_t seeds) 
   return inside;
 }
 
-/// 95 of 100 are expected; fewer than 89 or more than 99 have probabilities of 1 and 0.6 %. The IMM's approximation has
+/// 95 of 100 are expected; fewer than 89 have a probability of 1 %, more than 99 of 0.6 %. The IMM's approximation has
 /// no visible effect.
 TEST_P(RefineRecoverySeeds, TrueFiltersLieInTheirIntervals) {
   const Inside inside = count_inside(GetParam().truth, GetParam().truth, 100);
@@ -83,8 +83,8 @@ TEST_P(RefineRecoverySeeds, TrueFiltersLieInTheirIntervals) {
   EXPECT_LE(inside.nis, 99.0);
 }
 
-/// A factor of four on Q or R must take NEES or NIS out of its interval. One of them may stay inside: if Q is far
-/// larger than R, the state is the measurement for any Q; and NIS of rare, distant switches scatters.
+/// A factor of four on Q or R must move NEES or NIS outside its interval. One of the two may stay inside. If Q is far
+/// larger than R, the state equals the measurement for any Q. And the NIS of rare, distant switches scatters.
 TEST_P(RefineRecoverySeeds, WrongFiltersDoNot) {
   for (const double factor : {0.25, 4.0})
     for (const bool process : {true, false}) {

@@ -16,7 +16,7 @@ namespace {
 using test::refine_blurred;
 using test::simulated_recording;
 
-/// A prior that only fixes theta at the global model's, as the baseline does.
+/// A prior that only fixes theta at that of the global model, like in the baseline.
 SwitchingPrior theta_known(const Recording& recording, const LinearStructure& structure) {
   const TrainingTransitions transitions = gather_training_transitions(recording, structure);
   SwitchingPrior prior = switching_prior(transitions, fit_global(recording, structure), {}, 0.0);
@@ -34,7 +34,7 @@ FreeParameters everything(const Bank& bank, double theta_unit) {
   return free;
 }
 
-/// One mode: the likelihood is exact, and the baseline maximises it over Q and R by another method.
+/// For one mode the likelihood is exact, and the baseline maximises it over Q and R by another method.
 TEST(MaximiseLikelihood, OfOneModeReachesTheBaselinesMaximum) {
   const Bank truth = test::true_pendulum({1.0}, 1.0);
   const Recording recording = simulated_recording(truth, 2, 800, 3);
@@ -74,7 +74,7 @@ TEST(MaximiseLikelihood, EndsWhereNoStepGains) {
     }
 }
 
-/// Only ratios of sample weights matter; weight zero leaves a sample out.
+/// Only ratios of sample weights matter. A weight of zero excludes a sample.
 TEST(MaximiseLikelihood, CountsSamplesByTheirWeights) {
   const Bank truth = test::true_scalar(1.0);
   Recording recording = simulated_recording(truth, 2, 60, 7);
@@ -125,7 +125,7 @@ TEST(BankCoordinates, HoldWhatIsKnownAndScaleQByOneFactor) {
   EXPECT_EQ(moved.transition.matrix(), truth.transition.matrix());
 }
 
-/// If modes hardly move, some outputs have a share of Q below R's bound; variances must not fall through zero.
+/// If modes hardly move, the share of Q of some outputs is below R's bound. Variances must not fall through zero.
 TEST(BankCoordinates, KeepRAtItsBound) {
   Bank truth = test::true_pair(1.0);
   FreeParameters noise;
@@ -141,8 +141,8 @@ TEST(BankCoordinates, KeepRAtItsBound) {
   }
 }
 
-/// By hand: the derivative of R_ii by its logarithm is R_ii, that of a row of T by the logarithm of one entry is T_ij
-/// (delta - T_ik).
+/// By hand: the derivative of R_ii with respect to its logarithm is R_ii. That of a row of T with respect to the
+/// logarithm of one entry is T_ij (delta - T_ik).
 TEST(BankCoordinates, JacobianIsThatOfTheParameters) {
   const Bank truth = test::true_scalar(1.0);
   const BankCoordinates around(truth, everything(truth, 0.1));
@@ -172,7 +172,8 @@ TEST_P(RefineRecovery, TwoModesOfTwoStatesWithinThreeStandardErrors) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RefineRecovery, testing::Values(11, 12, 13));
 
-/// The pendulum's modes differ so much that the global residual covariance, as a prior on Q, once outweighed the data.
+/// Regression test: the pendulum's modes differ so much that the global residual covariance, used as a prior on Q, once
+/// outweighed the data.
 TEST(RefineRecovery, PendulumOfTwoDampingsIsCalibratedOnHeldOutRuns) {
   const Bank truth = test::true_pendulum({0.2, 20.0}, 1.0);
   const Recording recording = simulated_recording(truth, 4, 1500, 2);
@@ -184,7 +185,7 @@ TEST(RefineRecovery, PendulumOfTwoDampingsIsCalibratedOnHeldOutRuns) {
   const DiagnosticsRow row = test::held_out_diagnostics(bank, truth, 2);
   EXPECT_GT(row.nees_mean, row.nees_lower);
   EXPECT_LT(row.nees_mean, row.nees_upper);
-  // Switches are rare and large, so NIS is not chi-square, even for a true filter.
+  // Switches are rare and large. So NIS is not chi-square, even for a correct model.
   EXPECT_NEAR(row.nis_mean, test::held_out_diagnostics(truth, truth, 2).nis_mean, 0.05);
 }
 

@@ -96,7 +96,7 @@ TEST_F(Refine, OneThetaIsThatOfAllModes) {
   }
 }
 
-/// As without folds, no score decides whether a stronger prior on Q would gain.
+/// Without folds no score decides whether a stronger prior on Q would gain.
 TEST_F(Refine, WithoutAnythingToLeaveOutThePriorIsWorthOneTransition) {
   learn_from(1, 30);
   RefineOptions options = quick();

@@ -59,7 +59,7 @@ TEST(RoundedStates, NoiseOnlyFindsWhatLeastSquaresMiss) {
   EXPECT_EQ(bank.R, R);
 }
 
-/// Most values repeat the previous one; Huber's regression would take that for an exact law.
+/// Most values repeat the previous one. Huber's regression would treat this as an exact law.
 TEST(RoundedStates, NoiseOnlyIsNotFooledByRepeats) {
   Recording recording = rounded_recording(0.9);
   const LinearStructure structure = test::structure_of(recording);

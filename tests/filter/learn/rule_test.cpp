@@ -17,7 +17,7 @@ RefineTuning losing(double most) {
   return tuning;
 }
 
-/// A candidate whose runs score this many nats per hundred samples below 2000 each.
+/// A candidate whose runs score this number of nats per hundred samples below 2000 each.
 LeftOutScores below(Eigen::Index modes, const Eigen::Vector4d& losses) {
   return {modes, Eigen::VectorXd::Constant(4, 2000.0) - 10.0 * losses};
 }
@@ -53,7 +53,7 @@ TEST(ModelChoice, FewestModesWithinOneStandardError) {
   EXPECT_EQ(fewest_modes_as_good(candidates, thousands, losing(0.02)), 1u);
 }
 
-/// With few runs the standard error is unreliable; alone it would excuse any loss.
+/// With few runs the standard error is unreliable. If it were the only criterion, it would excuse any loss.
 TEST(ModelChoice, ALossAboveTheLimitIsNotExcusedByItsError) {
   // One mode loses 0.025 +- 0.095.
   const std::vector<LeftOutScores> candidates{below(2, {0, 0, 0, 0}), below(1, {30, -10, 0, -10})};

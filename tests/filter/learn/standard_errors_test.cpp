@@ -20,7 +20,8 @@ class StandardErrors : public testing::Test {
   Bank truth = test::true_scalar(1.0);
   Recording recording = test::simulated_recording(truth, 2, 500, 9);
 
-  /// Standard errors of the truth for a given recording and filter; everything else is from the whole recording.
+  /// Standard errors of the true parameters for a given recording and filter. Everything else comes from the whole
+  /// recording.
   Bank errors_in(const Recording& of, const FilterOptions& filter) const {
     const TrainingTransitions transitions = gather_training_transitions(recording, truth.structure);
     const SwitchingPrior prior = switching_prior(transitions, fit_global(recording, truth.structure), {}, 1.0);
@@ -39,7 +40,7 @@ class StandardErrors : public testing::Test {
   }
 };
 
-/// Only ratios of weights matter, and weight zero leaves a sample out.
+/// Only ratios of weights matter. A weight of zero excludes a sample.
 TEST_F(StandardErrors, GoByTheSamplesWeights) {
   const Bank plain = errors_in(recording, {});
   Recording weighted = recording;
@@ -65,8 +66,8 @@ TEST_F(StandardErrors, AreThoseOfTheFilterThatRuns) {
   EXPECT_FALSE(errors_in(gaps, {}).modes[0].parameter_covariance.isApprox(plain.modes[0].parameter_covariance, 0.05));
 }
 
-/// A mode that only a later run has, after more samples than errors are computed from. Closed form: least squares' Q
-/// (sum of phi phi')^-1 of its own run.
+/// A mode that occurs only in a later run, after more samples than the errors are computed from. Closed form: least
+/// squares' Q (sum of phi phi')^-1 of that run.
 TEST(StandardErrorsOfLongData, RestOnAllRuns) {
   const Bank truth = test::true_bank({1, 1, false}, Eigen::MatrixXd{{-0.2, -0.6}, {1.0, 3.0}},
                                      {Eigen::MatrixXd{{0.01}}, Eigen::MatrixXd{{0.04}}}, Eigen::VectorXd::Zero(1), 1.0);
@@ -92,8 +93,8 @@ TEST(StandardErrorsOfLongData, RestOnAllRuns) {
   }
 }
 
-/// Expectation-maximisation weighs rough and quiet runs equally. So its errors are those of a filter that does so, too,
-/// whatever filter the bank will have. In the adaptive filter they would be half as large (1.9 and 2.3 here).
+/// Expectation-maximisation gives rough and quiet runs equal weight. So its errors are those of a filter with equal
+/// weights, for any filter of the bank. In the adaptive filter they would be half that size (1.9 and 2.3 here).
 TEST(StandardErrorsByDraws, AreAsLargeAsTheErrorsWhereRunsDifferInRoughness) {
   constexpr std::uint64_t draws = 30;
   const Bank truth = test::true_bank({1, 1, false}, Eigen::Vector2d(-0.3, 0.5), {Eigen::MatrixXd{{0.01}}},

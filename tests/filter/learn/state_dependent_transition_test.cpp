@@ -1,5 +1,5 @@
-// State-dependent transition probabilities, chosen by cross-validation: soft and hard borders are found, a Markov chain
-// is left alone.
+// State-dependent transition probabilities, chosen by cross-validation. Soft and hard borders are found; a Markov chain
+// stays unchanged.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -83,7 +83,7 @@ TEST(StateDependentTransition, OfAHardBorderNoErrorIsStatedAndTheBorderLiesInThe
   }
 }
 
-/// In such a gap only the prior curves the likelihood, so no standard error may be stated.
+/// In such a gap only the prior determines the curvature of the likelihood, so no standard error may be stated.
 TEST(StateDependentTransition, OfAHardBorderNoErrorIsStatedWhereInputsLeaveAGap) {
   const double border = 0.4, gap = 0.1;
   for (const std::uint64_t seed : {8, 9, 10}) {

@@ -1,4 +1,4 @@
-// Which lags modes take: systems with known structure, by the comparison on left-out runs.
+// The lags that modes choose, for systems with known structure, by the comparison on left-out runs.
 #include "filter/learn/refine/structure_score.hpp"
 
 #include <gmock/gmock.h>
@@ -38,7 +38,7 @@ Recording second_order(std::uint64_t seed) {
   return recording;
 }
 
-/// Modes with one lag must keep it, although one linear model of all of them would use more. The alternative has
+/// Modes with one lag must keep it, although one linear model of all modes would use more lags. The alternative has
 /// eighteen superfluous regressors, which each mode must learn.
 TEST(StructureScore, ModesWithOneLagLeaveTheLagsThatALinearModelWants) {
   for (const std::uint64_t seed : {1, 2, 3}) {
@@ -50,7 +50,7 @@ TEST(StructureScore, ModesWithOneLagLeaveTheLagsThatALinearModelWants) {
 }
 
 /// x[k+1] = a x[k] + b u[k] + w with other coefficients in each run. Scores of left-out runs differ so much that their
-/// error hides every gain.
+/// standard error hides every gain.
 Recording another_mode_each_run(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;
@@ -90,8 +90,8 @@ TEST(StructureScore, TwoLagsStayWhereMotionHasThem) {
   }
 }
 
-/// Two noise levels in equal shares with known coefficients. The mean log density under the acting level is -(log(2 pi)
-/// + 1 + log(.01) + log(.1)) / 2. A switching filter finds the level within a few samples after a change.
+/// Two noise levels, in equal shares, with known coefficients. The mean log density under the acting level is -(log(2
+/// pi) + 1 + log(.01) + log(.1)) / 2. A switching filter finds the level within a few samples after a change.
 TEST(StructureScore, IsTheLogDensityOfRunsLeftOut) {
   const StructuresOfModes compared = compare_structures(second_order(5), {lags(2, 1)}, 0, true, 1);
   const double truth = -0.5 * (std::log(2.0 * 3.14159265358979) + 1.0 + std::log(0.01) + std::log(0.1));

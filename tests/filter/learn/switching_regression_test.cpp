@@ -1,5 +1,5 @@
-// The switching regression compared with enumeration of all sequences of modes, with the filter's likelihood, and by
-// its own laws.
+// The switching regression is compared with an enumeration of all sequences of modes, with the filter's likelihood, and
+// with its own laws.
 #include "filter/learn/switching/switching_regression.hpp"
 
 #include <gtest/gtest.h>

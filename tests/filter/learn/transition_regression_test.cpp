@@ -128,7 +128,8 @@ TEST(TransitionRegression, EveryIterationRaisesThePenalisedLikelihood) {
   }
 }
 
-/// At the maximum a Newton step gains nothing. Near it the objective, recomputed here, falls in every direction.
+/// At the maximum a Newton step gains nothing. Near the maximum the objective, computed again here, falls in every
+/// direction.
 TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
   const Recording recording = state_dependent_runs(soft, 2, 300, 4);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
@@ -168,7 +169,7 @@ TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
     }
 }
 
-/// Mode 1 twice, slightly different: the closest pair becomes one mode again, with the probabilities of both.
+/// Mode 1 occurs twice, slightly different. The closest pair becomes one mode again, with the probabilities of both.
 TEST(TransitionRegression, TheClosestPairIsMerged) {
   const Recording recording = state_dependent_runs(soft, 4, 300, 11);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));

@@ -83,7 +83,8 @@ TEST(AlignedSamples, AverageWhatTheWholeRunAverages) {
       }
 }
 
-/// A log with a period of .07 s is too near a rate of 10 Hz for averages; one with .12 s is slower than the rate.
+/// A log with a period of .07 s is too near a rate of 10 Hz for averages. A log with a period of .12 s is slower than
+/// the rate.
 TEST(AlignedSamples, AverageOnlyWhatIsFasterByHalf) {
   for (const double period_s : {0.07, 0.12}) {
     const Recorded run(50, period_s, 0.0);

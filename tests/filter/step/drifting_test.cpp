@@ -33,7 +33,7 @@ TEST(StudentNoise, DensityIsTheSlopeOfTheProbabilityAndHasVarianceOne) {
       const double h = 1e-4, slope = (noise.probability(x + h) - noise.probability(x - h)) / (2 * h);
       EXPECT_NEAR(std::exp(noise.log_density(x * x)), slope, 1e-7) << nu << " at " << x;
     }
-    if (nu == 2.5) continue;  // its tails are too long for the integration
+    if (nu == 2.5) continue;  // the tails of the distribution are too long for the integration
     const double variance =
         integrate([&](double x) { return 2.0 * x * x * std::exp(noise.log_density(x * x)); }, 0.0, 2e4);
     EXPECT_NEAR(variance, 1.0, nu == 3.0 ? 1e-3 : 1e-6) << nu;
@@ -149,7 +149,7 @@ TEST(Drifting, ScoresTheSamplesThatABankScores) {
     }
 }
 
-/// The published recursion for one output on given regressors; NaN: missing.
+/// The published recursion for one output on given regressors. NaN means missing.
 struct Printed {
   Eigen::VectorXd log_density, prediction;
 };
@@ -176,7 +176,7 @@ Printed printed(const Bank& m, Index output, const Eigen::MatrixXd& h, const Eig
   return out;
 }
 
-/// Outputs may share P only while that makes no difference.
+/// Outputs may share P only while this makes no difference.
 TEST(Drifting, EveryOutputLearnsFromItsOwnSamples) {
   for (const double nu : {0.0, 5.0}) {
     Bank model = example_drifting(3, 1, 1);
@@ -218,7 +218,7 @@ TEST(Drifting, WhereNothingIsMeasuredThePredictionStandsIn) {
   EXPECT_TRUE(std::isfinite(e.log_density(12)));
 }
 
-/// Kolmogorov's distance of N pit values from uniform, times sqrt(N). For a true filter it exceeds 1.95 once in a
+/// Kolmogorov's distance of N pit values from uniform, times sqrt(N). For a correct model it exceeds 1.95 once in a
 /// thousand times.
 double scaled_distance(const Bank& filter, const Bank& truth, std::uint64_t seed) {
   const RunEvaluation e = evaluate_run(filter, simulate_drifting(truth, 3000, seed), {});
@@ -237,7 +237,7 @@ TEST(Drifting, PitIsUniformWhereTheModelIsTrue) {
   heavy.running_noise.lam = 1.0;
   heavy.running_noise.nu = 3.0;
   heavy.drift.rates = {0.0, 0.0, 1.0};
-  Bank blind = walking;  // assumes constant coefficients: the test must detect it
+  Bank blind = walking;  // assumes constant coefficients, and the test must detect this
   blind.drift.rates.q = 0.0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     EXPECT_LT(scaled_distance(walking, walking, seed), 1.95) << seed;

@@ -255,7 +255,7 @@ TEST(Snapshot, GoesOnToTheBit) {
       SCOPED_TRACE(name + " after " + std::to_string(stop));
       filter::BankFilter first(installed(bank), options), second(installed(bank), options);
       for (Index k = 0; k < stop; ++k) take(first, bank, k);
-      take(second, bank, 3);  // has another history
+      take(second, bank, 3);  // this filter has another history
       second.restore(first.snapshot());
       EXPECT_EQ(second.started(), first.started());
       for (Index k = stop; k < 25; ++k) expect_same_bits(take(second, bank, k), take(first, bank, k));
@@ -278,7 +278,7 @@ TEST(Snapshot, IsRefusedWhereItDoesNotFit) {
   EXPECT_EQ(live.snapshot(), good);
 }
 
-// A bank that was described and rebuilt must filter to the same bits; every optional part is on.
+// A bank that was described and rebuilt must give the same bits. Every optional part is on.
 TEST(BankDescription, GivesTheSameBankBack) {
   for (const auto& [name, bank, options] : banks()) {
     SCOPED_TRACE(name);

@@ -16,8 +16,8 @@ constexpr double silent = std::numeric_limits<double>::quiet_NaN();
 
 double log_odds(const ForecastWeights& weights) { return std::log(weights.weights()[0] / weights.weights()[1]); }
 
-/// Raftery et al.: the odds of two forecasters are the product of past density ratios, each to the power of 0.99 per
-/// sample since.
+/// Raftery et al.: the odds of two forecasters are the product of past density ratios. The exponent of a ratio is 0.99
+/// to the power of its age in samples.
 TEST(ForecastWeights, OddsAreForgottenRatiosOfDensities) {
   ForecastWeights weights(2);
   EXPECT_EQ(weights.weights(), (std::vector<double>{0.5, 0.5}));
@@ -83,8 +83,8 @@ TEST(ForecastWeights, StackedWeightsAreTheLikeliest) {
   const std::vector<double> stacked = ForecastWeights::stacked({{1.0, 2.0, 0.5, never}, {never, never, never, 3.0}});
   EXPECT_NEAR(stacked[0], 0.75, 1e-12);
   EXPECT_NEAR(stacked[1], 0.25, 1e-12);
-  // The derivative of log(2 w + 1 - w) + 2 log(w + 3 (1 - w)) is zero at w = -1/6, so the second gets all weight except
-  // the minimum.
+  // The derivative of log(2 w + 1 - w) + 2 log(w + 3 (1 - w)) is zero at w = -1/6. So the second forecaster gets all
+  // weight except the minimum.
   const double ln2 = std::log(2.0), ln3 = std::log(3.0);
   EXPECT_NEAR(ForecastWeights::stacked({{ln2, 0.0, 0.0}, {0.0, ln3, ln3}})[0], 0.001, 2e-4);
   EXPECT_NEAR(ForecastWeights::stacked({{0.0, silent, ln2}, {silent, 1.0, 0.0}})[0], 1.0, 2e-3);

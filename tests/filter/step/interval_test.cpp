@@ -92,10 +92,10 @@ TEST(Interval, FineOnesHaveTheDensityOfContinuousSignals) {
   const double coarse = std::abs(log_likelihood(with_quantum(bank, 1e-3), run, options) - continuous);
   const double fine = std::abs(log_likelihood(with_quantum(bank, 1e-5), run, options) - continuous);
   EXPECT_LT(fine, 1e-3);
-  EXPECT_LT(fine, 1e-2 * coarse + 1e-6);  // it goes with the square
+  EXPECT_LT(fine, 1e-2 * coarse + 1e-6);  // the variance grows with the square of the unit
 }
 
-/// What it says of all values that a sample can have.
+/// The probabilities of all values that a sample can have.
 template <class Filter>
 double total_mass(Filter filter, const Trajectory& run, double quantum) {
   const Index last = run.samples() - 1;
@@ -123,7 +123,8 @@ TEST(Interval, MassesOfAllValuesSumToOne) {
   EXPECT_NEAR(total_mass(BankFilter(drifting, {}), run, quantum), 1.0, 1e-4);  // heavy tails
 }
 
-/// Two systems that have nothing to do with each other are filtered as each by itself, one rounded and one not.
+/// Two independent systems, one rounded and one continuous, are filtered together. The results must equal those of each
+/// system alone.
 TEST(Interval, UnrelatedSignalsAreTakenInApart) {
   Bank both = test::single_mode(test::example_bank(2, 1, 1), 0);
   Mode& mode = both.modes.front();
@@ -169,7 +170,7 @@ TEST(Interval, TransformIsUniformInATrueFilter) {
   }
 }
 
-/// The transform that programs get, sample by sample and of a run, at a quantum of three deviations.
+/// The transform that programs get, sample by sample and for a run, at a quantum of three standard deviations.
 TEST(Interval, TransformOfTheInstalledFilterIsUniform) {
   const Index samples = 20000;
   const double quantum = 0.3;

@@ -1,4 +1,4 @@
-// Laws every filter bank must obey, whatever its numbers.
+// Laws that every filter bank must obey, whatever its numbers.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -107,7 +107,7 @@ TEST(Imm, OneModeIsTheKalmanFilter) {
   expect_same_estimates(evaluate_run(bank, run, imm), evaluate_run(bank, run, kf));
 }
 
-/// Any choice among the modes would be arbitrary.
+/// Any choice between the modes would be arbitrary.
 TEST(Kf, RefusesSeveralModes) {
   const Bank bank = example_bank(1, 2, 3);
   const Trajectory run = simulate_bank(bank, 60, 3);
@@ -161,7 +161,7 @@ TEST(Kf, WithoutProcessNoiseIsBatchLeastSquares) {
   Bank bank = single_mode(example_bank(2, 1, 1, 0.01), 0);
   bank.modes[0].Q.setZero();
   const Trajectory run = simulate_bank(bank, 30, 6);
-  // y_k = F^k x_0 + d_k + v_k: normal equations for x_0; the estimate is then propagated to the last sample.
+  // y_k = F^k x_0 + d_k + v_k: normal equations for x_0. The estimate is then propagated to the last sample.
   const LinearModel& model = bank.modes[0].model;
   const Eigen::Matrix2d F = model.full_form();
   Eigen::Matrix2d power = Eigen::Matrix2d::Identity(), information = Eigen::Matrix2d::Zero();

@@ -17,7 +17,7 @@ using Eigen::Index;
 
 using Change = std::function<void(Bank&, double)>;
 
-/// Every number of a bank separately; for T a pair of entries in a row, so that the sum stays one.
+/// Tests every number of a bank separately. For T a pair of entries in a row changes, so that the sum stays one.
 std::vector<std::pair<std::string, Change>> all_changes(const Bank& bank) {
   std::vector<std::pair<std::string, Change>> changes;
   const Index n = bank.structure.dimension(), m = bank.structure.acting_inputs(), K = bank.mode_count();
@@ -90,7 +90,7 @@ TEST(LikelihoodGradient, IsThatOfEverySize) {
         SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K << ", R " << r);
         const Bank bank = bank_of(n, K > 4 ? 4 : K, r);
         Bank more = bank;
-        if (K > 4) {  // more than a register of modes
+        if (K > 4) {  // more modes than a register holds
           for (Index j = 4; j < K; ++j) {
             more.modes.push_back(bank.modes[static_cast<std::size_t>(j % 4)]);
             more.modes.back().model.A *= 0.8 + 0.02 * static_cast<double>(j);
@@ -102,7 +102,7 @@ TEST(LikelihoodGradient, IsThatOfEverySize) {
       }
 }
 
-/// Sizes without vector kernels, and single modes, which have none of any size.
+/// Sizes without vector kernels, and single modes, which have no vector kernels for any size.
 TEST(LikelihoodGradient, IsThatOfSizesWithoutKernels) {
   for (const auto& [n, K] : {std::pair<Index, Index>{1, 1}, {2, 1}, {4, 1}, {4, 2}, {5, 3}}) {
     SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K);
@@ -123,7 +123,7 @@ TEST(LikelihoodGradient, SeesPartOfTheState) {
   expect_gradient(bank, test::simulate_bank(bank, 60, 4), {});
 }
 
-/// Missing signals and samples, a longer time between samples, and one so long that the filter starts anew.
+/// Missing signals and samples, a longer time between samples, and one so long that the filter starts again.
 TEST(LikelihoodGradient, IsThatOfRunsWithGaps) {
   for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive}) {
     const Bank bank = bank_of(2, 3, 1e-3);
@@ -138,7 +138,7 @@ TEST(LikelihoodGradient, IsThatOfRunsWithGaps) {
   }
 }
 
-/// The noise scale depends on all that was before, and outliers count to it as what they are cut to.
+/// The noise scale depends on all earlier samples. An outlier enters it with its limited size.
 TEST(LikelihoodGradient, GoesBackOverTheNoiseScale) {
   FilterOptions options;
   options.noise = FilterNoise::adaptive;
@@ -158,7 +158,7 @@ TEST(LikelihoodGradient, CountsSamplesByTheirWeight) {
   expect_gradient(bank, run, {}, weight);
 }
 
-/// As bank_of, its signals multiples of a quantum, R diagonal.
+/// Same as bank_of, but signals are multiples of a quantum and R is diagonal.
 Bank quantised_bank(Index n, Index K, double r, double quantum) {
   Bank bank = bank_of(n, K, r);
   bank.R = Eigen::MatrixXd(bank.R.diagonal().asDiagonal());
@@ -174,8 +174,8 @@ Trajectory rounded_run(const Bank& bank, Index samples, std::uint64_t seed) {
   return run;
 }
 
-/// Quanta from next to nothing to many standard deviations (the modes' are 0.01 to 0.1), missing signals, and values
-/// far out in every mode's tail.
+/// Quanta from almost zero to many standard deviations (those of the modes are 0.01 to 0.1), missing signals, and
+/// values far out in every mode's tail.
 TEST(LikelihoodGradient, IsThatOfIntervals) {
   for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive})
     for (const Index n : {1, 2, 3})

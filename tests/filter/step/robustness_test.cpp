@@ -1,4 +1,4 @@
-// No input makes the filter return NaN, and one code serves fixed and dynamic sizes.
+// The filter must not return NaN for any input, and fixed and dynamic sizes share one code.
 #include <gtest/gtest.h>
 
 #include "filter/judge/run/evaluate.hpp"
@@ -140,7 +140,7 @@ TEST(NeverNaN, AMillionStepsAtConstantInputInEveryVariant) {
   }
 }
 
-/// Finite weights of any size, as an archive may contain; their log odds overflow.
+/// Finite weights of any size, which an archive may contain; their log odds overflow.
 TEST(NeverNaN, LogOddsOfAnySize) {
   for (const double weight : {1e3, 1e150, 1e308}) {
     Bank bank = example_bank(2, 2, 3);

@@ -72,7 +72,7 @@ TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
     Trajectory run = simulate_bank(bank, 3, 9);
     run.state(1, 2) = std::nan("");
     const RunEvaluation partial = evaluate_run(bank, run, {variant});
-    // The same step by a sensor without that signal, from the same start.
+    // The same step from the same start, by a sensor without that signal.
     BankFilter filter(bank, {variant}), reduced(measuring(bank, {0, 2}), {variant});
     filter.step(0.0, run.input.col(0), run.state.col(0));
     filter.step(1.0, run.input.col(1), run.state.col(1));
@@ -95,7 +95,7 @@ TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
   }
 }
 
-/// An outlier counts as at most some standard deviations of the available signals.
+/// An outlier counts as at most a few standard deviations of the available signals.
 TEST(MissingMeasurement, OfSomeSignalsMovesTheNoiseScaleByTheOthers) {
   Bank bank = example_bank(3, 1, 2);
   bank.R(0, 1) = bank.R(1, 0) = 0.4 * bank.R(0, 0);
@@ -141,7 +141,7 @@ TEST(TimeSteps, ALongerTimeIsSeveralPredictionsWithTheInputHeld) {
   bank.dt_s = 0.1;
   Trajectory run = simulate_bank(bank, 12, 13), every = run;
   run.time_s *= 0.1;
-  // The same run with all times, but without measurements at two of them and with the input held.
+  // The same run with all times, but without measurements at two of these times and with the input held.
   every.time_s = run.time_s;
   every.state.middleCols(5, 2).setConstant(std::nan(""));
   every.input.col(5) = every.input.col(6) = every.input.col(4);

@@ -16,7 +16,7 @@ struct Reference {
   long double log_mass, mean, variance, third, fourth;
 
   Reference(long double low, long double high) {
-    const long double peak = std::clamp(0.0L, low, high);  // integrands are one there
+    const long double peak = std::clamp(0.0L, low, high);  // integrands are one at that point
     long double sum = 0.0L, first = 0.0L, second = 0.0L, cubes = 0.0L, fourths = 0.0L;
     const auto add = [&](long double from, long double to) {
       const auto moment = [&](int power) {

@@ -62,7 +62,7 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
       for (Index i = 0; i < n_y; ++i) {
         ASSERT_EQ(std::isnan(pit(i)), std::isnan(expected_pit(i)));
         if (std::isnan(pit(i))) continue;
-        // Relative to the smaller tail; for the upper tail 1 - pit leaves fewer bits.
+        // Relative to the smaller tail. For the upper tail, 1 - pit has fewer bits.
         const double tail = std::min(expected_pit(i), 1.0 - expected_pit(i));
         ASSERT_NEAR(pit(i), expected_pit(i), 1e-15 + 1e3 * relative * tail) << "sample " << k << ", signal " << i;
       }
@@ -217,10 +217,10 @@ TEST(VectorImm, AnImpossibleModeHasNoSayInTheNoise) {
   FilterState<any> state = start(model, run.state.col(0));
   predict(model, state, run.input.col(0), step);
   update(model, run.state.col(1), step, state);
-  EXPECT_GT(state.noise_scale, 1.5);  // one step of a hundred standard deviations, which counts as five
+  EXPECT_GT(state.noise_scale, 1.5);  // one step of a hundred standard deviations; the filter counts it as five
 }
 
-/// Unreachable modes, diverging modes, no noise: all results are finite.
+/// Unreachable modes, diverging modes and no noise. All results must be finite.
 TEST(VectorImm, NeverSaysNaN) {
   const Bank usual = many_modes(1, 3);
   Bank dead = usual, exact = usual, unstable = usual, none = usual;
@@ -278,12 +278,12 @@ TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
   }
 }
 
-/// Modes with distant predictions and small variances: moments about their common mean cancel.
+/// Modes with distant predictions and small variances. Moments about their common mean would cancel.
 TEST(VectorImm, ModesFarApartKeepTheirVariances) {
   Bank bank = many_modes(2, 9);
   for (Mode& mode : bank.modes) mode.Q *= 1e-6;
   bank.R.setIdentity();
-  bank.R *= 1e4;  // no measurement draws them together
+  bank.R *= 1e4;  // no measurement draws the modes together
   bank.transition = TransitionMatrix::sticky(9, 1.0 - 1e-9);
   for (Index j = 0; j < 9; ++j) bank.modes[static_cast<std::size_t>(j)].model.c.setConstant(static_cast<double>(j));
   const Trajectory run = test::simulate_bank(bank, 60, 55);

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using test::near;
 
-/// The columns fill no whole tile, and the rows fill several blocks or none; every third row is left out.
+/// The columns do not fill a whole tile. The rows fill several blocks or none. Every third row is missing.
 TEST(WeightedGram, IsThePlainProductOfTheRowsThatAreListed) {
   for (const Index count : {1, 5, 255, 256, 257, 1000})
     for (const Index columns : {1, 3, 4, 5, 17}) {

@@ -79,7 +79,7 @@ TEST(Saturation, IsAPileUpAtFullScale) {
   EXPECT_FALSE(std::isfinite(upper.low)) << "far from full scale: a rest, not a limit";
 }
 
-/// A test signal of random held levels has few of them, so by chance there may be more near one end.
+/// A test signal of random held levels has few levels, so by chance more of these may lie near one end.
 TEST(Saturation, IsNotSeenInHeldRandomLevels) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::mt19937_64 generator(seed);
@@ -166,7 +166,7 @@ TEST(CheckRest, MeasuresTheBiasWhereInputsAreStill) {
   for (Index k = 0; k <= 1000; ++k) {
     const bool rests = k >= 300 && k < 800;
     inputs.values(0, k) = rests ? 0.0 : 1.0;
-    states.values(0, k) = rests && k >= 340 ? 0.02 : 1.0;  // comes to rest within the ignored half second
+    states.values(0, k) = rests && k >= 340 ? 0.02 : 1.0;  // the vehicle comes to rest within the ignored half second
   }
   const RestCheck rest = check_rest(states, inputs, VectorXd::Constant(1, 0.01));
   EXPECT_NEAR(rest.mean(0), 0.02, 1e-12);

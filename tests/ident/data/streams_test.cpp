@@ -95,7 +95,7 @@ TEST(JointTimes, UniformGridKeepsItsEnd) {
   EXPECT_TRUE(test::near(joint_times(time_s, time_s, {6.5, 0}), time_s, time_tolerance_s));
 }
 
-/// Stamps in a different unit than stated: a grid for them would need too much memory.
+/// Stamps in a different unit than stated. A grid for them would need too much memory.
 TEST(JointTimes, NoGridIsFarFinerThanItsStreams) {
   const VectorXd time_s = vector({0, 1e9, 2e9, 3e9});
   EXPECT_THROW(joint_times(time_s, time_s, {1000, 0}), DataError);

@@ -91,7 +91,7 @@ TEST(WindowSummary, HoldsMediansOfWhatIsDefined) {
 }
 
 TEST(Seed, HasTheStatedMixing) {
-  // tests/golden/generate/derive_seed.py prints these.
+  // tests/golden/generate/derive_seed.py prints these numbers.
   EXPECT_EQ(derive_seed(0, ""), 12014417281350144652ULL);
   EXPECT_EQ(derive_seed(1, "simulate.modes", 7), 4341455876973663748ULL);
 }

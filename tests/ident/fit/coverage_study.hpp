@@ -7,7 +7,7 @@
 
 namespace modebank {
 
-/// Windows of L = 25 transitions with one state and two inputs. Each window is a run of its own, so windows are
+/// Windows of L = 25 transitions with one state and two inputs. Each window is a separate run, so windows are
 /// independent.
 enum class CoverageCase {
   gaussian,       ///< white inputs, Gaussian noise of sd 0.1
@@ -24,7 +24,7 @@ struct EnumNames<CoverageCase> {
 
 namespace test {
 
-/// Share of windows whose 95 % region (confidence_region) contains the true theta; sigma is estimated from each window.
+/// Share of windows whose 95 % region (confidence_region) contains the true theta. sigma is estimated from each window.
 double measure_coverage(CoverageCase which, Loss loss, CovarianceKind kind, Index windows);
 
 }  // namespace test

@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Coverage,
                                   std::string(name_of(instance.param.kind));
                          });
 
-/// Reason for the sandwich covariance: if noise grows with |x|, the coverage of `model` falls below its promised range.
+/// Reason for the sandwich covariance. If noise grows with |x|, the coverage of `model` falls below its promised range.
 TEST(ModelCovariance, IsShortWhereTheNoiseDependsOnTheState) {
   for (const Loss loss : {Loss::trivial, Loss::huber})
     EXPECT_LT(test::measure_coverage(CoverageCase::growing_noise, loss, CovarianceKind::model, windows), 0.90);

@@ -11,7 +11,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// fit_windows on one run of 60 samples. Checks that nothing is printed and that numbers and status agree.
+/// Calls fit_windows on one run of 60 samples. Checks that nothing is printed and that numbers and status agree.
 WindowFits fit_quietly(const MatrixXd& state, const MatrixXd& input, const FitOptions& options) {
   ::testing::internal::CaptureStderr();
   ::testing::internal::CaptureStdout();

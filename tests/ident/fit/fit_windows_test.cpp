@@ -105,7 +105,8 @@ TEST(FitWindows, TakeSigmaFromWhereTheyAreTold) {
   }
 }
 
-/// Windows of four lags, and one-lag fits of the same transitions. The latter must equal fit_windows of those windows.
+/// Windows of four lags, and one-lag fits of the same transitions. The one-lag fits must equal fit_windows of those
+/// windows.
 TEST(FitWindows, OneLagFitsAreOfTheSameTransitions) {
   const Recording recording = mixed_recording();
   FitOptions options;
@@ -205,7 +206,7 @@ TEST(NoiseVariance, IsConsistentUnderGaussianNoise) {
 TEST(InlierFraction, CountsSamplesThatKeepHalfTheirWeight) {
   std::mt19937_64 generator(13);
   Trajectory run = test::gaussian_run(test::skid_structure, test::skid_theta, 0.0, 101, generator);
-  run.state(0, 100) += 10.0;  // one bad transition: its Huber weight is 1.345 sigma / 10
+  run.state(0, 100) += 10.0;  // one bad transition; its Huber weight is 1.345 sigma / 10
   const LocalModel fit =
       fit_window(run, 0, test::skid_structure, test::whole_run(run, Loss::huber), VectorXd::Constant(1, 1.0), nullptr);
   EXPECT_DOUBLE_EQ(fit.inlier_fraction, 0.99);

@@ -222,9 +222,9 @@ TEST(ConfidenceRegion, OfAnUndefinedCovarianceHoldsNothing) {
   }
 }
 
-/// One window with two relations, 18 and 6 transitions. Least squares lies between them, where every residual is beyond
-/// Tukey's cut-off and the cost is flat. The Huber optimum lies near the larger group, and redescending losses reach
-/// that group from there.
+/// One window with two relations, of 18 and 6 transitions. Least squares lies between the two. There every residual is
+/// beyond Tukey's cut-off and the cost is flat. The Huber optimum lies near the larger group, and redescending losses
+/// reach that group from there.
 TEST(NonConvexLosses, StartFromTheHuberOptimum) {
   constexpr Index N = 24;
   Eigen::MatrixXd x(1, N + 1), u(1, N + 1);

@@ -60,7 +60,7 @@ TEST(MotionModel, LinearisationKnowsItsDerivativeAtZero) {
   const auto model = make_motion_model("slip", {1, 2, radius});
   const LinearisedMotion motion =
       linearise(*model, Eigen::Vector3d(track, 0.0, tau), {Eigen::VectorXd::Zero(1), Eigen::Vector2d(2.0, 3.0), dt});
-  for (const Index entry : {1, 2})  // theta: A, B of left, B of right, c
+  for (const Index entry : {1, 2})  // order of theta: A, B of left, B of right, c
     EXPECT_NEAR(motion.by_motion(entry, 1) / (gain * radius / (2.0 * track)), 1.0, 1e-6);
 }
 
@@ -75,7 +75,7 @@ TEST(MotionModel, NoiselessRunsGiveTheParametersBack) {
   }
 }
 
-// The model's equations computed by hand: the body rotates about its instantaneous centres.
+// Computes the model's equations by hand: the body rotates about its instantaneous centres.
 TEST(MotionModel, IcrMatchesThePublishedKinematics) {
   const auto model = make_motion_model("icr", {3, 2, 1.0});
   const Eigen::VectorXd theta = (Eigen::VectorXd(5) << 0.5, -0.75, 1.0, 1.0, 0.2).finished();
@@ -119,7 +119,8 @@ TEST(MotionModel, DerivativesAreThoseOfDifferences) {
   }
 }
 
-/// Number of full-rank windows, and in how many of them each parameter's true value lies within three standard errors.
+/// Number of full-rank windows. For each parameter, the number of windows whose true value lies within three standard
+/// errors.
 struct Recovery {
   Index windows = 0;
   Eigen::ArrayXi inside;
@@ -318,7 +319,7 @@ TEST(AutoDiffMotionModel, RefusesAnotherNumberOfParameters) {
   EXPECT_THROW(Model({}, "linear", named({"a", "b"})), std::invalid_argument);
 }
 
-/// Derivatives of a function of two numbers against central differences, whose error is about 1e-9.
+/// Derivatives of a function of two numbers, compared with central differences, whose error is about 1e-9.
 template <class F>
 void expect_slopes(const char* name, F f) {
   constexpr double step = 1e-6;

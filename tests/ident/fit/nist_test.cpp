@@ -9,8 +9,8 @@
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/paths.hpp"
 
-// Nonlinear regression sets of NIST's StRD through the public API: a response y of one predictor u, as a "state" that
-// does not depend on its past.
+// Nonlinear regression sets of NIST's StRD through the public API: a response y of one predictor u. y is treated as a
+// "state" that does not depend on its past.
 namespace modebank {
 namespace {
 

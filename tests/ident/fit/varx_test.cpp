@@ -8,7 +8,7 @@
 namespace modebank {
 namespace {
 
-/// Rows of numbers, separated by any other characters; lines that do not begin with a number are skipped.
+/// Rows of numbers, separated by any other characters. Lines that do not begin with a number are skipped.
 Eigen::MatrixXd read_rows(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::vector<std::vector<double>> rows;
@@ -25,7 +25,8 @@ Eigen::MatrixXd read_rows(const std::filesystem::path& path) {
   return result;
 }
 
-/// Rows i * rows .. of `lags` blocks hold `signal` i samples before its column plus `ahead`; NaN before the run.
+/// Rows i * rows .. of `lags` blocks hold `signal` i samples before its column plus `ahead`. NaN before the start of
+/// the run.
 Eigen::MatrixXd lagged(const Eigen::MatrixXd& signal, Index lags, Index ahead, Index columns) {
   Eigen::MatrixXd blocks = Eigen::MatrixXd::Constant(signal.rows() * lags, columns, not_a_number);
   for (Index k = 0; k < columns; ++k)

@@ -7,7 +7,7 @@ namespace {
 
 constexpr LinearStructure many_lags{1, 2, false, 8, 8};  // 24 regressors
 
-/// Six runs of 1000 samples that switch between two motions every `stay` samples; 0: one motion.
+/// Six runs of 1000 samples that switch between two motions every `stay` samples; with 0 there is one motion.
 Recording switching_runs(Index stay) {
   std::mt19937_64 generator(5);
   boost::random::uniform_real_distribution<double> level(-1.0, 1.0);

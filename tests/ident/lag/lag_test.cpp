@@ -52,8 +52,8 @@ TEST(Lag, DriftIsFoundWithTheLagInTheMiddle) {
   EXPECT_LT(fit.drift_standard_error, 5e-4);
 }
 
-/// The stated standard error must match the estimates' standard deviation. It is one sixth too small: the mean squared
-/// z is 1.37 +- 0.1 over these 200 runs. An error of a factor sqrt(2) would fail.
+/// The stated standard error must match the standard deviation of the estimates. It is one sixth too small: the mean
+/// squared z is 1.37 +- 0.1 over these 200 runs. An error of a factor sqrt(2) would fail.
 TEST(Lag, StandardErrorIsTheSpreadOverRuns) {
   constexpr int runs = 200;
   DelayedSystem system;
@@ -114,7 +114,7 @@ TEST(LagTrack, FollowsADrift) {
   const RunPair run = simulate_delayed(system, 6);
   const LagTrack track = track_lag(run.states, run.inputs);
   ASSERT_GT(track.windows(), 15);
-  // Signals paired sample by sample match best half an input period later than a held input acts.
+  // If signals are paired sample by sample, they match best half an input period later than a held input acts.
   const double half_period_s = 0.5 / system.input_rate_hz;
   for (Index w = 0; w < track.windows(); ++w)
     EXPECT_NEAR(track.lag_s(w), system.clock.at(track.time_s(w)) + half_period_s, 0.1) << track.time_s(w);

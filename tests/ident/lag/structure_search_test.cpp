@@ -106,7 +106,8 @@ TEST(StructureSearch, FindsTheStructureInOneRun) {
   EXPECT_EQ(found.parts, 10);
 }
 
-/// An input that acts at once must gain 0.02 nats over the best later one. An input held over four samples does not.
+/// An input that acts at once must gain 0.02 nats over the best later input. An input that is held over four samples
+/// does not gain that much.
 TEST(StructureSearch, TakesNoDelayOnlyWhereItPays) {
   System at_once;
   at_once.delay = 0;
@@ -250,13 +251,13 @@ TEST(StructureSearch, LeavesOutSamplesOfNoWeight) {
   for (Trajectory& run : recording.runs) {
     run.weight = Eigen::VectorXd::Ones(run.samples());
     run.state.row(0).segment(100, 30).array() += 100.0;
-    run.weight.segment(100, 45).setZero();  // transitions that end there, or whose lags reach there
+    run.weight.segment(100, 45).setZero();  // transitions that end there, or whose lags reach that sample
   }
   EXPECT_EQ(lags_of(find(recording)), (std::array<Index, 3>{2, 1, 1}));
 }
 
-/// All structures use the same rows at the start of runs and after missing samples: those with a full history for the
-/// most lags.
+/// All structures use the same rows at the start of runs and after missing samples. These are the rows with a full
+/// history for the most lags.
 TEST(LaggedRows, HaveTheirFullHistory) {
   Recording recording = simulate({}, 0);
   recording.runs[0].state(0, 50) = std::numeric_limits<double>::quiet_NaN();

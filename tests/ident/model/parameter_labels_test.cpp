@@ -25,7 +25,7 @@ TEST(ParameterLabels, LagsAsABankNamesThem) {
                    "wz <- r (lag 1)"}));
 }
 
-/// The label's position must match that name's entry in A, B or c.
+/// The position of the label must match the entry of that name in A, B or c.
 TEST(ParameterLabels, StandInThetasOrder) {
   const LinearStructure structure{2, 2, true, 3, 2, 2};
   const Names labels = parameter_labels(structure, {"p", "q"}, {"l", "r"}), codes = structure.parameter_names();

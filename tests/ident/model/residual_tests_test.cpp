@@ -34,7 +34,7 @@ TEST(ResidualTests, AgreeWithStatsmodels) {
   EXPECT_TRUE(near(tests.autocorrelation.transpose(), test::golden_rows(golden.at("autocorrelation")), rounding));
   EXPECT_TRUE(near(tests.cross_correlation, test::golden_rows(golden.at("cross_correlation")), rounding));
   EXPECT_NEAR(tests.autocorrelation_band, 2.5758293 / 20.0, 1e-8);
-  // statsmodels computes 12 lags for 60 samples; ours are a fifth of the samples, which is the same.
+  // statsmodels computes 12 lags for 60 samples; modebank's limit of a fifth of the samples is the same number.
   EXPECT_NEAR(test_residuals(residual.leftCols(60), input.leftCols(60)).ljung_box_p(0),
               golden.at("ljung_box_p").get<double>(), rounding);
   // The input acts three samples later.

@@ -1,4 +1,4 @@
-// The simulated vehicle against laws that do not come from its code.
+// The simulated vehicle, tested with laws that do not come from its code.
 #include "ident/simulate/vehicle.hpp"
 
 #include <gtest/gtest.h>

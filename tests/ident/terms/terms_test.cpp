@@ -162,7 +162,8 @@ TEST(FindTerms, TriesFewerLags) {
   ASSERT_EQ(found.tried.size(), 3U);
   EXPECT_EQ(found.tried[1].structure.state_lags, 2);
   EXPECT_EQ(found.tried[2].structure.input_lags, 3);
-  EXPECT_EQ(found.structure.state_lags, 1);  // linear lags could replace the nonlinearity; without them it is found
+  EXPECT_EQ(found.structure.state_lags, 1);  // linear lags could replace the nonlinearity; without such lags it is
+                                             // found
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ TEST(Cross, SameMixturesGiveThemselves) {
   for (std::size_t k = 0; k < 4; ++k) EXPECT_LT((result.covariances[k] - one.covariances[k]).norm(), 1e-12);
 }
 
-/// One mixture is wrong at one end of the row, the other at the other end; the child must be right at both.
+/// One mixture is wrong at one end of the row, the other mixture at the other end. The child must be right at both
+/// ends.
 TEST(Cross, TakesWhatIsRightInEither) {
   const Eigen::MatrixXd points = draw(four_in_a_row(), 800, 3);
   const GaussianMixture left = with_error(3, 0, 1), right = with_error(0, 2, 3);
@@ -55,7 +56,7 @@ TEST(Cross, TakesWhatIsRightInEither) {
   EXPECT_GT(child, truth - 1.0);
 }
 
-/// Agreement counts the optima that each restart finds by itself: the number must equal that of separate single
+/// Agreement counts the optima that each restart finds by itself. The number must equal that of separate single
 /// restarts. After crossing with the best, nearly all would agree.
 TEST(Restarts, AgreementIsCountedBeforeCrossing) {
   GaussianMixture truth;

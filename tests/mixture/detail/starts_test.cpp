@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Six clusters in a row with two different distances: random starts often put two centres in one of them.
+/// Six clusters in a row with two different distances. Random starts often put two centres in one cluster.
 GaussianMixture six_clusters() {
   GaussianMixture mixture;
   mixture.weights = Eigen::VectorXd::Constant(6, 1.0 / 6.0);
@@ -64,7 +64,7 @@ TEST(Starts, PointsForStartsAreNotChosenFromAgain) {
   std::mt19937_64 generator(1);
   const PointBlocks chosen = blocks.for_starts(50, generator);
   EXPECT_EQ(chosen.count(), 50);
-  EXPECT_THROW(chosen.for_starts(10, generator), std::logic_error);  // regression test: it once read freed memory
+  EXPECT_THROW(chosen.for_starts(10, generator), std::logic_error);  // regression test; it once read freed memory
 }
 
 /// A start with two components in one cluster and one component for two clusters; EM alone stays there.
@@ -106,7 +106,7 @@ TEST(SplitAndMerge, TheExpectedBestMoveIsTheRightOne) {
   EXPECT_GT(log_density(after, points).sum(), log_density(stuck, points).sum());
 }
 
-/// Only `most` of the K^3 / 2 moves may be stored: with 500 components all of them would not fit in memory.
+/// Only `most` of the K^3 / 2 moves may be stored. With 500 components all moves would not fit in memory.
 TEST(SplitAndMerge, TheFewBestMovesAreTheBestOfAll) {
   std::mt19937_64 generator(7);
   std::normal_distribution<double> normal;

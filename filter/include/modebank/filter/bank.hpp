@@ -17,54 +17,54 @@ namespace modebank::filter {
 /// One mode of motion: x[k+1] = x[k] + A x[k] + B u[k] + c + w[k] with w ~ N(0, Q), per sample period. With lags, x and
 /// u are the stacked samples z = [x[k]; x[k-1]; ...] and v = [u[k+1-delay]; ...].
 struct Mode {
-  Matrix A;                     ///< n x n, increment form: the full form is I + A
+  Matrix A;                     ///< n x n, increment form; the full form is I + A
   Matrix B;                     ///< n x m
   std::vector<double> c;        ///< n
   Matrix Q;                     ///< n x n, covariance of the process noise per step [state unit^2]
-  Matrix parameter_covariance;  ///< p x p, covariance of theta over the mode's windows; empty: zero
+  Matrix parameter_covariance;  ///< p x p, covariance of theta over the mode's windows; an empty matrix means zero
   double weight = 1.0;          ///< share of the windows
 };
 
 /// State-dependent transition probabilities: P(j | i, z) is proportional to transition_ij exp(w_j' (z - reference)). z
-/// holds the state and the acting inputs at the start of a step. Empty: the transition matrix holds for every z.
+/// holds the state and the acting inputs at the start of a step. If empty, the transition matrix holds for every z.
 struct StateDependentTransition {
   Matrix weights;                 ///< K x d, row j is w_j; d = n + acting inputs
   std::vector<double> reference;  ///< d, the z for which the transition matrix holds
 };
 
 /// Process noise that depends on state and input. A step from z has Q times exp(sum_i weights_i log(|directions_i z| +
-/// 0.1) - offset), limited to the range from a fifth to five. z holds the state and the acting inputs. Empty: constant
-/// Q.
+/// 0.1) - offset), limited to the range from a fifth to five. z holds the state and the acting inputs. If empty, Q is
+/// constant.
 struct NoiseByState {
   Matrix directions;            ///< d x (n + acting inputs)
   std::vector<double> weights;  ///< d
-  double offset = 0.0;          ///< subtracted in the exponent
+  double offset = 0.0;          ///< offset, subtracted in the exponent
 };
 
-/// Drift of every mode's theta within a run, per regressor of [z; v; (1)]. Empty: constant.
+/// Drift of every mode's theta within a run, per regressor of [z; v; (1)]. If empty, theta is constant.
 struct CoefficientDrift {
-  std::vector<double> scale;             ///< size of each regressor; its coefficient drifts in the inverse unit
-  double rate = 0.0;                     ///< variance that each step adds to each coefficient, in units of Q, >= 0
-  double start = 0.0;                    ///< variance of each coefficient at the start of a run, in units of Q, >= 0
-  double leak = 1.0;                     ///< factor per step on a coefficient's difference from the mode's, in (0, 1]
-  Wandering wandering = Wandering::all;  ///< which coefficients drift; other than `all` requires RunningNoise
+  std::vector<double> scale;  ///< size of each regressor; the regressor's coefficient drifts in the inverse unit
+  double rate = 0.0;          ///< variance that each step adds to each coefficient, in units of Q, >= 0
+  double start = 0.0;         ///< variance of each coefficient at the start of a run, in units of Q, >= 0
+  double leak = 1.0;  ///< factor per step on the difference of a coefficient from the mode's coefficient, in (0, 1]
+  Wandering wandering = Wandering::all;  ///< coefficients that drift; a value other than `all` requires RunningNoise
 };
 
 /// Running noise variance of a single mode that drifts (the competitor `drifting`). The variance v of each measured
 /// state starts at the diagonal of Q and follows v <- max(forgetting v + (1 - forgetting) e^2, floor). e is the
-/// prediction error divided by the widening due to the coefficients' uncertainty. Empty: constant Q.
+/// prediction error divided by the widening due to the coefficients' uncertainty. If empty, Q is constant.
 struct RunningNoise {
-  std::vector<double> floor;         ///< n_y, smallest v [state unit^2]
-  double forgetting = 0.9;           ///< in [0, 1]
+  std::vector<double> floor;         ///< n_y, smallest value of v [state unit^2]
+  double forgetting = 0.9;           ///< forgetting factor, in [0, 1]
   double degrees_of_freedom = 0.0;   ///< degrees of freedom of Student's t, above 2; 0: Gaussian
   std::vector<double> horizon = {};  ///< horizons in samples, ascending, at least 2
-  std::vector<double> factor = {};   ///< factors on the variance of forecasts from each horizon up to the next
+  std::vector<double> factor = {};   ///< factors on the variance of forecasts, each from its horizon up to the next one
 };
 
-/// How fast the noise scale of FilterNoise::adaptive follows a run.
+/// Speed at which the noise scale of FilterNoise::adaptive follows a run.
 struct NoiseMemory {
-  double forgetting = 0.98;    ///< per sample, in (0, 1]
-  double prior_samples = 5.0;  ///< weight of scale one at a run's start, in samples, > 0
+  double forgetting = 0.98;    ///< forgetting factor per sample, in (0, 1]
+  double prior_samples = 5.0;  ///< weight of the scale 1 at the start of a run, in samples, > 0
 };
 
 /// All numbers of a bank, for writing or reading it: K modes, their transitions, and the measurement y = C x + v with v
@@ -73,7 +73,8 @@ struct BankDescription {
   std::vector<Mode> modes;      ///< K >= 1
   Matrix C;                     ///< n_y x n; empty: identity
   Matrix R;                     ///< n_y x n_y, covariance of the measurement noise [state unit^2]
-  std::vector<double> quantum;  ///< n_y, spacing of measured values [state unit], 0: continuous; empty: all continuous
+  std::vector<double> quantum;  ///< n_y, spacing of measured values [state unit]; 0 marks a continuous signal, an empty
+                                ///< vector all signals as continuous
   Matrix transition;            ///< K x K, row i: probabilities of the next mode after mode i
   StateDependentTransition state_dependent_transition;  ///< empty: constant
   std::vector<double> initial_probability;              ///< K; empty: equal
@@ -81,14 +82,14 @@ struct BankDescription {
   std::vector<std::string> input_names;                 ///< names of the inputs; may be empty
   double dt_s = 0.0;                                    ///< sample period of one step [s]; 0: not fixed
   std::ptrdiff_t inputs = 0;                            ///< number of input channels
-  std::ptrdiff_t state_lags = 1;                        ///< samples of the state that predict the next one
+  std::ptrdiff_t state_lags = 1;                        ///< number of state samples that predict the next one
   std::ptrdiff_t input_lags = 1;                        ///< input samples that act on one transition
   std::ptrdiff_t input_delay = 1;                       ///< samples from an input to its first effect
   bool intercept = false;                               ///< whether c is part of theta
-  NoiseMemory noise_memory;                             ///< for filters with adaptive noise
+  NoiseMemory noise_memory;                             ///< used by filters with adaptive noise
   NoiseByState noise_by_state;                          ///< empty: constant
   CoefficientDrift drift;                               ///< empty: none
-  RunningNoise running_noise;                           ///< empty: the noise is Q
+  RunningNoise running_noise;                           ///< an empty value means that the noise is Q
 };
 
 /// A bank of modes; immutable and cheap to copy. The library holds its numbers.
@@ -103,7 +104,7 @@ class Bank {
   BankDescription description() const;
   /// Number of modes K.
   std::ptrdiff_t modes() const;
-  /// Size n of the state; with lags, of the stacked samples.
+  /// Size n of the state. With lags, n is the size of the stacked samples.
   std::ptrdiff_t states() const;
   /// Number of measured signals n_y.
   std::ptrdiff_t measurements() const;

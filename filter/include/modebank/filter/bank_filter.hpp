@@ -13,21 +13,21 @@ namespace modebank::filter {
 /// Results of a filter for one sample. Values that do not exist are NaN: before the start, and for missing
 /// measurements.
 struct Estimate {
-  std::vector<double> prediction;                  ///< n, state before the measurement, all modes combined
-  std::vector<double> innovation;                  ///< n_y, measurement minus prediction
-  Matrix innovation_covariance;                    ///< n_y x n_y, covariance of the combined prediction
-  std::vector<double> state;                       ///< n, state after the measurement
-  Matrix covariance;                               ///< n x n, after the measurement
-  std::vector<double> pit;                         ///< n_y, probability integral transform (Rosenblatt 1952), uniform
-                                                   ///< in a true filter. For a quantised signal it is drawn uniformly
-                                                   ///< within its interval, by the sample's number since construction
+  std::vector<double> prediction;  ///< n, state before the measurement, all modes combined
+  std::vector<double> innovation;  ///< n_y, measurement minus prediction
+  Matrix innovation_covariance;    ///< n_y x n_y, covariance of the combined prediction
+  std::vector<double> state;       ///< n, state after the measurement
+  Matrix covariance;               ///< n x n, after the measurement
+  std::vector<double> pit;  ///< n_y, probability integral transform (Rosenblatt 1952), uniform if the model is correct.
+                            ///< For a quantised signal it is drawn uniformly within its interval; the draw depends on
+                            ///< the number of samples since construction
   std::vector<double> mode_probability_predicted;  ///< K, before the measurement
   std::vector<double> mode_probability;            ///< K, after the measurement
   double nis = 0.0;                                ///< normalised innovation squared of the available signals
   double log_density = 0.0;                        ///< log density of the measurement under the prediction [nats]
   double spread_share = 0.0;                       ///< share of the modes' differences in the trace of the innovation
                                                    ///< covariance
-  std::ptrdiff_t steps = 0;                        ///< model steps since the previous sample; 0: (re)started here
+  std::ptrdiff_t steps = 0;  ///< model steps since the previous sample; 0 means that the filter (re)started here
 };
 
 /// Prediction of one later sample, all modes combined. State and covariance are NaN before the filter's start.
@@ -41,7 +41,7 @@ struct Forecast {
 /// threads.
 class BankFilter {
  public:
-  /// Throws std::invalid_argument if bank and options do not fit each other.
+  /// Throws std::invalid_argument if the bank does not support the options.
   explicit BankFilter(const Bank& bank, const FilterOptions& options = {});
   ~BankFilter();
   /// Moves the filter and its stream.
@@ -63,18 +63,18 @@ class BankFilter {
   }
   /// The result of the last step.
   const Estimate& estimate() const;
-  /// Predicts the next `steps` samples without measurements, each one sample period after the previous; element 0 is
-  /// the next sample. The filter does not change. One step ahead the result equals the prediction of the next step;
-  /// further ahead it is what `judge` scores at that horizon.
-  /// Column i of `inputs` (inputs() x c) is the planned input of the sample i + 1 ahead, as it will be passed to step.
-  /// An input first acts input_delay samples later, so c = steps - input_delay columns are enough. Throws
-  /// std::invalid_argument for steps below 1 and for missing or non-finite inputs. Allocates.
+  /// Predicts the next `steps` samples without measurements, one sample period apart. Element 0 is the next sample. The
+  /// filter does not change. One step ahead, the result equals the prediction of the next step. Further ahead, it is
+  /// the prediction that `judge` scores at that horizon. Column i of `inputs` (inputs() x c) is the planned input of
+  /// the sample i + 1 ahead, as it will be passed to step. An input first acts input_delay samples later, so c = steps
+  /// - input_delay columns are enough. Throws std::invalid_argument for steps below 1 and for missing or non-finite
+  /// inputs. Allocates.
   std::vector<Forecast> forecast(const Matrix& inputs, std::ptrdiff_t steps) const;
   /// The complete state of the filter as numbers for storage; some are NaN. Excludes estimate().
   std::vector<double> snapshot() const;
-  /// Continues from a snapshot of a filter with the same bank and options: later steps give the same bits as that
-  /// filter's. Throws std::invalid_argument for a snapshot of another bank and for invalid numbers; the filter is then
-  /// unchanged.
+  /// Continues from a snapshot of a filter with the same bank and options. Later steps are bit-identical to those of
+  /// that filter. Throws std::invalid_argument for a snapshot of another bank and for invalid numbers; the filter is
+  /// then unchanged.
   void restore(const std::vector<double>& snapshot);
   /// Resets the filter; the next complete measurement starts it.
   void restart();

@@ -5,7 +5,7 @@
 
 namespace modebank {
 
-/// A mode that was left out of a bank, with the reason.
+/// A mode that was removed from a bank, with the reason.
 struct ScreenedMode {
   std::ptrdiff_t component = 0;  ///< index in the mixture
   double weight = 0.0;           ///< share of the windows
@@ -13,11 +13,12 @@ struct ScreenedMode {
   std::string reason;            ///< "starved", "unstable" or "duplicate of mode 1"
 };
 
-/// Record of shrinking modes towards one motion, done because the bank's predictions would have grown without limit.
+/// Record of the shrinkage of modes towards one motion. Modes shrink if the bank's predictions would otherwise grow
+/// without limit.
 struct Shrinking {
-  std::ptrdiff_t modes = 0;  ///< number of shrunk modes; 0: none
-  double share = 0.0;        ///< share of the distance to the common motion
-  double growth = 0.0;       ///< growth of the second moment per step before shrinking: above 1
+  std::ptrdiff_t modes = 0;  ///< number of shrunk modes
+  double share = 0.0;        ///< shrinkage, as a share of the distance to the common motion
+  double growth = 0.0;       ///< growth of the second moment per step before the shrinkage, above 1
 };
 
 }  // namespace modebank

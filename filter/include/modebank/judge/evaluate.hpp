@@ -9,38 +9,39 @@
 
 namespace modebank::judge {
 
-/// Estimates of a filter at every sample of a run, one sample per column. Values that do not exist are NaN, as before
-/// the start. The n states are those of the sample itself; lagged samples of a bank with lags are in earlier columns.
+/// Estimates of a filter at every sample of a run, one sample per column. NaN where a value does not exist, for example
+/// before the start. The n states are those of the sample itself. The lagged samples of a bank with lags are in earlier
+/// columns.
 struct Evaluation {
-  Matrix prediction;                ///< n x N, state before the measurement, all modes combined
-  Matrix innovation;                ///< n_y x N, measurement minus prediction
-  Matrix innovation_covariance;     ///< n_y*n_y x N
-  Matrix state;                     ///< n x N, after the measurement
-  Matrix covariance;                ///< n*n x N, after the measurement
-  std::vector<double> nis;          ///< N, normalised innovation squared
-  Matrix pit;                       ///< n_y x N, probability integral transform (Rosenblatt 1952), uniform in a true
-                                    ///< filter. For a quantised signal it is drawn uniformly within its interval
+  Matrix prediction;             ///< n x N, state before the measurement, all modes combined
+  Matrix innovation;             ///< n_y x N, measurement minus prediction
+  Matrix innovation_covariance;  ///< n_y*n_y x N
+  Matrix state;                  ///< n x N, after the measurement
+  Matrix covariance;             ///< n*n x N, after the measurement
+  std::vector<double> nis;       ///< N, normalised innovation squared
+  Matrix pit;  ///< n_y x N, probability integral transform (Rosenblatt 1952), uniform if the model is correct. For a
+               ///< quantised signal it is drawn uniformly within its interval
   std::vector<double> log_density;  ///< N [nats]
   Matrix mode_probability;          ///< K x N, after the measurement
 };
 
-/// Filters a run from its first complete measurement. Throws std::invalid_argument if sizes disagree and DataError for
-/// an input that is not finite. `seed`: for drawing the transforms of quantised signals; the same job.seed and run name
-/// give those of `modebank run`.
+/// Filters a run from its first complete measurement. Throws std::invalid_argument if sizes disagree, and DataError for
+/// an input that is not finite. `seed` draws the transforms of quantised signals. With the job.seed and run name of a
+/// `modebank run`, they equal the transforms of that command.
 Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options = {},
                         std::uint64_t seed = 1);
 
 /// Sum of the log predictive densities over the scored samples of a run [nats]. Stores nothing.
 double log_likelihood(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options = {});
 
-/// Smoothed states of a run, given all its samples; n as in Evaluation.
+/// Smoothed states of a run: estimates from all its samples; n as in Evaluation.
 struct Smoothed {
   Matrix state;                          ///< n x N
   Matrix covariance;                     ///< n*n x N
   std::vector<int> most_probable_modes;  ///< N, most probable sequence of modes (Viterbi); -1 before the start
 };
 
-/// Filters as evaluate_run does, then smooths backwards (Kim 1994), and finds the most probable sequence of modes.
+/// Filters like evaluate_run, then smooths backwards (Kim 1994) and finds the most probable sequence of modes.
 Smoothed smooth_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options = {});
 
 }  // namespace modebank::judge

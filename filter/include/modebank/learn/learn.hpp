@@ -23,39 +23,39 @@ struct Uncertainty {
   Matrix theta_standard_error;                      ///< p x K
   std::vector<Matrix> Q_standard_error;             ///< K of n x n; empty without refinement
   Matrix R_standard_error;                          ///< n_y x n_y; empty unless R was estimated with the bank
-  Matrix transition_standard_error;                 ///< K x K; empty without refinement
+  Matrix transition_standard_error;                 ///< K x K, transition matrix; empty without refinement
   std::vector<std::string> motion_parameter_names;  ///< parameters of a motion model; empty for linear ones
   Matrix motion_theta;                              ///< parameters of a motion model, one mode per column
-  Matrix motion_theta_standard_error;               ///< their standard errors
+  Matrix motion_theta_standard_error;               ///< standard errors of motion_parameters
 };
 
 /// How the bank was learned from M windows.
 struct Origin {
-  WindowAudit windows;                       ///< windows per solver, and tolerances
-  std::vector<std::string> features;         ///< F, clustered features of a window
-  mixture::Mixture mixture;                  ///< mixture of the windows
-  std::vector<Candidate> candidates;         ///< candidates for the mixture
-  std::vector<int> labels;                   ///< M in the order of ident::fit_windows: component of each window; -1:
-                                             ///< none
+  WindowAudit windows;                ///< windows per solver, and tolerances
+  std::vector<std::string> features;  ///< F, clustered features of a window
+  mixture::Mixture mixture;           ///< mixture of the windows
+  std::vector<Candidate> candidates;  ///< candidates for the mixture
+  std::vector<int> labels;  ///< M in the order of ident::fit_windows: component of each window; -1 if a window has no
+                            ///< component
   std::vector<ScreenedMode> screened;        ///< components and fits that did not become modes
   std::vector<RefineCandidate> refinements;  ///< starts of the refinement and their scores; empty without refinement
   std::vector<double> objective;             ///< penalised log-likelihood before each iteration of the refinement
-  MeasurementStage measurement;              ///< refinement with measurement noise
+  MeasurementStage measurement;              ///< results of the refinement with measurement noise
 };
 
 /// A bank, ready for BankFilter, with its uncertainty and origin.
 struct Learned {
-  filter::Bank bank;                     ///< the modes
-  filter::Bank baseline;                 ///< reference competitor: one Kalman filter of all runs
-  double log_likelihood = 0.0;           ///< of the bank with LearnOptions::filter on the training runs [nats]
-  double baseline_log_likelihood = 0.0;  ///< of the baseline on the same samples [nats]
+  filter::Bank bank;            ///< the modes
+  filter::Bank baseline;        ///< reference competitor: one Kalman filter of all runs
+  double log_likelihood = 0.0;  ///< log-likelihood of the bank with LearnOptions::filter on the training runs [nats]
+  double baseline_log_likelihood = 0.0;  ///< log-likelihood of the baseline on the same samples [nats]
   Uncertainty uncertainty;               ///< uncertainty of the bank
   Origin origin;                         ///< origin of the bank
 };
 
-/// Fits windows, clusters them and learns a bank from the runs that are not held out, on all cores. The results equal
-/// those of `modebank run` for the same options, with any number of threads. Log-likelihoods begin with each run's
-/// second sample. Throws std::invalid_argument for an option out of range and for runs whose sizes do not fit. Throws
+/// Fits windows, clusters them and learns a bank from the training runs, on all cores. The results equal those of
+/// `modebank run` for the same options, with any number of threads. Log-likelihoods begin with each run's second
+/// sample. Throws std::invalid_argument for an option out of range and for runs whose sizes do not fit. Throws
 /// DataError (modebank/base/error.hpp) if nothing can be learned from these runs.
 Learned learn_bank(const RecordedRuns& runs, const LearnOptions& options = {});
 

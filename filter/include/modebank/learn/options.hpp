@@ -29,8 +29,8 @@ struct EnumNames<NoiseSource> {
 };
 
 /// Source of the transition matrix. labels: transitions between labels of neighbouring windows. stay:
-/// BankOptions::stay. logit: as labels, and in a refined bank a function of state and input if that raises the score of
-/// left-out training runs.
+/// BankOptions::stay. logit: like labels; in a refined bank the transitions also depend on state and input, if that
+/// raises the score of training runs that were left out.
 enum class TransitionSource { labels, stay, logit };
 
 template <>
@@ -39,8 +39,8 @@ struct EnumNames<TransitionSource> {
 };
 
 /// Refinement after the mixture: none, or expectation-maximisation of the switching model. automatic: em, unless it is
-/// impossible or would undo a request. It is impossible for the modes of a motion model. It would undo a theta, Q or T
-/// taken from the mixture or given (ThetaSource::mean, NoiseSource::shared or fixed, TransitionSource::stay).
+/// impossible or would undo a request. em is impossible for the modes of a motion model. It would undo a theta, Q or T
+/// that is given or taken from the mixture (ThetaSource::mean, NoiseSource::shared or fixed, TransitionSource::stay).
 enum class Refine { automatic, none, em };
 
 template <>
@@ -48,8 +48,9 @@ struct EnumNames<Refine> {
   static constexpr Names<3> values{"auto", "none", "em"};
 };
 
-/// Whether each mode's theta drifts within a run. none: constant. automatic: at the rate that gains most on left-out
-/// training runs, or constant if none gains. Only for a refined bank with exactly measured states.
+/// Whether each mode's theta drifts within a run. none: constant. automatic: theta drifts at the rate with the highest
+/// gain on training runs that were left out, or is constant if no rate gains. Drift needs a refined bank with exactly
+/// measured states.
 enum class Drift { none, automatic };
 
 template <>
@@ -57,7 +58,7 @@ struct EnumNames<Drift> {
   static constexpr Names<2> values{"none", "auto"};
 };
 
-/// The score of look-ahead learning: a prediction's log density, or its squared error.
+/// Score of look-ahead learning: the log density of a prediction, or its squared error.
 enum class LookAheadScore { density, error };
 
 template <>
@@ -68,26 +69,29 @@ struct EnumNames<LookAheadScore> {
 /// Options of a bank's refinement. Defaults are the recommended method.
 struct RefineOptions {
   std::ptrdiff_t max_iterations = 100;  ///< iteration limit of expectation-maximisation
-  double tolerance = 1e-6;              ///< stops when the objective gains less [nats per transition]
-  std::ptrdiff_t restarts = 2;          ///< random starts from stretches of the runs, besides the mixture's start, per
-                                        ///< number of modes tried
-  std::ptrdiff_t most_modes = 0;        ///< random starts have this many modes, three quarters of it, ... down to the
-                                        ///< mixture's number. 0: the mixture's number only
-  std::ptrdiff_t look_ahead = 1;        ///< samples: predictions 1 to this many samples ahead are scored
-  LookAheadScore look_ahead_score = LookAheadScore::density;  ///< density: also scores starts, modes and iterations
-  std::ptrdiff_t folds = 6;       ///< parts of the cross-validation; 1: none, and every start runs to convergence
+  double tolerance = 1e-6;              ///< stopping tolerance: smallest gain of the objective [nats per transition]
+  std::ptrdiff_t restarts = 2;    ///< random starts from stretches of the runs, in addition to the mixture's start, for
+                                  ///< each number of modes
+  std::ptrdiff_t most_modes = 0;  ///< largest number of modes of the random starts. The search tries this number, three
+                                  ///< quarters of it and so on, down to the mixture's number. 0: the mixture's number
+                                  ///< only
+  std::ptrdiff_t look_ahead = 1;  ///< largest number of samples ahead: predictions 1 to this many samples ahead are
+                                  ///< scored
+  LookAheadScore look_ahead_score = LookAheadScore::density;  ///< `density` also scores starts, modes and iterations
+  std::ptrdiff_t folds = 6;       ///< parts of the cross-validation; with 1 there is none, and every start runs to
+                                  ///< convergence
   bool measurement_noise = true;  ///< true: R by maximum likelihood of the filter on the training runs; false: R of the
                                   ///< start
   bool screen = true;             ///< whether unstable, starved and duplicate modes are removed
   bool state_dependent_transition = false;  ///< whether transition probabilities may depend on state and input
                                             ///< (TransitionSource::logit)
   bool one_theta = false;                   ///< all modes share theta and differ in Q: the competitor with one motion
-  bool noise_by_input = false;         ///< whether every Q has one factor that follows state and input; R then stays
+  bool noise_by_input = false;         ///< whether all Q share one factor that follows state and input; R then stays
                                        ///< negligible
-  std::uint64_t seed = 1;              ///< of the random starts
+  std::uint64_t seed = 1;              ///< seed of the random starts
   Drift drift = Drift::none;           ///< whether each mode's theta drifts within a run
   std::ptrdiff_t transitions = 20000;  ///< largest number of transitions to learn from, in stretches drawn with the
-                                       ///< seed; 0: all
+                                       ///< seed; 0 takes all
 
   /// Number of samples ahead at which densities are scored.
   std::ptrdiff_t densities_ahead() const { return look_ahead_score == LookAheadScore::density ? look_ahead : 1; }
@@ -101,27 +105,27 @@ struct BankOptions {
   double stay = 0.95;                          ///< diagonal of the transition matrix for TransitionSource::stay
   double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
   std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; empty: the baseline's R
-  bool screen = true;                          ///< whether unstable and starved modes are left out
+  bool screen = true;                          ///< whether unstable and starved modes are removed
   std::ptrdiff_t modes = 0;                    ///< largest number of modes; the closest components are merged; 0: no
                                                ///< limit
-  Refine refine = Refine::automatic;           ///< whether expectation-maximisation follows
+  Refine refine = Refine::automatic;           ///< whether the bank is refined by expectation-maximisation
   RefineOptions em;                            ///< options of the refinement
 };
 
-/// All options of learning from runs. `modebank run` finds lags, delay and windows from the data unless they are given;
-/// search_lags, automatic_length and automatic_step do so here.
+/// All options of learning from runs. `modebank run` finds lags, delay and windows from the data unless they are given.
+/// Here search_lags, automatic_length and automatic_step request this search.
 struct LearnOptions {
-  FitOptions window;              ///< how windows are cut and fitted
-  ClusterOptions mixture;         ///< how windows are clustered
-  BankOptions bank;               ///< how the mixture becomes a bank
-  FilterOptions filter;           ///< filter of the bank; variant kf: a single Kalman filter, the baseline
-  std::uint64_t seed = 1;         ///< the only seed: replaces those in `window` and `bank`
-  bool search_lags = false;       ///< whether lags and delay are chosen on left-out training runs, ignoring those in
-                                  ///< `window`; not for motion models
+  FitOptions window;         ///< how windows are cut and fitted
+  ClusterOptions mixture;    ///< how windows are clustered
+  BankOptions bank;          ///< how the mixture becomes a bank
+  FilterOptions filter;      ///< filter of the bank; variant kf: a single Kalman filter, the baseline
+  std::uint64_t seed = 1;    ///< the only seed: replaces those in `window` and `bank`
+  bool search_lags = false;  ///< whether lags and delay are chosen by cross-validation on training runs; replaces those
+                             ///< in `window`; not for motion models
   bool automatic_length = false;  ///< whether window.length is set from the number of regressors
-  bool automatic_step = false;    ///< whether window.step is set for about 100,000 windows
-  bool noise_by_input = true;     ///< whether process noise may have one factor that follows states and inputs, if that
-                                  ///< gains on left-out training runs
+  bool automatic_step = false;    ///< whether window.step is set so that there are about 100,000 windows
+  bool noise_by_input = true;     ///< whether process noise may have one factor that follows states and inputs, if the
+                                  ///< factor gains on training runs that were left out
 };
 
 }  // namespace modebank

@@ -8,7 +8,7 @@
 
 namespace modebank {
 
-/// How a maximisation of the filter's likelihood with measurement noise ended. none: not done, or it did not pay.
+/// How a maximisation of the likelihood of a filter with measurement noise ended. none: not done, or it did not pay.
 /// converged: at the maximum. iteration_limit: stopped before the maximum. stalled: no step raised the likelihood
 /// although the gradient was not zero.
 enum class MeasuredFit { none, converged, iteration_limit, stalled };
@@ -20,30 +20,34 @@ struct EnumNames<MeasuredFit> {
 
 /// One row of the cross-validation inside the training runs.
 struct RefineCandidate {
-  std::string start;                                        ///< "mixture" or "stretches 1"
+  std::string start;                                        ///< start: "mixture" or "stretches 1"
   std::ptrdiff_t modes = 0;                                 ///< number of modes of the start
   double noise_transitions = 0.0;                           ///< weight of the prior on Q, in transitions
   std::ptrdiff_t iterations = 0;                            ///< iterations of expectation-maximisation
-  double score = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs [nats/sample]; NaN
-                                                            ///< without cross-validation
+  double score = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs that were left out
+                                                            ///< [nats/sample]; NaN without cross-validation
   double loss = std::numeric_limits<double>::quiet_NaN();  ///< loss against the best row on the same runs [nats/sample]
-  double loss_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< of the loss, clustered by run (by stretch
-                                                                          ///< with fewer than three runs)
-  bool selected = false;           ///< whether the bank comes from this row
+  double loss_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< standard error of the loss, clustered by
+                                                                          ///< run (by stretch with fewer than three
+                                                                          ///< runs)
+  bool selected = false;                                                  ///< whether the bank comes from this row
   double theta_transitions = 0.0;  ///< weight of the prior that draws theta towards one motion, in
                                    ///< transitions
 };
 
 /// The search for R, and the fit with R if it is not negligible.
 struct MeasurementStage {
-  std::ptrdiff_t starts = 0;            ///< starts of the search for R; 0: R was given
-  std::ptrdiff_t failed_starts = 0;     ///< starts from which no step raised the likelihood; the best of the others is
-                                        ///< kept
-  std::ptrdiff_t iterations = 0;        ///< iterations with measurement noise; 0: none, or they would not have paid
-  MeasuredFit end = MeasuredFit::none;  ///< how these iterations ended
-  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs before
-  double score = std::numeric_limits<double>::quiet_NaN();  ///< the same afterwards; NaN without cross-validation or R
-  double seconds = 0.0;                                     ///< wall time of this stage
+  std::ptrdiff_t starts = 0;         ///< starts of the search for R; 0 if R was given
+  std::ptrdiff_t failed_starts = 0;  ///< starts from which no step raised the likelihood; the best of the other starts
+                                     ///< is kept
+  std::ptrdiff_t iterations = 0;     ///< iterations with measurement noise; 0 if there were none or they would not have
+                                     ///< paid
+  MeasuredFit end = MeasuredFit::none;                             ///< how these iterations ended
+  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs before these
+                                                                   ///< iterations
+  double score = std::numeric_limits<double>::quiet_NaN();         ///< mean log score of the left-out runs after these
+                                                                   ///< iterations; NaN without cross-validation or R
+  double seconds = 0.0;                                            ///< wall time of this stage
 };
 
 /// Whether transition probabilities depend on state and input, by cross-validation inside the training runs.
@@ -54,22 +58,26 @@ struct SwitchingStage {
                                                                    ///< effect on the log odds
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs with
                                                                    ///< constant T
-  double gain = std::numeric_limits<double>::quiet_NaN();  ///< gain of the logit over it [nats/sample]; NaN: not tested
-  double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< clustered by run
+  double gain = std::numeric_limits<double>::quiet_NaN();  ///< gain of the logit over constant T [nats/sample]; NaN if
+                                                           ///< it was not tested
+  double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< standard error of the gain, clustered by
+                                                                          ///< run
 };
 
 /// Whether modes drift, by cross-validation inside the training runs.
 struct DriftStage {
   bool taken = false;        ///< whether the bank's modes drift
   std::ptrdiff_t modes = 0;  ///< number of modes of the best bank with drift
-  double rate = 0.0;   ///< its rate: variance that a step adds to every coefficient, in units of the mode's noise, for
-                       ///< regressors divided by their root mean square
-  double start = 0.0;  ///< its start: variance of every coefficient at a run's start
-  double leak = 1.0;   ///< its leak: factor per step on the difference from the mode's coefficients
+  double rate = 0.0;   ///< rate of the drift: variance that a step adds to every coefficient, in units of the mode's
+                       ///< noise, for regressors divided by their root mean square
+  double start = 0.0;  ///< start of the drift: variance of every coefficient at the start of a run
+  double leak = 1.0;   ///< leak of the drift: factor per step on the difference from the mode's coefficients
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs without
                                                                    ///< drift
-  double gain = std::numeric_limits<double>::quiet_NaN();          ///< gain of the drift [nats/sample]; NaN: not tested
-  double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< clustered by run
+  double gain = std::numeric_limits<double>::quiet_NaN();  ///< gain of the drift [nats/sample]; NaN if it was not
+                                                           ///< tested
+  double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< standard error of the gain, clustered by
+                                                                          ///< run
 };
 
 }  // namespace modebank

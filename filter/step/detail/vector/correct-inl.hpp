@@ -26,7 +26,7 @@ HWY_INLINE void solve(const V (&L)[packed_size(NY)], const V (&inverse)[NY], V (
   }
 }
 
-/// Like bound_variances of kalman.hpp, where a variance is negative.
+/// Same as bound_variances of kalman.hpp, for negative variances.
 template <std::size_t N>
 HWY_INLINE void bound_variances(M negative, const Moments<N>& predicted, Moments<N>& posterior) {
   for (std::size_t a = 0; a < N; ++a)

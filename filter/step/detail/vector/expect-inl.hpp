@@ -11,7 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Prediction of one register of modes, and of the measurement: S = L D L'.
+/// Prediction of one register of modes, and of its measurement: S = L D L'.
 template <std::size_t N, std::size_t NY>
 struct Prediction {
   V prior;
@@ -64,7 +64,7 @@ HWY_INLINE void store_prediction(const Prediction<N, NY>& q, const ModeRows& p, 
   store_rows(q.inverse, p.stride, p.D_inverse + r);
 }
 
-/// Reads the values of store_prediction except S and D, which a correction does not need.
+/// Reads the values of store_prediction. Skips S and D, which a correction does not need.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE Prediction<N, NY> load_prediction(const ModeRows& p, std::size_t r) {
   Prediction<N, NY> q;

@@ -36,7 +36,7 @@ HWY_INLINE V signal_moment(const ModeRows& p, std::size_t which, std::size_t i, 
 /// Updates one register of modes with the signals one after another.
 template <std::size_t N, std::size_t NY>
 struct IntervalCorrection {
-  Moments<N> m;  ///< moments after the signals so far
+  Moments<N> m;  ///< moments after the signals processed so far
   V column[N];   ///< P C_i'
   V s;           ///< C_i P C_i' + R_ii
 
@@ -68,7 +68,7 @@ struct IntervalCorrection {
   }
 };
 
-/// All signals for the modes of register r: decorrelated, D and signal, and the moments after them.
+/// Computes decorrelated, D and signal for all signals and the modes of register r, and the moments after them.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE Moments<N> look_at(const ModeRows& p, const Sensor& sensor, const double* y, std::size_t r,
                               const Moments<N>& predicted) {
@@ -83,7 +83,7 @@ HWY_INLINE Moments<N> look_at(const ModeRows& p, const Sensor& sensor, const dou
   return c.m;
 }
 
-/// Like correct of update-inl.hpp. Exponents then hold the whole log density, which may be positive.
+/// Same as correct of update-inl.hpp, but exponents hold the whole log density, which may be positive.
 template <std::size_t N, std::size_t NY>
 HWY_NOINLINE V correct_intervals(const ModeRows& p, const Sensor& sensor, const double* y) {
   V largest = splat(-far);
@@ -120,7 +120,7 @@ HWY_INLINE V second_moment(const ModeRows& p, std::size_t i, std::size_t r) {
   return hn::MulAdd(mean, mean, signal_moment<NY>(p, 2, i, r));
 }
 
-/// Like interval_sums of interval.hpp.
+/// Same as interval_sums of interval.hpp.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void explained_by_intervals(const ModeRows& p, const Sensor& sensor, std::size_t r, V& share, V& square) {
   V Q[packed_size(N)];
@@ -134,7 +134,7 @@ HWY_INLINE void explained_by_intervals(const ModeRows& p, const Sensor& sensor, 
   }
 }
 
-/// The noise scale's sums for the modes r .., after the measurement.
+/// The sums for the noise scale of the modes r .., after the measurement.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void explained(const ModeRows& p, const Sensor& sensor, const double* y, std::size_t r, V& share,
                           V& square) {

@@ -13,13 +13,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Derivatives by a signal's innovation and variance, and by mean M and variance V of the innovation given its interval
-/// (SignalLikelihood).
+/// Derivatives with respect to innovation and variance of a signal, and to mean M and variance V of the innovation
+/// given its interval (SignalLikelihood).
 struct BySignal {
   V e, s, mean, variance;
 };
 
-/// Adjoint of one register of modes for quantised signals; look_at has been called for it.
+/// Adjoint of one register of modes for quantised signals. Call look_at for the register first.
 template <std::size_t N, std::size_t NY>
 class IntervalUncorrection {
  public:
@@ -33,8 +33,9 @@ class IntervalUncorrection {
     }
   }
 
-  /// Converts derivatives by the corrected moments to those by the predicted ones. Adds derivatives by R and Q. The
-  /// objective is `by_log` times the log density, plus share and square times the noise scale's sums.
+  /// Converts derivatives with respect to the corrected moments to those with respect to the predicted moments. Adds
+  /// derivatives with respect to R and Q. The objective is `by_log` times the log density, plus share and square times
+  /// the sums for the noise scale.
   HWY_INLINE void back(V by_log, V share, V square, const V (&Q)[packed_size(N)], Moments<N>& by,
                        V (&by_Q)[packed_size(N)], double* by_R) const {
     for (std::size_t i = NY; i-- > 0;) {
@@ -57,7 +58,7 @@ class IntervalUncorrection {
       to.s = hn::Mul(hn::Mul(by_shrink, squared), hn::MulSub(splat(2.0), variance, splat(1.0)));
       to.s = hn::NegMulAdd(hn::Mul(by_step, step), inverse, to.s);
       explained(i, share, square, Q, root, to, by_Q);
-      // Derivatives of the signal's moments by its innovation and variance.
+      // Derivatives of the signal's moments with respect to its innovation and variance.
       const V half = splat(0.5), twice = hn::Mul(splat(2.0), mean);
       to.e = hn::Sub(hn::Mul(to.mean, hn::Sub(splat(1.0), variance)), hn::Mul(by_log, step));
       to.e = hn::NegMulAdd(hn::Mul(to.variance, root), third, to.e);

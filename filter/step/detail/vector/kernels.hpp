@@ -4,7 +4,7 @@
 
 /// Interface between vector_imm.cpp and its kernels, which are compiled once per instruction set. Rows hold `stride`
 /// numbers, one per mode, and begin at multiples of 64 bytes. Symmetric matrices are packed: entry (a, b), a >= b, is
-/// row a (a + 1) / 2 + b. Entries beyond the last mode are zero and cannot be reached by any mode.
+/// row a (a + 1) / 2 + b. Entries beyond the last mode are zero, and no mode can switch to these entries.
 namespace modebank::vector_imm {
 
 struct ModeRows {
@@ -16,7 +16,7 @@ struct ModeRows {
   double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< n, packed n, 1
   // Derived from the state for the next step's mixing.
   double share = 0.0;        ///< 1 / modes
-  double* center = nullptr;  ///< n numbers, the mean of the means; mixing takes moments about it
+  double* center = nullptr;  ///< n numbers, the mean of the modes' means; mixing computes moments about it
   double* parts = nullptr;   ///< n + packed n: summands of the mixtures
   // Results of a step.
   double* predicted_probability = nullptr;                            ///< 1
@@ -25,15 +25,16 @@ struct ModeRows {
   double *L = nullptr, *D = nullptr, *D_inverse = nullptr;            ///< packed n_y; n_y: S = L D L'
   double* decorrelated = nullptr;                                     ///< n_y: L^-1 (y - C x)
   double *exponent = nullptr, *weight = nullptr;  ///< 1: -e' S^-1 e / (2 log 2); unnormalised posterior
-  /// For quantised measurements only: SignalLikelihood's numbers of every signal given the previous ones, n_y rows for
-  /// each number. decorrelated and D then hold the innovation and its variance given the previous signals.
+  /// For quantised measurements only. Holds the numbers of SignalLikelihood for every signal given the previous
+  /// signals, n_y rows for each number. decorrelated and D then hold the innovation and its variance given the previous
+  /// signals.
   double* signal = nullptr;
 };
 
 inline constexpr std::size_t signal_numbers = 5;
 
 /// C (n_y x n) and R (n_y x n_y), row-major, and the number of available signals. `quantum`: n_y, zero for a continuous
-/// signal (interval.hpp); null: all continuous.
+/// signal (interval.hpp). Null if all are continuous.
 struct Sensor {
   const double *C = nullptr, *R = nullptr;
   double signals = 0.0;
@@ -43,7 +44,7 @@ struct Sensor {
 /// Result of an update.
 struct UpdateResult {
   double log_density = 0.0;          ///< log density of n_y signals
-  double share = 0.0, square = 0.0;  ///< sums of adapt_noise_scale (noise_scale.hpp), if requested
+  double share = 0.0, square = 0.0;  ///< sums for adapt_noise_scale (noise_scale.hpp), if requested
 };
 
 struct CombinedMoments {
@@ -57,35 +58,36 @@ struct CombinedExpectation {
 
 /// Complete samples, each one step after the previous one.
 struct CompleteSamples {
-  const double *inputs = nullptr, *measurements = nullptr;  ///< acting inputs and n_y numbers per sample
+  const double *inputs = nullptr, *measurements = nullptr;  ///< acting inputs and n_y measurements per sample
   std::size_t samples = 0;
-  double* log_density = nullptr;  ///< one number per sample, the result
+  double* log_density = nullptr;  ///< result, one number per sample
 };
 
 /// The kernels for one pair of sizes.
 struct Kernels {
-  /// Call after mean, covariance and probability were set: computes all else that the next prediction reads.
+  /// Call after mean, covariance and probability were set. Computes everything else that the next prediction reads.
   void (*prepare)(const ModeRows&) = nullptr;
   /// Mixing, prediction and predicted measurement: everything from predicted_probability to D_inverse. `v`: inputs.
   void (*predict)(const ModeRows&, const Sensor&, const double* v, double noise_scale) = nullptr;
   /// Recomputes C x, S and its factor for another sensor.
   void (*expect)(const ModeRows&, const Sensor&) = nullptr;
-  /// The state after y; for noise_scale > 0 also share and square.
+  /// Computes the state after y; for noise_scale > 0 also share and square.
   UpdateResult (*update)(const ModeRows&, const Sensor&, const double* y, double noise_scale) = nullptr;
-  /// predict and update for a stretch, at noise scale one. Of a step's results only the state is valid afterwards.
+  /// predict and update for a stretch, at noise scale one. Afterwards only the state is valid; other results of the
+  /// steps are not.
   void (*follow)(const ModeRows&, const Sensor&, const CompleteSamples&) = nullptr;
   /// Without a measurement the prediction becomes the state.
   void (*skip)(const ModeRows&) = nullptr;
   void (*merge)(const ModeRows&, CombinedMoments) = nullptr;
   void (*combine)(const ModeRows&, const Sensor&, CombinedExpectation&) = nullptr;
-  /// The probability integral transform of the y of the last update, n_y.
+  /// The probability integral transform of the measurement y of the last update, n_y.
   void (*transform)(const ModeRows&, const double* y, double* pit) = nullptr;
 };
 
-/// Kernels for these sizes; entries are null if there are none.
+/// Kernels for these sizes; entries are null if there are no kernels.
 Kernels kernels(std::size_t states, std::size_t measurements);
 
-/// Rows are padded to multiples of this number, which suffices for any instruction set.
+/// Rows are padded to multiples of this number, which is enough for any instruction set.
 inline constexpr std::size_t row_multiple = 8;
 
 }  // namespace modebank::vector_imm

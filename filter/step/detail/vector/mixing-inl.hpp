@@ -1,5 +1,5 @@
-// Start of the modes' predictions: mixtures of all modes that lead to them, one mode per lane. Included once per
-// instruction set (Highway's foreach_target.h).
+// Start of the modes' predictions: for each mode the mixture of all modes that can switch to it, one mode per lane.
+// Included once per instruction set (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_MIXING_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_MIXING_INL
 #undef MODEBANK_VECTOR_IMM_MIXING_INL
@@ -12,8 +12,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Stores d_i and P_i + d_i d_i' of each mode in p.parts. d_i is about p.center, the mean of the modes' means. This
-/// does not depend on the probabilities, the last results of an update, so it need not wait for them.
+/// Stores d_i and P_i + d_i d_i' of each mode in p.parts. d_i is relative to p.center, the mean of the modes' means.
+/// These numbers do not depend on the probabilities, which are the last results of an update. So this function need not
+/// wait for them.
 template <std::size_t N>
 HWY_INLINE void center_modes(const ModeRows& p) {
   const std::size_t stride = p.stride;
@@ -53,8 +54,8 @@ void prepare(const ModeRows& p) {
   for (std::size_t r = 0; r < p.stride; r += hn::Lanes(D())) weigh_parts<N>(p, r, load(p.probability + r));
 }
 
-/// Computes the means first and the covariances about them, for modes so different that moments about the center
-/// cancel.
+/// Computes the means first and the covariances about these means. Needed if modes are so different that moments about
+/// the center cancel.
 template <std::size_t N>
 HWY_NOINLINE void mix_apart(const ModeRows& p, std::size_t r, V inverse, Moments<N>& m) {
   const std::size_t stride = p.stride;
@@ -78,8 +79,8 @@ HWY_NOINLINE void mix_apart(const ModeRows& p, std::size_t r, V inverse, Moments
   for (V& P : m.P) P = hn::Mul(P, inverse);
 }
 
-/// Start of the modes of register r: the mixture of all modes that lead to them (Blom & Bar-Shalom 1988). `sums`: of
-/// mu_i T_ij, then of parts_i T_ij.
+/// Start of the modes of register r: the mixture of all modes that can switch to the mode (Blom & Bar-Shalom 1988).
+/// `sums`: of mu_i T_ij, then of parts_i T_ij.
 template <std::size_t N>
 HWY_INLINE Moments<N> mixture(const ModeRows& p, std::size_t r, const V (&sums)[1 + N + packed_size(N)]) {
   const V c = sums[0];

@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Repairs a prediction, as make_usable of kalman.hpp does.
+/// Repairs a prediction, like make_usable of kalman.hpp.
 template <std::size_t N>
 HWY_INLINE void make_usable(Moments<N>& m) {
   V largest = m.P[0], least = m.P[0], mean = hn::Abs(m.x[0]);
@@ -66,7 +66,7 @@ HWY_INLINE Moments<N> propagate(const ModeRows& p, std::size_t r, const double* 
   return m;
 }
 
-/// Processes J registers of modes from r on together; they share the loads of the previous modes.
+/// Processes J registers of modes from r on together, which share the loads of the previous modes.
 template <std::size_t N, std::size_t NY, std::size_t J>
 HWY_INLINE void predict_registers(const ModeRows& p, const Sensor& sensor, std::size_t r, const double* v, V scale,
                                   Prediction<N, NY> (&q)[J]) {
@@ -97,7 +97,7 @@ HWY_INLINE void predict_registers(const ModeRows& p, const Sensor& sensor, std::
   }
 }
 
-/// Number of registers processed together: as many as their sums fit into registers.
+/// Number of registers processed together. It is limited so that all sums fit into registers.
 template <std::size_t N>
 inline constexpr std::size_t most_together = N == 1   ? 4
                                              : N == 2 ? 2

@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Weight of a packed entry: v' P w and similar sums count entries off the diagonal twice.
+/// Weight of a packed entry: v' P w and similar sums count off-diagonal entries twice.
 constexpr double times(std::size_t a, std::size_t b) { return a == b ? 1.0 : 2.0; }
 
 HWY_INLINE void add_to(double* row, V value) { store(hn::Add(load(row), value), row); }
@@ -81,7 +81,7 @@ struct Uncorrection {
     }
   }
 
-  /// Derivatives of `by_log` times the log density by S.
+  /// Derivatives of `by_log` times the log density with respect to S.
   HWY_INLINE void log_density(V by_log, V (&by_S)[packed_size(NY)]) const {
     const V half = hn::Mul(splat(0.5), by_log);
     for (std::size_t i = 0; i < NY; ++i)
@@ -89,8 +89,8 @@ struct Uncorrection {
         by_S[packed(i, k)] = hn::Mul(half, hn::MulSub(pulled[i], pulled[k], S_inverse[packed(i, k)]));
   }
 
-  /// Derivatives of share tr(S^-1 C Q C') + square e' S^-1 C Q C' S^-1 e by e, S (added) and Q; the last term is
-  /// limited (noise_scale.hpp).
+  /// Derivatives of share tr(S^-1 C Q C') + square e' S^-1 C Q C' S^-1 e with respect to e, S (added) and Q. The last
+  /// term is limited (noise_scale.hpp).
   HWY_INLINE void explained(const Sensor& sensor, const V (&Q)[packed_size(N)], V share, V square, V (&by_e)[NY],
                             V (&by_S)[packed_size(NY)], V (&by_Q)[packed_size(N)]) const {
     const V most = splat(largest_standardised * largest_standardised * sensor.signals), nis = c.distance();
@@ -132,8 +132,9 @@ struct Uncorrection {
     add_to_state<N, NY>(sensor, by_M, by_Q);
   }
 
-  /// Converts derivatives by the corrected moments to those by the predicted ones and by R. `by_S`, `by_e`: derivatives
-  /// of other terms that depend on S and e. The log density's dependence on e is added with `by_log`.
+  /// Converts derivatives with respect to the corrected moments to those with respect to the predicted moments and R.
+  /// `by_S`, `by_e`: derivatives of other terms that depend on S and e. The dependence of the log density on e is added
+  /// with factor `by_log`.
   HWY_INLINE void back(const Sensor& sensor, V by_log, const V (&by_e)[NY], const V (&by_S)[packed_size(NY)],
                        Moments<N>& by, double* by_R) const {
     V gain[N][NY], closed[N * N], pull[N], from_e[N], x[N];
@@ -182,8 +183,9 @@ struct Uncorrection {
   }
 };
 
-/// Converts derivatives by the predicted moments of register r to those by the mixed ones and by F, B, c and Q.
-/// `by_scaled_Q`: derivative of other terms by Q. Returns the derivative by the noise scale, lane by lane.
+/// Converts derivatives with respect to the predicted moments of register r to those with respect to the mixed moments
+/// and F, B, c and Q. `by_scaled_Q`: derivative of other terms with respect to Q. Returns the derivative with respect
+/// to the noise scale, lane by lane.
 template <std::size_t N>
 HWY_INLINE V back_to_mixed(const ModeRows& p, const ReverseStep& step, const ReverseRows& d, std::size_t r,
                            const Moments<N>& by, const V (&by_Q)[packed_size(N)]) {
@@ -232,7 +234,8 @@ HWY_INLINE V back_to_mixed(const ModeRows& p, const ReverseStep& step, const Rev
   return by_scale;
 }
 
-/// Converts derivatives by mode j's start to those by the state before the step and by column j of T.
+/// Converts derivatives with respect to the start of mode j to those with respect to the state before the step and
+/// column j of T.
 template <std::size_t N>
 HWY_INLINE void back_to_state(const ModeRows& p, const ReverseRows& d, std::size_t j) {
   const std::size_t stride = p.stride;
@@ -269,14 +272,14 @@ HWY_INLINE void back_to_state(const ModeRows& p, const ReverseRows& d, std::size
   }
   const V middle = splat(sum_of(mean)), by_prior = splat(d.by_prior[j]);
   for (std::size_t r = 0; r < stride; r += hn::Lanes(D())) {
-    const V by_product = hn::MulAdd(hn::Sub(load(d.pair + r), middle), inverse, by_prior);  // by T_ij mu_i
+    const V by_product = hn::MulAdd(hn::Sub(load(d.pair + r), middle), inverse, by_prior);  // with respect to T_ij mu_i
     add_to(d.probability + r, hn::Mul(load(T + r), by_product));
     add_to(d.by_transition_to + j * stride + r, hn::Mul(load(p.probability + r), by_product));
   }
 }
 
-/// Replaces the derivatives by those with respect to the probabilities before the floor, including the noise scale's
-/// sums; returns their mean. A floored probability is constant.
+/// Replaces the derivatives by those with respect to the probabilities before the floor, including the sums for the
+/// noise scale. Returns their mean. A floored probability is constant.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE V unfloor(const ModeRows& p, const ReverseStep& step, const ReverseRows& d) {
   V mean = zero();
@@ -295,8 +298,9 @@ HWY_INLINE V unfloor(const ModeRows& p, const ReverseStep& step, const ReverseRo
   return splat(sum_of(mean));
 }
 
-/// Converts derivatives by the corrected moments of register r to those by the predicted ones, R and Q. `by_log`: by
-/// the mode's log density. mu: its probability after the measurement.
+/// Converts derivatives with respect to the corrected moments of register r to those with respect to the predicted
+/// moments, R and Q. `by_log`: derivative with respect to the mode's log density. mu: probability of the mode after the
+/// measurement.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void back_to_predicted(const ModeRows& p, const ReverseStep& step, const ReverseRows& d, std::size_t r,
                                   V by_log, V mu, Moments<N>& by, V (&by_Q)[packed_size(N)]) {

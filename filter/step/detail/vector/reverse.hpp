@@ -2,17 +2,18 @@
 
 #include "filter/step/detail/vector/kernels.hpp"
 
-/// Adjoint of predict and update (kernels.hpp), for the derivative of one step's log density. Their overflow clamps are
-/// treated as identity.
+/// Adjoint of predict and update (kernels.hpp), for the derivative of one step's log density. The limits against
+/// overflow in these functions are treated as identity.
 namespace modebank::vector_imm {
 
 /// Derivatives of all later terms, in rows like those of ModeRows. For a symmetric matrix, row (a, b) holds the
-/// derivative by each of the entries (a, b) and (b, a).
+/// derivative with respect to each of the entries (a, b) and (b, a).
 struct ReverseRows {
   const double* transition_to = nullptr;  ///< T, one row per next mode
-  // Derivatives by the filter's state: on entry after the step, on return before it.
+  // Derivatives with respect to the filter's state. On entry the state is that after the step, on return that before
+  // it.
   double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< n, packed n, 1
-  // Derivatives by the bank, summed over the steps.
+  // Derivatives with respect to the bank, summed over the steps.
   double *F = nullptr, *B = nullptr, *c = nullptr, *Q = nullptr;  ///< n*n, n*inputs, n, packed n
   double* by_transition_to = nullptr;                             ///< one row per next mode
   double* R = nullptr;                                            ///< packed n_y numbers, not rows
@@ -21,19 +22,20 @@ struct ReverseRows {
   double *by_prior = nullptr, *pair = nullptr;                                             ///< 1, 1
 };
 
-/// The step to differentiate. ModeRows holds the state before it and the results of `predict`.
+/// The step to differentiate. ModeRows holds the state before this step and the results of `predict`.
 struct ReverseStep {
   Sensor sensor;
   const double* inputs = nullptr;
-  const double* measured = nullptr;           ///< null: prediction without measurement
+  const double* measured = nullptr;           ///< null for a prediction without measurement
   const double* probability_after = nullptr;  ///< one row
-  double weight = 1.0;                        ///< of the log density
+  double weight = 1.0;                        ///< derivative with respect to the log density
   double noise_scale = 1.0;
   bool adaptive = false;
-  double by_share = 0.0, by_square = 0.0;  ///< derivatives by UpdateResult's sums, if adaptive
+  double by_share = 0.0, by_square = 0.0;  ///< derivatives with respect to the sums of UpdateResult, if the noise is
+                                           ///< adaptive
 };
 
-/// Adjoint of a step. Returns the derivative by the noise scale on Q. Null for sizes without kernels.
+/// Adjoint of a step. Returns the derivative with respect to the noise scale on Q. Null for sizes without kernels.
 using Reverse = double (*)(const ModeRows&, const ReverseStep&, const ReverseRows&);
 Reverse reverse(std::size_t states, std::size_t measurements);
 

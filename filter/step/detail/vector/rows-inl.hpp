@@ -1,5 +1,5 @@
-// Vectors of doubles with one mode per lane, and rows of modes in them (kernels.hpp). Included once per instruction set
-// (Highway's foreach_target.h).
+// Vectors of doubles with one mode per lane, and rows of modes stored in such vectors (kernels.hpp). Included once per
+// instruction set (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_ROWS_INL
 #undef MODEBANK_VECTOR_IMM_ROWS_INL
@@ -26,7 +26,7 @@ using em::HWY_NAMESPACE::in_register;
 using em::HWY_NAMESPACE::ln_2;
 using em::HWY_NAMESPACE::log2_e;
 
-// At most the width of the padding (kernels.hpp), so that rows are whole registers on every machine.
+// At most the width of the padding (kernels.hpp), so that rows consist of whole registers on every machine.
 using D = hn::CappedTag<double, 8>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
@@ -41,9 +41,9 @@ HWY_INLINE V load(const double* p) { return hn::Load(D(), p); }
 HWY_INLINE void store(V v, double* p) { hn::Store(v, D(), p); }
 HWY_INLINE double sum_of(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 
-/// Smallest variance for which a mixture's moments may come from sums about another point, the center: variance =
-/// square - shift^2, mean = center + shift. Below it, more than ten of the variance's 53 bits cancel, or the mean's
-/// error approaches a standard deviation. The sums must then be taken about the mean.
+/// Smallest variance for which the moments of a mixture may come from sums about another point, the center. They are
+/// variance = square - shift^2, mean = center + shift. Below this variance, more than ten of its 53 bits cancel, or the
+/// error of the mean approaches a standard deviation. The sums must then be relative to the mean.
 HWY_INLINE V least_sound(V square, V center) {
   constexpr double least_share = 0x1p-10, least_of_center = 0x1p-80;
   return hn::Max(hn::Mul(square, splat(least_share)), hn::Mul(hn::Mul(center, center), splat(least_of_center)));
@@ -64,7 +64,7 @@ HWY_INLINE void store_rows(const V (&v)[Rows], std::size_t stride, double* p) {
   for (std::size_t i = 0; i < Rows; ++i) store(v[i], p + i * stride);
 }
 
-/// Mean and covariance of as many modes as a register has lanes.
+/// Mean and covariance of one register of modes, one mode per lane.
 template <std::size_t N>
 struct Moments {
   V x[N];

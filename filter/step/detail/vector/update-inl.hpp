@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Above this largest exponent, densities are far above the smallest numbers.
+/// If the largest exponent is above this limit, densities are far above the smallest numbers.
 inline constexpr double far_exponent = -100.0;
 
 /// Log density of a measurement whose weights sum to `sum`, relative to the exponent `reference`.
@@ -27,7 +27,8 @@ HWY_INLINE hn::Vec<Tag> log_density(Tag d, hn::Vec<Tag> sum, hn::Vec<Tag> refere
 
 /// Updates every mode with y: state, p.decorrelated, exponents (base 2, of densities) and weights (prior over the
 /// square root of S's determinant). `predicted` has the prediction of each register. Returns the reference of the
-/// exponents. That is the largest exponent; or zero if the largest is not far below, which avoids waiting for it.
+/// exponents. This is the largest exponent. If the largest exponent is not very low, zero is returned instead, which
+/// avoids waiting for it.
 template <std::size_t N, std::size_t NY, std::size_t R, class Predicted>
 HWY_INLINE V correct(const ModeRows& p, const Sensor& sensor, const double* y, const Predicted& predicted,
                      Row<R>& exponents, Row<R>& weights) {
@@ -51,7 +52,7 @@ HWY_INLINE V correct(const ModeRows& p, const Sensor& sensor, const double* y, c
   return reference;
 }
 
-/// Bayes' rule: weights become the posterior up to a factor; returns that factor, their sum.
+/// Bayes' rule: the weights become the posterior up to a factor. Returns this factor, the sum of the weights.
 template <std::size_t R>
 HWY_INLINE double bayes(const ModeRows& p, V reference, const Row<R>& exponents, Row<R>& weights) {
   V sum = zero();
@@ -66,7 +67,7 @@ HWY_INLINE double bayes(const ModeRows& p, V reference, const Row<R>& exponents,
   return sum_of(sum);
 }
 
-/// p.probability from weights that sum to `sum`, with the floor that keeps every mode alive. Also updates p.parts.
+/// Computes p.probability from weights that sum to `sum`. The floor keeps every mode alive. Also updates p.parts.
 template <std::size_t N, std::size_t R>
 HWY_INLINE void floor_probabilities(const ModeRows& p, double sum, Row<R>& weights) {
   const V floor = splat(mode_probability_floor * sum);
@@ -124,7 +125,7 @@ UpdateResult update(const ModeRows& p, const Sensor& sensor, const double* y, do
   return result;
 }
 
-/// One sample of a stretch: predict and update of R registers, kept in registers, or of any number in memory (R = 0).
+/// One sample of a stretch: predict and update of R registers. With R = 0, any number of registers in memory.
 template <std::size_t N, std::size_t NY, std::size_t R>
 HWY_INLINE double step(const ModeRows& p, const Sensor& sensor, const double* v, const double* y, double& reference) {
   Row<R> exponents(p.exponent), weights(p.weight);
@@ -146,7 +147,7 @@ HWY_INLINE double step(const ModeRows& p, const Sensor& sensor, const double* v,
   return sum;
 }
 
-/// Predicts and updates through a stretch; logarithms are computed for many samples at once.
+/// Predicts and updates through a stretch. Logarithms are computed for many samples at once.
 template <std::size_t N, std::size_t NY, std::size_t R>
 void follow_registers(const ModeRows& p, const Sensor& sensor, const CompleteSamples& stretch) {
   constexpr std::size_t block = 64;

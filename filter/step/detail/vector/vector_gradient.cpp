@@ -33,7 +33,7 @@ VectorGradient::VectorGradient(const Bank& bank, const FilterOptions& options)
   lay_out();
 }
 
-/// Rows begin at multiples of a register, as in the filter.
+/// Rows begin at multiples of a register, like those of the filter.
 void VectorGradient::lay_out() {
   const Index rows = state_numbers_ / stride_ + n_ * n_ + n_ * m_ + n_ + packed_ + 2 * K_ + 2 * n_ + packed_ + 3;
   memory_ = Eigen::VectorXd::Zero(rows * stride_ + static_cast<Index>(row_multiple));
@@ -111,7 +111,7 @@ BankGradient VectorGradient::go_back() {
   return result();
 }
 
-/// All modes start from the same moments; their mean does not depend on the bank.
+/// All modes start from the same moments. The mean of the modes' means then does not depend on the bank.
 void VectorGradient::back_to_start() {
   for (Index a = 0, row = 0; a < n_; ++a)
     for (Index b = 0; b <= a; ++b, ++row) {
@@ -155,7 +155,7 @@ void VectorGradient::back_over(std::size_t t) {
   }
   by_noise_scale_ += reverse_(filter, step, rows_);
   if (missing == 0) return;
-  for (Index i = 0, k = 0; i < n_y_; ++i)  // R of a missing signal does not belong to the bank
+  for (Index i = 0, k = 0; i < n_y_; ++i)  // R of a missing signal is not a parameter of the bank
     for (Index j = 0; j <= i; ++j, ++k)
       if (is_missing(y(i)) || is_missing(y(j))) by_R_(k) = by_R(k);
 }

@@ -22,14 +22,14 @@ class VectorGradient {
   void reserve(Eigen::Index samples);
   void start(const Vector& y);
   void skip(const Vector& v);
-  /// `weight`: of the step's log density.
+  /// `weight`: weight of the step's log density.
   void step(const Vector& v, const Vector& y, double weight);
   /// Gradient of the sum of all steps' weighted log densities. Call once.
   BankGradient go_back();
 
  private:
   enum class Kind { start, skip, step };
-  /// The step to a moment, and the noise scale after it.
+  /// The step to a moment, and the noise scale after the step.
   struct Moment {
     Kind kind;
     double weight = 0.0;

@@ -130,7 +130,7 @@ void VectorImm::fill(const Bank& bank) {
     }
     for_each_packed(n_, [&](Index place, Index a, Index b) { put(rows_.Q, place, j, mode.Q(a, b)); });
     for (Index i = 0; i < K_; ++i) put(rows_.transition, i, j, bank.transition.matrix()(i, j));
-    rows_.probability[j] = initial_probability_(j);  // until the start
+    rows_.probability[j] = initial_probability_(j);  // used until the start
   }
 }
 
@@ -147,7 +147,7 @@ void VectorImm::start(const Vector& y) {
   noise_samples_ = adaptation_.prior_samples;
 }
 
-/// noise_of_step of imm.hpp. start_ is unused between starts, so it serves as workspace.
+/// noise_of_step of imm.hpp. start_ is not needed between starts, so it is the workspace here.
 double VectorImm::scale_of_step(const Vector& v) {
   if (factor_.empty()) return noise_scale_;
   for (Index a = 0; a < n_; ++a) {
@@ -168,7 +168,7 @@ void VectorImm::predict(const Vector& v) {
   kernels_.predict(rows_, sensor_, v.data(), applied_scale_);
 }
 
-/// As in PartialSensor, a missing signal becomes one that is always zero, with variance one and no correlation.
+/// Like in PartialSensor, a missing signal becomes one that is always zero, with variance one and no correlation.
 vector_imm::Sensor VectorImm::detach_missing(const Vector& y, Index missing) {
   partial_C_ = C_;
   partial_R_ = R_;

@@ -33,7 +33,8 @@ class VectorImm final : public Stepper {
   void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override;
   Eigen::Map<const Eigen::VectorXd> predicted_probability() const override { return row(rows_.predicted_probability); }
   Eigen::Map<const Eigen::VectorXd> mode_probability() const override { return row(rows_.probability); }
-  /// After update: signal i of mode j's innovation minus its prediction from earlier signals. Also its variance.
+  /// Call after update. Innovation of signal i of mode j minus its prediction from earlier signals. Also the variance
+  /// of this difference.
   double decorrelated(Eigen::Index i, Eigen::Index j) const { return rows_.decorrelated[at(i, j)]; }
   double variance(Eigen::Index i, Eigen::Index j) const { return rows_.D[at(i, j)]; }
   double noise_scale() const { return noise_scale_; }
@@ -49,17 +50,17 @@ class VectorImm final : public Stepper {
 
   Eigen::Index n_, n_y_, K_;
   bool adaptive_;
-  Eigen::VectorXd quantum_, partial_quantum_;  // empty: nothing is quantised
+  Eigen::VectorXd quantum_, partial_quantum_;  // empty if nothing is quantised
   NoiseAdaptation adaptation_;
-  NoiseFactor factor_;                              // empty: factor one
-  double applied_scale_ = 1.0;                      // of the last prediction: noise_scale_ times the factor
+  NoiseFactor factor_;                              // empty if the factor is one
+  double applied_scale_ = 1.0;                      // scale of the last prediction: noise_scale_ times the factor
   double noise_scale_ = 1.0, noise_samples_ = 0.0;  // as in FilterMemory
-  vector_imm::UpdateResult last_;                   // of the last update
+  vector_imm::UpdateResult last_;                   // results of the last update
   vector_imm::Kernels kernels_;
   std::unique_ptr<double[], Free> memory_;
   vector_imm::ModeRows rows_;              // point into memory_
   Eigen::MatrixXd C_, R_;                  // transposed: row-major
-  Eigen::MatrixXd partial_C_, partial_R_;  // of the available signals
+  Eigen::MatrixXd partial_C_, partial_R_;  // number of available signals
   vector_imm::Sensor sensor_;              // views of C_ and R_
   Eigen::VectorXd y_, packed_;
   Eigen::VectorXd weights_, log_likelihood_;  // workspace of the transform for quantised signals

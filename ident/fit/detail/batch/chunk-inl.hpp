@@ -1,4 +1,4 @@
-// Fits a chunk of windows, one vector of them at a time, and writes the results to memory.
+// Fits a chunk of windows, one vector of windows at a time, and writes the results to memory.
 #if defined(MODEBANK_BATCH_CHUNK_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_CHUNK_INL
 #undef MODEBANK_BATCH_CHUNK_INL
@@ -26,8 +26,8 @@ HWY_INLINE View contiguous_view(const Settings& settings, const Chunk& chunk, In
   return view;
 }
 
-/// Lays out windows that do not start one sample apart side by side, one per lane. Lanes beyond the last window repeat
-/// it.
+/// Copies windows that do not start one sample apart, so that there is one window per lane. Lanes beyond the last
+/// window repeat that window.
 HWY_INLINE View transposed_view(const Settings& settings, const Chunk& chunk, Index first, double* memory) {
   const Index lanes = static_cast<Index>(hn::Lanes(D()));
   const auto transpose = [&](const double* column) {

@@ -21,7 +21,7 @@ struct Ending {
   V cost;                            // sum rho, zero for zero residuals
 };
 
-/// An absent transition must not count. Its residual is zero: rho = 0, slope and omega 1.
+/// An absent transition must not count. Its residual is set to zero; then rho = 0, and slope and omega are 1.
 template <int Q, class LossT>
 HWY_NOINLINE Ending residual_sums(const View& view, const LossT& loss, const V (&theta)[Q]) {
   Ending e{zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero()};
@@ -56,7 +56,7 @@ HWY_INLINE V data_parameters(const Settings& settings, const Surroundings<Q>& ar
   return f;
 }
 
-/// The `model` covariance of ident/fit/covariance.hpp with Huber's correction K; `weighed` is its weighed_information.
+/// The `model` covariance of ident/fit/covariance.hpp with Huber's correction K. `weighed` is its weighed_information.
 template <int Q>
 HWY_NOINLINE Symmetric<Q> model_covariance(const Settings& settings, const Start<Q>& start, const Ending& e, V f,
                                            V& weighed) {

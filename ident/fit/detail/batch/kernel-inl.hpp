@@ -62,7 +62,7 @@ HWY_INLINE void describe(const Settings& settings, const View& view, const LossT
     const V sd = splat(settings.prior ? settings.prior_sd[j] : std::numeric_limits<double>::quiet_NaN());
     fit.information[j] = hn::Sub(splat(1.0), hn::Div(fit.covariance.a[at(j, j)], hn::Mul(sd, sd)));
   }
-  // otherwise nothing is known of theta
+  // otherwise the data contain no information about theta
   if (!settings.prior) fit.reached = hn::And(fit.reached, hn::Gt(e.slope, zero()));
 }
 

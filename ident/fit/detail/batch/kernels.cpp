@@ -11,8 +11,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 
-/// Common shapes and losses have kernels of their own. One-lane kernels, which only processors without AVX2 run, and
-/// all other shapes share a kernel per shape.
+/// Common shapes and losses have their own kernels. All other shapes share one kernel per shape. One-lane kernels,
+/// which only processors without AVX2 run, share it, too.
 template <int Q>
 Kernel kernel_of(Loss loss) {
   if constexpr (Q >= 2 && Q <= 4 && HWY_TARGET != HWY_SCALAR) {

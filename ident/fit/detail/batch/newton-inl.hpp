@@ -21,18 +21,18 @@ namespace hn = hwy::HWY_NAMESPACE;
 inline constexpr double stationary_square = stationary_gradient * stationary_gradient;
 /// Gains below this share of sum y^2 are rounding error.
 inline constexpr double rounding_square = 1e-30;
-/// Newton steps need a second derivative whose pivots exceed this share of the regressors' own.
+/// Newton steps need a second derivative whose pivots exceed this share of those of the regressors.
 inline constexpr double least_curvature = 1e-8;
 /// Reweighted steps need a Gram matrix whose pivots exceed this share.
 inline constexpr double least_weight = 1e-12;
-/// Share of the regressors' own second derivative that is added to one that is too weak. If all samples of a direction
-/// are outliers, its steps are long; steps that are too long are halved.
+/// If a second derivative is too weak, this share of the regressors' own second derivative is added. If all samples of
+/// a direction are outliers, its steps are long. Steps that are too long are halved.
 inline constexpr double curvature_share = 0.01;
 /// Largest relative increase of the objective that counts as rounding.
 inline constexpr double cost_rounding = 1e-12;
 inline constexpr int max_halvings = 40;
 
-/// Inputs of a search besides samples and loss.
+/// Inputs of a search, in addition to samples and loss.
 template <int Q>
 struct Surroundings {
   Symmetric<Q> gram;  // X'X + P, the second derivative if every sample keeps full weight
@@ -72,8 +72,8 @@ HWY_INLINE V magnitude(const Symmetric<Q>& gram, V square_sum, const V (&theta)[
   return sum;
 }
 
-/// A step for the lanes in `weak`, whose second derivative is not safely positive. First it adds a share of the
-/// regressors' own second derivative. If the sum is still not positive, it takes the step of reweighted least squares,
+/// A step for the lanes in `weak`, whose second derivative is not safely positive. First adds a share of the
+/// regressors' own second derivative. If the sum is still not positive, takes the step of reweighted least squares,
 /// which cannot increase these losses. Returns the lanes that have a step.
 template <int Q, class LossT>
 HWY_NOINLINE M cautious_step(const View& view, const LossT& loss, const Surroundings<Q>& around, const V (&theta)[Q],
@@ -95,7 +95,7 @@ HWY_NOINLINE M cautious_step(const View& view, const LossT& loss, const Surround
   return hn::Or(strong, hn::And(weak, g.ok));
 }
 
-/// The Newton step of the lanes in `wanted`. Returns the lanes that have one.
+/// The Newton step of the lanes in `wanted`. Returns the lanes that have a step.
 template <int Q, class LossT>
 HWY_INLINE M next_step(const View& view, const LossT& loss, const Surroundings<Q>& around, const V (&theta)[Q],
                        const Sums<Q>& s, M wanted, V (&step)[Q]) {
@@ -111,7 +111,7 @@ HWY_INLINE M next_step(const View& view, const LossT& loss, const Surroundings<Q
   }
 }
 
-/// Newton's method with the exact second derivative from search.theta; steps are halved until the objective does not
+/// Newton's method with the exact second derivative, from search.theta. Steps are halved until the objective does not
 /// increase. Returns the lanes of `live` that reached a stationary point.
 template <int Q, class LossT>
 HWY_NOINLINE M minimise(const View& view, const LossT& loss, const Surroundings<Q>& around, M live, Search<Q>& search) {

@@ -33,7 +33,7 @@ struct Settings {
   double loss_scale = huber_tuning;   ///< c in units of sigma
   double huber_scale = huber_tuning;  ///< Huber threshold of the first stage; non-convex losses start from its optimum
   double consistency = 1.0;           ///< gaussian_consistency of the loss
-  bool own_scale = true;              ///< whether sigma is each window's own; else Chunk::sigma
+  bool own_scale = true;              ///< whether each window has its own sigma; else Chunk::sigma is used
   double floor = 0.0;                 ///< smallest sigma
   bool prior = false;
   double prior_mean[max_regressors] = {};
@@ -50,15 +50,16 @@ struct Chunk {
   Index windows = 0;
   const double* regressors[max_regressors] = {};
   const double* increments = nullptr;
-  const double* present =
-      nullptr;         ///< 1 per transition, or 0 if left out (its regressors and increment are then 0); may be null
+  const double* present = nullptr;  ///< 1 per transition, or 0 for an excluded transition (its regressors and increment
+                                    ///< are then 0); may be null
   double sigma = 1.0;  ///< sigma of windows without their own scale
 };
 
 /// How the solver ended for a window. All but `solved` are passed on to Ceres.
 enum class Verdict : std::uint8_t { solved, ill_conditioned, rank_deficient, too_few_samples, not_converged, failed };
 
-/// Memory for results: one column per window of the chunk, laid out as in WindowFits. Null: not computed.
+/// Memory for results: one column per window of the chunk, with the layout of WindowFits. A null pointer means that the
+/// result is not computed.
 struct Output {
   Verdict* verdict = nullptr;
   double* theta = nullptr;                ///< p

@@ -14,7 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A regressor depends on the previous ones if this share of its norm, or less, is left after projecting them out.
+/// Regressors are orthogonalised against the previous ones. A regressor counts as dependent if at most this share of
+/// its norm remains.
 inline constexpr double dependent = 1e-9;
 /// Singular values between `dependent` and this share of the largest need the singular value decomposition of the slow
 /// path, because excitation_tolerance lies in that range.
@@ -29,7 +30,7 @@ struct Start {
   V theta[Q];             // least squares; undefined if rank deficient
   V square_sum, count, rank, condition, sigma;
   M clear;      // lanes whose rank is certain
-  M deficient;  // those of them that are rank deficient
+  M deficient;  // lanes of `certain` that are rank deficient
 };
 
 /// Orthogonalises the columns of regressors and increments one after the other: modified Gram-Schmidt with the

@@ -12,7 +12,7 @@ namespace modebank {
 
 namespace {
 
-/// Longest window of the batch solver. Longer ones exceed a core's cache.
+/// Longest window of the batch solver. Longer windows exceed the cache of a core.
 constexpr Index longest_window = 16384;
 
 /// Comparators of Batcher's odd-even merge sort (1968) for n rows.
@@ -44,13 +44,13 @@ std::vector<batch::Comparator> median_network(const std::vector<batch::Comparato
 }
 
 batch::Kernel choose_kernel(const batch::Settings& settings) {
-  // Until the target is set, Highway's pointers go through a function that detects the processor on every call.
+  // Sets the target. Until then Highway's pointers go through a function that detects the processor on every call.
   hwy::ChosenTarget& target = hwy::GetChosenTarget();
   if (!target.IsInitialized()) target.Update(hwy::SupportedTargets());
   return batch::find_kernel(settings.loss, settings.regressors);
 }
 
-/// Whether all rows are finite: the sum of the values times zero is NaN otherwise.
+/// Whether all rows are finite. The sum of the values times zero is NaN if one is not.
 bool finite(const Transitions& t, Index rows) {
   double sum = (t.increments.col(0).head(rows) * 0.0).sum();
   for (Index j = 0; j < t.regressors.cols(); ++j) sum += (t.regressors.col(j).head(rows) * 0.0).sum();

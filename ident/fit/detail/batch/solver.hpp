@@ -28,10 +28,10 @@ class BatchWorkspace {
 
 /// Fits consecutive windows of models that are linear in their parameters (one state), a vector of windows at a time.
 /// Objective and definitions are those of fit_window. Newton's method starts from each window's (posterior) least
-/// squares; for non-convex losses from its Huber optimum. A window's result depends on that window alone, to the bit,
-/// not on the chunk.
-/// The solver passes some windows back to the caller, with a verdict: too few samples, condition above 1e5, rank
-/// deficient without a prior, or no convergence. Convergence is a gradient of 1e-10 |psi| in orthonormal coordinates.
+/// squares; for non-convex losses it starts from the Huber optimum. A window's result depends on that window alone, to
+/// the bit. The solver passes some windows back to the caller, with a verdict: too few samples, condition above 1e5,
+/// rank deficient without a prior, or no convergence. Convergence is a gradient of 1e-10 |psi| in orthonormal
+/// coordinates.
 class BatchSolver {
  public:
   /// Whether kernels exist for such models and windows.

@@ -15,7 +15,8 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// If every pivot of the normal equations exceeds this share of its diagonal, they lose at most four of sixteen digits.
+/// If every pivot of the normal equations exceeds this share of its diagonal, the equations lose at most four of
+/// sixteen digits.
 inline constexpr double safe_pivot = 1e-4;
 
 HWY_INLINE V sample_count(const View& view) {
@@ -44,7 +45,7 @@ HWY_INLINE Extremes correlation_extremes(const Symmetric<3>& C, V determinant) {
   const V r = hn::IfThenElseZero(hn::Gt(cube, zero()), hn::Div(product, cube));
   const V angle = hn::Mul(splat(1.0 / 3.0), hn::Acos(D(), hn::Max(hn::Min(r, one), hn::Neg(one))));
   const V largest = hn::MulAdd(hn::Add(p, p), hn::Cos(D(), angle), one);
-  // sum of the other two; their product
+  // sum of the other two eigenvalues; product of the other two
   const V sum = hn::Sub(splat(3.0), largest), rest = hn::Div(determinant, largest);
   const V root = hn::Sqrt(hn::Max(hn::NegMulAdd(splat(4.0), rest, hn::Mul(sum, sum)), zero()));
   return {hn::Div(hn::Add(rest, rest), hn::Add(sum, root)), largest};
@@ -95,7 +96,7 @@ HWY_NOINLINE void take(M lanes, const Start<Q>& other, Start<Q>& start) {
   start.deficient = hn::Or(hn::And(lanes, other.deficient), hn::AndNot(lanes, start.deficient));
 }
 
-/// Least squares, rank and scale. Well-conditioned lanes (the usual case) use normal equations, others
+/// Least squares, rank and scale. Well-conditioned lanes (the usual case) use normal equations. The other lanes use
 /// orthogonalisation.
 template <int Q>
 HWY_NOINLINE Start<Q> prepare(const Settings& settings, const View& view, M wanted, double sigma, double* scratch) {

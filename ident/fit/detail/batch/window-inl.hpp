@@ -61,7 +61,7 @@ HWY_INLINE Symmetric<Q> zero_matrix() {
   return m;
 }
 
-/// The Hessian of a quadratic loss is constant, so the caller computes it.
+/// The Hessian of a quadratic loss is constant. The caller computes it.
 template <int Q, class LossT>
 HWY_INLINE Sums<Q> evaluate(const View& view, const LossT& loss, const V (&theta)[Q]) {
   Sums<Q> s{{}, zero_matrix<Q>(), zero(), zero()};
@@ -118,7 +118,7 @@ HWY_INLINE NormalEquations<Q> normal_equations(const View& view) {
   return n;
 }
 
-/// Median of the first `count` sorted rows, per lane; for an even count the mean of the middle two.
+/// Median of the first `count` sorted rows, per lane. For an even count it is the mean of the middle two.
 HWY_INLINE V middle(const double* ordered, Index rows, V count, bool all_present) {
   const auto load = [&](Index i) HWY_ATTR { return hn::Load(D(), ordered + i * hn::Lanes(D())); };
   if (all_present)

@@ -14,18 +14,18 @@ namespace modebank {
 /// The batch solver on ranges of a recording's windows. Thread-safe.
 class BatchWindows {
  public:
-  /// Largest range: long enough to pay for staging, short enough for a core's second-level cache.
+  /// Largest range. It is long enough to pay for staging and short enough for a core's second-level cache.
   static constexpr Index longest_range = 1024;
 
-  /// The solver for `count` windows; null if Ceres solves them (WindowSolver). `prior` may be null. Throws
+  /// The solver for `count` windows; null if the windows are left to Ceres (WindowSolver). `prior` may be null. Throws
   /// ConfigurationError for WindowSolver::batch without a matching kernel.
   static std::unique_ptr<BatchWindows> make(const LinearWindows& windows, Index count, const ParameterPrior* prior);
 
   /// Method and tolerance in words, for reports.
   static std::string method();
 
-  /// Solves a range of at most longest_range windows into `out`. The verdicts belong to the calling thread and are
-  /// valid until its next call.
+  /// Solves a range of at most longest_range windows and writes to `out`. The verdicts belong to the calling thread and
+  /// are valid until its next call.
   const std::vector<batch::Verdict>& solve(const WindowPlan::Range& range, batch::Output out);
 
  private:

@@ -7,12 +7,12 @@
 
 namespace modebank {
 
-/// A number with its derivatives by D variables. Arithmetic on such numbers is forward automatic differentiation
-/// (Griewank & Walther 2008, "Evaluating Derivatives", chapter 3). A double converts to a constant.
+/// A number with its derivatives with respect to D variables. Arithmetic on such numbers is forward automatic
+/// differentiation (Griewank & Walther 2008, "Evaluating Derivatives", chapter 3). A double converts to a constant.
 template <int D>
 struct Dual {
   double value = 0.0;             ///< value of the number
-  std::array<double, D> slope{};  ///< its derivatives by the variables
+  std::array<double, D> slope{};  ///< derivatives with respect to the variables
 
   /// Zero, a constant.
   Dual() = default;
@@ -21,13 +21,13 @@ struct Dual {
   /// Variable number `variable` (from 0) with value `at`.
   Dual(double at, int variable) : value(at) { slope[static_cast<std::size_t>(variable)] = 1.0; }
 
-  /// f(a): its value, and its derivative by a.
+  /// f(a), from its value and its derivative with respect to a.
   static Dual of(double f, double by_a, const Dual& a) {
     Dual result(f);
     for (std::size_t i = 0; i < D; ++i) result.slope[i] = by_a * a.slope[i];
     return result;
   }
-  /// f(a, b): its value, and its derivatives by a and b.
+  /// f(a, b), from its value and its derivatives with respect to a and b.
   static Dual of(double f, double by_a, const Dual& a, double by_b, const Dual& b) {
     Dual result(f);
     for (std::size_t i = 0; i < D; ++i) result.slope[i] = by_a * a.slope[i] + by_b * b.slope[i];
@@ -100,7 +100,7 @@ struct Dual {
     const double f = std::hypot(a.value, b.value);
     return of(f, a.value / f, a, b.value / f, b);
   }
-  /// a to the power b. The derivative by b is set to zero unless a is positive.
+  /// a to the power b. The derivative with respect to b is set to zero unless a is positive.
   friend Dual pow(const Dual& a, const Dual& b) {
     const double f = std::pow(a.value, b.value);
     const double by_b = a.value > 0.0 ? f * std::log(a.value) : 0.0;  // otherwise b is a whole constant exponent

@@ -4,7 +4,8 @@
 
 namespace modebank {
 
-/// An error of the program's user; exit status 2. Functions of the C++ library throw std::invalid_argument instead.
+/// An error of the program's user; the program exits with status 2. Functions of the C++ library throw
+/// std::invalid_argument instead.
 struct ConfigurationError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

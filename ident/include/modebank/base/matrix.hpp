@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// A column-major matrix of doubles, the type of the library's public API. It holds only a std::vector, so library and
+/// A column-major matrix of doubles, the type of the library's public API. It holds only a std::vector. So library and
 /// program may be compiled with different settings and free each other's matrices. modebank/base/eigen.hpp gives Eigen
 /// views without a copy.
 struct Matrix {
@@ -19,7 +19,7 @@ struct Matrix {
   /// A matrix of the given size with every element `value`.
   Matrix(std::ptrdiff_t row_count, std::ptrdiff_t column_count, double value = 0.0)
       : rows(row_count), cols(column_count), values(static_cast<std::size_t>(row_count * column_count), value) {}
-  /// Row by row: {{a, b}, {c, d}}. Shorter rows are filled with zeros.
+  /// Elements row by row: {{a, b}, {c, d}}. Shorter rows are filled with zeros.
   Matrix(std::initializer_list<std::initializer_list<double>> rows_of_numbers) {
     for (const auto& row : rows_of_numbers)
       if (static_cast<std::ptrdiff_t>(row.size()) > cols) cols = static_cast<std::ptrdiff_t>(row.size());

@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// Names of an enumeration's values for users, in the order of the values (from 0). Each enumeration specialises it at
-/// its definition; configuration, help text and archive use this one list.
+/// Names of an enumeration's values for users, in the order of the values (from 0). Each enumeration specialises this
+/// template at its definition. Configuration, help text and archive all use this list.
 template <class E>
 struct EnumNames;
 

@@ -13,14 +13,14 @@
 
 namespace modebank {
 
-/// A MotionModel of N states, M inputs and P parameters from an equation written once for any scalar type, as for
-/// Ceres' AutoDiffCostFunction. `Functor` has `template <class T> void operator()(const T* theta, const T* x, const T*
-/// u, double dt_s, T* next) const`, which fills `next` (N). It calls exp and other functions unqualified, after `using
+/// A MotionModel of N states, M inputs and P parameters from one equation for any scalar type, like in Ceres'
+/// AutoDiffCostFunction. `Functor` has `template <class T> void operator()(const T* theta, const T* x, const T* u,
+/// double dt_s, T* next) const`, which fills `next` (N). It calls exp and other functions unqualified, after `using
 /// std::exp`. Derivatives come from Dual numbers.
 template <class Functor, int N, int M, int P>
 class AutoDiffMotionModel final : public MotionModel {
  public:
-  /// `name`: model name in results. `parameters`: P entries, else std::invalid_argument.
+  /// `name`: model name in results. `parameters`: P entries; throws std::invalid_argument for another number.
   AutoDiffMotionModel(Functor functor, std::string name, std::vector<ModelParameter> parameters)
       : functor_(std::move(functor)), name_(std::move(name)), parameters_(std::move(parameters)) {
     if (parameters_.size() != P)
@@ -48,7 +48,7 @@ class AutoDiffMotionModel final : public MotionModel {
       functor_(theta, x, u, dt_s, next);
   }
 
-  /// Residuals of many transitions. Avoids a virtual call and the conversion of theta to dual numbers per transition.
+  /// Residuals of many transitions. Avoids one virtual call and one conversion of theta to dual numbers per transition.
   void residuals(const double* theta, const Transition* transitions, std::ptrdiff_t count, double* r,
                  double* by_theta) const override {
     if (by_theta) return residuals_with_derivatives(theta, transitions, count, r, by_theta);
@@ -89,7 +89,8 @@ class AutoDiffMotionModel final : public MotionModel {
     }
   }
 
-  /// Values as dual numbers; the first `Directions` entries of theta, x and u (concatenated) are differentiated.
+  /// Values as dual numbers. The derivatives are with respect to the first `Directions` entries of theta, x and u
+  /// (concatenated).
   template <int Directions>
   void differentiate(const double* theta, const double* x, const double* u, double dt_s, double* next,
                      std::array<double*, 3> jacobians) const {

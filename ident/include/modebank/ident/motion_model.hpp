@@ -17,12 +17,12 @@ struct ModelParameter {
 };
 
 /// A motion model with p parameters: a one-step prediction x[k+1] = f(theta, x[k], u[k], dt) of n states, with m inputs
-/// held over the step. Immutable, shared by threads. Users may add their own: an AutoDiffMotionModel
+/// held over the step. Immutable and shared by threads. Users may add motion models: an AutoDiffMotionModel
 /// (auto_diff_motion_model.hpp) from one equation, or a derived class with hand-written derivatives.
 class MotionModel {
  public:
   virtual ~MotionModel() = default;
-  /// Model name in results; must differ from modebank's own names.
+  /// Model name in results. It must differ from modebank's own names.
   virtual const std::string& name() const = 0;
   /// Number of states n.
   virtual std::ptrdiff_t states() const = 0;
@@ -43,10 +43,10 @@ class MotionModel {
     const double* x;     ///< n numbers
     const double* u;     ///< m numbers
     const double* next;  ///< n numbers, the next state
-    double dt_s;         ///< its duration [s]
+    double dt_s;         ///< duration of the transition [s]
   };
-  /// Residuals next - f(theta, x, u, dt) of `count` transitions one after the other. Also, if not null, the
-  /// predictions' derivatives by theta (count n x p, row-major).
+  /// Residuals next - f(theta, x, u, dt) of `count` transitions one after the other. Also, if not null, the derivatives
+  /// of the predictions with respect to theta (count n x p, row-major).
   virtual void residuals(const double* theta, const Transition* transitions, std::ptrdiff_t count, double* r,
                          double* by_theta) const {
     const std::ptrdiff_t n = states(), p = parameter_count();

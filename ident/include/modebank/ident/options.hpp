@@ -9,12 +9,12 @@
 
 namespace modebank {
 
-/// How a window's fit ended; the numbers are those of /windows/status in the archive. converged: the search reached its
+/// How a window's fit ended. The numbers are those of /windows/status in the archive. converged: the search reached its
 /// tolerance. iteration_limit: the search stopped at max_iterations. rank_deficient: the window's data do not determine
-/// all parameters, however the search ended. failed: without estimate.
+/// all parameters, however the search ended. failed: there is no estimate.
 enum class FitStatus : int { converged = 0, iteration_limit = 1, rank_deficient = 2, failed = 3 };
 
-/// Robust losses rho(s) of s = |r|^2 as Ceres defines them.
+/// Robust losses rho(s) of s = |r|^2, as defined by Ceres.
 enum class Loss { trivial, huber, cauchy, softlone, tukey, arctan };
 
 template <>
@@ -30,7 +30,7 @@ struct EnumNames<CovarianceKind> {
   static constexpr Names<2> values{"model", "sandwich"};
 };
 
-/// Source of a window's residual scale sigma: the window's own residuals, those of its run, or a given number.
+/// Source of a window's residual scale sigma: the residuals of the window, the residuals of its run, or a given number.
 enum class ScaleSource { window, run, fixed };
 
 template <>
@@ -38,7 +38,7 @@ struct EnumNames<ScaleSource> {
   static constexpr Names<3> values{"window", "run", "fixed"};
 };
 
-/// Gaussian prior on a window's parameters: none, or centred on the global model of all training runs.
+/// Gaussian prior on a window's parameters: none, or one centred on the global model of all training runs.
 enum class Prior { none, global };
 
 template <>
@@ -46,9 +46,9 @@ struct EnumNames<Prior> {
   static constexpr Names<2> values{"none", "global"};
 };
 
-/// Solver of the window fits. `ceres`: one window at a time. `batch`: many linear windows of one state at a time, with
-/// Ceres for windows that it passes on. `automatic`: Ceres for up to most_ceres_windows windows; for more, the batch
-/// solver wherever it has kernels. The choice depends on the runs and the options alone.
+/// Solver of the window fits. `ceres`: one window at a time. `batch`: many linear windows of one state at a time; Ceres
+/// fits windows that the batch solver passes on. `automatic`: Ceres for up to most_ceres_windows windows; for more, the
+/// batch solver if it has kernels. The choice depends on the runs and the options alone.
 enum class WindowSolver { ceres, batch, automatic };
 
 template <>
@@ -56,7 +56,7 @@ struct EnumNames<WindowSolver> {
   static constexpr Names<3> values{"ceres", "batch", "auto"};
 };
 
-/// Ceres solves this many windows in about 1.4 s of one core, including the fits for the default prior. For more
+/// Ceres solves this number of windows in about 1.4 s of one core, including the fits for the default prior. For more
 /// windows the batch solver is ten times as fast.
 inline constexpr std::ptrdiff_t most_ceres_windows = 20000;
 
@@ -70,13 +70,13 @@ struct FitOptions {
   std::ptrdiff_t length = 25;      ///< transitions per window
   std::ptrdiff_t step = 1;         ///< transitions between window starts
   Loss loss = Loss::huber;         ///< loss of a sample's residual
-  double loss_scale = 0.0;         ///< robust loss threshold in units of sigma; 0: 95 % efficiency at the normal
+  double loss_scale = 0.0;         ///< robust loss threshold in units of sigma; 0 gives 95 % efficiency at the normal
                                    ///< distribution
   ScaleSource scale = ScaleSource::window;  ///< source of sigma
   double sigma = 0.0;                       ///< residual standard deviation for ScaleSource::fixed [state unit], > 0
   Prior prior = Prior::global;              ///< prior on a window's parameters
-  std::vector<double> prior_sd;  ///< p standard deviations; one value: for all; empty: 3 x the standard deviation of
-                                 ///< full-rank fits
+  std::vector<double> prior_sd;  ///< p standard deviations; a single value holds for all; if empty, 3 x the standard
+                                 ///< deviation of full-rank fits
   bool intercept = false;        ///< whether linear models have a constant term c
   CovarianceKind covariance = CovarianceKind::model;  ///< reported covariance of theta
   int max_iterations = 100;                           ///< iteration limit of the solver

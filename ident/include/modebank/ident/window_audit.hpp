@@ -6,21 +6,22 @@
 namespace modebank {
 
 /// Solvers and tolerances of the windows, and a comparison of a random sample of batch solutions with those of Ceres
-/// alone. Ceres runs to tolerances of 1e-16 there. Both are judged by the objective and its gradient.
+/// alone. In the comparison Ceres runs to tolerances of 1e-16. Both solutions are judged by the objective and its
+/// gradient.
 struct WindowAudit {
   static constexpr double tolerance = 1e-9;  ///< relative cost difference above which a solution is not a minimum
   static constexpr double gradient_tolerance = 1e-8;  ///< scaled gradient above which a solution is not a minimum, in
                                                       ///< units of the residuals' influence
   std::ptrdiff_t batch = 0;                           ///< windows that the batch solver solved
-  std::ptrdiff_t ceres = 0;           ///< windows solved by `ceres_method`; windows in neither count are unsolved
+  std::ptrdiff_t ceres = 0;           ///< windows solved by `ceres_method`; windows in neither count have no solution
   std::string batch_method;           ///< description; empty without a batch solver
   std::string ceres_method;           ///< description
-  std::ptrdiff_t checked = 0;         ///< windows of the batch solver that Ceres alone solved again
+  std::ptrdiff_t checked = 0;         ///< windows of the batch solver that were solved again by Ceres alone
   double cost_difference = 0.0;       ///< largest relative difference in cost
   double gradient = 0.0;              ///< largest scaled gradient of the batch solver's solutions
   double ceres_gradient = 0.0;        ///< largest scaled gradient of Ceres' solutions
   double parameter_difference = 0.0;  ///< largest difference of a parameter, in standard errors; for information only
-  std::ptrdiff_t replaced = 0;        ///< checked windows above a tolerance, which Ceres then solved
+  std::ptrdiff_t replaced = 0;        ///< checked windows above a tolerance; Ceres then solved these
   std::ptrdiff_t lower = 0;           ///< checked windows whose cost was below that of Ceres by more than the tolerance
                                       ///< (losses with several minima)
 };

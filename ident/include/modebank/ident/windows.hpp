@@ -11,7 +11,7 @@
 
 namespace modebank::ident {
 
-/// Local models: the fits of M windows of n states with p parameters each. One window per element or column.
+/// Local models: the fits of M windows of n states with p parameters each. An element or column belongs to one window.
 struct Windows {
   std::vector<std::string> parameter_names;  ///< p; linear models: A (row by row), B, c of each state in turn
   std::vector<std::ptrdiff_t> run;           ///< M, position in RecordedRuns::runs
@@ -20,26 +20,25 @@ struct Windows {
   Matrix theta;                              ///< p x M
   Matrix covariance;                         ///< p*p x M, covariance of theta; NaN if rank deficient without a prior
   Matrix residual_sd;                        ///< n x M, standard deviation of the one-step residuals [state unit]
-  std::vector<int> rank;                     ///< M, rank of theta: number of directions that the window's data
-                                             ///< determine
-  std::vector<FitStatus> status;             ///< M, how the fit ended
-  std::vector<WindowSolver> solver;          ///< M, solver of the window: ceres or batch
-  std::vector<double> prior_sd;              ///< p, the prior's standard deviations; empty without a prior
-  std::vector<double> global_theta;          ///< p, least squares over all training runs; the prior's mean
-  WindowAudit audit;                         ///< number of windows per solver, and its tolerance
+  std::vector<int> rank;             ///< M, rank of theta: number of directions that the window's data determine
+  std::vector<FitStatus> status;     ///< M, how the fit ended
+  std::vector<WindowSolver> solver;  ///< M, solver of the window: ceres or batch
+  std::vector<double> prior_sd;      ///< p, the prior's standard deviations; empty without a prior
+  std::vector<double> global_theta;  ///< p, least squares over all training runs; the prior's mean
+  WindowAudit audit;                 ///< number of windows per solver, and its tolerance
 };
 
 /// The names that FitOptions::model accepts: linear, varx and modebank's motion models.
 std::vector<std::string> model_names();
 
-/// Cuts and fits every window of the runs that are not held out, on all cores. The results equal those of `modebank
-/// identify` for any number of threads. Throws std::invalid_argument for an option out of range ("length = 0 is out of
-/// range: at least 1") and for runs whose sizes do not fit. Throws DataError (modebank/base/error.hpp) if no run is
-/// long enough for a window.
+/// Cuts and fits every window of the training runs, on all cores. The results equal those of `modebank identify` for
+/// any number of threads. Throws std::invalid_argument for an option out of range ("length = 0 is out of range: at
+/// least 1") and for runs whose sizes do not fit. Throws DataError (modebank/base/error.hpp) if no run is long enough
+/// for a window.
 Windows fit_windows(const RecordedRuns& runs, const FitOptions& options = {});
 
-/// fit_windows for the caller's own motion model. options.model is ignored; the batch solver is not used. `model` is
-/// called from several threads.
+/// fit_windows for the caller's own motion model. options.model is ignored, and the batch solver is not used. Several
+/// threads call `model`.
 Windows fit_windows(const RecordedRuns& runs, const FitOptions& options, const MotionModel& model);
 
 }  // namespace modebank::ident

@@ -22,13 +22,13 @@ struct EnumNames<CandidateStatus> {
 struct Candidate {
   std::ptrdiff_t components = 0;                     ///< K, number of components
   CovarianceType covariance = CovarianceType::full;  ///< shape of the components' covariances
-  double log_likelihood = 0.0;                       ///< unscaled, physical units [nats]
+  double log_likelihood = 0.0;                       ///< [nats], for the features in physical units, before scaling
   std::ptrdiff_t parameters = 0;                     ///< q, number of free parameters
   double effective_samples = 0.0;                    ///< N_eff
-  double bic = 0.0;                                  ///< Schwarz 1978, with N_eff
+  double bic = 0.0;                                  ///< BIC (Schwarz 1978), with N_eff
   double aic = 0.0;                                  ///< Akaike 1974
-  double icl = 0.0;                                  ///< Biernacki, Celeux & Govaert 2000
-  double heldout = 0.0;       ///< mean log density per point of left-out runs; NaN if not computed
+  double icl = 0.0;                                  ///< ICL (Biernacki, Celeux & Govaert 2000)
+  double heldout = 0.0;       ///< mean log density per point of left-out runs; NaN if it was not computed
   int iterations = 0;         ///< iterations of the kept restart
   bool converged = false;     ///< whether EM converged within the iteration limit
   int agreeing_restarts = 0;  ///< number of restarts that reached the best likelihood by themselves, before crossing
@@ -37,9 +37,9 @@ struct Candidate {
   int restarts = 0;                                             ///< number of independent starts
   bool floor_active = false;  ///< whether the covariance floor acts on any component: a cluster without extent
   CandidateStatus status = CandidateStatus::fitted;  ///< whether it could be fitted
-  /// Standard error of the difference between this `heldout` and the selected candidate's; NaN if there is none.
+  /// Standard error of the difference between this `heldout` and that of the selected candidate; NaN if it is unknown.
   double heldout_error = std::numeric_limits<double>::quiet_NaN();
-  std::string failed;  ///< why it could not be fitted or has no held-out score; empty: no failure
+  std::string failed;  ///< reason why it could not be fitted or has no held-out score; empty without a failure
 };
 
 }  // namespace modebank

@@ -12,13 +12,13 @@ namespace modebank::mixture {
 
 /// N points of F features for clustering, with their weights, errors and runs.
 struct Points {
-  Matrix values;                     ///< F x N, finite, one point per column, as ident::Windows::theta has them
-  std::vector<double> weights;       ///< N, nonnegative; empty: all one
-  Matrix errors;                     ///< F*F x N, each column the covariance of that point's error; empty: no errors
+  Matrix values;                ///< F x N, finite, one point per column, the layout of ident::Windows::theta
+  std::vector<double> weights;  ///< N, nonnegative; if empty, all weights are one
+  Matrix errors;                ///< F*F x N, each column the covariance of that point's error; empty without errors
   std::vector<std::ptrdiff_t> runs;  ///< N, run of each point; a run is left out as a whole; may be empty
-  double effective_samples = 0.0;    ///< number of independent samples that the points are worth; 0: all are
-                                     ///< independent. Overlapping windows share samples: N step / length
-  std::vector<double> typical_error = {};  ///< F, standard deviation of a typical point's error; empty or 0: unknown
+  double effective_samples = 0.0;  ///< effective number of independent samples of the points; 0 if all are independent.
+                                   ///< Overlapping windows share samples: N step / length
+  std::vector<double> typical_error = {};  ///< F, standard deviation of a typical point's error; empty or 0 if unknown
 };
 
 /// Weighted sum of K Gaussians over F features, in the points' units, with an optional uniform component.
@@ -27,8 +27,8 @@ struct Mixture {
   Matrix means;                     ///< F x K
   std::vector<Matrix> covariances;  ///< K of F x F
   double noise_weight = 0.0;        ///< weight of the uniform component
-  std::vector<double> noise_lower;  ///< F, lower corner of its box; empty: no uniform component
-  std::vector<double> noise_upper;  ///< F, upper corner of its box
+  std::vector<double> noise_lower;  ///< F, lower corner of the component's box; empty without a uniform component
+  std::vector<double> noise_upper;  ///< F, upper corner of the component's box
 };
 
 /// The chosen mixture and the candidates.
@@ -47,7 +47,7 @@ Clusters select(const Points& points, const SelectionOptions& options = {}, std:
 /// probability of noise. Throws std::invalid_argument for sizes that do not fit and for an invalid covariance.
 Matrix responsibilities(const Mixture& mixture, const Matrix& points);
 
-/// Log density at other points (F x N), N values [nats]. Throws as `responsibilities` does.
+/// Log density at other points (F x N), N values [nats]. Throws the errors of `responsibilities`.
 std::vector<double> log_density(const Mixture& mixture, const Matrix& points);
 
 }  // namespace modebank::mixture

@@ -20,15 +20,16 @@ struct EnumNames<CovarianceType> {
 struct EmOptions {
   CovarianceType covariance = CovarianceType::full;  ///< shape of all components
   int restarts = 5;                                  ///< number of independent random starts, >= 1
-  /// Number of split-and-merge moves that each restart tries from its optimum (Ueda et al. 2000). 0: no moves, and
-  /// restarts are not crossed.
+  /// Number of split-and-merge moves that each restart tries from its optimum (Ueda et al. 2000). With 0 there are no
+  /// moves, and restarts are not crossed.
   int split_merge = 5;
-  double tolerance = 1e-7;    ///< stops when the mean log-likelihood per unit weight gains less; negative: never
+  double tolerance = 1e-7;    ///< stopping tolerance: gain of the mean log-likelihood per unit weight; a negative value
+                              ///< never stops
   int max_iterations = 1000;  ///< largest number of M steps, >= 0
-  /// Smallest variance of a component in any feature, as a share of the error variance of the median window. Where
-  /// errors are unknown: a share of the data's variance without far outliers. >= 1e-10
+  /// Smallest variance of a component in any feature, as a share of the error variance of the median window. If errors
+  /// are unknown, it is a share of the data's variance without far outliers. >= 1e-10
   double covariance_floor = 1e-6;
-  bool noise_component = false;  ///< adds a uniform component over the points' bounding box
+  bool noise_component = false;  ///< whether to add a uniform component over the points' bounding box
 };
 
 /// Rule that chooses the number of components: an information criterion, or the log density of left-out runs. bic_naive
@@ -40,12 +41,13 @@ struct EnumNames<Criterion> {
   static constexpr Names<4> values{"bic", "icl", "heldout", "bic_naive"};
 };
 
-/// How candidates are fitted and the number of components is chosen. Candidates get a held-out score (several more fits
-/// each) for at most 20,000 points of known runs, or if it is the criterion. Defaults are the recommended method.
+/// How candidates are fitted and the number of components is chosen. A held-out score needs several more fits per
+/// candidate. It is computed for at most 20,000 points of known runs, or if it is the criterion. Defaults are the
+/// recommended method.
 struct SelectionOptions {
   /// Candidate numbers of components, each at least 1.
   std::vector<std::ptrdiff_t> components{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-  Criterion criterion = Criterion::bic;  ///< chooses the number of components
+  Criterion criterion = Criterion::bic;  ///< criterion that chooses the number of components
   EmOptions em;                          ///< how each candidate is fitted
 };
 
@@ -54,9 +56,9 @@ struct SelectionOptions {
 /// to most_features numbers. Above that, one_lag if the model has lags, restricted to the most_features numbers that
 /// vary most beyond their errors.
 ///
-/// Clouds of one-lag fits find the modes best, whatever lags the motion has. Their adjusted Rand index is 0.82 in the
-/// mean over 40 clouds of ten known systems, fitted with four and eight lags (12 to 64 coefficients). All coefficients
-/// reach 0.41, with full and with diagonal covariances (docs/results/mixture.md).
+/// Clouds of one-lag fits find the modes best, for any number of lags in the motion. Their mean adjusted Rand index is
+/// 0.82 over 40 clouds of ten known systems, fitted with four and eight lags (12 to 64 coefficients). With all
+/// coefficients it is 0.41, for full and for diagonal covariances (docs/results/mixture.md).
 enum class FeatureSet { automatic, parameters, parameters_and_noise, one_lag };
 
 template <>
@@ -64,14 +66,14 @@ struct EnumNames<FeatureSet> {
   static constexpr Names<4> values{"auto", "parameters", "parameters+noise", "one_lag"};
 };
 
-/// A full-covariance component has 90 free numbers in twelve features. In 25 features it has 350, more than a few
-/// hundred independent windows determine.
+/// A full-covariance component has 90 free numbers in twelve features. In 25 features it has 350, which is more than a
+/// few hundred independent windows determine.
 inline constexpr std::ptrdiff_t most_features = 12;
 
-/// Which windows are clustered. `automatic`: windows whose data determine all parameters. It means all windows with
-/// error_aware, and where the determined ones hold less than two windows' worth of data per feature (and a prior gives
-/// the others a theta). With a prior, windows left out are assigned to the components afterwards, as far as their data
-/// allow.
+/// Which windows are clustered. `automatic`: windows whose data determine all parameters. In two cases it means all
+/// windows: with error_aware, and if the determined windows hold less than two windows' worth of data per feature (and
+/// a prior gives the others a theta). With a prior, windows that are not clustered are assigned to the components
+/// afterwards, as far as their data allow.
 enum class WindowChoice { automatic, full_rank, all };
 
 template <>
@@ -79,8 +81,9 @@ struct EnumNames<WindowChoice> {
   static constexpr Names<3> values{"automatic", "full_rank", "all"};
 };
 
-/// Treatment of windows that contain a switch of mode. Such windows follow no single model and would claim a component
-/// of their own. `leave_out` removes those that their residuals reveal; `keep` clusters them like the others.
+/// Treatment of windows that contain a switch of mode. Such windows follow no single model and would form a component
+/// of their own. `leave_out` removes those that can be detected from their residuals. `keep` clusters them like the
+/// others.
 enum class WindowsOverSwitch { leave_out, keep };
 
 template <>
@@ -91,8 +94,8 @@ struct EnumNames<WindowsOverSwitch> {
 /// Which windows are clustered, in which features, and how.
 struct ClusterOptions {
   SelectionOptions selection;                                    ///< how the mixture is chosen
-  FeatureSet features = FeatureSet::automatic;                   ///< which numbers of a window are clustered
-  WindowChoice windows = WindowChoice::automatic;                ///< which windows are clustered
+  FeatureSet features = FeatureSet::automatic;                   ///< numbers of a window that are clustered
+  WindowChoice windows = WindowChoice::automatic;                ///< windows that are clustered
   WindowsOverSwitch over_switch = WindowsOverSwitch::leave_out;  ///< treatment of windows that contain a switch
   bool error_aware = false;  ///< components describe the windows without their errors (Bovy, Hogg & Roweis 2011)
 };
