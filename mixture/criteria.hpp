@@ -28,7 +28,7 @@ Eigen::Index best_candidate(const std::vector<Candidate>& candidates, Criterion 
 
 /// Reasons against trusting the selected row, one sentence each. They are: restarts that disagree, the covariance
 /// floor, the edge of the range, fits that did not converge, and another number of components that describes left-out
-/// runs better by more than two standard errors. Disagreement of criteria is no reason, because AIC nearly always
+/// runs better by more than two standard errors. Disagreement of criteria does not count, because AIC nearly always
 /// chooses more components than BIC.
 std::vector<std::string> selection_warnings(const std::vector<Candidate>& candidates);
 

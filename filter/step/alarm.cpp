@@ -25,9 +25,7 @@ const LiveVerdict& LiveJudge::judge(const FilterEstimate& estimate) {
     verdict_.lower(i) = verdict_.predicted(i) - half;
     verdict_.upper(i) = verdict_.predicted(i) + half;
     const double pit = estimate.pit(i);
-    if (pit < alarm_tail || pit > 1.0 - alarm_tail)
-      verdict_.alarm = true;  // false for NaN, which marks a missing
-                              // signal
+    if (pit < alarm_tail || pit > 1.0 - alarm_tail) verdict_.alarm = true;  // false for NaN (a missing signal)
   }
   return verdict_;
 }

@@ -19,7 +19,7 @@ struct BankGradient {
   std::vector<Mode> modes;
   Eigen::MatrixXd R;
   Eigen::MatrixXd transition;
-  Eigen::MatrixXd start_covariance;  ///< derivative with respect to start_moments
+  Eigen::MatrixXd start_covariance;  ///< derivative with respect to the covariance of start_moments
 
   BankGradient& operator+=(const BankGradient& other);
   /// First-order difference of the log-likelihoods of two similar banks. They may differ only in the parts listed

@@ -68,7 +68,7 @@ double price_of_a_parameter(const WhitenedProblem& problem, const RobustTerms& t
     const double square = terms.sample(k, problem.states).squaredNorm();
     psi_square += terms.weight(k) * terms.weight(k) * square;
     const double trace = static_cast<double>(problem.states) * terms.weight(k) + 2.0 * terms.curvature(k) * square;
-    slope += problem.sample_weight(k) * trace;  // smallest mean of the influence function's slope
+    slope += problem.sample_weight(k) * trace;  // trace of the influence function's slope
   }
   return slope > 0.0 ? psi_square / slope : not_a_number;
 }

@@ -28,8 +28,8 @@ constexpr double largest_error = 0.2;        // standard error as a share of the
 
 struct Search {
   double range_s;          // width of the range of lags
-  double time_constant_s;  // largest lag that is searched
-  double drift;            // largest time constant that is searched
+  double time_constant_s;  // largest time constant that is searched
+  double drift;            // largest drift that is searched
 };
 
 bool inside(const LagPoint& p, const Search& search) {

@@ -50,11 +50,8 @@ class TermValues {
  public:
   void evaluate(const MotionTerms& terms, const Eigen::Ref<const Eigen::VectorXd>& regressors);
   const Eigen::VectorXd& value() const { return value_; }  ///< T
-  const Eigen::MatrixXd& slope() const {
-    return slope_;
-  }                                             ///< T x q, derivatives with respect to phi; 0 for a clipped
-                                                ///< variable
-  bool is_clipped() const { return clipped_; }  ///< whether some variable is clipped
+  const Eigen::MatrixXd& slope() const { return slope_; }  ///< T x q, derivatives; 0 for a clipped variable
+  bool is_clipped() const { return clipped_; }             ///< whether some variable is clipped
 
  private:
   Eigen::VectorXd variable_, per_unit_, value_;

@@ -17,8 +17,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index most_entries = 6'000'000;    // share of all candidate columns
-constexpr Index fewest_rows_per_column = 5;  // fit of the linear model, in each fold of a half
+constexpr Index most_entries = 6'000'000;    // entries of all candidate columns
+constexpr Index fewest_rows_per_column = 5;  // rows per column of the linear model, in each fold of a half
 
 std::vector<LinearStructure> structures_of(const LinearStructure& widest) {
   std::vector<LinearStructure> all;

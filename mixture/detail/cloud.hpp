@@ -110,7 +110,7 @@ class PointBlocks {
 struct ScaledCloud {
   FeatureScale scale;
   PointBlocks points;
-  UniformNoise noise;  ///< mixture in physical units; absent unless requested
+  UniformNoise noise;  ///< in physical units; absent unless requested
 
   ScaledCloud(const PointSet& set, const EmOptions& options)
       : scale(FeatureScale::of(set, options.covariance_floor)), points(set, scale) {

@@ -123,9 +123,9 @@ struct Finding {
   Description description = Description::none;
   std::string better_description;  ///< competitor that describes the runs instead of modes; empty if no competitor does
   double description_loss = 0.0;   ///< loss of that competitor against the best competitor [nats/sample]
-  /// Competitor that one nonlinear motion and several modes both beat: the better of baseline and noise_only. It is set
-  /// if either describes the runs, because modes that switch by state and input are a nonlinear motion, too. Else
-  /// empty.
+  /// Competitor that is worse than one nonlinear motion and than several modes: the better of baseline and noise_only.
+  /// Set if one of these two descriptions holds, because modes that switch by state and input are also a nonlinear
+  /// motion. Else empty.
   std::string over_linear;
   double bank_over_linear = 0.0, nonlinear_over_linear = 0.0;  ///< [nats/sample]
   std::vector<BetterMean> better_means;

@@ -21,7 +21,7 @@ struct AutomaticWindows {
   bool any() const { return length || step; }
 };
 
-/// Lags and delay of stages that differ from those of the windows. Empty if there is no difference.
+/// Lags and delay of stages that differ from those of the windows. Empty if they are the same.
 struct OtherLags {
   std::optional<Lags> linear = {};      ///< for baseline, noise_only and the search for terms
   std::optional<Lags> one_motion = {};  ///< one motion with switching noise

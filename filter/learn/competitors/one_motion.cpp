@@ -21,9 +21,8 @@ WindowFits linear_frame(const WindowFits& fits, const GlobalModel& global) {
   frame.length = fits.length;
   frame.step = fits.step;
   frame.global = global;
-  if (fits.model_parameters.empty())
-    frame.prior_sd = fits.prior_sd;  // the prior of a motion model is for other
-                                     // parameters
+  // The prior of a motion model is for other parameters.
+  if (fits.model_parameters.empty()) frame.prior_sd = fits.prior_sd;
   return frame;
 }
 

@@ -18,8 +18,7 @@ namespace {
 
 constexpr double step_share = 1e-2;       // share of a standard error, for central differences
 constexpr double first_step = 1e-3;       // step that is used until standard errors are known
-constexpr double least_curvature = 1e-2;  // standard error of an undetermined coordinate; such coordinates are
-                                          // logarithms
+constexpr double least_curvature = 1e-2;  // curvature added to every coordinate, for undetermined ones
 constexpr double remaining_gain = 1e-3;   // nats
 constexpr Index iterations_per_metric = 40;
 

@@ -64,9 +64,9 @@ class AlignedSamples {
   std::size_t next_ = 0;      ///< index of the next output sample, if samples keep their times
   std::size_t pushed_ = 0;
   bool resamples_ = false, averages_ = false;
-  double before_s_ = not_a_number;  ///< time of the user's clock
+  double before_s_ = not_a_number;  ///< on the user's clock
   double first_s_ = 0.0, spacing_s_ = 0.0;
-  std::deque<double> recent_s_;  ///< counts steps until samples prove faster than the rate
+  std::deque<double> recent_s_;  ///< time steps; used until samples prove faster than the rate
   double steps_ = 0.0;           ///< number of steps at the rate from first_s_ to the next output sample
   double ready_s_ = 0.0;
   TimedSample ready_;

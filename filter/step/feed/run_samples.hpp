@@ -75,7 +75,7 @@ class RunSamples {
   static constexpr Eigen::Index most_at_once = 128;
   const Trajectory& run_;
   SampleFeed feed_;
-  Eigen::MatrixXd acting_;  ///< samples of the present stretch
+  Eigen::MatrixXd acting_;  ///< acting inputs of the present stretch
 };
 
 /// One moment of a filtered run: a sample, or a model step between two distant samples.

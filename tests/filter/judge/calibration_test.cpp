@@ -43,7 +43,7 @@ TEST(Calibration, VerdictsAreRightSeedBySeed) {
     EXPECT_GE(verdicts(bank, 1, 1, 1500, seeds)[Calibration::calibrated], nearly_all) << r;
     std::map<Calibration, int> few = verdicts(bank, 1, 1, 30, seeds);
     EXPECT_GE(few[Calibration::undecided] + few[Calibration::calibrated], nearly_all) << r;
-    if (r < 1e-3) {  // with less than ten times that R, Q hardly shows
+    if (r < 1e-3) {  // if R is ten times Q, Q hardly shows
       EXPECT_GE(verdicts(bank, 0.25, 1, 500, seeds)[Calibration::overconfident], nearly_all) << r;
       EXPECT_GE(verdicts(bank, 4, 1, 500, seeds)[Calibration::underconfident], nearly_all) << r;
     }

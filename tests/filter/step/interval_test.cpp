@@ -92,7 +92,7 @@ TEST(Interval, FineOnesHaveTheDensityOfContinuousSignals) {
   const double coarse = std::abs(log_likelihood(with_quantum(bank, 1e-3), run, options) - continuous);
   const double fine = std::abs(log_likelihood(with_quantum(bank, 1e-5), run, options) - continuous);
   EXPECT_LT(fine, 1e-3);
-  EXPECT_LT(fine, 1e-2 * coarse + 1e-6);  // the variance grows with the square of the unit
+  EXPECT_LT(fine, 1e-2 * coarse + 1e-6);  // the difference grows with the square of the quantum
 }
 
 /// The probabilities of all values that a sample can have.

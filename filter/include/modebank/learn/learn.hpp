@@ -23,7 +23,7 @@ struct Uncertainty {
   Matrix theta_standard_error;                      ///< p x K
   std::vector<Matrix> Q_standard_error;             ///< K of n x n; empty without refinement
   Matrix R_standard_error;                          ///< n_y x n_y; empty unless R was estimated with the bank
-  Matrix transition_standard_error;                 ///< K x K, transition matrix; empty without refinement
+  Matrix transition_standard_error;                 ///< K x K; empty without refinement
   std::vector<std::string> motion_parameter_names;  ///< parameters of a motion model; empty for linear ones
   Matrix motion_theta;                              ///< parameters of a motion model, one mode per column
   Matrix motion_theta_standard_error;               ///< standard errors of motion_parameters

@@ -28,7 +28,7 @@ struct ReverseStep {
   const double* inputs = nullptr;
   const double* measured = nullptr;           ///< null for a prediction without measurement
   const double* probability_after = nullptr;  ///< one row
-  double weight = 1.0;                        ///< derivative with respect to the log density
+  double weight = 1.0;                        ///< weight of the log density
   double noise_scale = 1.0;
   bool adaptive = false;
   double by_share = 0.0, by_square = 0.0;  ///< derivatives with respect to the sums of UpdateResult, if the noise is

@@ -60,7 +60,7 @@ class VectorImm final : public Stepper {
   std::unique_ptr<double[], Free> memory_;
   vector_imm::ModeRows rows_;              // point into memory_
   Eigen::MatrixXd C_, R_;                  // transposed: row-major
-  Eigen::MatrixXd partial_C_, partial_R_;  // number of available signals
+  Eigen::MatrixXd partial_C_, partial_R_;  // C and R of the available signals
   vector_imm::Sensor sensor_;              // views of C_ and R_
   Eigen::VectorXd y_, packed_;
   Eigen::VectorXd weights_, log_likelihood_;  // workspace of the transform for quantised signals

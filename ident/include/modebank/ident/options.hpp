@@ -11,7 +11,7 @@ namespace modebank {
 
 /// How a window's fit ended. The numbers are those of /windows/status in the archive. converged: the search reached its
 /// tolerance. iteration_limit: the search stopped at max_iterations. rank_deficient: the window's data do not determine
-/// all parameters, however the search ended. failed: there is no estimate.
+/// all parameters, however the search ended. failed: the window has no estimate.
 enum class FitStatus : int { converged = 0, iteration_limit = 1, rank_deficient = 2, failed = 3 };
 
 /// Robust losses rho(s) of s = |r|^2, as defined by Ceres.
