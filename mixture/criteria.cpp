@@ -84,7 +84,7 @@ std::string disagreement(const std::vector<Candidate>& candidates, const Candida
   const double gain = other.heldout - selected.heldout;
   if (!(gain > standard_errors * other.heldout_error)) return "";
   return fmt::format(
-      "windows of runs left out are likelier under {} components than under {}: by {:.3g} +- {:.2g} nats "
+      "windows of left-out runs are more likely with {} components than with {}: by {:.3g} +- {:.2g} nats "
       "per window",
       other.components, selected.components, gain, other.heldout_error);
 }
@@ -98,21 +98,21 @@ std::vector<std::string> selection_warnings(const std::vector<Candidate>& candid
   if (selected == candidates.end()) return warnings;
   const Index components = selected->components;
   if (2 * selected->agreeing_restarts < selected->restarts)
-    warnings.push_back(
-        fmt::format("{} of {} restarts reached the best optimum of {} components: more of them may find a better one",
-                    selected->agreeing_restarts, selected->restarts, components));
+    warnings.push_back(fmt::format(
+        "{} of {} restarts reached the best optimum of {} components; more restarts may find a better optimum",
+        selected->agreeing_restarts, selected->restarts, components));
   if (selected->floor_active)
     warnings.push_back(fmt::format(
-        "a component is as narrow as covariance_floor allows, as in all candidates: {} is what this constant "
-        "makes of the windows",
+        "every candidate has a component at the lower limit covariance_floor: the choice of {} components depends on "
+        "this limit",
         components));
   if (!selected->converged)
-    warnings.push_back(fmt::format("EM of {} components did not converge in max_iterations", components));
+    warnings.push_back(fmt::format("EM of {} components did not converge within max_iterations", components));
   if (candidates.size() < 2) return warnings;
   const bool least = selected == candidates.begin() && components > 1;
   if (least || selected + 1 == candidates.end())
-    warnings.push_back(fmt::format("{} components are the {} of the candidates: widen their range", components,
-                                   least ? "fewest" : "most"));
+    warnings.push_back(fmt::format("{} components are the {} of all candidates: widen the range of candidates",
+                                   components, least ? "fewest" : "most"));
   if (std::string text = disagreement(candidates, *selected); !text.empty()) warnings.push_back(std::move(text));
   return warnings;
 }

@@ -89,8 +89,8 @@ void check_points(const PointSet& set) {
   check_errors(set);
   if (set.typical_error.size() > 0 && !(set.typical_error.size() == set.features() && set.typical_error.allFinite() &&
                                         set.typical_error.minCoeff() >= 0.0))
-    throw std::invalid_argument(
-        fmt::format("EM of {} features needs as many typical errors, finite and nonnegative, or none", set.features()));
+    throw std::invalid_argument(fmt::format(
+        "EM of {} features needs one typical error per feature, finite and nonnegative, or none", set.features()));
   if (set.weights.size() == 0) return;
   if (set.weights.size() != set.count())
     throw std::invalid_argument(fmt::format("{} points have {} weights; expected one weight per point, or none",

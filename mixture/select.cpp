@@ -96,7 +96,7 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
   if (components > task.distinct_points)
     return {{},
             unfitted(row, CandidateStatus::too_few_points,
-                     fmt::format("{} distinct points are fewer than its components", task.distinct_points))};
+                     fmt::format("only {} distinct points, fewer than components", task.distinct_points))};
   const bool given = task.start && task.start->components() == components;
   EmResult fit;
   double cost = 0.0;
@@ -146,7 +146,7 @@ void score_heldout(const Task& task, FittedCandidate& candidate) {
         heldout_score(task.points, task.design.runs, row.components, task.options.em, task.seed_of(row.components));
     row.heldout = candidate.heldout.mean();
   } catch (const NotPositiveDefinite& error) {
-    row.failed = std::string("on runs left out: ") + error.what();
+    row.failed = std::string("on left-out runs: ") + error.what();
   }
 }
 
@@ -197,8 +197,8 @@ GaussianMixture fitted_to_all(const PointSet& points, const GaussianMixture& cho
                     fewest, task.distinct_points, task.points.count(), task.distinct_points));
   if (task.options.criterion == Criterion::heldout)
     throw DataError(fmt::format(
-        "the held-out criterion needs points of at least two runs, and more points than components without each group "
-        "of runs: there are {} points in {} groups; use another criterion or more runs",
+        "the held-out criterion needs points of at least two runs. Without any one group of runs, more points than "
+        "components must remain. There are {} points in {} groups; use another criterion or more runs",
         task.points.count(), heldout_groups(task.design.runs)));
   throw DataError(fmt::format("no candidate mixture has a finite {} on {} points", name_of(task.options.criterion),
                               task.points.count()));
@@ -235,7 +235,7 @@ MixtureResult with_memberships(const FeatureCloud& cloud, const FeatureCloud& as
 Selection select(const PointSet& points, const SampleDesign& design, const SelectionOptions& options,
                  std::uint64_t seed, const GaussianMixture* start) {
   const std::vector<Index> components = sorted_components(options);
-  if (points.count() == 0) throw DataError("there are no points to be clustered");
+  if (points.count() == 0) throw DataError("there are no points to cluster");
   check_points(points);
   if (!design.runs.empty() && std::ssize(design.runs) != points.count())
     throw std::invalid_argument(fmt::format("{} points have runs for {}; expected one run per point, or none",

@@ -210,7 +210,7 @@ std::vector<double> BankFilter::snapshot() const {
 void BankFilter::restore(const std::vector<double>& snapshot) {
   constexpr double most_samples = 9007199254740992.0;  // 2^53
   if (snapshot.empty() || !(snapshot.back() >= 0.0 && snapshot.back() <= most_samples))
-    throw std::invalid_argument("the snapshot is damaged: its last number is not a number of samples");
+    throw std::invalid_argument("the snapshot is damaged: its last value is not a number of samples");
   internal_->filter.restore(snapshot_of({snapshot.begin(), snapshot.end() - 1}));
   internal_->samples = static_cast<Index>(snapshot.back());
 }

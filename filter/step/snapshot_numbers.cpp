@@ -81,7 +81,7 @@ class NumbersReader {
   std::size_t at_ = 0;
 
   [[noreturn]] static void refuse() {
-    throw std::invalid_argument("the snapshot is damaged: its sizes do not fit its numbers");
+    throw std::invalid_argument("the snapshot is damaged: its sizes do not match its number of values");
   }
   Index left() const { return static_cast<Index>(numbers_.size() - at_); }
   double next() {

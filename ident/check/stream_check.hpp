@@ -62,8 +62,8 @@ Eigen::Index spikes(const Eigen::VectorXd& values, double quantum);
 /// - Two-level signals have no limits. A signal of up to ten levels has a limit only at an end with three times the
 ///   share of the commonest inner level. Test signals and gears often take each of a few values.
 struct SaturationLimits {
-  double low,
-      high;  ///< samples at or below low, or at or above high, count as saturated; NaN at an end without a limit
+  /// Samples at or below low, or at or above high, count as saturated; NaN at an end without a limit.
+  double low, high;
   bool soft = false;  ///< whether a soft limit was found, but no hard limit
 };
 SaturationLimits saturation_limits(const std::vector<Eigen::VectorXd>& runs);

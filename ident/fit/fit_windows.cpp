@@ -232,7 +232,7 @@ WindowFits collect(Fitting&& fitting) {
 FitOptions options_for(const MotionModel& model, const Recording& recording, FitOptions options) {
   options.model = model.name();
   if (is_linear(options))
-    throw std::invalid_argument("the name of a motion model must not be that of a linear model: " + options.model);
+    throw std::invalid_argument("a motion model must not have the name of a linear model: " + options.model);
   if (model.states() != recording.state_count() || model.inputs() != recording.input_count())
     throw std::invalid_argument("the motion model " + options.model + " has other states or inputs than the runs");
   return options;
@@ -240,8 +240,7 @@ FitOptions options_for(const MotionModel& model, const Recording& recording, Fit
 
 void check_model(const FitOptions& options, Index states, Index inputs) {
   if (has_lags(options) && options.model != "varx")
-    throw ConfigurationError("state_lags, input_lags and input_delay are those of model = varx, not of " +
-                             options.model);
+    throw ConfigurationError("state_lags, input_lags and input_delay need model = varx, not " + options.model);
   motion_model(options, states, inputs);
 }
 

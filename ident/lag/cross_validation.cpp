@@ -178,7 +178,7 @@ Trajectory join_delayed(const RunPair& run, double rate_hz, const InputClock& cl
 std::vector<LagScore> cross_validate_lags(const std::vector<LagSubject>& subjects, double rate_hz) {
   const std::size_t folds = std::min(subjects.size(), most_folds);
   std::vector<std::vector<std::vector<RunScore>>> by_fold(folds);
-  WorkCounter counter("parts left out for the lag", folds);
+  WorkCounter counter("folds of the lag's cross-validation", folds);
   tbb::parallel_for(std::size_t{0}, folds, [&](std::size_t f) {
     by_fold[f] = score_fold(subjects, f, folds, rate_hz);
     counter.add();

@@ -192,7 +192,8 @@ FoundStructure nothing_found(const StructureRanges& ranges, const std::string& r
 
 std::string cut_remark(const Lags& most) {
   return "searched up to " + std::to_string(most[0]) +
-         " lags only: more would leave fewer than three quarters of the transitions, or two per coefficient";
+         " lags only; with more lags, fewer than three quarters of the transitions or fewer than two per coefficient "
+         "would remain";
 }
 
 }  // namespace

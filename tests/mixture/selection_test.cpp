@@ -148,7 +148,7 @@ TEST(SelectionWarnings, NameWhatSpeaksAgainstTheChoice) {
   ASSERT_EQ(warnings.size(), 3u);
   EXPECT_NE(warnings[0].find("2 of 5 restarts"), std::string::npos);
   EXPECT_NE(warnings[1].find("did not converge"), std::string::npos);
-  EXPECT_NE(warnings[2].find("likelier under 3 components than under 2: by 0.5 +- 0.2"), std::string::npos);
+  EXPECT_NE(warnings[2].find("more likely with 3 components than with 2: by 0.5 +- 0.2"), std::string::npos);
 }
 
 /// The likelihood of a fit at the covariance floor depends on the floor. Such a fit is chosen, with a warning, only if

@@ -125,21 +125,21 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
   if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
   if (all.spread_share > dominating_differences) add_flag(flags, "spread dominates S");
   if (all.too_far_lower > largest_close && all.too_close_lower > largest_close) add_flag(flags, "heavy tails");
-  if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above a true filter's");
-  if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below a true filter's");
+  if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above the interval of a correct model");
+  if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below the interval of a correct model");
   if (all.nees_mean > all.nees_upper)
-    add_flag(flags, "NEES above a true filter's: the state's covariance is too small");
+    add_flag(flags, "NEES above the interval of a correct model: the state's covariance is too small");
   if (all.nees_mean < all.nees_lower)
-    add_flag(flags, "NEES below a true filter's: the state's covariance is too large");
+    add_flag(flags, "NEES below the interval of a correct model: the state's covariance is too large");
   if (errors_follow_a_pattern(all))
     add_flag(flags, "innovations not white: autocorrelation " + two_digits(all.autocorrelation) + " at lag " +
                         std::to_string(all.autocorrelation_lag));
   if (all.verdict == Calibration::undecided && reason_of(all) == CalibrationReason::few_samples)
     add_flag(flags, "too few samples for a verdict");
   if (nees_states < all.state_rmse.size() && all.state_rmse.allFinite())
-    add_flag(flags, nees_states == 0 ? "R is as good as zero, so the state is the measurement: no NEES"
-                                     : "R of some states is as good as zero, so they are the measurement: NEES of the "
-                                       "others alone");
+    add_flag(flags, nees_states == 0 ? "R is nearly zero, so the state equals the measurement: no NEES"
+                                     : "R of some states is nearly zero, so these states equal the measurement: "
+                                       "NEES only of the other states");
   return flags;
 }
 

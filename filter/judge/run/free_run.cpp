@@ -72,12 +72,12 @@ class Given {
       const std::string where = stretches_.size() > 1 ? " from sample " + std::to_string(stretch.first) + " on" : "";
       if (last + 1 >= stretch.end) {
         out.notes.push_back("has " + std::to_string(stretch.end - stretch.first) + " samples" + where + ", of which " +
-                            std::to_string(options_.samples) + " are to be measured: none is left to predict");
+                            std::to_string(options_.samples) + " are used as measured: no sample is left to predict");
         continue;
       }
       const auto [t_first, t_last] = moments(stretch.first, last);
       if (t_first < 0) {
-        out.notes.push_back("has too few whole measurements among its first " + std::to_string(options_.samples) +
+        out.notes.push_back("has too few complete measurements among its first " + std::to_string(options_.samples) +
                             " samples" + where + " for a filter to start");
         continue;
       }
@@ -130,7 +130,7 @@ void predict_on(Forecast& forecast, const Given& given, Index t, Index end, Free
     forecast.arrive(ahead);
     const Eigen::VectorXd mean = forecast.mean();
     if (!mean.allFinite()) {
-      out.notes.push_back("is predicted up to sample " + std::to_string(k - 1) + ": beyond it nothing is finite");
+      out.notes.push_back("is predicted up to sample " + std::to_string(k - 1) + "; later predictions are not finite");
       return false;
     }
     record(forecast, mean, k, out);

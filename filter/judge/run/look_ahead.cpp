@@ -78,7 +78,7 @@ Eigen::VectorXd sums_over_horizons(const Bank& bank, const Trajectory& run, cons
 
 Eigen::VectorXd look_ahead_scores(const Bank& bank, const Trajectory& run, const FilterOptions& options,
                                   const LookAhead& look) {
-  if (look.samples < 1) throw std::invalid_argument("look-ahead learning needs at least one sample ahead");
+  if (look.samples < 1) throw std::invalid_argument("look-ahead learning needs a horizon of at least one sample");
   if (look.is_likelihood()) return log_densities(bank, run, options);
   check_run(bank, run);
   Eigen::VectorXd sums;

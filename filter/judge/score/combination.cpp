@@ -21,7 +21,7 @@ void check_members(const std::vector<const HorizonEvaluation*>& members) {
   for (const HorizonEvaluation* member : members)
     if (member->horizons != members.front()->horizons ||
         member->log_density.cols() != members.front()->log_density.cols())
-      throw std::invalid_argument("forecasts to combine must be of the same samples and horizons");
+      throw std::invalid_argument("combined forecasts must have the same samples and horizons");
 }
 
 /// Combines the forecasts of one horizon of one run.

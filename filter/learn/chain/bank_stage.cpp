@@ -24,48 +24,50 @@ void tell_of_shrinking(const std::string& whose, const Bank& bank, const Progres
 }
 
 std::string worth_of(const LookAheadStage& stage) {
-  if (stage.score == stage.score_before) return "taken, no runs are left out to ask";
-  const std::string gain = stage.of_errors
-                               ? fmt::format("errors of the runs left out {:+.1f} %",
-                                             100.0 * (std::sqrt(stage.score / stage.score_before) - 1.0))
-                               : fmt::format("{:.4f} -> {:.4f} nats/sample left out", stage.score_before, stage.score);
+  if (stage.score == stage.score_before) return "accepted without a test, because no runs are left out";
+  const std::string gain =
+      stage.of_errors ? fmt::format("errors on left-out runs change by {:+.1f} %",
+                                    100.0 * (std::sqrt(stage.score / stage.score_before) - 1.0))
+                      : fmt::format("{:.4f} -> {:.4f} nats/sample on left-out runs", stage.score_before, stage.score);
   return gain + (stage.taken ? "" : ": not taken");
 }
 
 void tell_of(const Refinement& refined, const Progress& progress) {
   tell_of_shrinking("refine", refined.bank, progress);
   for (const RefineCandidate& c : refined.candidates)
-    progress.detail(fmt::format(
-        "refine: {:<12} {:>3} modes, Q prior {}{}: {:.4f} nats/sample left out, {:.4f} +- {:.4f} below the best, after "
-        "{} iterations{}",
-        c.start, c.modes, c.noise_transitions,
-        c.theta_transitions > 0.0 ? fmt::format(", to one motion {:g}", c.theta_transitions) : "", c.score, c.loss,
-        c.loss_standard_error, c.iterations, c.selected ? " (chosen)" : ""));
+    progress.detail(
+        fmt::format("refine: {:<12} {:>3} modes, Q prior {}{}: {:.4f} nats/sample on left-out runs, {:.4f} +- {:.4f} "
+                    "below the best, after {} iterations{}",
+                    c.start, c.modes, c.noise_transitions,
+                    c.theta_transitions > 0.0 ? fmt::format(", to one motion {:g}", c.theta_transitions) : "", c.score,
+                    c.loss, c.loss_standard_error, c.iterations, c.selected ? " (chosen)" : ""));
   const MeasurementStage& measured = refined.measurement;
   if (measured.failed_starts > 0)
     progress.warning(fmt::format("refine: {} of {} searches for R failed{}", measured.failed_starts, measured.starts,
-                                 measured.failed_starts < measured.starts ? "; the best of the others counts"
-                                                                          : ", so R is not known to be none"));
+                                 measured.failed_starts < measured.starts ? "; the best of the other searches is used"
+                                                                          : ", so R = 0 is not certain"));
   if (measured.starts > 0)
-    progress.progress(fmt::format("refine: measurement noise looked for from {} starts, in {:.2f} s{}", measured.starts,
-                                  measured.seconds,
-                                  refined.bank.R_standard_error.size() == 0 ? ": none that pays" : ""));
+    progress.progress(fmt::format("refine: searched for measurement noise from {} starts, in {:.2f} s{}",
+                                  measured.starts, measured.seconds,
+                                  refined.bank.R_standard_error.size() == 0 ? ": found none worth adding" : ""));
   if (!std::isnan(measured.score))
-    progress.progress(fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample left out",
-                                  measured.iterations, measured.score_before, measured.score));
+    progress.progress(
+        fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample on left-out runs",
+                    measured.iterations, measured.score_before, measured.score));
   if (const SwitchingStage& s = refined.switching; !std::isnan(s.gain))
     progress.progress(
-        fmt::format("refine: switches that see state and input gain {:.4f} +- {:.4f} nats/sample left out{}", s.gain,
-                    s.gain_standard_error,
-                    s.width > 0.0 ? fmt::format(" (taken, width {}{})", s.width,
-                                                std::isinf(s.memory_sd) ? "" : ", the mode before hardly matters")
+        fmt::format("refine: switching by state and input gains {:.4f} +- {:.4f} nats/sample on left-out runs{}",
+                    s.gain, s.gain_standard_error,
+                    s.width > 0.0 ? fmt::format(" (accepted, width {}{})", s.width,
+                                                std::isinf(s.memory_sd) ? "" : ", the previous mode hardly matters")
                                   : ": not taken"));
   if (const DriftStage& s = refined.drift; !std::isnan(s.gain))
-    progress.progress(fmt::format(
-        "refine: {} modes that drift (rate {:g}, start {:g}, leak {:g}) gain {:.4f} +- {:.4f} nats/sample left out: {}",
-        s.modes, s.rate, s.start, s.leak, s.gain, s.gain_standard_error, s.taken ? "taken" : "not taken"));
+    progress.progress(
+        fmt::format("refine: drift of {} modes (rate {:g}, start {:g}, leak {:g}) gains {:.4f} +- {:.4f} nats/sample "
+                    "on left-out runs: {}",
+                    s.modes, s.rate, s.start, s.leak, s.gain, s.gain_standard_error, s.taken ? "taken" : "not taken"));
   if (const LookAheadStage& ahead = refined.look_ahead; ahead.taken || ahead.score != ahead.score_before)
-    progress.progress("refine: fit to predictions up to the look-ahead: " + worth_of(ahead));
+    progress.progress("refine: fit to predictions up to bank.look_ahead samples ahead: " + worth_of(ahead));
 }
 
 /// Warns of modes that the mixture made from windows between two other modes. Refinement separates such windows.
@@ -78,8 +80,8 @@ void warn_of_passing_modes(const LearnedFrom& from, const Bank& bank, const Prog
                                       [&](const ScreenedMode& mode) { return mode.component == k; });
     if (shares(k) > most && !screened)
       progress.warning(
-          fmt::format("bank: component {} is no mode of motion of its own: {:.0f} % of its windows seem to "
-                      "straddle a switch between others (bank.refine = em takes such modes apart)",
+          fmt::format("bank: component {} may not be a mode of motion: {:.0f} % of its windows seem to contain a "
+                      "switch between other modes (bank.refine = em separates such windows)",
                       k, 100.0 * shares(k)));
   }
 }
@@ -90,7 +92,8 @@ Refinement learn_modes(const LearnedFrom& from, const BankInputs& inputs, const 
   if (inputs.one_model) return {from.baseline, {}, {}, {}, {}};
   Refinement refined = learn_wanted(from, inputs, inputs.bank);
   if (inputs.bank.refine == Refine::none)
-    progress.progress(fmt::format("bank: the mixture's own modes of model {}, not refined", from.windows.model));
+    progress.progress(
+        fmt::format("bank: modes of model {} come from the mixture, without refinement", from.windows.model));
   if (inputs.bank.refine == Refine::none) warn_of_passing_modes(from, refined.bank, progress);
   tell_of(refined, progress);
   if (const Index learned_from = refined.learned_transitions; learned_from > 0)

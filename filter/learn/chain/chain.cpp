@@ -74,7 +74,7 @@ class Run {
     const Stopwatch watch;
     if (one_model) {
       asked.one_model = true;
-      progress_.progress("bank: that of baseline, as steps scatter");
+      progress_.progress("bank: equals baseline, because the time steps differ too much");
     }
     if (learned_.noise_only && !learned_.noise_only->noise_factor.empty()) {
       asked.bank.em.noise_by_input = true;
@@ -90,7 +90,7 @@ class Run {
     part.measured_fit = refined.measurement.end;
     part.learned_transitions = refined.learned_transitions;
     part.bank = std::move(refined.bank);
-    progress_.progress(fmt::format("bank: {} modes, {} screened, in {:.2f} s", part.bank->mode_count(),
+    progress_.progress(fmt::format("bank: {} modes, {} removed as unusable, in {:.2f} s", part.bank->mode_count(),
                                    part.bank->screened.size(), watch.seconds()));
     if (!asked.one_motion) return part;
     Refinement one_motion = learn_one_motion(from, *part.bank, asked, progress_);

@@ -60,7 +60,7 @@ NoiseFactor noise_factor(const Recording& recording, const LinearStructure& stru
   const std::string gain =
       std::isnan(found.standard_error)
           ? fmt::format("gains {:.4f} nats/sample on the runs that chose it", found.gain)
-          : fmt::format("gains {:.4f} +- {:.4f} nats/sample left out", found.gain, found.standard_error);
+          : fmt::format("gains {:.4f} +- {:.4f} nats/sample on left-out runs", found.gain, found.standard_error);
   progress.progress(fmt::format("noise by input: a factor on all process noise {}: {}, in {:.2f} s", gain,
                                 found.factor.empty() ? "not taken" : "taken", watch.seconds()));
   return std::move(found.factor);
@@ -87,7 +87,7 @@ std::string gain_words(const FoundTerms& found) {
   if (found.terms_asked > 0)
     return fmt::format("{} terms gain {:.4f} +- {:.4f} nats/sample on halves that did not choose them",
                        found.terms_asked, found.gain, found.gain_standard_error);
-  return found.terms.empty() ? "no terms that gain" : fmt::format("{} terms as stated", found.terms.count());
+  return found.terms.empty() ? "no terms gain" : fmt::format("{} terms as stated", found.terms.count());
 }
 
 std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure& structure,
@@ -97,7 +97,7 @@ std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure&
   const FoundTerms found = lists_terms(inputs.terms) ? take_stated(recording, structure, inputs.terms)
                                                      : find_terms(recording, structure, inputs.window);
   for (const TriedTerms& tried : found.tried)
-    progress.detail(fmt::format("nonlinear: {} terms with lags {}: {:.4f} nats/sample left out", tried.terms,
+    progress.detail(fmt::format("nonlinear: {} terms with lags {}: {:.4f} nats/sample on left-out rows", tried.terms,
                                 lags_of(tried.structure), tried.log_score));
   const std::string gain = gain_words(found);
   if (found.terms.empty()) {
@@ -120,7 +120,8 @@ Bank learn_single_filter(const Recording& recording, const OneModel& of, const F
   Baseline baseline = learn_baseline(recording, of.global, of.structure);
   baseline.bank.model = of.model;
   if (baseline.at_bound) progress.progress("baseline: R is at its lower bound: the data show no measurement noise");
-  if (!baseline.converged) progress.warning("baseline: its noise did not reach a maximum of the likelihood");
+  if (!baseline.converged)
+    progress.warning("baseline: the search for its noise did not reach a maximum of the likelihood");
   if (filter.noise == FilterNoise::adaptive)
     baseline.bank.noise_adaptation = most_likely_adaptation(baseline.bank, recording, filter, refine_tuning);
   return std::move(baseline.bank);

@@ -34,9 +34,9 @@ struct CompetitorInputs {
   std::optional<Lags> linear = {};    ///< lags of baseline, noise_only and nonlinear; empty: the
                                       ///< windows'
   std::optional<Lags> drifting = {};  ///< lags of `drifting`; empty: the windows'
-  NoiseByInput noise_by_input =
-      NoiseByInput::none;  ///< for all competitors but baseline and drifting, and for the bank
-  bool all = true;         ///< false: only the baseline and the decision on the noise factor
+  /// For all competitors but baseline and drifting, and for the bank.
+  NoiseByInput noise_by_input = NoiseByInput::none;
+  bool all = true;  ///< false: only the baseline and the decision on the noise factor
 };
 
 /// Inputs of the competitor one_motion, which is learned like the bank.

@@ -86,8 +86,9 @@ std::vector<LeftOutRow> score_left_out(const Recording& recording, const Competi
       tbb::parallel_for(std::size_t{0}, runs.size(),
                         [&](std::size_t r) { forecasts[f][first + r] = filters[s][f].ahead(runs[r], horizons); });
     }
-  progress.progress(fmt::format("left out: {} filters on training runs that they were learned without in {:.2f} s",
-                                names.size(), watch.seconds()));
+  progress.progress(
+      fmt::format("left out: scored {} filters on training runs, each learned without the scored run, in {:.2f} s",
+                  names.size(), watch.seconds()));
   return left_out_rows(names, forecasts);
 }
 

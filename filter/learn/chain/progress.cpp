@@ -23,8 +23,8 @@ std::string learned_words(Eigen::Index learned, Eigen::Index all) {
 
 std::string shrinking_words(const Shrinking& shrinking) {
   return fmt::format(
-      "{} mode{} drawn {:.1f} % of the way to the model of all runs: predictions many samples ahead would have grown "
-      "without limit (their mean square {:.4g} times a sample)",
+      "{} mode{} moved {:.1f} % of the way to the model of all runs. Otherwise predictions many samples ahead would "
+      "grow without limit (their mean square by a factor of {:.4g} per sample)",
       shrinking.modes, shrinking.modes == 1 ? "" : "s", 100.0 * shrinking.share, shrinking.growth);
 }
 

@@ -33,8 +33,8 @@ void refuse_constant_states(const Recording& recording) {
     const std::string more = runs.size() > most_named ? fmt::format(" and {} more", runs.size() - most_named) : "";
     runs.resize(std::min(runs.size(), most_named));
     throw DataError(
-        fmt::format("the state {0} is constant: {1:g} in every sample of the training runs {2}{3}; there is nothing to "
-                    "learn of it: leave {0} out of data.state, or train on runs in which it moves",
+        fmt::format("the state {0} is constant: {1:g} in every sample of the training runs {2}{3}; nothing "
+                    "can be learned about it. Remove {0} from data.state, or train on runs in which it changes",
                     recording.states[static_cast<std::size_t>(i)].name, least, fmt::join(runs, ", "), more));
   }
 }
@@ -48,7 +48,7 @@ void refuse_unreached_horizons(const Recording& recording, const std::vector<Ind
   for (const Index horizon : horizons)
     if (longest && horizon > longest->transitions())
       throw DataError(fmt::format(
-          "filter.horizon = {}: no {} run reaches so many samples ahead; the longest, {}, has {} samples: at "
+          "filter.horizon = {} is too long for the {} runs; the longest, {}, has {} samples: choose at "
           "most {}",
           horizon, held_out ? "held-out" : "training", longest->run, longest->samples(), longest->transitions()));
 }

@@ -144,7 +144,7 @@ DriftingScores score_drifting_grid(const Bank& start, const Recording& recording
     scores.error_ratio.col(d) = scores.error_ratio.col(first);
   }
   scores.samples = samples.front();
-  if (scores.samples == 0) throw DataError("no training run has a sample that scores a drifting model");
+  if (scores.samples == 0) throw DataError("no training run has a sample on which a drifting model can be scored");
   scores.log_score /= static_cast<double>(scores.samples);
   return scores;
 }

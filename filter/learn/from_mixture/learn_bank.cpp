@@ -25,11 +25,11 @@ namespace {
 void check(const BankOptions& options, const WindowFits& fits, const MixtureResult& mixture) {
   const bool of_parameters = mixture.features.size() == 0;
   if (mixture.mixture.components() < 1 || (of_parameters && mixture.mixture.features() < fits.parameter_count()))
-    throw std::invalid_argument("the mixture's features do not begin with the model's parameters");
+    throw std::invalid_argument("the first features of the mixture are not the model's parameters");
   if (!of_parameters && options.theta == ThetaSource::mean)
     throw ConfigurationError(
-        "theta = mean takes modes from the components' means, but these have other features than the model's "
-        "parameters here: set mixture.features = parameters+noise, or theta = pooled");
+        "theta = mean needs components whose features are the model's parameters; here the features differ. Set "
+        "mixture.features = parameters+noise, or theta = pooled");
   if (options.noise == NoiseSource::fixed && !(options.process_variance >= 0.0))
     throw std::invalid_argument("process variance " + std::to_string(options.process_variance) + " is negative");
   if (options.measurement_variance && !(*options.measurement_variance >= 0.0))

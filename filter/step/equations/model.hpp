@@ -91,7 +91,7 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
     throw std::invalid_argument("the paper's equations (salvi2025) do not support quantised measurements; use imm");
   if (variant == FilterVariant::salvi2025 && !noise_factor.empty())
     throw std::invalid_argument(
-        "the paper's equations (salvi2025) need constant noise; this bank's depends on state and input");
+        "the paper's equations (salvi2025) need constant noise; the noise of this bank depends on state and input");
   if (quantised) quantum = bank.quantum;
   if (drift.on() && variant != FilterVariant::imm && variant != FilterVariant::kf)
     throw std::invalid_argument("drifting modes need the variant imm or kf, not " + std::string(name_of(variant)));

@@ -132,7 +132,7 @@ TEST_F(Predict, RefusesWhatItCannotStartFrom) {
   EXPECT_THAT(error({archive(), "--samples", "80"}, 1), HasSubstr("run 00 has 80 samples, of which 80"));
   write_new_inputs(2);
   EXPECT_THAT(error({archive(), "--samples", "5", "--data.inputs", file("run_*.new").string()}, 1),
-              HasSubstr("too few whole measurements among its first 5 samples"));
+              HasSubstr("too few complete measurements among its first 5 samples"));
   const ProgramResult other = run({"--samples", "5"});
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("run does not read --samples"));

@@ -95,7 +95,7 @@ TEST(Diagnostics, NisSpeaksWhereTheTailsDoNot) {
   evaluations[0].nis *= 0.5;
   const DiagnosticsRow row = diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front();
   EXPECT_EQ(row.verdict, Calibration::underconfident);
-  EXPECT_THAT(row.flags, testing::HasSubstr("mean NIS below a true filter's"));
+  EXPECT_THAT(row.flags, testing::HasSubstr("mean NIS below the interval of a correct model"));
 }
 
 TEST(Diagnostics, FlagsAStateCovarianceThatIsWrong) {
@@ -105,7 +105,7 @@ TEST(Diagnostics, FlagsAStateCovarianceThatIsWrong) {
     Bank wrong = bank;
     wrong.modes[0].Q *= factor;
     EXPECT_THAT(diagnose_runs(wrong, runs).front().flags,
-                testing::HasSubstr(factor < 1 ? "NEES above a true filter's" : "NEES below a true filter's"));
+                testing::HasSubstr(factor < 1 ? "NEES above the interval" : "NEES below the interval"));
   }
 }
 
@@ -128,7 +128,7 @@ TEST(Diagnostics, NeesIsAboutTheStatesThatAreNotTheMeasurement) {
   const DiagnosticsRow row = diagnose_runs(bank, runs).front();
   EXPECT_NEAR(row.nees_mean, 1.0, 0.35);  // one degree of freedom; the filter overrates the other gyro
   EXPECT_LT(row.nees_upper, 1.2);
-  EXPECT_THAT(row.flags, testing::HasSubstr("NEES of the others alone"));
+  EXPECT_THAT(row.flags, testing::HasSubstr("NEES only of the other states"));
 }
 
 TEST(Diagnostics, ASwitchingBankIsCalibratedModeByMode) {

@@ -154,7 +154,7 @@ TEST(FreeRun, SaysOfPathsThatLeaveTheFiniteRange) {
   const FreeRun found = free_run(bank, run, {}, after(1, FreeRunMethod::paths, 50));
   EXPECT_EQ(found.lost_paths, 50);
   ASSERT_EQ(found.notes.size(), 1u);
-  EXPECT_THAT(found.notes[0], HasSubstr("beyond it nothing is finite"));
+  EXPECT_THAT(found.notes[0], HasSubstr("later predictions are not finite"));
   const Index predicted = (!found.mean.row(0).array().isNaN()).count();
   EXPECT_GT(predicted, 10);
   EXPECT_TRUE(found.mean.middleCols(1, predicted).allFinite());

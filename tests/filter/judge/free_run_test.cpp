@@ -99,10 +99,10 @@ TEST(FreeRun, StartsAnewAfterAGapAndSaysWhereItCannot) {
   const FreeRun little = free_run(bank, run, {}, after(15));
   ASSERT_EQ(little.notes.size(), 1u);
   EXPECT_EQ(little.notes[0],
-            "has 12 samples from sample 0 on, of which 15 are to be measured: none is left to predict");
+            "has 12 samples from sample 0 on, of which 15 are used as measured: no sample is left to predict");
   EXPECT_FALSE(std::isnan(little.mean(0, 29)));
   run.state.leftCols(5).setConstant(std::nan(""));
-  EXPECT_THAT(free_run(bank, run, {}, after(4)).notes.at(0), HasSubstr("too few whole measurements"));
+  EXPECT_THAT(free_run(bank, run, {}, after(4)).notes.at(0), HasSubstr("too few complete measurements"));
   EXPECT_THROW(free_run(arx_bank({1, 1, false, 4, 1, 1}, stable_theta({1, 1, false, 4, 1, 1})), run, {}, after(3)),
                std::invalid_argument);
 }
