@@ -3,15 +3,18 @@
 
 usage: ablation.py MODEBANK CONFIG [--sets ICE,FLOORING] [--cache FILE.json] [--jobs 2] [--only TEXT] [--key value ...]
 
-Runs CONFIG as it is and with one feature at a time taken back, changed or added, each with either half of the runs
-training, and prints a Markdown table per data set: held-out log score [nats/sample], one-step RMSE and shares of samples too far and too close of
-each fold. `--sets A,B`: CONFIG's data paths hold A; the table is made for A, then with B in its place. `--only`: rows
-whose name holds TEXT, beside the first. Other options go to the program (a data root is taken from MODEBANK_DATA).
+Runs CONFIG unchanged, then with one feature at a time removed, changed or added. Each of these runs twice, with either half
+of the runs training. Prints a Markdown table per data set: held-out log score [nats/sample], one-step RMSE, and the shares
+of samples too far and too close, of each fold.
 
-Every finished run is kept in the cache, under a hash of the program, the configuration, the options and the sizes and
-times of the data files: a second call goes on where the first one stopped, and prints the table alone when nothing
-is left. Windows and mixture are made once per fold and shared by all rows that leave them as they are. Nothing is
-chosen here: every choice is made by the program inside the training runs. Needs Python 3 alone.
+--sets A,B   CONFIG's data paths contain A; makes the table for A, then with B in place of A
+--only       rows whose name contains TEXT, in addition to the first row
+Other options are passed to the program. The data root is taken from MODEBANK_DATA.
+
+The cache stores every finished run under a hash of the program, the configuration, the options and the sizes and times of
+the data files. A second call continues where the first one stopped. If all runs are finished, it only prints the table.
+Windows and mixture are made once per fold and shared by all rows that do not change them. This script makes no choice:
+the program makes every choice inside the training runs. Needs only Python 3.
 """
 import concurrent.futures
 import glob
@@ -25,7 +28,7 @@ import sys
 import tempfile
 import threading
 
-# name, options that change the feature ("bank:" before them: the first row's bank, run so)
+# name, options that change the feature; "bank:" before them means the first row's bank with these options
 FEATURES = [
     ("all of it", {}),
     ("noise as learned (gaussian), refined for it", {"filter.noise": "gaussian"}),

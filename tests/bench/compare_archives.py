@@ -3,9 +3,9 @@
 
   compare_archives.py A.h5 B.h5
 
-Prints how many datasets hold the same bits, whether decisions (whole numbers, text, chosen rows) are equal, and the largest differences:
-theta in its standard errors, predictions in predicted standard deviations, log densities in nats, everything else relative to the
-largest value of its dataset.
+Prints how many datasets have the same bits, and whether decisions (whole numbers, text, chosen rows) are equal. Prints the
+largest differences: theta in its standard errors, predictions in predicted standard deviations, log densities in nats, and
+everything else relative to the largest value of its dataset.
 """
 import sys
 

@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
-"""EM of Gaussian mixtures: modebank and Armadillo (build/compare_em) beside scikit-learn, in turn, from the same start, a
-fixed number of iterations, one thread each; medians over the rounds in CPU time, which a busy machine disturbs less than
-wall time. Then the whole study K = 1..25 with 5 restarts on 3000 points, also on two threads (wall time): both from
-points drawn as centres, full or diagonal covariance, until the mean log-likelihood gains less than 1e-3 (scikit-learn's default),
-at most 100 iterations, without split-and-merge moves; other seeds in every round, and the mean over the rounds of the sum
-of the log-likelihoods reached.
+"""EM of Gaussian mixtures: modebank and Armadillo (build/compare_em) compared with scikit-learn.
+
+All programs have the same start, a fixed number of iterations and one thread, and run in turn. Prints medians of CPU time
+over the rounds; a busy machine disturbs CPU time less than wall time.
+
+Then compares the whole study K = 1..25 with 5 restarts on 3000 points, also on two threads (wall time). Both programs start
+from points drawn as centres, with full or diagonal covariance and without split-and-merge moves. They stop when the mean
+log-likelihood gains less than 1e-3 (scikit-learn's default), or after 100 iterations. Every round has other seeds. Prints the
+mean over the rounds of the sum of the log-likelihoods.
+
 Usage: em_peers.py build/compare_em [ROUNDS [FIRST_LETTERS_OF_CASES]]; run it with OMP_NUM_THREADS=1
-OPENBLAS_NUM_THREADS=1. Exits quietly where scikit-learn is not installed; fails where log-likelihoods differ by more than
+OPENBLAS_NUM_THREADS=1. Exits quietly if scikit-learn is not installed. Fails if log-likelihoods differ by more than
 1e-11."""
 import pathlib
 import statistics

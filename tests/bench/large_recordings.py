@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Speed of reading recordings with 99 % unneeded images, against cat and the compressors' own programs.
+"""Speed of reading recordings with 99 % unneeded images, compared with cat and the compressors' own programs.
 
 Usage: large_recordings.py PROGRAM BAG FOLDER [MEGABYTES]
 
-Writes the drive in BAG (husky_outdoor_test1.bag) with a camera's images between its messages, as bag (none, lz4, bz2) and
-MCAP (none, lz4, zstd), each of MEGABYTES unpacked (2000; bz2: a tenth). `PROGRAM identify` reads it, and the same drive
-without images: what lies between is the images' share. Each figure is the least of three, taken in turn, of processor
-seconds (user and system, all threads) and of seconds by the clock, from a warm cache.
+Writes the drive in BAG (husky_outdoor_test1.bag) with camera images between its messages. Formats are bag (none, lz4, bz2) and
+MCAP (none, lz4, zstd), each of MEGABYTES when unpacked (2000; bz2: a tenth). `PROGRAM identify` reads each file, and the same
+drive without images; the difference is the cost of the images. Each figure is the least of three measurements, taken in
+turn from a warm cache: processor seconds (user and system, all threads) and wall-clock seconds.
 """
 import os
 import pathlib

@@ -1,13 +1,15 @@
 #!/usr/bin/python3
-"""Processor time of `modebank run` against states, lags and samples: the table of docs/results/cost.md.
+"""Processor time of `modebank run` as a function of states, lags and samples: the table of docs/results/cost.md.
 
 measure_cost.py MODEBANK FOLDER [--only NAME] [--seconds N]
 
-n = m = 1, 2, 4, 6, 8 states and inputs and two states with 2, 4, 8 lags: 4 runs of 400 samples, every other held out;
-one state and one input with 30 lags each: 8 runs of 1000; one run of 1e5 and of 1e6 samples of one state and two
-inputs. All systems switch between two motions and settings are the defaults, on one thread. Stages have the wall time
-that the program states, which on one thread is their processor time. A run that takes longer than N seconds
-(1200) is stopped.
+Systems:
+- n = m = 1, 2, 4, 6, 8 states and inputs, and two states with 2, 4, 8 lags: 4 runs of 400 samples, every other one held out
+- one state and one input with 30 lags each: 8 runs of 1000 samples
+- one state and two inputs: one run of 1e5 and one of 1e6 samples
+
+All systems switch between two motions. Settings are the defaults, on one thread. The time of a stage is the wall time that
+the program prints; on one thread it equals processor time. A run that takes longer than N seconds (1200) is stopped.
 """
 
 import argparse

@@ -3,10 +3,12 @@
 
   measure_evidence.py build/modebank [--table docs/results/evidence.csv] [--seeds N] [--first 0] [--jobs N] [--only NAME,NAME] [--quantum auto]
 
-Every system is simulated here, by numpy, as twelve runs of 400 samples with inputs redrawn or held; six train and six
-are held out, as `modebank run` divides them by default, and the program runs with nothing but [data] configured. A row per system and
-seed is appended to the table, and those that it has of the same revision are left out, so that runs of this script add up. Counted is the answer of
-/evaluation/evidence. Rules are fixed before their seeds are run. Prints a Markdown table of all rows of that revision.
+This script simulates every system with numpy: twelve runs of 400 samples, with inputs drawn at each sample or held. Six runs
+train and six are held out, the default division of `modebank run`. Only [data] is configured. The script counts the answers
+in /evaluation/evidence.
+
+Each system and seed adds a row to the table. Rows of the same revision that the table already has are skipped, so several
+calls add up. Rules are fixed before their seeds are run. Prints a Markdown table of all rows of the revision.
 """
 import argparse
 import collections

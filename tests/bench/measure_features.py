@@ -3,10 +3,10 @@
 
 measure_features.py MODEBANK FOLDER [SEEDS]
 
-Systems of one or two states that switch among known modes, or have one mode per run, fitted with four and eight lags,
-windows of 1.5 and 3 regressors. `mixture.features` and `mixture.covariance` as the columns have them, the true number
-of components. Figures are adjusted Rand indices of the labels of windows without a switch (every fifth), means over
-seeds; 1 is the truth, 0 chance.
+Systems of one or two states switch between known modes, or have one mode per run. They are fitted with four and eight lags
+and windows of 1.5 and 3 transitions per regressor. Each column has its own `mixture.features` and `mixture.covariance`, and the true
+number of components. Figures are adjusted Rand indices of the labels of windows without a switch (every fifth window), averaged
+over seeds. 1 means equal to the truth, 0 means chance.
 """
 
 import subprocess

@@ -3,10 +3,15 @@
 
   measure_guards.py build/modebank [DATA] [--seeds 50] [--hybrid-seeds 10] [--first 1] [--jobs N] [--only NAME] [--system NAME] [--rows FILE]
 
-hybrid: the three systems of DATA/hybrid/simulate.py (DATA: else MODEBANK_DATA), beside the true parameters with the true guard.
-soft: two modes drawn by a known multinomial logit; the weights' errors in their own stated ones. hard: the mode is u > 0.4, and no input
-lies within 0.1 of that; whether the border lies in that gap and no error is stated. markov: a constant T, three modes; how often the
-logit is chosen, and what that costs on held-out runs. The last three: four training runs of 500 samples and four held out, defaults. Prints a Markdown table for each.
+- hybrid: the three systems of DATA/hybrid/simulate.py (default of DATA: MODEBANK_DATA), compared with the true parameters
+  and the true border
+- soft: a known multinomial logit draws two modes; prints the errors of the weights in their stated errors
+- hard: the mode is u > 0.4, and no input lies within 0.1 of 0.4; prints whether the border lies in that gap and no error
+  is stated
+- markov: a constant T with three modes; prints how often the logit is chosen, and its loss on held-out runs
+
+The last three have four training runs of 500 samples and four held-out runs, with default settings. Prints a Markdown table
+for each.
 """
 import argparse
 import concurrent.futures

@@ -3,11 +3,16 @@
 
   measure_quantised.py build/modebank [--seeds 50] [--first 0] [--jobs N] [--modes 1,2] [--quanta 0.3,1,3] [--scale 1] [--rows FILE]
 
-One state without measurement noise, one mode or two that differ in A, B and noise, twelve runs of 400 samples of which six train; outputs
-are multiples of a quantum of so many innovation standard deviations. Each seed's files are learned from with data.quantum = the quantum
-(interval), with none (Gaussian), and, if asked for, with none and R fixed at next to nothing (exact); mixture.components is the number of modes. Bias: mean over seeds of theta less the truth in the bank's stated
-errors, of the parameter where it is largest, with the standard error of that mean (seeds whose bank has the true number of modes).
-Tails: of the held-out runs. Prints a Markdown table.
+Systems have one state without measurement noise, and one mode or two modes that differ in A, B and noise. Six of twelve runs
+of 400 samples train. Outputs are multiples of a quantum, given in innovation standard deviations. mixture.components is the
+number of modes. The files of each seed are learned from in two or three ways:
+- interval: data.quantum = the quantum
+- Gaussian: data.quantum = none
+- exact (on request): data.quantum = none, and R fixed at almost zero
+
+Bias: mean over seeds of theta minus the truth, in the bank's stated errors, with the standard error of that mean. It is given
+for the parameter with the largest bias, over seeds whose bank has the true number of modes. Tails: of the held-out runs.
+Prints a Markdown table.
 """
 import argparse
 import concurrent.futures

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Known systems by the default configuration: regret, number of modes and stated errors (make systems).
+"""Known systems with the default configuration: regret, number of modes and stated errors (make systems).
 
   measure_systems.py build/modebank [--seeds 50] [--first 0] [--jobs N] [--only NAME,NAME] [--rows FILE]
 
-Twenty runs of 800 samples each, ten of which train: the three modes of one state and the three of two states below, without measurement
-noise and with R = Q / 4, stays of 100 to 400 samples on average (a seed's own) or of 20 windows; the program runs with nothing but
-[data] configured. Regret: held-out log score of the filter with the true parameters minus the bank's. Stated errors: theta of each
-mode minus the true mode that it is nearest to, in the mode's own errors, where the number of modes is right. Prints a Markdown table,
-and how many of the stated 95 % intervals hold the truth, of all systems together, each with its own 95 % interval (Clopper-Pearson).
-The structure is known here: --window.model linear.
+Ten of twenty runs of 800 samples train. The systems below have three modes and one or two states, without measurement noise
+and with R = Q / 4. Mean stays are 100 to 400 samples (drawn per seed) or 20 windows. The program runs with only [data]
+configured, apart from --window.model linear, because the structure is known here.
+
+Regret: held-out log score of the filter with the true parameters minus that of the bank. Stated errors: theta of each mode minus
+the nearest true mode, in the standard errors of the mode, if the number of modes is right. Prints a Markdown table. Prints
+the share of stated 95 % intervals that contain the truth, over all systems, with 95 % intervals (Clopper-Pearson).
 """
 import argparse
 import concurrent.futures

@@ -3,11 +3,11 @@
 
 Usage: page_drag.py PROGRAM FOLDER
 
-Simulates one run of a million samples (two modes, two inputs of different units), takes `PROGRAM run` and `report` over
-it, once, and drags the view over the run in headless Chromium: pointer events on the plot, one per frame of the screen,
-as a mouse held down sends them. Prints the time from opening a page to its first paint, which holds the verdict and the
-picture of the data (a test sees to that), for the demo and for the million samples; then a row per width of the view:
-median and 95th percentile of the intervals between frames, and of the time from one event to the picture that shows it.
+Simulates one run of a million samples (two modes, two inputs of different units) and calls `PROGRAM run` and `report` once.
+Drags the view over the run in headless Chromium. Pointer events come once per frame of the screen, like those of a mouse
+that is held down. Prints the time from opening a page to its first paint, for the demo and for the million samples. The first
+paint contains the verdict and the picture of the data (a test checks this). Then prints a row per width of the view: median and
+95th percentile of the intervals between frames, and of the time from an event to the picture that shows it.
 """
 import json
 import pathlib

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Cost of a filter step from Python: the minimum over many short batches [microseconds].
 
-Usage: PYTHONPATH=build/python python_step.py [ARCHIVE]. Without an archive a bank of eight modes, one state and two inputs
-steps; the same bank in C++ is bench_modebank's business.
+Usage: PYTHONPATH=build/python python_step.py [ARCHIVE]. Without an archive, the bank has eight modes, one state and two
+inputs. bench_modebank measures the same bank in C++.
 """
 import sys
 import time

@@ -3,10 +3,14 @@
 
 scale.py MODEBANK FOLDER [--rows N] [--runs N] [--page N]
 
-One run of so many rows and three channels, cut into twenty blocks (data.split), with bank.refine = none and with the
-default, and its report; the page of one whole run; so many runs of six rows in one file (data.run), run, shown, verified and reported. Data are simulated with a
-fixed seed: two motions that change every 50 samples in the mean. One lag and no search for more, so that the figures
-are those of reading, filtering and writing, and compare with those of older programs.
+Measures three cases:
+- one run of N rows (--rows) and three channels, cut into twenty blocks (data.split), with bank.refine = none and with the
+  default, and its report
+- the page of one whole run (--page)
+- N runs (--runs) of six rows in one file (data.run): run, show, verify and report
+
+Data are simulated with a fixed seed: two motions that change every 50 samples on average. The model has one lag, without a
+search for more. So the figures are those of reading, filtering and writing, and can be compared with older programs.
 """
 
 import argparse

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""track_day.py PROGRAM ARCHIVE [HOURS]: a robot's day through `modebank track`, as fast as it goes.
+"""track_day.py PROGRAM ARCHIVE [HOURS]: a robot's day through `modebank track`, as fast as possible.
 
-Samples at 200 Hz go to two filters: one runs through, the other is killed (SIGKILL) once in every ten minutes of the
-log, at any sample, and goes on from its last checkpoint. What the second wrote, cut after each checkpoint as the next
-process says, must be what the first wrote, byte for byte; and the first must not grow. Some samples miss a value, come
-twice, or are no samples at all. The archive's bank has one state and two inputs, as that of `modebank demo`.
+Samples at 200 Hz go to two filters. One runs through. The other is killed (SIGKILL) once in every ten minutes of the log, at any
+sample, and continues from its last checkpoint. The output of the second, cut after each checkpoint where the next process
+continues, must equal that of the first, byte for byte. The memory of the first must not grow. Some samples miss a value, are
+repeated, or are not samples at all. The archive's bank has one state and two inputs, like that of `modebank demo`.
 """
 
 import configparser
