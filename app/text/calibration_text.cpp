@@ -49,7 +49,7 @@ std::string doubt_words(const DiagnosticsRow& row) {
   }
 }
 
-/// "50 %: 57.5 % (too wide)"
+/// "57.5 % of the samples lie in the 50 % band (too wide)" in short form: "50 %: 57.5 % (too wide)".
 std::string other_band(double level, double coverage, double lower, double upper) {
   const BandWidth width = width_of(level, lower, upper);
   return fmt::format("{:g} %: {:.1f} %{}", 100.0 * level, 100.0 * coverage,

@@ -9,8 +9,8 @@ namespace modebank::app {
 
 /// The verdict with its reason: "calibrated, you can rely on it (92.5 to 97.5 % passes)".
 std::string verdict_text(const DiagnosticsRow& row);
-/// "96.6 % (95.6 to 97.4) of the held-out samples lie in the 95 % band: calibrated, ...; 50 %: 57.5 % (too
-/// wide), ...": brackets hold the 95 % interval of the share.
+/// "96.6 % (95.6 to 97.4) of the held-out samples lie in the 95 % band: calibrated, ...; 50 %: 57.5 % (too wide), ...".
+/// Brackets hold the 95 % interval of the share.
 std::string band_text(const DiagnosticsRow& row);
 
 }  // namespace modebank::app

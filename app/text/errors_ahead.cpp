@@ -32,8 +32,8 @@ const HorizonRow* longest_horizon(const Archive& archive, const std::string& fil
   return longest;
 }
 
-/// Root mean square of the judged measurements about their mean, of each state; NaN without any. The samples are those
-/// that are predicted so many steps ahead.
+/// For each state, the standard deviation of the judged measurements about their mean; NaN if there are none. Counts
+/// only the samples that are predicted that many steps ahead.
 Eigen::VectorXd standard_deviation_of_measurements(const Archive& archive, Role role, Index steps) {
   if (!archive.recording || !archive.bank) return {};
   const Recording& recording = *archive.recording;
@@ -51,13 +51,13 @@ Eigen::VectorXd standard_deviation_of_measurements(const Archive& archive, Role 
 }
 
 /// FIT as in `compare` of Ljung's System Identification Toolbox for MATLAB: 100 (1 - ||y - prediction|| / ||y - mean of
-/// y||) percent. Empty where it is not known.
+/// y||) percent. Empty if it is unknown.
 Eigen::VectorXd fit_percent(const Eigen::VectorXd& rmse, const Eigen::VectorXd& deviation) {
   const bool known = rmse.size() == deviation.size() && (deviation.array() > 0.0).all();
   return known ? Eigen::VectorXd(100.0 * (1.0 - rmse.array() / deviation.array())) : Eigen::VectorXd();
 }
 
-/// "0.0301 rad/s (1.72 deg/s), FIT 92.3 %", of several states each with its name.
+/// "0.0301 rad/s (1.72 deg/s), FIT 92.3 %". With several states, each value follows its state's name.
 std::string error_words(const ErrorAhead& error, const std::vector<Channel>& states) {
   std::vector<std::string> parts;
   for (Index i = 0; i < error.bank.size(); ++i) {
@@ -69,10 +69,10 @@ std::string error_words(const ErrorAhead& error, const std::vector<Channel>& sta
   return boost::algorithm::join(parts, ", ");
 }
 
-/// "0.0301", or of several states "0.0301, 0.2".
+/// "0.0301"; with several states "0.0301, 0.2".
 std::string digits(const Eigen::VectorXd& values) { return fmt::format("{:.3g}", fmt::join(values, ", ")); }
 
-/// The bank's row of a number of steps ahead with what is beside it. `row_of`: of a filter, null without.
+/// The bank's error some steps ahead, beside the other filters' errors. `row_of` returns a filter's scores, or null.
 template <class RowOf>
 void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, const std::string& competitor,
                std::vector<ErrorAhead>& errors) {

@@ -10,20 +10,21 @@
 
 namespace modebank::app {
 
-/// How far predictions are off, beside those of the finding's best competitor and of all filters combined.
+/// Errors of the bank's predictions, beside those of the finding's best competitor and of all filters combined.
 struct ErrorAhead {
   Index steps = 1;
   Eigen::VectorXd bank;                  ///< n_y, root mean square [state unit]
-  Eigen::VectorXd competitor, combined;  ///< n_y, the same; empty where not known
-  Eigen::VectorXd other;                 ///< n_y, of each state the least of all competitors; empty where not known
-  Eigen::VectorXd fit_percent;           ///< n_y, FIT of the bank [%]; empty where not known
-  std::string bank_words, other_words;   ///< the bank's with units; the competitor's and combined's with their names
+  Eigen::VectorXd competitor, combined;  ///< n_y, root mean square [state unit]; empty if unknown
+  Eigen::VectorXd other;                 ///< n_y, the least error of all competitors for each state; empty if unknown
+  Eigen::VectorXd fit_percent;           ///< n_y, FIT of the bank [%]; empty if unknown
+  std::string bank_words, other_words;   ///< errors of the bank with units; errors of the competitor and of `combined` with their names
 };
 
-/// One step ahead, and as far as was looked ahead. `competitor`: empty without.
+/// Errors one step ahead and at the longest scored horizon. `competitor` is empty if there is none.
 std::vector<ErrorAhead> errors_ahead(const Archive& archive, Role role, const std::string& competitor);
 
-/// The values of the competitor that is best at each state. `value_of`: a competitor's numbers, null without.
+/// For each state, the value of the competitor that is best at this state. `value_of` returns a competitor's values, or
+/// null.
 template <class ValueOf, class Better>
 Eigen::VectorXd best_of_competitors(ValueOf value_of, Better better) {
   Eigen::VectorXd best;
@@ -37,7 +38,7 @@ Eigen::VectorXd best_of_competitors(ValueOf value_of, Better better) {
   return best;
 }
 
-/// "71.2 %", or of several states "71.2 %, 65.0 %".
+/// "71.2 %"; with several states "71.2 %, 65.0 %".
 std::string fit_words(const Eigen::VectorXd& fit);
 
 }  // namespace modebank::app

@@ -26,7 +26,7 @@ std::string judged(const Finding& finding) {
   return finding.runs == 1 ? runs : fmt::format("{} {}", finding.runs, runs);
 }
 
-/// "; error from 12 blocks of the one run", where there are fewer runs than an error needs.
+/// "; error from 12 blocks of the one run" if there are fewer runs than a standard error needs.
 std::string blocks_words(const Finding& finding) {
   for (const PairedGain& gain : finding.gains)
     if (gain.competitor == finding.best_competitor && gain.by_blocks && std::isfinite(gain.standard_error))
@@ -56,7 +56,7 @@ bool falls_short_of(const Finding& finding, const std::string& competitor) {
   return gain && gain->falls_short();
 }
 
-/// "; more than 0.103 passes": what the gain is judged by where it decides.
+/// "; more than 0.103 passes": the threshold of the gain, if the threshold decides.
 std::string passing_gain(const Finding& finding) {
   const PairedGain* const gain = gain_over(finding, finding.best_competitor);
   const bool decides = finding.answer == Answer::evidence || finding.answer == Answer::no_evidence;
@@ -78,15 +78,15 @@ std::string gain_sentence(const Finding& finding, const char* start) {
                      gain_words(finding.gain, finding.standard_error), passing_gain(finding), blocks_words(finding));
 }
 
-/// Which single model describes the runs instead, better or as well.
+/// Text on the single model that describes the runs as well as the bank, or better.
 std::string instead_words(const Finding& finding) {
   const std::string& simpler = finding.better_description;
   if (simpler.empty()) return "";
-  // Only a gain beyond its margin is known: what cannot be told apart may be as good, or not.
+  // Only a gain beyond its margin counts. A smaller gain leaves open which model is better.
   const char* const how = !falls_short_of(finding, simpler)       ? "may describe these runs as well"
                           : finding.answer == Answer::cannot_tell ? "may describe these runs better"
                                                                   : "describes these runs better";
-  // The best one is described in the sentence on the gain, which states that the bank is worse.
+  // The sentence on the gain describes the best single model already: it states that the bank is worse.
   if (simpler == finding.best_competitor && falls_short_of(finding, simpler) && finding.answer != Answer::cannot_tell)
     return "";
   if (simpler == finding.best_competitor) return fmt::format(" The single model `{}` {}.", simpler, how);

@@ -6,8 +6,8 @@
 
 namespace modebank {
 
-/// A finding in plain sentences: the answer with the gain over the best competitor and its standard error, and the
-/// single model that describes the runs instead.
+/// A finding in sentences: the answer, the gain over the best competitor with its standard error, and any single model
+/// that describes the runs as well or better.
 std::string finding_text(const Finding& finding);
 
 }  // namespace modebank

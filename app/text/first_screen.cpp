@@ -24,7 +24,7 @@ constexpr int least_columns = 40;
 
 int line_count(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
-/// Lines as wide as the screen at most, even with long names; a tab in a name counts as a space.
+/// Lines of at most the screen's width, even with long names. A tab in a name counts as a space.
 std::string narrowed(std::string text, int columns) {
   std::replace(text.begin(), text.end(), '\t', ' ');
   std::vector<std::string> lines = lines_of(text);
@@ -70,7 +70,7 @@ std::string modes_section(const Archive& archive, const FirstScreen& screen, int
   return section("modes", head, 1, columns) + narrowed(indent + table, columns) + "\n";
 }
 
-/// A name that is short, and that every shell reads as it stands.
+/// Whether a name is short and needs no quotes in any shell.
 bool is_plain(const std::string& name) {
   constexpr std::size_t short_name = 32;
   return !name.empty() && name.size() <= short_name && std::all_of(name.begin(), name.end(), [](char c) {
@@ -78,8 +78,7 @@ bool is_plain(const std::string& name) {
   });
 }
 
-/// The configuration of the command that made the archive, or the one that `run LOG` wrote beside it; empty where it is
-/// not known.
+/// The configuration of the command that made the archive, or the one that `run LOG` wrote beside it; empty if unknown.
 std::string configuration_of(const Archive& archive, const std::string& file) {
   std::vector<std::string> words;
   boost::algorithm::split(words, archive.provenance.command_line, boost::is_any_of(" "));
@@ -88,7 +87,7 @@ std::string configuration_of(const Archive& archive, const std::string& file) {
   return file.ends_with(".h5") && !words[2].starts_with("-") ? file.substr(0, file.size() - 3) + ".ini" : "";
 }
 
-/// The command that made the archive, with its options, where it is short; else the command without options.
+/// The command that made the archive, with its options if it is short, else without them.
 std::string run_command(const Archive& archive, const std::string& program, const std::string& configuration) {
   constexpr std::size_t short_command = 64;
   const std::string& typed = archive.provenance.command_line;
@@ -97,8 +96,8 @@ std::string run_command(const Archive& archive, const std::string& program, cons
   return program + " run " + configuration + (as_typed ? typed.substr(options) : "");
 }
 
-/// Commands as they can be typed: the program as it was called, the archive's and the configuration's own names unless
-/// they are long.
+/// Commands that can be typed. They contain the program's name as the user called it, and the names of archive and
+/// configuration unless these are long.
 std::string as_typed(std::string next, const Archive& archive, const std::string& program, const std::string& file) {
   if (const std::string configuration = configuration_of(archive, file); is_plain(configuration)) {
     boost::replace_all(next, "`modebank run CONFIG", "`" + run_command(archive, program, configuration));

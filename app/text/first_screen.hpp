@@ -4,7 +4,8 @@
 
 #include "app/text/screen_facts.hpp"
 
-/// The end of `run` and the beginning of `show`: the answer on one screen of a terminal. summary_text has the rest.
+/// The end of `run` and the beginning of `show`: the answer on one screen of a terminal. summary_text prints all other
+/// results.
 namespace modebank::app {
 
 inline constexpr int screen_lines = 24, screen_columns = 100;

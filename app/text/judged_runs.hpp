@@ -7,10 +7,10 @@
 
 namespace modebank {
 
-/// The summary's row of a filter over all runs of a role; null if there is none.
+/// The summary's row of a filter over all runs with a role; null if there is none.
 const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role);
 
-/// The row of a filter's mode over all runs of a role; null if there is none. mode -1: the whole filter.
+/// The row of a filter's mode over all runs with a role; null if there is none. mode -1 is the whole filter.
 const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role, Eigen::Index mode = -1);
 
 /// The evaluation of a filter over all runs; null if there is none.

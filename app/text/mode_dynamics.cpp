@@ -13,9 +13,9 @@
 namespace modebank {
 namespace {
 
-/// From here on an eigenvalue's distance to one is rounding: an integrator.
+/// an eigenvalue closer to one counts as an integrator; the rest is rounding
 constexpr double integrator_slack = 1e-12;
-/// Of a parameter, relative: the cube root of the machine's precision, best for central differences.
+/// relative step of a parameter: the cube root of the machine's precision, best for central differences
 constexpr double difference_step = 6e-6;
 
 Decay decay_of(const std::complex<double>& lambda, double dt_s) {
@@ -29,12 +29,12 @@ Decay decay_of(const std::complex<double>& lambda, double dt_s) {
   return decay;
 }
 
-/// What grows never dies out: it comes before what dies out slowly.
+/// A growing mode never dies out, so it comes before slow ones.
 double slowness(const Decay& decay) {
   return decay.time_constant_s < 0.0 ? std::numeric_limits<double>::infinity() : decay.time_constant_s;
 }
 
-/// NaN where an input that is held never settles.
+/// NaN if the state never settles under a constant input.
 Eigen::MatrixXd steady_gain(const Bank& bank, const LinearModel& model, bool settles) {
   const Eigen::Index inputs = bank.structure.inputs;
   Eigen::MatrixXd held = Eigen::MatrixXd::Zero(model.A.rows(), inputs);
@@ -65,7 +65,7 @@ Eigen::VectorXd numbers_of(const ModeDynamics& dynamics) {
   return numbers;
 }
 
-/// Covariance of theta; empty where no standard errors are known.
+/// Covariance of theta; empty if standard errors are unknown.
 Eigen::MatrixXd covariance_of(const Mode& mode, Eigen::Index parameters) {
   if (mode.standard_error.size() != parameters) return {};
   Eigen::MatrixXd covariance = mode.standard_error.cwiseAbs2().asDiagonal();
@@ -77,7 +77,7 @@ Eigen::MatrixXd covariance_of(const Mode& mode, Eigen::Index parameters) {
 
 using NumbersOf = std::function<Eigen::VectorXd(const LinearModel&)>;
 
-/// Derivatives of `numbers` by theta; NaN where a step changes how many there are, as where two roots meet.
+/// Derivatives of `numbers` by theta. NaN if a step of theta changes their count, for example at a double root.
 Eigen::MatrixXd derivatives(const Bank& bank, const Eigen::VectorXd& theta, Eigen::Index count,
                             const NumbersOf& numbers) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Constant(count, theta.size(), not_a_number);
@@ -102,7 +102,7 @@ DerivedNumbers derived_numbers(const Bank& bank, Eigen::Index mode, const Number
   const Eigen::MatrixXd J = derivatives(bank, bank.theta(mode), values.size(), numbers);
   Eigen::VectorXd errors(values.size());
   for (Eigen::Index i = 0; i < errors.size(); ++i) {
-    // A parameter that has no error matters to the numbers alone that it moves.
+    // A parameter without an error affects only the numbers that depend on it.
     std::vector<Eigen::Index> moving;
     for (Eigen::Index j = 0; j < J.cols(); ++j)
       if (J(i, j) != 0.0) moving.push_back(j);

@@ -8,29 +8,28 @@
 
 namespace modebank {
 
-/// How fast one eigenvalue of I + A dies out.
+/// The decay of one eigenvalue of I + A.
 struct Decay {
-  double per_sample = 0.0;       ///< what is left of it after a sample: the eigenvalue; of a conjugate pair its size
-  double time_constant_s = 0.0;  ///< -dt / log |lambda|; infinite for an integrator, negative when it grows; 0: at once
+  double per_sample = 0.0;       ///< share left after one sample: the eigenvalue, or the modulus of a complex pair
+  double time_constant_s = 0.0;  ///< -dt / log |lambda|; infinite for an integrator, negative for growth; 0: decays at once
   double frequency_hz = 0.0;     ///< |arg lambda| / (2 pi dt); half the sample rate for a negative real lambda
-  double time_constant_error_s = 0.0;  ///< standard error; NaN where it is not known
+  double time_constant_error_s = 0.0;  ///< standard error; NaN if unknown
 };
 
-/// What a mode means to who looks at a step response.
+/// The response of a mode to a step of its inputs.
 struct ModeDynamics {
   std::vector<Decay> decays;   ///< one per eigenvalue or conjugate pair, slowest first
-  Eigen::MatrixXd gain;        ///< n_y x recorded inputs: C (-A)^-1 B of a constant input; NaN of a mode that
-                               ///< integrates or grows: an input that is held never settles
-  Eigen::MatrixXd gain_error;  ///< standard errors of the same; NaN where they are not known
+  Eigen::MatrixXd gain;        ///< n_y x recorded inputs: C (-A)^-1 B for a constant input; NaN if the mode integrates or grows and never settles
+  Eigen::MatrixXd gain_error;  ///< standard errors of the gains; NaN if unknown
 };
 
-/// With lags the state is the companion form's and the gain is that of an input held over all its lags. Standard errors
-/// by the delta method from the mode's standard errors of theta, with the correlations of its spread (of refined banks
-/// the two are one covariance; of others the windows' correlations stand in for those of their mean).
+/// Lagged models use the companion form; their gain assumes that the input is constant over all lags. The delta method
+/// gives the standard errors from those of the mode's theta and the correlations of its spread. In a refined bank both
+/// come from one covariance. In other banks, the windows' correlations stand in for those of their mean.
 ModeDynamics mode_dynamics(const Bank& bank, Eigen::Index mode);
 
-/// What follows from a mode's model, and its standard errors by the same delta method: NaN where they are not known,
-/// which is so, too, where a small step of theta changes how many numbers there are.
+/// Numbers that follow from a mode's model, with standard errors by the delta method. A standard error is NaN if it is
+/// unknown, or if a small step of theta changes the count of numbers.
 struct DerivedNumbers {
   Eigen::VectorXd values, errors;
 };

@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-constexpr double enough = 0.6;  // of a mode's samples for a label to be its name
+constexpr double enough = 0.6;  // share of a mode's samples that a label needs to become its name
 
 Index samples_of(const Archive& archive, Index mode) {
   Index samples = 0;
@@ -18,7 +18,7 @@ Index samples_of(const Archive& archive, Index mode) {
   return samples;
 }
 
-/// A label that is a number would be taken for a mode's.
+/// A numeric label could be mistaken for a mode's number.
 std::string name_by_label(const std::string& label) {
   const bool number = !label.empty() && label.find_first_not_of("+-.0123456789") == std::string::npos;
   return number ? "label " + label : label;

@@ -6,25 +6,25 @@
 #include "filter/learn/chain/progress.hpp"
 #include "io/archive/archive.hpp"
 
-/// What people call the bank's modes: as bank.mode_names says, else by the label that they are mostly found at.
+/// Names of the bank's modes: from bank.mode_names, else the most frequent label of the mode's samples.
 namespace modebank {
 
-/// The label that holds at least 60 % of a mode's samples; empty without.
+/// The label that holds at least 60 % of a mode's samples; empty if there is none.
 std::string label_of_mode(const Archive& archive, Index mode);
 
-/// One name per mode of the bank, empty where it has none; nothing where no mode has one. `given` names the first
-/// modes. Where these are not as many as there are modes, that is said and costs nobody his run: how many modes there
-/// are is known after it alone.
+/// One name per mode of the bank, empty for a mode without a name. Returns an empty list if no mode has a name. `given`
+/// names the first modes. A wrong number of given names is only a warning, because users cannot know the number of
+/// modes before the run.
 std::vector<std::string> mode_names_of(const Archive& archive, const std::vector<std::string>& given,
                                        const Progress& progress);
 
-/// A name of a user as one line, without what a terminal would obey.
+/// A user's name as one line, without a terminal's control characters.
 std::string one_line(std::string name);
-/// The stored name, on one line; empty where there is none.
+/// The stored name, on one line; empty if there is none.
 std::string name_of_mode(const std::vector<std::string>& names, Index mode);
 /// In a column of modes: "0", or "0 ice".
 std::string mode_cell(const std::vector<std::string>& names, Index mode);
-/// Anywhere else: "mode 0", or "mode 0: ice".
+/// In all other places: "mode 0", or "mode 0: ice".
 std::string mode_title(const std::vector<std::string>& names, Index mode);
 
 }  // namespace modebank

@@ -15,7 +15,7 @@
 namespace modebank::app {
 namespace {
 
-constexpr std::size_t most_members = 4;  // modes of a family that a cell of a table has room for
+constexpr std::size_t most_members = 4;  // modes of a family that fit a table's cell
 
 std::vector<std::string> gain_cells(const Eigen::MatrixXd& gain, const Eigen::MatrixXd& error,
                                     const std::vector<bool>& open) {
@@ -33,7 +33,7 @@ bool some_have_several(const std::vector<ModeFamily>& families) {
                      [](const ModeFamily& family) { return family.modes.size() > 1; });
 }
 
-/// "ice (0, 5, 3)", "modes 2, 7", where families have several modes; else "4 grip", "2".
+/// "ice (0, 5, 3)", "modes 2, 7" if families have several modes; else "4 grip", "2".
 std::string family_cell(const ModeFamily& family, bool several) {
   const std::string name = shortened(family.name);
   if (!several) return name.empty() ? family.numbers() : fmt::format("{} {}", family.numbers(), name);
@@ -41,8 +41,8 @@ std::string family_cell(const ModeFamily& family, bool several) {
   return fmt::format("{} {}", family.modes.size() == 1 ? "mode" : "modes", family.numbers(most_members));
 }
 
-/// Time constant of a family without its period, which `show` has by mode. A mean of several modes stands as it is: its
-/// error includes how far they are apart, so it does not bound a mode that may never die out.
+/// Without the period, which `show` prints per mode. A mean over several modes is printed as it is: its error is not an
+/// interval that could reach a mode that never dies out.
 std::string time_words(const ModeFamily& family) {
   Decay slowest = family.slowest;
   slowest.frequency_hz = 0.0;
@@ -50,7 +50,7 @@ std::string time_words(const ModeFamily& family) {
   return mean ? estimate_text(slowest.time_constant_s, slowest.time_constant_error_s) + " s" : decay_words(slowest);
 }
 
-/// Effective track width [m] of each family of a robot on two rows of wheels; empty for other systems.
+/// For a robot with two rows of wheels, the track width [m] of each family; empty for other systems.
 std::vector<std::string> track_cells(const Archive& archive, const std::vector<ModeFamily>& families) {
   if (!archive.recording) return {};
   const RobotBank robot{*archive.bank, archive.recording->states, archive.recording->inputs};
@@ -137,7 +137,7 @@ std::string all_modes(const Archive& archive, const GainNames& gains, int width)
   return text_of(headings, rows, !archive.mode_names.empty(), width);
 }
 
-/// Families, where some have several modes: their modes and what their numbers rest on.
+/// Families with their modes, and the modes that enter their means; only if some family has several modes.
 std::string all_families(const Archive& archive, const GainNames& gains, int width) {
   const std::vector<ModeFamily> families = mode_families(archive);
   if (!some_have_several(families)) return "";

@@ -6,10 +6,10 @@
 #include "app/text/mode_families.hpp"
 #include "io/archive/archive.hpp"
 
-/// The bank's modes as tables: on the first screen and the page by family, in `show` one by one, too.
+/// The bank's modes as tables. The first screen and the page show families; `show` also shows single modes.
 namespace modebank::app {
 
-/// The most used families in words, a row each: modes, use, stay, slowest time constant, gains.
+/// The most used families as text, one row each: modes, use, stay, slowest time constant, gains.
 struct ModeTable {
   struct Row {
     std::vector<Index> modes;  ///< most used first
@@ -19,21 +19,20 @@ struct ModeTable {
   std::vector<std::string> headings;
   std::vector<Row> rows;
   Index families = 0;       ///< of the bank
-  Index others = 0;         ///< families that are not among the rows
-  double others_use = 0.0;  ///< of all of them together
-  std::string gain_unit;    ///< that all gains have; empty where none or several are known
+  Index others = 0;         ///< families that have no row
+  double others_use = 0.0;  ///< sum of their use
+  std::string gain_unit;    ///< common unit of all gains; empty if they have none or several
 };
-/// At most `rows` rows, that of the others being one of them; 0: as many as are told.
+/// At most `rows` rows; the last one may hold the other families. 0: all families that told_of counts.
 ModeTable mode_table(const Archive& archive, Index rows = 0);
 
-/// The same as a text of at most `rows` lines below its heading, `width` columns wide: gains for which there is no room
-/// are left out.
+/// The same as text: a heading and at most `rows` lines of `width` columns. Gains without room are left out.
 struct ShortModes {
   std::string text;
   Index gains_left_out = 0;
 };
 ShortModes short_modes(const Archive& archive, Index rows, int width);
-/// All families and all modes with all of it, for `show`. 0: no limit.
+/// All families and all modes with all numbers, for `show`. width 0: no limit.
 std::string modes_in_words(const Archive& archive, int width = 0);
 
 }  // namespace modebank::app

@@ -6,52 +6,53 @@
 #include "app/text/mode_dynamics.hpp"
 #include "io/archive/archive.hpp"
 
-/// The bank's modes as people speak of them: how much they are used, how long they last, how fast they decay, where
-/// they settle. app/text/mode_tables.hpp has tables of them, app/text/summary_tables.hpp their parameters.
+/// The bank's modes in words: use, stay, time constants, steady gains. app/text/mode_tables.hpp makes tables of them;
+/// app/text/summary_tables.hpp prints their parameters.
 namespace modebank::app {
 
-/// "0.163 +- 0.004 s", "integrates", "unstable: grows e-fold in 2 s", "over 3 s" where the standard error reaches a
-/// mode that never dies out; "... , period 0.5 s" of what oscillates.
+/// "0.163 +- 0.004 s", "integrates", "unstable: grows e-fold in 2 s". "over 3 s" if the standard error reaches a mode
+/// that never dies out. "... , period 0.5 s" for a mode that oscillates.
 std::string decay_words(const Decay& decay, const char* plus_minus = "+-");
-/// What is left after a sample, of each eigenvalue or pair; the slowest first.
+/// Share left after one sample, for each eigenvalue or pair, slowest first.
 std::string per_sample_words(const std::vector<Decay>& decays);
 
 /// One mode on the judged runs.
 struct UsedMode {
   Index mode = 0;
   double use = 1.0;  ///< mean probability
-  /// Mean stay; NaN where it was never entered. By the transition matrix: where gaps cut runs, stays look shorter.
-  /// Where that has seen no end of it in the longest run, the length of that run, which the stay is at least.
+  /// Mean stay by the transition matrix; NaN if the mode was never entered. Gaps that cut runs do not shorten it. If it
+  /// exceeds the longest run, it is that run's length and `at_least` is true.
   double stay_s = 0.0;
   bool at_least = false;
 };
-/// "6.61 s", "over 60 s"; "-" where it was never entered.
+/// "6.61 s", "over 60 s"; "-" if the mode was never entered.
 std::string stay_words(const UsedMode& mode);
-/// Most used first; where nothing was scored by weight.
+/// Most used first. If no run was scored, the use is the mode's weight.
 std::vector<UsedMode> used_modes(const Archive& archive);
 
-/// Said of what the training runs leave open: an input that is always zero, inputs of which one is a sum of others.
+/// Text for a parameter that the training runs do not determine: an input is always zero, or one input is a sum of
+/// others.
 inline constexpr const char* not_identifiable = "not identifiable";
-/// Per parameter of a linear model of that structure whether they do: it has no standard error in the global model.
+/// For each parameter of a linear model, whether it is unidentifiable: it has no standard error in the global model.
 std::vector<bool> unidentifiable_parameters(const Archive& archive, const LinearStructure& structure);
-/// Whether how fast a mode decays is open: the effect of a state is. Every gain rests on it.
+/// Whether the decays are unidentifiable, because the effect of some state is. All gains depend on the decays.
 bool unidentifiable_decays(const Archive& archive, const LinearStructure& structure);
-/// The same per gain (states x inputs, a state's in a row): some effect of the input on the state is open.
+/// The same for each gain (states x inputs, row by row): some effect of the input on the state is unidentifiable.
 std::vector<bool> unidentifiable_gains(const Archive& archive, const LinearStructure& structure);
 
-/// A name for a heading or a cell: at most 16 columns, ".." in place of the rest.
+/// A name for a heading or a cell: at most 16 columns, cut with "..".
 std::string shortened(const std::string& name);
 
-/// Which gains there are: "wz per velL", row by row; each with its unit where they do not share one.
+/// Names of the gains: "wz per velL", row by row. Each name has its unit if the units differ.
 struct GainNames {
   std::vector<std::string> names;
-  std::string unit;  ///< that all have; empty where none or several are known
+  std::string unit;  ///< common unit of all gains; empty if they have none or several
 };
 GainNames gain_names(const Bank& bank, const std::vector<Channel>& states, const std::vector<Channel>& inputs);
 
-/// How many modes or families stand in a table one by one: the most used, at most eight, none below 1 % (but at least
-/// one). The rest are "others".
-/// `use`: of each, the most used first.
+/// Number of modes or families that get their own row in a table: the most used, at most eight, none below 1 %, but at
+/// least one. The others share the row "others".
+/// `use`: the use of each, most used first.
 Index told_of(const std::vector<double>& use);
 
 }  // namespace modebank::app
