@@ -25,7 +25,7 @@ namespace po = boost::program_options;
 namespace modebank::app {
 namespace {
 
-/// All options, each once: an option that several commands have sets the same member.
+/// Adds each option once: an option of several commands sets the same member.
 std::map<std::string, CommandOption> all_options() {
   std::map<std::string, CommandOption> options;
   const auto add = [&](const std::vector<CommandOption>& more) {
@@ -57,7 +57,7 @@ po::options_description describe_options(const std::map<std::string, CommandOpti
   return description;
 }
 
-/// Sets the keys for which options are short. An option with alternatives must have one of them.
+/// Sets the configuration keys that options stand for. An option with alternatives must have one of them as its value.
 void take_values(const std::map<std::string, CommandOption>& options, const po::variables_map& values,
                  CommandLine& line) {
   for (const auto& [name, option] : options) {
@@ -90,7 +90,7 @@ std::string program_as_called(const std::string& typed) {
   return by_name ? std::filesystem::path(typed).filename().string() : shell_quoted(typed);
 }
 
-/// All words after it are files.
+/// All words after `--` are files.
 const std::string end_of_options = "--";
 
 bool takes_a_value(const po::options_description& description, const std::string& word) {
@@ -99,16 +99,16 @@ bool takes_a_value(const po::options_description& description, const std::string
   return option && option->semantic()->max_tokens() > 0;
 }
 
-/// Whether the word after a key is another option, so that the key lacks its value. Values may begin with dashes, as
-/// options of sbatch do.
+/// Whether the next word is another option, so that this key lacks its value. Values may begin with dashes, like
+/// options of sbatch.
 bool is_option(const po::options_description& description, const std::string& word) {
   const std::string key = word.substr(0, word.find('='));
   const std::string name = key.find('.') == std::string::npos ? word : key;
   return name.rfind("--", 0) == 0 && name != end_of_options && description.find_nothrow(name.substr(2), false);
 }
 
-/// The words with each key and its value joined, so that Boost accepts any value: --key=value, or two words for an
-/// empty value.
+/// Joins each key and its value into one word, so that Boost accepts any value: --key=value, or two words for an empty
+/// value.
 std::vector<std::string> joined_values(int argc, const char* const* argv, const po::options_description& description) {
   std::vector<std::string> words;
   const auto push = [&](const std::string& key, const std::string& value) {
@@ -143,13 +143,13 @@ std::string output_key(const Command& command) {
   return {};
 }
 
-/// The key to use in place of an option that the command does not have.
+/// Text that names the key to use in place of an option that the command does not have.
 std::string instead_of(const Command& command, const std::string& option) {
   const std::string key = option == "output" ? output_key(command) : "";
   return key.empty() ? "" : fmt::format("--{} PATH says where it writes; ", key);
 }
 
-/// "--data.*, --track.filter", with the keys that are left out of sections.
+/// The options and keys that a command reads: "it reads --data.*, --track.filter".
 std::string known_words(const Command& command) {
   std::vector<std::string> known;
   for (const CommandOption& each : command.options) known.push_back("--" + each.long_name());
@@ -161,7 +161,7 @@ std::string known_words(const Command& command) {
   return fmt::format("it reads {}{}", fmt::join(known, ", "), but);
 }
 
-/// "-o" and "--window.length x" are refused alike where nothing would read them.
+/// Refuses options that the command does not read, such as "-o" and "--window.length x".
 void refuse_unread(const Command& command, const CommandLine& line) {
   std::vector<std::string> unread;
   std::string instead;
@@ -178,7 +178,8 @@ void refuse_unread(const Command& command, const CommandLine& line) {
                                          fmt::join(unread, ", "), instead, known_words(command)));
 }
 
-/// Takes the words that the parser recognized into the line. Throws ConfigurationError with all others.
+/// Adds the parser's words to the command line. Throws ConfigurationError with the words that the parser did not
+/// recognise.
 void take_words(const po::parsed_options& parsed, CommandLine& line) {
   Faults faults;
   for (const po::option& option : parsed.options)
@@ -209,14 +210,14 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   CommandLine line;
   for (int i = 0; i < argc; ++i) line.typed += (i ? " " : "") + shell_quoted(argv[i]);
   line.program = program_as_called(argc > 0 ? argv[0] : "modebank");
-  if (argc > 1) refuse_gone_command(argv[1]);  // first, because options of a removed command were removed, too
+  if (argc > 1) refuse_gone_command(argv[1]);  // first, because a removed command's options were removed, too
   const std::map<std::string, CommandOption> options = all_options();
   const po::options_description description = describe_options(options, line);
   po::positional_options_description positional;
   positional.add("words", -1);
   po::variables_map values;
   try {
-    // Options may not be abbreviated, since new keys could change the meaning of an abbreviation.
+    // Options may not be abbreviated, because a new key could change what an abbreviation means.
     const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
     const po::parsed_options parsed = po::command_line_parser(joined_values(argc, argv, description))
                                           .options(description)

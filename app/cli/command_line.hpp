@@ -13,7 +13,7 @@ struct CommandLine {
   std::vector<std::pair<std::string, std::string>> overrides;  ///< configuration keys given as options, in order
   std::vector<std::string> given;                              ///< long names of all other options, in order
   std::string typed;                                           ///< the whole line, for provenance
-  std::string program;  ///< modebank if the shell finds it by this name, else its path
+  std::string program;  ///< modebank if the shell finds the program by this name, else its path
 
   // Values of the options; the table of commands has their meanings.
   bool help = false, version = false, quiet = false, verbose = false;
@@ -28,8 +28,8 @@ struct CommandLine {
 /// A word quoted for a shell.
 std::string shell_quoted(const std::string& word);
 
-/// Throws ConfigurationError for an unknown option (with the nearest known one), an option without its value and one
-/// that the command does not have.
+/// Throws ConfigurationError for an unknown option (with the nearest known one), an option without its value, and an
+/// option that the command does not have.
 CommandLine parse_command_line(int argc, const char* const* argv);
 
 }  // namespace modebank::app

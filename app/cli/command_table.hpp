@@ -9,30 +9,30 @@
 
 namespace modebank::app {
 
-/// Where the value of an option goes: a member of CommandLine, or the configuration key that the option is short for.
+/// Destination of an option's value: a member of CommandLine, or the configuration key that the option stands for.
 using OptionTarget = std::variant<bool CommandLine::*, std::string CommandLine::*, double CommandLine::*, std::string>;
 
-/// An option of a command that is no configuration key.
+/// An option of a command that is not a configuration key.
 struct CommandOption {
   std::string name;      ///< without dashes; "output,o" has a short form as well
-  std::string argument;  ///< what follows it, or words to choose from ("increment | full"); empty: a switch
+  std::string argument;  ///< name of the value, or words to choose from ("increment | full"); empty: a switch
   std::string help;
   OptionTarget target;
-  std::vector<std::string> words = {};  ///< to choose from where `argument` names them by one word ("FORM")
+  std::vector<std::string> words = {};  ///< words to choose from, if `argument` is a name for them ("FORM")
 
   std::string long_name() const { return name.substr(0, name.find(',')); }
   std::string typed() const;                 ///< "-o FILE, --output FILE"
   std::vector<std::string> choices() const;  ///< the words to choose from; empty: any text
 };
 
-/// The words that follow a command's name.
+/// The files or words that follow a command's name.
 struct Arguments {
-  std::string text;   ///< as help shows them
-  std::string needs;  ///< "needs one archive", for the refusal of fewer or more
+  std::string text;   ///< as `help` shows them
+  std::string needs;  ///< "needs one archive": the error for fewer or more
   std::size_t fewest, most;
 };
 
-/// One command: parsing, help, manual, completion and the refusal of options that it does not read all come from here.
+/// One command. The parser, help, manual, completion and the check of options all use this table.
 struct Command {
   std::string group;    ///< heading under which `help` lists it
   std::string name;     ///
@@ -40,10 +40,10 @@ struct Command {
   std::string summary;  ///< one line
   std::string details;  ///< sentences; may be empty
   std::string example;
-  std::vector<std::string> keys;  ///< sections, or single keys, of the configuration that it reads
+  std::vector<std::string> keys;  ///< sections or single keys of the configuration that the command reads
   std::vector<CommandOption> options;
   int (*run)(const CommandLine&);
-  std::vector<std::string> not_keys = {};  ///< keys of those sections that it does not read after all
+  std::vector<std::string> not_keys = {};  ///< keys in those sections that the command does not read
 
   bool reads(const std::string& key) const;
   const CommandOption* find_option(const std::string& long_name) const;
@@ -55,10 +55,10 @@ const std::vector<Command>& command_table();
 /// Options that every command has.
 const std::vector<CommandOption>& common_options();
 
-/// Throws ConfigurationError, which names what takes its place, for a command of an earlier version.
+/// Throws ConfigurationError with the replacement if the command is one of an earlier version.
 void refuse_gone_command(const std::string& name);
 
-/// Null when there is none of that name.
+/// Null if there is no command of that name.
 const Command* find_command(const std::string& name);
 
 }  // namespace modebank::app

@@ -12,14 +12,14 @@ namespace modebank::app {
 int run_command(const CommandLine& line);
 
 int run_pipeline(const CommandLine& line);    ///< run, identify, cluster, evaluate
-Result do_pipeline(const CommandLine& line);  ///< the same without printing
-/// The same for a valid configuration that is, or will be, in `file`.
+Result do_pipeline(const CommandLine& line);  ///< The same without printing.
+/// The same for a valid configuration. `file` is its path, which need not exist yet.
 Result do_configured(const CommandLine& line, const Config& config, const std::filesystem::path& file);
 int run_init(const CommandLine& line);
 int run_demo(const CommandLine& line);
 int run_check(const CommandLine& line);
 int run_simulate(const CommandLine& line);
-Result do_simulate(const CommandLine& line);  ///< the same without printing
+Result do_simulate(const CommandLine& line);  ///< The same without printing.
 int run_report(const CommandLine& line);
 int run_study(const CommandLine& line);
 int run_show(const CommandLine& line);

@@ -22,7 +22,7 @@ namespace {
 constexpr int demo_columns = 100;
 constexpr Index strip_columns = 75;
 
-/// The simulated ground as a bank of one mode, so that both sides are computed by the same functions.
+/// The simulated ground as a bank of one mode, so that the same functions compute both sides.
 Bank true_bank(const Config& simulation, std::size_t ground) {
   const SimulationOptions& system = simulation.simulate.system;
   const auto inputs = static_cast<Index>(simulation.data.input.size());
@@ -33,12 +33,12 @@ Bank true_bank(const Config& simulation, std::size_t ground) {
   return bank;
 }
 
-/// Standard error of the process noise's standard deviation, from that of its variance.
+/// Standard error of the standard deviation of the process noise, from the standard error of its variance.
 double noise_error(const Mode& mode, double sd) {
   return mode.Q_standard_error.size() > 0 ? mode.Q_standard_error(0, 0) / (2.0 * sd) : not_a_number;
 }
 
-/// Time constant, gains and noise of a mode beside those of a ground.
+/// Time constant, gains and noise of a mode, beside the true numbers of its ground.
 std::vector<FoundNumber> numbers_beside(const Archive& archive, Index mode, const Bank& truth) {
   const Bank& bank = *archive.bank;
   const ModeDynamics found = mode_dynamics(bank, mode), real = mode_dynamics(truth, 0);
@@ -58,7 +58,7 @@ std::vector<FoundNumber> numbers_beside(const Archive& archive, Index mode, cons
   return numbers;
 }
 
-/// The ground that most samples of each mode were driven on.
+/// For each mode, the most frequent ground among its samples.
 std::vector<std::string> grounds_of_modes(const Archive& archive) {
   std::vector<std::string> grounds;
   for (Index mode = 0; mode < archive.bank->mode_count(); ++mode) grounds.push_back(label_of_mode(archive, mode));
@@ -75,7 +75,7 @@ double agreement_of(const Archive& archive) {
   return static_cast<double>(alike) / static_cast<double>(all);
 }
 
-/// The judged run whose most frequent ground has the fewest samples: all of its grounds can be seen.
+/// The judged run with the most even shares of grounds, so that all of its grounds can be seen.
 std::size_t most_varied_run(const Archive& archive) {
   const RunLabels& labels = *archive.labels;
   const auto most_frequent = [&](std::size_t run) {
@@ -89,7 +89,7 @@ std::size_t most_varied_run(const Archive& archive) {
                            [&](std::size_t a, std::size_t b) { return most_frequent(a) < most_frequent(b); });
 }
 
-/// Its ground and the ground of the most probable mode, a letter for every few samples.
+/// The run's ground, and the ground of the most probable mode; each letter stands for a few samples.
 std::string ground_strips(const Archive& archive) {
   const std::size_t run = most_varied_run(archive);
   const Eigen::VectorXi& labels = archive.labels->of_runs[run];
@@ -109,7 +109,7 @@ std::string ground_strips(const Archive& archive) {
   return fmt::format("  run {0}, driven on  {1}\n  run {0}, found      {2}\n", name, driven, found);
 }
 
-/// A line per number: "grip  time constant  0.1507 +- 0.0006 s  true 0.150".
+/// One line per number: "grip time constant 0.1507 +- 0.0006 s true 0.150".
 std::string ground_rows(const FoundGround& mode) {
   std::string text, label = mode.ground;
   for (const FoundNumber& number : mode.numbers) {
@@ -121,7 +121,7 @@ std::string ground_rows(const FoundGround& mode) {
   return mode.ground.empty() ? fmt::format("  mode {} is on no ground for most of its samples\n", mode.mode) : text;
 }
 
-/// Whether the modes are worth it, in the words of a first reader; the screen's own finding where they are not.
+/// States how much better the modes predict. Without evidence, it prints the first screen's finding instead.
 std::string worth_text(const FirstScreen& screen) {
   if (screen.answer != Answer::evidence) return wrapped("finding   " + screen.finding, demo_columns) + "\n";
   return fmt::format("With these modes each held-out sample is {:.2g} times as likely as with one linear model ({}).\n",

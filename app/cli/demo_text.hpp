@@ -8,28 +8,28 @@
 #include "app/text/next_step.hpp"
 #include "io/archive/archive.hpp"
 
-/// The findings of `modebank demo` beside the truth of the system that it simulated.
+/// The modes that `modebank demo` found, beside the truth of the simulated system.
 namespace modebank::app {
 
-/// A number of a mode, and of the ground that it is named after.
+/// A number of a mode, and the true number of its ground.
 struct FoundNumber {
   std::string name, unit;
-  double found = 0.0, error = 0.0;  ///< error: standard error; NaN where it is not known
+  double found = 0.0, error = 0.0;  ///< error: standard error; NaN if unknown
   double truth = 0.0;
 };
 
-/// A mode of the bank, and the ground that most of its samples were driven on.
+/// A mode of the bank, and the most frequent ground of its samples.
 struct FoundGround {
-  std::string ground;  ///< empty: none of them
+  std::string ground;  ///< empty: no ground has most of the samples
   Index mode = 0;
   std::vector<FoundNumber> numbers;  ///< time constant, gains, noise
 };
 
-/// Most used mode first. Numbers are given where the ground is known.
+/// Most used mode first. Only a mode with a ground has numbers.
 struct DemoFindings {
   std::vector<FoundGround> modes;
   std::size_t grounds = 0;  ///< in truth
-  double agreement = 0.0;   ///< share of the held-out samples whose most probable mode is one of their ground
+  double agreement = 0.0;   ///< share of the held-out samples whose most probable mode belongs to their ground
 };
 
 /// Whether the archive and the system can be compared: a linear system with one state and named grounds, one bank
@@ -37,9 +37,9 @@ struct DemoFindings {
 bool is_comparable(const Archive& archive, const Config& simulation);
 DemoFindings compare_with_truth(const Archive& archive, const Config& simulation);
 
-/// The same for people: 14 lines for two modes.
+/// The comparison as text: 14 lines for two modes.
 std::string demo_text(const Archive& archive, const DemoFindings& findings, const Settings& settings);
-/// The same for programs: `agreement` and `modes`, see docs/reference/json.md.
+/// The comparison as JSON: `agreement` and `modes`, see docs/reference/json.md.
 nlohmann::json demo_json(const DemoFindings& findings);
 
 }  // namespace modebank::app

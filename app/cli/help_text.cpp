@@ -74,7 +74,7 @@ std::string options_of(const Command& command) {
   return command.options.empty() ? "" : text;
 }
 
-/// The keys that most users set; the sections that hold the others.
+/// The most common keys, and the sections with all others.
 std::string keys_paragraph(const Command& command) {
   if (command.keys.empty()) return "";
   constexpr std::size_t key_width = 23;  // of "--track.checkpoint" and the like
@@ -104,7 +104,7 @@ std::string section_text(const std::string& section) {
   return text.empty() ? "" : fmt::format("[{}]\n{}", section, text);
 }
 
-/// "read: what the data are ...", of a label of the screen; else nothing.
+/// "read: what the data are ...": the definition of a label of the screen; empty for other words.
 std::string label_text(const std::string& name) {
   for (const ScreenLabel& label : screen_labels())
     if (label.name == name) return fmt::format("{} (a line of the screen): {}\n", label.name, label.means);
@@ -113,14 +113,14 @@ std::string label_text(const std::string& name) {
 
 using Terms = std::vector<nlohmann::json>;
 
-/// The names by which a term is known, or (`not`) those that are not used for it.
+/// The names of a term, or (`not`) the names that are not used for it.
 std::vector<std::string> names_of_term(const nlohmann::json& entry, const char* member) {
   std::vector<std::string> names = entry.at(member);
   if (member == std::string("also")) names.push_back(entry.at("term"));
   return names;
 }
 
-/// The entry one of whose names `is` the one that is sought; null without.
+/// The first entry with a name for which `is` is true; null if there is none.
 template <class Is>
 const nlohmann::json* find_term(const Terms& terms, const char* member, Is is) {
   for (const nlohmann::json& entry : terms)
@@ -135,8 +135,8 @@ std::string definition(const nlohmann::json& entry) {
                      avoided.empty() ? "" : fmt::format(" Not called: {}.", fmt::join(avoided, ", ")));
 }
 
-/// The definition of a term or of a word that is not used for it, or nothing. Q and q are two terms: case matters
-/// where a name is spelt just so.
+/// The definition of a term; empty for other words. Words that are not used for a term also find it. The exact spelling
+/// comes first, because Q and q are two terms.
 std::string term_text(const Terms& terms, const std::string& name) {
   const auto exactly = [&](const std::string& other) { return other == name; };
   const auto loosely = [&](const std::string& other) { return boost::algorithm::iequals(other, name); };

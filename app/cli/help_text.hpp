@@ -5,14 +5,14 @@
 
 namespace modebank::app {
 
-/// All commands, a line each.
+/// All commands, one line each.
 std::string help_overview();
 
-/// Explains a command, a section, a key, a label of the screen or a term; pages show the same definitions of terms.
-/// Throws ConfigurationError, naming the nearest, for what is none of them.
+/// Explains a command, a section, a key, a label of the screen or a term. Pages show the same definitions of terms.
+/// Throws ConfigurationError with the nearest names for an unknown word.
 std::string help_on(const std::string& name);
 
-/// All keys as a table: the documentation's reference.
+/// A table of all keys, for the documentation.
 std::string option_markdown();
 
 /// The words of the glossary that help_on explains.

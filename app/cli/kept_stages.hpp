@@ -8,13 +8,13 @@
 
 namespace modebank::app {
 
-/// Stores stages that took long in a folder beside the future archive. A run that was stopped, by Ctrl-C or a power
-/// cut, continues from there when it is repeated. Stores nothing in a folder that is a symbolic link.
+/// Stores slow stages in a folder beside the future archive. If a run is stopped, by Ctrl-C or a power cut, the same
+/// command continues from these stages. If the folder is a symbolic link, nothing is stored.
 class KeptStages : public StageSource {
  public:
-  /// Installs a handler: Ctrl-C prints where the stages are stored.
+  /// Installs a signal handler: Ctrl-C prints the folder of the stored stages.
   explicit KeptStages(const std::filesystem::path& output);
-  /// Removes the folder after a run that ended, well or by an error, and restores the signal handlers.
+  /// Removes the folder when the run ends, with or without an error, and restores the signal handlers.
   ~KeptStages() override;
   KeptStages(const KeptStages&) = delete;
   KeptStages& operator=(const KeptStages&) = delete;

@@ -17,18 +17,20 @@ class LineStream {
   LineStream& operator=(const LineStream&) = delete;
 
   using Clock = std::chrono::steady_clock;
-  /// Seconds of that clock.
+  /// Present time of that clock [s].
   static double now_s() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
   enum class Got { line, overlong, waiting, quiet, end };
-  /// `line`: the next one, valid until the next call. `waiting`: all that has arrived is read; the next call waits.
-  /// `overlong`: a line that no sample is so long as, without its text. `quiet`: nothing came for `wait_s`.
+  /// - `line`: the next line, valid until the next call.
+  /// - `waiting`: all input so far has been read; the next call waits.
+  /// - `overlong`: a line without its text, because it is longer than any sample.
+  /// - `quiet`: no input came for `wait_s`.
   Got next(std::string_view& line, double wait_s = std::numeric_limits<double>::infinity());
-  /// Whether the input ended within the line that was read last: it lacks its newline, and may lack more.
+  /// Whether the input ended inside the last line: its newline is missing, and more may be.
   bool is_unended() const { return unended_ && start_ >= buffer_.size(); }
-  /// Whether a signal ended the input within a line. That line is left out.
+  /// Whether a signal ended the input inside a line. This line is left out.
   bool was_cut() const { return cut_; }
-  /// When what was read last had come.
+  /// Arrival time of the last input.
   Clock::time_point arrival() const { return arrival_; }
 
  private:
@@ -41,7 +43,7 @@ class LineStream {
   Filled fill(double wait_s);
 };
 
-/// Writes all of `text` to standard output; false when nobody reads it any more. Throws DataError for other failures.
+/// Writes all of `text` to standard output. Returns false if its reader has gone. Throws DataError for other failures.
 bool write_out(std::string_view text);
 
 }  // namespace modebank::app

@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* stream_name = "standard input";
 
-/// A reader that has columns for a plan, but no rows.
+/// A reader with columns for a plan, but without rows.
 class ColumnsAlone final : public TableReader {
  public:
   explicit ColumnsAlone(TableInfo table) : table_(std::move(table)) {}
@@ -42,7 +42,7 @@ bool holds(const std::vector<std::string>& all, const std::string& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
-/// Options for one stream with all columns: no files, runs or roles, and every value may be missing.
+/// Options for one stream with all columns: without files, runs or roles. Every value may be missing.
 DataOptions of_a_stream(DataOptions data) {
   for (std::string* text : {&data.inputs, &data.states, &data.run, &data.label, &data.weight}) text->clear();
   for (std::vector<std::string>* names : {&data.truth, &data.train, &data.test}) names->clear();
@@ -55,7 +55,7 @@ DataOptions of_a_stream(DataOptions data) {
   return data;
 }
 
-/// Removes derived channels that the stream has as columns.
+/// Removes derived channels that are columns of the stream.
 void derive_what_lacks(DataOptions& data, const std::vector<std::string>& columns) {
   std::erase_if(data.derive, [&](const std::string& line) { return holds(columns, parse_derived(line).name); });
 }
@@ -235,7 +235,7 @@ void LineTable::begin(const std::string& line, const Table& table) {
   if (format_ == Format::csv) data_.format.separator = find_dialect(head_ + line + "\n", true, data_.format).separator;
 }
 
-/// Two rows determine the unit of times; the reader's result applies to all rows that follow.
+/// Two rows determine the unit of times. The unit that the reader finds applies to all later rows.
 void LineTable::learn_unit(const std::vector<std::string>& lines, const Table& table) {
   std::vector<std::string> all{first_row_};
   all.insert(all.end(), lines.begin(), lines.end());
@@ -266,7 +266,7 @@ double LineTable::rest_s(const Table& table, std::size_t row) const {
   return static_cast<double>(table.time_ns[row] - static_cast<std::int64_t>(whole) * billion) / 1e9 - (seconds - whole);
 }
 
-/// The reader counted days from the batch's first row; this adds the days before it.
+/// Days before this batch: the reader counts days from the batch's first row.
 void LineTable::pass_midnights(Table& table) {
   for (std::int64_t& time_ns : table.time_ns)
     if (time_ns != missing_stamp) time_ns = days_.on(time_ns / billion) * billion + time_ns % billion;
@@ -276,7 +276,7 @@ void LineTable::derive(Table& table) {
   const SourcePlan& source = plan_->sources.front();
   if (source.derived.empty()) return;
   if (!origin_ns_ && !table.time_ns.empty()) origin_ns_ = table.time_ns.front();
-  std::vector<double> seconds;  // relative to the first row, since nanoseconds since 1970 would cost precision
+  std::vector<double> seconds;  // relative to the first row, because nanoseconds since 1970 would lose precision
   for (std::size_t row = 0; row < table.rows(); ++row)
     seconds.push_back(!has_times() || table.time_ns[row] == missing_stamp
                           ? time_s(table, row)

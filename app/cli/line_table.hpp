@@ -11,37 +11,36 @@
 
 namespace modebank::app {
 
-/// Lines of a log that arrive one by one, as rows of the table that import makes of a file with these lines. Reader,
-/// times and derived channels are the same. CSV may have a header and a row of units; NDJSON has one object per line.
+/// Lines of a log that arrive one by one. They become the same rows as in import of a file with these lines: reader,
+/// times and derived channels are shared. CSV may have a header and a row of units; NDJSON has one object per line.
 class LineTable {
  public:
-  /// `data`: channels, times and formats from the archive.
+  /// `data`: channels, times and formats of the archive.
   explicit LineTable(const DataOptions& data);
 
-  /// Takes a line before the columns are known; afterwards is_open(), unless it was a comment. Returns true for a row,
-  /// which must then be passed to read(). Throws ConfigurationError, with the existing columns, if a needed column is
-  /// missing.
+  /// Takes lines until the columns are known and is_open() is true. Returns true for a row, which must then be passed
+  /// to read(). Throws ConfigurationError with the existing columns if a needed column is missing.
   bool open(const std::string& line);
   bool is_open() const { return plan_.has_value(); }
-  /// Whether lines are JSON objects with names; else they are CSV.
+  /// Whether lines are JSON objects with names; otherwise they are CSV.
   bool has_objects() const { return format_ == Format::objects; }
-  /// One row per line, with derived channels; none for a line of units after the header. Throws std::runtime_error,
-  /// without a line number, unless every line is a row. Pass one line at a time until the first row.
+  /// One row per line, with derived channels. A line of units after the header gives no row. Throws std::runtime_error,
+  /// without a line number, if a line is not a row. Pass one line at a time until the first row.
   Table read(const std::vector<std::string>& lines);
   bool has_rows() const { return !first_row_.empty(); }
-  /// Positions of states, inputs and data.where in Table::numbers.
+  /// Columns of states, inputs and data.where in Table::numbers.
   const FilePlan& plan() const { return *plan_; }
-  /// Seconds of a row in the table of the last read; NaN: missing.
+  /// Time of a row in the last table [s]; NaN if it is missing.
   double time_s(const Table& table, std::size_t row) const;
-  /// The remainder of time_s: a double of seconds since 1970 lacks nanoseconds.
+  /// Remainder of time_s, since a double of seconds since 1970 cannot hold nanoseconds.
   double rest_s(const Table& table, std::size_t row) const;
-  /// Whether rows have times; else row k is k / data.rate_hz.
+  /// Whether rows have times; otherwise row k has the time k / data.rate_hz.
   bool has_times() const { return !plan_->sources.front().request.time.column.empty(); }
-  /// The first row's time, if the second row shows that its unit was guessed wrongly. Returned once.
+  /// The first row's corrected time, if the second row shows that its unit was guessed wrongly. Returned only once.
   std::optional<double> corrected_first_s() { return std::exchange(corrected_first_s_, std::nullopt); }
   /// The reader's remarks since the last call.
   std::vector<std::string> notes() { return std::exchange(notes_, {}); }
-  /// Whether a line without a line break has all its fields.
+  /// Whether a line without a line break is complete.
   bool is_whole(const std::string& line) const;
 
  private:
@@ -49,9 +48,9 @@ class LineTable {
   enum class Format { unknown, csv, objects };
   Format format_ = Format::unknown;   ///< from the first line
   std::string head_;                  ///< for CSV: the lines before the first row, with their line breaks
-  std::vector<std::string> columns_;  ///< for CSV all columns, for NDJSON the members that are read
+  std::vector<std::string> columns_;  ///< for CSV all columns, for NDJSON the members that the program reads
   std::optional<FilePlan> plan_;
-  std::string first_row_;                   ///< put before later CSV rows, so that these are read in its format
+  std::string first_row_;                   ///< these lines precede later CSV rows, so that the reader finds the same format
   std::size_t rows_ = 0, rows_before_ = 0;  ///< rows_before_: before the table of the last read
   double first_s_ = 0.0;
   std::optional<double> corrected_first_s_;

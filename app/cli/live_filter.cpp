@@ -21,7 +21,7 @@
 namespace modebank::app {
 namespace {
 
-/// Throws, before the first sample is read, for a filter without snapshots (open_filter).
+/// Throws for a filter without snapshots before the first sample is read (open_filter).
 BankFilter& kept(AnyFilter& filter) {
   if (BankFilter* const bank = filter.of_bank()) return *bank;
   throw ConfigurationError(
@@ -47,7 +47,7 @@ Resumed resume(AnyFilter& filter, const std::string& file, const std::string& id
   return {snapshot.samples.time_s, snapshot.samples.samples, snapshot.samples.inputs.col(0)};  // the newest samples
 }
 
-/// kf is always the global model.
+/// kf always uses the global model.
 std::string tracked_bank(const Config& config) {
   TrackedFilter filter = config.track.filter == TrackedFilter::combined ? TrackedFilter::bank : config.track.filter;
   if (filter == TrackedFilter::bank && config.filter.variant == FilterVariant::kf) filter = TrackedFilter::baseline;

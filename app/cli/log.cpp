@@ -15,7 +15,7 @@
 namespace modebank::app {
 namespace {
 
-/// "warning: " before what is one, in the level's colour; lines of progress have no mark.
+/// "warning: " before a warning, in the level's colour. Lines of progress have no prefix.
 class Mark : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
@@ -33,7 +33,7 @@ class Mark : public spdlog::custom_flag_formatter {
   }
 };
 
-/// What names in files hold is shown, not obeyed.
+/// Names from files are escaped, so that a terminal does not execute them.
 class Message : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
@@ -63,7 +63,7 @@ void set_up_log(Verbosity verbosity) {
   auto logger = std::make_shared<spdlog::logger>("modebank", std::move(sink));
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
   formatter->add_flag<Mark>('*').add_flag<Message>('#').set_pattern(
-      isatty(STDERR_FILENO) == 1 ? "%*%#\x1b[K" : "%*%#");  // no rest of a progress meter's line
+      isatty(STDERR_FILENO) == 1 ? "%*%#\x1b[K" : "%*%#");  // erases the rest of a progress meter's line
   logger->set_formatter(std::move(formatter));
   logger->set_level(verbosity == Verbosity::quiet      ? spdlog::level::err
                     : verbosity == Verbosity::warnings ? spdlog::level::warn

@@ -9,8 +9,8 @@
 
 namespace modebank::app {
 
-/// While it exists, prints the progress of loops over a second to standard error. On a terminal one line is rewritten;
-/// elsewhere a line is added every ten seconds.
+/// While it exists, prints the progress of loops that last over a second to standard error. On a terminal it rewrites
+/// one line; elsewhere it adds a line every ten seconds.
 class ProgressMeter {
  public:
   explicit ProgressMeter(bool wanted);
@@ -28,7 +28,7 @@ class ProgressMeter {
   std::thread thread_;
 };
 
-/// "windows: 12000 of 50000, 3.1e+04 per s, 1.2 s left"; the time left is missing before the first item.
+/// "windows: 12000 of 50000, 3.1e+04 per s, 1.2 s left". Before the first item there is no time left.
 std::string progress_text(const WorkDone& work);
 
 }  // namespace modebank::app

@@ -12,14 +12,14 @@ namespace {
 
 using nlohmann::json;
 
-bool printed = false;  ///< whether the process has printed its object
+bool printed = false;  ///< whether the process has printed its JSON object
 
 void print(json object, const std::string& command, int status) {
   printed = true;
   object["command"] = command;
   object["modebank"] = build_info::version;
   object["status"] = status;
-  // Names come from files; a byte that is not UTF-8 is replaced.
+  // Names come from files, so bytes that are not UTF-8 are replaced.
   fmt::print("{}\n", object.dump(2, ' ', false, json::error_handler_t::replace));
 }
 

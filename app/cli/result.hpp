@@ -6,17 +6,17 @@
 
 #include "app/cli/command_line.hpp"
 
-/// A command's result on standard output: text for people, or with --json one object for programs.
-/// docs/reference/json.md lists the members of each command's object.
+/// A command's result on standard output: text, or with --json one JSON object. docs/reference/json.md lists the
+/// members of each command's object.
 namespace modebank::app {
 
 /// Prints nothing with --json. Control characters in names are printed as \x1b.
 void print_text(const CommandLine& line, std::string_view text);
 
-/// Prints nothing without --json. Adds `command`, `modebank` (its version) and `status` to the members.
+/// Prints the JSON object, only with --json. Adds `command`, `modebank` (its version) and `status` to the members.
 void print_json(const CommandLine& line, nlohmann::json members, int status = 0);
 
-/// Result of a command, to be printed by it or by a command that includes it.
+/// Result of a command. The command prints it, or another command that contains this one.
 struct Result {
   std::string text;
   nlohmann::json members;
@@ -25,8 +25,8 @@ struct Result {
 /// Prints the result and returns the exit status 0.
 int print_result(const CommandLine& line, const Result& result);
 
-/// With --json prints the error as the same object with `error` alone, unless the command has printed an object
-/// already.
+/// With --json prints the error as a JSON object with the member `error`, unless the command has already printed an
+/// object.
 void print_json_error(const std::string& command, const std::string& error, int status);
 
 }  // namespace modebank::app

@@ -11,7 +11,7 @@
 #include "app/config/option_table.hpp"
 #include "modebank/base/error.hpp"
 
-/// Scripts that complete commands, options, keys and the words that a key may have, without starting the program.
+/// Scripts that complete commands, options, keys and allowed values without starting the program.
 namespace modebank::app {
 namespace {
 
@@ -21,7 +21,7 @@ std::vector<std::string> command_names() {
   return names;
 }
 
-/// In single quotes of a shell: a description, or a word.
+/// A description or a word, in single quotes for a shell.
 std::string quoted(std::string text) {
   boost::replace_all(text, "'", "");
   boost::replace_all(text, "[", "(");
@@ -31,7 +31,7 @@ std::string quoted(std::string text) {
   return text;
 }
 
-/// The words that `help` explains: commands, sections, keys and terms, some of which have blanks.
+/// The words that `help` explains: commands, sections, keys and terms. Some contain blanks.
 std::vector<std::string> help_topics() {
   std::vector<std::string> topics = command_names();
   for (const Option& option : option_table())
@@ -41,12 +41,12 @@ std::vector<std::string> help_topics() {
   return topics;
 }
 
-/// What may follow a command: its options and the keys that it reads.
+/// A word that may follow a command: an option or a key that the command reads.
 struct Word {
   std::string name;  ///< without dashes
   std::string help;
   bool takes_value = false;
-  std::vector<std::string> choices = {};  ///< of the value; empty: not words
+  std::vector<std::string> choices = {};  ///< allowed values; empty if the value is free text
 };
 
 std::vector<Word> options_in(const std::vector<CommandOption>& options) {
@@ -63,7 +63,7 @@ std::vector<Word> keys_of(const Command& command) {
   return words;
 }
 
-/// The command's own options, those that all have, its keys.
+/// The command's own options, the options of all commands, and its keys.
 std::vector<Word> words_after(const Command& command) {
   std::vector<Word> all = options_in(command.options);
   for (const std::vector<Word>& more : {options_in(common_options()), keys_of(command)})
@@ -71,7 +71,8 @@ std::vector<Word> words_after(const Command& command) {
   return all;
 }
 
-/// A branch of a script for each option and key whose value is one of some words. `action` has {} where these stand.
+/// One branch of a script for each option and key with a list of allowed values. {} in `action` stands for these
+/// values.
 std::string value_branches(fmt::format_string<std::string> action) {
   std::map<std::string, std::vector<std::string>> choices;
   for (const Command& command : command_table())

@@ -23,8 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The files of a demo in its folder. The configurations are the program's own, so that it needs no file beside
-/// itself.
+/// The files of a demo, all in one folder. The configurations are part of the program.
 struct DemoFolder {
   fs::path folder;
   std::string name, simulation_name;
@@ -36,7 +35,7 @@ struct DemoFolder {
   fs::path archive() const { return folder / (name + ".h5"); }
 };
 
-/// Two grounds that are linear, or with the word `tyres` the grounds of a tyre model, which are not.
+/// The two linear grounds, or with the word `tyres` the nonlinear grounds of a tyre model.
 DemoFolder demo_of(const CommandLine& line) {
   const bool tyres = !line.files.empty();
   if (tyres && line.files.front() != "tyres")
@@ -67,8 +66,8 @@ bool is_of_a_demo(const fs::path& path, const DemoFolder& demo) {
   return path == demo.archive() && fs::is_regular_file(path);
 }
 
-/// A demo may be repeated in the folder of an earlier one, which began by writing its configuration; anything else
-/// there is somebody's.
+/// A demo may be repeated in the folder of an earlier one, which contains the demo's configuration. All other files
+/// belong to someone else and are not replaced.
 void refuse_foreign_files(const DemoFolder& demo) {
   if (!fs::exists(demo.folder)) return;
   if (!fs::is_directory(demo.folder))
@@ -84,11 +83,11 @@ void refuse_foreign_files(const DemoFolder& demo) {
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
-  fs::create_directory(folder, error);  // no error when it exists
+  fs::create_directory(folder, error);  // an existing folder is no error
   if (error) throw ConfigurationError(fmt::format("cannot make folder {}: {}", folder.string(), error.message()));
 }
 
-/// Options that the demo was given go to the command that they are about; of where files lie it decides itself.
+/// Passes each option of the demo to the command that reads it. The demo alone decides in which folder the files are.
 std::vector<std::string> options_for(const std::string& command, const CommandLine& line) {
   std::vector<std::string> options;
   for (const auto& [key, value] : line.overrides) {
@@ -101,7 +100,7 @@ std::vector<std::string> options_for(const std::string& command, const CommandLi
   return options;
 }
 
-/// The command as a user would type it, to be learned and repeated.
+/// The command as a user would type it, shown so that users can learn and repeat it.
 CommandLine typed_command(const CommandLine& demo, const std::vector<std::string>& words) {
   std::vector<std::string> all{demo.program};
   all.insert(all.end(), words.begin(), words.end());
@@ -124,7 +123,7 @@ void write_configurations(const CommandLine& line, const DemoFolder& demo) {
   replace_file(demo.configuration(), {demo.configuration_text});
 }
 
-/// Replaces what the run printed by what was found beside the truth, where the two can be compared.
+/// Prints the modes beside the truth in place of the first screen, if the two can be compared.
 void add_truth(const DemoFolder& demo, const CommandLine& simulate, Result& result) {
   Config simulation = load_config(demo.simulation(), simulate.overrides);
   read_system(demo.folder, simulation);
@@ -154,7 +153,7 @@ int run_demo(const CommandLine& line) {
       line, {"simulate", demo.simulation().string(), fmt::format("--simulate.output={}", demo.data().string())});
   CommandLine run = typed_command(
       line, {"run", demo.configuration().string(), fmt::format("--archive.output={}", demo.archive().string())});
-  run.force = true;  // the archive in its folder is the demo's own
+  run.force = true;  // --force: the archive in the demo's folder is its own
   run.quiet = run.quiet || (first && !line.verbose);
   write_configurations(line, demo);
   if (run.quiet && !line.quiet) set_up_log(Verbosity::warnings);

@@ -31,7 +31,8 @@
 namespace modebank::app {
 namespace {
 
-/// Throws unless reused stages were made with the configuration's settings, which the new archive will state.
+/// Throws unless the reused stages were computed with the configuration's settings. The new archive will state these
+/// settings.
 void check_same_settings(const Config& config, const std::string& stored, Stage taken) {
   const std::map<std::string, std::string> before = resolved_values(stored),
                                            now = resolved_values(resolved_text(config));
@@ -60,7 +61,8 @@ StoredStages earlier_stages(const Config& config, const std::string& command) {
   return source;
 }
 
-/// Throws if an archive of other data would be replaced. Checked as soon as the data's hash is known, before fits.
+/// Throws if an archive of other data would be replaced. This is checked before any fit, as soon as the data's hash is
+/// known.
 void check_replaces_same_data(const std::string& output, const std::string& data_hash) {
   std::error_code error;
   if (!std::filesystem::exists(output, error)) return;
@@ -83,7 +85,7 @@ void check_replaces_same_data(const std::string& output, const std::string& data
 /// Prints a chain's messages to the log.
 class Log : public Adviser {
  public:
-  /// `output`: checked when the data are read; empty: any file is replaced.
+  /// `output` is checked when the data are read; if it is empty, any file is replaced.
   explicit Log(std::string output) : output_(std::move(output)) {}
 
   void done(Stage stage, const Archive& archive) const override {
@@ -102,7 +104,7 @@ std::string archive_line(const Config& config) { return fmt::format("\narchive  
 
 nlohmann::json written(const Config& config) { return {{"written", {config.archive.output}}}; }
 
-/// For too many windows for memory: writes them as they are fitted.
+/// Writes windows as they are fitted, if there are too many for memory.
 Result identify_many(const Config& config, const Chain& chain, const Archive& data, const Log& log) {
   const Stopwatch watch;
   WindowCounts counts;
@@ -116,7 +118,7 @@ Result identify_many(const Config& config, const Chain& chain, const Archive& da
   return {data_text(*data.recording) + windows_text(common, counts, labels) + archive_line(config), written(config)};
 }
 
-/// Throws for options of learning, which have no effect on a stored bank.
+/// Throws for options of learning: they have no effect on a stored bank.
 void refuse_learning_options(const CommandLine& line, const Config& config) {
   if (config.archive.bank.empty()) return;
   for (const auto& [key, value] : line.overrides)

@@ -39,8 +39,8 @@ std::vector<FreeRun> predict_alone(const OpenArchive& archive, const Config& con
   return free_runs(bank, recording.runs, options, how);
 }
 
-/// Free runs by all filters, with the weights that maximise the likelihood of the training runs' free runs. Without
-/// measurements weights cannot adapt.
+/// Free runs by all filters combined. The weights maximise the likelihood of the training runs' free runs, and stay
+/// constant because there are no measurements to adapt them.
 std::vector<FreeRun> predict_together(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const CombinedMembers members = combined_members(archive, 0);
   std::vector<std::vector<FreeRun>> of_filters;

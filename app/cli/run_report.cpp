@@ -22,7 +22,7 @@ bool is_site(const CommandLine& line) {
   return line.files.size() == 1 && std::filesystem::is_directory(folder) && !report::holds_a_study(folder);
 }
 
-/// Path of the page or site: -o, else the archive's or folder's name in the current folder.
+/// Path of the page or site: -o, or the name of the archive or folder in the current folder.
 std::filesystem::path page_path(const CommandLine& line) {
   if (!line.output.empty()) return line.output;
   std::filesystem::path named = std::filesystem::path(line.files.front()).lexically_normal();

@@ -47,7 +47,7 @@ void add_identity(json& matrices) {
     for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i][i] = matrix[i][i].get<double>() + 1.0;
 }
 
-/// The same for rows of theta = vec of [A B (c)]: entry (i, i) of A has the index i (q + 1).
+/// Adds I to rows of theta = vec of [A B (c)]: entry (i, i) of A has the index i (q + 1).
 void add_identity_to_theta(json& rows, const LinearStructure& structure) {
   for (json& row : rows)
     for (Index i = 0; i < structure.states; ++i) {

@@ -14,12 +14,12 @@ namespace {
 
 using nlohmann::json;
 
-/// A problem after the name of its file, unless it begins with that.
+/// A problem, with the name of its file in front unless the text begins with it.
 std::string named_problem(const std::string& file, const std::string& what) {
   return what.rfind(file + ": ", 0) == 0 ? what : fmt::format("{}: {}", file, what);
 }
 
-/// Problems of one archive or study, and remarks on it.
+/// Problems of one archive or study, and remarks on this file.
 json report_archive(const CommandLine& line, const std::string& file) {
   const Verification result = verify_archive(file);
   if (result.ok()) print_text(line, fmt::format("{}: ok\n", file));

@@ -17,7 +17,7 @@
 namespace modebank::app {
 namespace {
 
-/// Removes the reader's line number, which counts lines of the batch, not the user's.
+/// Removes the reader's line number, because it counts from the start of the batch and not of the input.
 std::string without_place(std::string message) {
   const std::string place = "standard input:";
   if (!message.starts_with(place)) return message;
@@ -76,7 +76,7 @@ void SampleReader::read_head(std::string line, std::size_t position, const Take&
     take(position, table_.is_open() ? Line::header : Line::blank);
 }
 
-/// One malformed line fails the whole batch, so halves are read until it is alone.
+/// One malformed line makes the whole batch fail. So the batch is halved until the malformed line is alone.
 void SampleReader::read_rows(const Rows& rows, const Take& take) {
   if (rows.lines.empty()) return;
   Table table;
@@ -101,7 +101,7 @@ void SampleReader::leave_out(double& value, const std::string& name, const char*
   value = not_a_number;
 }
 
-/// A missing input repeats the last one, as a command that still acts.
+/// A missing input repeats the last value, since the command still acts.
 SampleReader::Line SampleReader::accept(const Table& table, std::size_t row) {
   const FilePlan& plan = table_.plan();
   remarks_.clear();

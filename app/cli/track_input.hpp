@@ -11,22 +11,25 @@
 
 namespace modebank::app {
 
-/// Reads samples from lines as they come: rows of a LineTable, with the held input where one is missing.
+/// Reads samples from lines as they arrive. Samples are rows of a LineTable; a missing input repeats its last value.
 class SampleReader {
  public:
   explicit SampleReader(const DataOptions& data);
 
   enum class Line { sample, header, blank, left_out, malformed };
-  /// Reads lines and calls `take` for each in order, with its position. During a call, sample() is that of a `sample`,
-  /// and reason() is the fault of a `malformed` line, of which nothing is kept. `left_out`: data.where is false. Throws
-  /// ConfigurationError, with the existing columns, for a header without a needed column.
+  /// Reads lines and calls `take` for each in order, with its number.
+  /// - `sample`: sample() returns the sample during the call.
+  /// - `malformed`: reason() states the fault, and nothing is kept of the line.
+  /// - `left_out`: data.where is false.
+  ///
+  /// Throws ConfigurationError with the existing columns if the header lacks a needed column.
   void read(const std::vector<std::string>& lines, const std::function<void(std::size_t, Line)>& take);
 
   const TimedSample& sample() const { return sample_; }
   const std::string& reason() const { return reason_; }
-  /// Remarks on numbers of the last sample that are too large for a filter.
+  /// Remarks on values of the last sample that are too large for a filter.
   const std::vector<std::string>& remarks() const { return remarks_; }
-  /// Sets the held input, for a next sample that lacks one: that of the sample before the first line.
+  /// Sets the inputs before the first line. They replace missing inputs of the first samples.
   void remember(const Eigen::VectorXd& input);
   LineTable& table() { return table_; }
 
@@ -47,7 +50,7 @@ class SampleReader {
   void read_rows(const Rows& rows, const Take& take);
   Line accept(const Table& table, std::size_t row);
   Line malformed(std::string reason);
-  /// Makes a number that is too large for a filter missing, with a remark.
+  /// Marks a value that is too large for a filter as missing, with a remark.
   void leave_out(double& value, const std::string& name, const char* instead);
 };
 

@@ -14,8 +14,8 @@
 
 namespace modebank::app {
 
-/// Messages of a live filter beside its estimates. Never waits and never fails: messages that standard error does not
-/// take are dropped, and their number is part of the next one.
+/// Messages of a live filter on standard error. They never block or fail. If standard error does not accept a message,
+/// the message is dropped. The next message states how many were dropped.
 class LiveMessages {
  public:
   void say(std::string_view text) {
@@ -23,7 +23,7 @@ class LiveMessages {
       dropped_ = 0;
     if (dropped_ > 0 || !say_now(fmt::format("modebank: {}\n", printable(text)))) ++dropped_;
   }
-  /// Prints the first message of its kind. Messages that differ only in numbers and quoted words are of one kind.
+  /// Prints only the first message of a kind. Messages of one kind differ only in numbers and quoted words.
   void say_once(const std::string& place, const std::string& text) {
     Repeats& repeats = repeats_[kind_of(text)];
     if (repeats.count++ == 0) {
@@ -32,7 +32,7 @@ class LiveMessages {
     }
     repeats.last = place;
   }
-  /// Prints remarks on the stream. Repeated remarks are neither printed nor counted.
+  /// Prints remarks on the stream, each only once; repetitions are not counted.
   void say_note(const std::string& place, const std::string& text) {
     if (notes_.insert(text).second) say(fmt::format("{}: {}", place, text));
   }
@@ -48,7 +48,7 @@ class LiveMessages {
  private:
   struct Repeats {
     std::size_t count = 0;
-    std::string first, last;  ///< places of the first and last one
+    std::string first, last;  ///< positions of the first and the last message
   };
   std::size_t dropped_ = 0;
   std::map<std::string, Repeats> repeats_;

@@ -35,7 +35,7 @@ Index likeliest(const FilterEstimate& estimate) {
   return mode;
 }
 
-/// JSON is UTF-8, but a name from an archive may have other bytes.
+/// JSON is UTF-8, but names in an archive may contain other bytes.
 std::string json_quoted(const std::string& name) { return nlohmann::json(printable_name(name)).dump(); }
 
 }  // namespace
@@ -63,7 +63,7 @@ void EstimateWriter::header(fmt::memory_buffer& out) const {
   fmt::format_to(to, "\n");
 }
 
-/// A state's numbers: fields, or an object with its name.
+/// The numbers of a state: fields of CSV, or a JSON object with the state's name.
 void EstimateWriter::signal(std::size_t state, std::initializer_list<double> values,
                             std::initializer_list<const char*> names, fmt::memory_buffer& out) const {
   auto to = std::back_inserter(out);

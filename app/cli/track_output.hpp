@@ -11,27 +11,27 @@
 
 namespace modebank::app {
 
-/// Format of lines, and the fields beside the estimate.
+/// Format of the output lines, and their optional fields.
 struct EstimateLines {
   bool json = false;      ///< NDJSON instead of CSV with a header
   bool run = false;       ///< lines have the run's name
-  bool forecast = false;  ///< lines have a forecast to the time of the newest sample
+  bool forecast = false;  ///< lines contain a forecast for the time of the newest sample
 };
 
-/// A forecast from an estimate to the time of the newest sample.
+/// A forecast from an estimate for the time of the newest sample.
 struct Forecast {
   double time_s;
   LiveVerdict expected;
 };
 
-/// Writes estimates as lines of CSV or NDJSON. Unknown values are empty, or null.
+/// Writes estimates as lines of CSV or NDJSON. An unknown value is empty in CSV and null in NDJSON.
 class EstimateWriter {
  public:
   EstimateWriter(std::vector<std::string> states, Eigen::Index modes, const EstimateLines& lines);
 
-  /// Appends the header; NDJSON has none.
+  /// Appends the CSV header; nothing for NDJSON.
   void header(fmt::memory_buffer& out) const;
-  /// `forecast`: null if lines have none.
+  /// `forecast`: null if the lines contain none.
   void line(const std::string& run, double time_s, const FilterEstimate& estimate, const LiveVerdict& verdict,
             const ValidityFlags& flags, const Forecast* forecast, fmt::memory_buffer& out) const;
 

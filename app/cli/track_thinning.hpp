@@ -5,11 +5,11 @@
 
 namespace modebank::app {
 
-/// Selects samples that arrive faster than a filter's steps: the nearest to each step. All samples of a stream that is
-/// about as fast as the model are taken, even with jitter. Times are those of the samples.
+/// Selects samples if they arrive faster than the filter's steps: for each step the nearest sample. If a stream is
+/// about as fast as the model, all samples are taken, even with jitter. Times are the stamps of the samples.
 class SampleThinning {
  public:
-  /// `period_s`: of the model; 0: every sample is taken.
+  /// `period_s`: step of the model; 0: every sample is taken.
   explicit SampleThinning(double period_s) : period_s_(period_s) {}
 
   /// Whether the filter takes the next sample.
@@ -17,25 +17,25 @@ class SampleThinning {
     since_s_ = time_s - last_s_;
     last_s_ = time_s;
     if (!(period_s_ > 0.0)) return true;
-    if (!(since_s_ > 0.0)) return begin(time_s);  // the first sample, or another clock
-    constexpr double weight = 0.3;  // a source that is ten times too fast is detected by its second sample
+    if (!(since_s_ > 0.0)) return begin(time_s);  // the first sample, or a clock that jumped back
+    constexpr double weight = 0.3;  // a source that is ten times too fast is detected at its second sample
     spacing_s_ +=
         weight * (std::min(since_s_, 2.0 * period_s_) - spacing_s_);  // a gap hardly changes the estimate of the rate
     if (!thins()) return begin(time_s, spacing_s_);                   // only jitter
     const double late_s = time_s - due_s_;
     if (late_s < -0.5 * spacing_s_) return false;
-    constexpr double follows = 0.1;  // the model's clock adapts to the samples', so 10.1 Hz for 10 Hz is accepted
+    constexpr double follows = 0.1;  // the model's clock follows the stamps, so 10.1 Hz is accepted for 10 Hz
     due_s_ += period_s_ + (std::abs(late_s) > 0.5 * period_s_ ? late_s : follows * late_s);
     return true;
   }
-  /// Whether samples arrive so fast that some are left out.
+  /// Whether the samples arrive so fast that some are left out.
   bool thins() const { return spacing_s_ < 0.75 * period_s_; }
   /// Time between the last sample and the one before.
   double since_s() const { return since_s_; }
 
  private:
   double period_s_;
-  double spacing_s_ = period_s_;  ///< recent time between samples
+  double spacing_s_ = period_s_;  ///< recent mean time between samples
   double last_s_ = std::nan(""), since_s_ = 0.0, due_s_ = 0.0;
 
   bool begin(double time_s) { return begin(time_s, period_s_); }

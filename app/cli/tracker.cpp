@@ -14,13 +14,13 @@
 namespace modebank::app {
 namespace {
 
-/// Names the archive and all options of the filter's steps, which a checkpoint must share.
+/// Identifies the archive and all options that affect the filter's steps. A checkpoint must have the same identity.
 std::string identity_of(const OpenArchive& archive, const Config& config, const FilterOptions& options) {
   return fmt::format("{} {} {} {}", archive.digest(), name_of(config.track.filter), name_of(options.variant),
                      name_of(options.noise));
 }
 
-/// Seconds of a sample as its file has them.
+/// Time of a sample in seconds, as in its file.
 double stamp_s(const Trajectory& run, Eigen::Index k) {
   constexpr double ns_per_s = 1e9;
   if (run.time_origin_ns == 0) return run.time_s(k);
@@ -53,7 +53,7 @@ void Tracker::restart() {
 
 void Tracker::follow_runs(const std::vector<Trajectory>& runs, bool named) {
   constexpr Eigen::Index flushed_after = 1000;
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away ends the stream
+  std::signal(SIGPIPE, SIG_IGN);  // the stream ends if the reader of standard output is gone
   open_writer({config_.track.json, named, config_.track.forecast});
   bool goes_on = resumed_s_.has_value();
   for (const Trajectory& run : runs) {
@@ -123,7 +123,7 @@ void Tracker::step(const TimedSample& sample) {
 void Tracker::write(const TimedSample& sample, const FilterEstimate& estimate, const ValidityFlags& flags) {
   if (!config_.track.forecast)
     return writer_->line(run_, sample.time_s, estimate, judge_.judge(estimate), flags, nullptr, out_);
-  made_ = estimate;  // the filter forecasts in its place
+  made_ = estimate;  // the filter forecasts instead
   const double now_s = std::max(sample.time_s, samples_.newest_s());
   const bool ahead = now_s > sample.time_s && filter_.started();
   const Forecast forecast{now_s, forecast_judge_.judge(ahead ? filter_.forecast(now_s, sample.input) : made_)};

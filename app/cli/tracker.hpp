@@ -23,23 +23,23 @@
 
 namespace modebank::app {
 
-/// A live filter between samples and standard output.
+/// Runs a live filter from samples to standard output.
 class Tracker {
  public:
-  /// `alignment`: of the samples that follow. Throws ConfigurationError where the bank has other columns or a
-  /// checkpoint cannot be written, and as resume does.
+  /// `alignment`: alignment of the coming samples. Throws as resume does, and ConfigurationError if the bank has other
+  /// columns or a checkpoint cannot be written.
   Tracker(const OpenArchive& archive, const Config& config, OpenedFilter opened, const Alignment& alignment);
 
-  /// Samples from standard input, line by line, until it ends.
+  /// Filters samples from standard input, line by line, until the input ends.
   void follow_lines();
-  /// Samples of recorded runs. `named`: lines hold the run's name.
+  /// Filters samples of recorded runs. `named`: lines contain the run's name.
   void follow_runs(const std::vector<Trajectory>& runs, bool named);
-  /// Whatever ends a stream: the estimates that are made leave, and what the filter has learned is kept. Throws
-  /// DataError where no sample could be used.
+  /// Ends the stream, also after an error: writes the remaining estimates and the checkpoint. Throws DataError if no
+  /// sample could be used.
   void finish(bool failed);
 
  private:
-  /// The state before a sample so far ahead that the filter started anew.
+  /// The state before a jump in time after which the filter started anew.
   struct BeforeLeap {
     double time_s;
     AlignedSamples samples;
@@ -52,21 +52,21 @@ class Tracker {
   AnyFilter& filter_ = *opened_.filter;
   LiveJudge judge_, forecast_judge_;
   ValidityJudge validity_;
-  FilterEstimate made_;  ///< the last estimate, while the filter forecasts from it
+  FilterEstimate made_;  ///< the last estimate, from which the filter forecasts
   SampleReader reader_;
   std::optional<EstimateWriter> writer_;
   std::string identity_, run_, place_;
   AlignedSamples samples_;
   Alignment alignment_;
-  double stepped_s_ = 0.0;           ///< of the last estimate
-  std::optional<double> last_s_;     ///< of the samples that came
-  std::optional<double> resumed_s_;  ///< the estimates up to then are made
+  double stepped_s_ = 0.0;           ///< time of the last estimate
+  std::optional<double> last_s_;     ///< time of the last sample
+  std::optional<double> resumed_s_;  ///< estimates up to this time were written before the checkpoint
   std::optional<BeforeLeap> before_leap_;
-  std::optional<TimedSample> first_;     ///< while it is the only one
-  std::optional<std::size_t> first_at_;  ///< where its estimate begins in out_; empty once it has left
+  std::optional<TimedSample> first_;     ///< the first sample, until a second one arrives
+  std::optional<std::size_t> first_at_;  ///< position of the first estimate in out_; empty once it was written
   std::size_t line_number_ = 0, came_ = 0, refused_ = 0, estimates_ = 0;
   fmt::memory_buffer out_;
-  std::optional<LineStream> lines_;  ///< while it runs
+  std::optional<LineStream> lines_;  ///< set while standard input is read
   LiveMessages messages_;
   Watchdog watchdog_;
   SampleThinning thinning_;

@@ -1,4 +1,4 @@
-// How a live filter keeps what it has learned, and goes on from there.
+// Checkpoints of a live filter.
 #include <cmath>
 
 #include "app/cli/tracker.hpp"
@@ -22,8 +22,9 @@ void Tracker::go_on() {
 
 void Tracker::save() const { app::save(filter_, config_.track.checkpoint, identity_); }
 
-/// Saves a checkpoint on the way, after the estimates that it covers have left, so that a program that goes on from it
-/// lacks none. Where it cannot be written the filter goes on, and tries again when the next one is due.
+/// Saves a checkpoint while the filter runs. The estimates up to this checkpoint are written first, so that a program
+/// that resumes loses none. If the checkpoint cannot be written, the filter continues and tries again when the next one
+/// is due.
 void Tracker::keep() {
   checkpoint_due_ = false;
   try {

@@ -1,4 +1,4 @@
-// How a live filter takes the lines of standard input.
+// Lines of standard input for a live filter.
 #include <fmt/chrono.h>
 
 #include <ctime>
@@ -60,7 +60,7 @@ void Tracker::take_lines(std::vector<std::string>& lines) {
   lines.clear();
 }
 
-/// The program that writes may have ended within it.
+/// The writing program may have ended inside the last line.
 void Tracker::take_last_line(const std::string& line) {
   const bool whole = reader_.table().is_open() && reader_.table().is_whole(line);
   messages_.say(fmt::format("line {}: the last line has no line break at its end: {}", line_number_ + 1,

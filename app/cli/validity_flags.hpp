@@ -8,25 +8,25 @@
 
 namespace modebank::app {
 
-/// Reasons not to rely on a line of `track`.
+/// Reasons not to rely on an output line of `track`.
 struct ValidityFlags {
-  bool warming_up = false;             ///< the filter has not started, or has predicted fewer than ten samples since
-  bool input_beyond_training = false;  ///< an input is outside of its range in the training runs
+  bool warming_up = false;             ///< the filter has not started, or has made fewer than ten predictions since its start
+  bool input_beyond_training = false;  ///< an input is outside its range in the training runs
   bool unlike_any_mode = false;        ///< no mode predicts the measurement
-  bool stamp_late = false;             ///< the sample comes at least one and a half model steps after the one before
+  bool stamp_late = false;             ///< at least one and a half model steps since the sample before
 };
 
-/// Sets the flags of a stream of samples. Its state follows from SampleFeed, so that a filter continued from a
-/// checkpoint has the same flags.
+/// Sets the flags for a stream of samples. Its state follows from SampleFeed, so a filter that continues from a
+/// checkpoint sets the same flags.
 class ValidityJudge {
  public:
-  /// `lags`: samples that the filter needs to start; `dt_s`: period of a model step.
+  /// `lags`: samples before the filter starts; `dt_s`: period of a model step.
   ValidityJudge(InputRange trained, Eigen::Index lags, double dt_s)
       : trained_(std::move(trained)), lags_(lags), dt_s_(dt_s) {}
 
-  /// Call it when the filter starts anew.
+  /// To be called when the filter starts anew.
   void restart() { samples_ = 0; }
-  /// Continues after this number of samples, the last at this time.
+  /// Continues after this number of samples; the last one has this time.
   void go_on(Eigen::Index samples, double time_s) {
     samples_ = samples;
     last_s_ = time_s;

@@ -50,7 +50,7 @@ std::vector<Reached> reached_in_training(const Archive& archive, Index steps) {
   return reached;
 }
 
-/// The largest ratio by which the error of a state exceeds the smallest of all filters, minus one.
+/// The largest relative excess, over all states, of the filter's error over the smallest error of all filters.
 double excess_error(const Reached& one, const std::vector<const Reached*>& all) {
   Eigen::VectorXd least = one.rmse;
   for (const Reached* other : all)
@@ -74,8 +74,8 @@ double highest_score(const std::vector<Reached>& all, May may) {
   return best;
 }
 
-/// Among single filters for which `may` is true and that lose less than 0.02 nats to the best of these, the one with
-/// the smallest error; the first of nearly equal ones. Null if there are none.
+/// Considers single filters for which `may` is true and that lose less than 0.02 nats to the best of these. Returns the
+/// one with the smallest error, or the first of nearly equal ones. Null if there are none.
 template <class May>
 const Reached* best_single(const std::vector<Reached>& all, May may) {
   const auto counts = [&](const std::string& filter) { return is_single(filter) && may(filter); };
@@ -90,7 +90,7 @@ const Reached* best_single(const std::vector<Reached>& all, May may) {
 }
 
 /// The combination if it gains over every single filter: its weights adapt to the run, while a single filter is chosen
-/// before it. Null without any filter.
+/// before the run. Null without any filter.
 const Reached* best_of(const std::vector<Reached>& all) {
   const double best = highest_score(all, is_single);
   for (const Reached& one : all)
@@ -100,7 +100,7 @@ const Reached* best_of(const std::vector<Reached>& all) {
 
 constexpr double worth_a_name = 0.02;  // share of an error
 
-/// Names the filter with the smallest error, if this is smaller by that share than the chosen filter's.
+/// Names the filter with the smallest error, if its error is smaller by that share than the chosen filter's.
 void name_point(const std::vector<Reached>& all, const Reached& chosen, NamedForecast& forecast) {
   forecast.point_filter = chosen.filter;
   std::vector<const Reached*> every;
@@ -186,7 +186,7 @@ std::string understanding(const Archive& archive) {
   return archive.bank->mode_count() == 1 ? "the one mode" : "the modes, with care";
 }
 
-/// The finding's best competitor, or the bank where that is the forecast itself.
+/// The filter to compare with: the finding's best competitor, or the bank if that competitor is the named forecast.
 std::string reference_of(const NamedForecast& forecast, const Finding& finding) {
   const std::string& competitor = finding.best_competitor;
   return competitor.empty() || competitor == forecast.filter ? "bank" : competitor;
@@ -213,7 +213,7 @@ std::string steps_words(Index steps) { return fmt::format("{} step{} ahead", ste
 
 /// "; least error 10 steps ahead: `baseline` (4 % less)"
 std::string least_errors(const std::vector<NamedForecast>& forecasts) {
-  constexpr double worth_a_line = 0.05;  // share of an error; a line on the screen replaces one of a mode
+  constexpr double worth_a_line = 0.05;  // share of an error; the line replaces the line of a mode on the screen
   std::string text;
   for (const NamedForecast& forecast : forecasts)
     if (forecast.point_gain > worth_a_line)

@@ -54,7 +54,8 @@ bool is_uncertain_wrongly(const Situation& s) {
   return s.bank.verdict == Calibration::overconfident || s.bank.verdict == Calibration::underconfident;
 }
 
-/// Whether few restarts agree, for a bank taken from the mixture. Refinement has its own starts.
+/// Whether few restarts agree. Applies only to a bank that comes straight from the mixture: refinement has its own
+/// starts.
 bool has_few_agreeing_restarts(const Situation& s) {
   if (!s.archive.mixture_makes_bank() || std::atoi(s.setting("mixture.restarts").c_str()) >= many_restarts)
     return false;
@@ -71,9 +72,9 @@ std::string use_simpler(const Situation& s, const std::string& simpler, const st
                      description_of(simpler, s.archive.one_motion_drifts()), why);
 }
 
-/// "record about 9 more runs like these": errors and margins fall with the root of the number of runs.
+/// "record about 9 more runs like these". Errors and margins fall with the square root of the number of runs.
 std::string more_runs(const Finding& finding) {
-  constexpr double too_many = 20.0;  // times as many
+  constexpr double too_many = 20.0;  // longest advice: this many times the present number of runs
   const char* const and_repeat = ", and repeat with them: `modebank run CONFIG`; --data.test holds out more";
   const PairedGain* const least = least_beaten(finding);
   if (!least) return fmt::format("record longer runs, and more than {}{}", counted_runs(finding.runs), and_repeat);
@@ -103,7 +104,7 @@ std::string advice_on_doubt(const Situation& s) {
          "names them";
 }
 
-/// A pattern that remains although lags were searched for.
+/// A pattern in the errors remains although lags were searched for.
 std::string left_pattern(const Situation& s) {
   const std::vector<NamedForecast> named = named_forecasts(s.archive);
   return fmt::format(
@@ -112,7 +113,8 @@ std::string left_pattern(const Situation& s) {
       named.empty() ? "bank" : named.front().filter);
 }
 
-/// Sorted from faults that spoil all numbers to possible improvements. docs/howto/troubleshooting.md has the same list.
+/// The order is from faults that spoil all numbers to possible improvements. docs/howto/troubleshooting.md has the same
+/// list.
 const Rule rules[] = {
     {[](const Situation& s) { return warns(s, WarningKind::failed_windows); },
      [](const Situation&) -> std::string {

@@ -7,14 +7,15 @@
 
 namespace modebank::app {
 
-/// Number of restarts to advise or try, once only: if these do not help, more do not either.
+/// Number of restarts to advise or try. It is tried once: if this number does not help, a larger one does not help
+/// either.
 inline constexpr int many_restarts = 20;
 
 /// Resolved keys with their values, from the archive's configuration.
 using Settings = std::map<std::string, std::string>;
 
-/// Advice on a run, in one sentence with the option or command: that of the first rule in next_step.cpp that applies.
-/// Empty without a scored bank.
+/// One sentence of advice on a run, with the option or command. It comes from the first rule in next_step.cpp that
+/// applies. Empty without a scored bank.
 std::string next_step(const Archive& archive, const Settings& settings);
 
 }  // namespace modebank::app

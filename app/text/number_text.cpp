@@ -9,7 +9,7 @@ namespace modebank::app {
 
 std::string fixed_or_short(double value, int decimals) {
   constexpr double largest_fixed = 1e5;
-  constexpr int many = 4;  // a value that is rounded to fewer decimals may print as 0
+  constexpr int many = 4;  // with fewer decimals the value could print as 0
   const bool vanishes = decimals >= many && value != 0.0 && std::abs(value) < 0.5 * std::pow(10.0, -decimals);
   const bool fixed = (std::abs(value) < largest_fixed && !vanishes) || std::isnan(value);
   return fixed ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.4g}", value);

@@ -10,7 +10,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Those of the estimates that count, with their weights and modes.
+/// Estimates that enter the mean, with the weights and modes they belong to.
 struct Counted {
   VectorXd values, errors, weights;
   std::vector<Index> modes;
@@ -43,8 +43,8 @@ Estimate mean_of(const std::vector<Estimate>& estimates, const ModeFamily& famil
   return with_modes(pooled_number(of.values, of.errors, of.weights), of, family);
 }
 
-/// A separation is infinite where wheels turn and the robot does not. Its inverse, the turn per difference of the
-/// wheels' speeds, is what has a mean: that of the yaw rate.
+/// The separation is infinite if the wheels turn and the robot does not. So the mean is taken over its inverse, the
+/// turn per difference of wheel speeds.
 Estimate mean_separation(std::vector<Estimate> separations, const ModeFamily& family) {
   const auto inverse = [](Estimate of) {
     of.error /= of.value * of.value;
@@ -61,7 +61,8 @@ VectorXd shares_of(const VectorXd& weights) {
   return sum > 0.0 ? VectorXd(weights / sum) : VectorXd(VectorXd::Constant(weights.size(), 1.0 / count));
 }
 
-/// A variance over the whole time is the mean of the modes': how far they are apart makes it no less certain.
+/// The error is that of the variance over the whole time, the mean of the modes' variances. Differences between the
+/// modes do not add to this error.
 Estimate mean_variance(const std::vector<Estimate>& estimates, const ModeFamily& family) {
   const Counted of = those_that_count(estimates, family, [](const Estimate& one) { return one.known(); });
   if (of.modes.empty()) return {not_a_number, not_a_number};

@@ -19,7 +19,8 @@ bool holds_any(const std::string& name, std::initializer_list<const char*> words
                      [&](const char* word) { return boost::algorithm::icontains(name, word); });
 }
 
-/// The only channel of a unit; among several the only one with such a name. -1: none, or an ambiguous choice.
+/// The only channel with the unit, or the only one of these with a suitable name. -1 if there is none, or if the choice
+/// is ambiguous.
 Index find_channel(const std::vector<Channel>& channels, const char* unit, std::initializer_list<const char*> words) {
   std::vector<Index> by_unit, by_name;
   for (Index i = 0; i < std::ssize(channels); ++i) {
@@ -57,8 +58,8 @@ void find_wheels(const std::vector<Channel>& inputs, RobotChannels& channels) {
   channels.left = channels.right = -1;
 }
 
-/// Steady gains per recorded input, and minus the derivative at z = 1 of the transfer function: the sum over samples of
-/// lag times impulse response.
+/// Steady gains per recorded input, and the slope of the transfer function at z = 1 with negative sign. This slope is
+/// the sum over samples of lag times impulse response.
 struct Response {
   MatrixXd gain, delay_gain;  ///< n_y x inputs
 };
@@ -131,8 +132,8 @@ VectorXd stationary_variances(const RobotBank& robot, const LinearModel& model, 
   return (C * P * C.transpose()).diagonal();
 }
 
-/// The same with standard errors: those from theta by the delta method, those from Q entry by entry, since it enters
-/// linearly.
+/// The same with standard errors. The delta method gives the part from theta. The part from Q is added entry by entry,
+/// since the variances are linear in Q.
 DerivedNumbers variances_of(const RobotBank& robot, Index mode) {
   const Mode& of = robot.bank.modes[static_cast<std::size_t>(mode)];
   DerivedNumbers result = derived_numbers(
@@ -179,7 +180,7 @@ RobotNumbers robot_numbers(const RobotBank& robot, Index mode, const RobotChanne
   const auto at = [&](Index i) { return Estimate{derived.values(i), derived.errors(i)}; };
   RobotNumbers numbers{
       at(0), at(1), at(2), at(3), at(4), variance(channels.yaw_rate), variance(channels.forward_speed)};
-  // For an unstable mode gains have no meaning; for one that turns the other way the separation has none.
+  // Gains of an unstable mode have no meaning. The separation has none for a mode that turns against its wheels.
   const bool settles = variances.values.allFinite();
   for (Estimate* estimate : {&numbers.separation_m, &numbers.left_multiplier, &numbers.right_multiplier})
     if (!settles || !(numbers.left_multiplier.value > 0.0 && numbers.right_multiplier.value > 0.0))

@@ -19,7 +19,7 @@
 namespace modebank::app {
 namespace {
 
-/// How much later than recorded inputs act: found, or stated in the configuration.
+/// How much later than recorded the inputs act: estimated, or stated in the configuration.
 double input_lag(const Archive& archive, const Settings& settings) {
   if (archive.lag) return archive.lag->correction == LagCorrection::none ? 0.0 : archive.lag->lag.mean;
   const auto stated = settings.find("data.lag_s");
@@ -98,7 +98,7 @@ std::string warning_words(const Archive& archive) {
                                             warnings.size(), warnings.front().text);
 }
 
-/// The numbers of the scores; `screen` has its role and its competitor already.
+/// Sets the numbers of the scores. `screen` must already contain the role and the competitor.
 void add_scores(FirstScreen& screen, const Archive& archive) {
   screen.errors = errors_ahead(archive, screen.role, screen.competitor);
   if (const FreeRunRow* bank = free_run_of(archive, "bank", screen.role)) {

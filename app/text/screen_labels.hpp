@@ -5,7 +5,7 @@
 
 namespace modebank::app {
 
-/// A word that lines of the screen begin with, and what such a line states, for `modebank help`.
+/// A word at the start of a line of the screen, and what this line states, for `modebank help`.
 struct ScreenLabel {
   std::string name, means;
 };
@@ -13,7 +13,7 @@ struct ScreenLabel {
 /// Every label of the screens of `run`, `show` and `run LOG`.
 const std::vector<ScreenLabel>& screen_labels();
 
-/// "read      ": the label as its line begins. Throws std::logic_error for one that is not in the table.
+/// "read ": the label as its line begins. Throws std::logic_error for a label that is not in the table.
 std::string padded_label(const std::string& name);
 
 }  // namespace modebank::app

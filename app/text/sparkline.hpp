@@ -12,8 +12,9 @@ namespace modebank::app {
 /// A value that is not finite is "?".
 std::string sparkline(const Eigen::VectorXd& values, bool utf8);
 
-/// The bank's mode probabilities over the judged runs (judged_role), one line per mode. Runs are side by side, each as
-/// long as its share of samples, as many as fit. Empty without an evaluation of the bank.
+/// The bank's mode probabilities over the judged runs (judged_role), one line per mode. Runs stand side by side, each
+/// with a width by its share of the samples. Runs that do not fit are left out. Empty without an evaluation of the
+/// bank.
 std::string mode_strip_text(const Archive& archive, const Terminal& terminal);
 
 }  // namespace modebank::app

@@ -12,7 +12,7 @@ inline bool acted_on(const Archive& archive) { return !archive.recording || !arc
 /// "4 state lags, 1 input lag, delay 1 sample"; without inputs only the state lags.
 std::string structure_words(const FoundStructure& found, bool acted_on);
 
-/// The stages that use these lags: "bank, one_motion"; linear: the competitors with one linear motion.
+/// The stages that use these lags: "bank, one_motion". linear: the competitors with a single linear motion.
 std::string taken_by(const StructureScore& score);
 
 /// One sentence for the first screen: the chosen structure, its scores on runs left out, and feedback.

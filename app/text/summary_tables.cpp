@@ -38,7 +38,7 @@ std::string share(double value) { return fmt::format("{:.2f} %", 100 * value); }
 std::string tails(double above, double below) { return fmt::format("{:.2f} % {:>5.2f} %", 100 * above, 100 * below); }
 
 std::string estimate(double value, double standard_error) {
-  // Four decimals do not suit a value with a much smaller error, or a much larger value.
+  // Four decimals suit neither a value with a much smaller error nor a much larger value.
   constexpr double smallest = 5e-5, largest = 1e5;
   if (std::abs(value) >= largest || standard_error >= largest || standard_error < smallest)
     return fmt::format("{:.6g} +- {:.2g}", value, standard_error);
@@ -150,7 +150,7 @@ std::string mode_diagnostics_text(const Archive& archive, int width) {
 
 namespace {
 
-/// The modes in a motion model's own parameters; empty for linear models, whose table has all.
+/// The modes in the parameters of a motion model. Empty for linear models, whose table already has all parameters.
 std::string motion_parameters_text(const Bank& bank, const std::vector<std::string>& names, int width) {
   if (bank.motion_parameters.empty()) return "";
   std::vector<TextTable::Column> columns{{"mode", 4, align_of(names)}};
@@ -168,7 +168,7 @@ std::string motion_parameters_text(const Bank& bank, const std::vector<std::stri
 
 }  // namespace
 
-/// Weights of switches that depend on state and input.
+/// Weights of state-dependent transition probabilities.
 std::string switches_text(const Bank& bank, const std::vector<std::string>& names, int width) {
   const TransitionLogit& logit = bank.transition_logit;
   if (logit.empty()) return "";

@@ -19,7 +19,7 @@ std::string window_parameters_text(const Archive& archive, int width = 0);
 /// Use and calibration of the bank's modes on the held-out runs, or on training runs if none is held out.
 std::string mode_diagnostics_text(const Archive& archive, int width = 0);
 
-/// The equations of the nonlinear motion, and the number of judged samples outside of its training ranges.
+/// The equations of the nonlinear motion, and the share of judged samples outside its training ranges.
 std::string equations_text(const Archive& archive, int width = 0);
 /// One line per mode: parameters, noise, weight. `full_form` prints I + A instead of A.
 std::string modes_text(const Archive& archive, bool full_form, int width = 0);

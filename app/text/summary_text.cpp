@@ -20,7 +20,7 @@
 namespace modebank::app {
 namespace {
 
-/// Number of windows with memberships, clustered or assigned, including those with label -1 (noise).
+/// Number of windows with memberships: clustered or assigned windows, including those with label -1 (noise).
 Index member_windows(const MixtureResult& result) {
   if (!result.mixture.noise.present()) return (result.labels.array() >= 0).count();
   constexpr Index at_once = 16384;
@@ -107,7 +107,7 @@ std::string residuals_text(const Archive& archive) {
   return text;
 }
 
-/// Whether the filter of a row has several modes, each with a row of its own.
+/// Whether the filter has several modes, and so rows of its own for its modes.
 bool has_modes(const Archive& archive, const DiagnosticsRow& row) {
   return std::any_of(archive.diagnostics.begin(), archive.diagnostics.end(), [&row](const DiagnosticsRow& other) {
     return other.filter == row.filter && other.role == row.role && other.mode >= 0;
@@ -151,7 +151,7 @@ std::string verdicts_text(const Archive& archive) {
       words_for(role), text);
 }
 
-/// "combined, 10 steps ahead: bank 2 %, drifting 56 %": what each filter counts on average, a line per horizon.
+/// "combined, 10 steps ahead: bank 2 %, drifting 56 %": mean weight of each filter, one line per horizon.
 std::string combination_text(const Archive& archive, Role role) {
   std::string text;
   Index horizon = 0;

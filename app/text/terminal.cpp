@@ -14,7 +14,7 @@ constexpr int label_width = 10;  // width of "windows   ", the start of the summ
 
 int stated_width() {
   const char* columns = std::getenv("COLUMNS");
-  constexpr int widest = 10'000;  // no screen is wider, and text would be padded without limit
+  constexpr int widest = 10'000;  // a larger width would only pad text
   return columns ? std::clamp(std::atoi(columns), 0, widest) : 0;
 }
 

@@ -21,7 +21,7 @@ void TextTable::add(std::vector<std::string> cells, std::string remark) {
 
 namespace {
 
-/// Shortens the front: long names differ in their ends.
+/// Shortens the front, because long names differ at their ends.
 std::string shortened(const std::string& text, int most) {
   if (columns_of(text) <= most) return text;
   std::string end = text;

@@ -5,23 +5,23 @@
 
 namespace modebank::app {
 
-/// A table of text that fits a terminal: columns that are too many continue below, with the key columns repeated.
+/// A table of text that fits a terminal. Columns that do not fit continue below, with the key columns repeated.
 class TextTable {
  public:
   enum class Align { left, right };
   struct Column {
     std::string title;
-    int width;  ///< smallest width without a limit; wider cells widen it
+    int width;  ///< smallest width; wider cells widen the column
     Align align = Align::right;
   };
 
-  /// Every part repeats the first `keys` columns.
+  /// The first `keys` columns are repeated in every part.
   TextTable(std::vector<Column> columns, std::size_t keys = 1) : columns_(std::move(columns)), keys_(keys) {}
 
   /// One cell per column, or fewer for a row that ends early. `remark` follows the row.
   void add(std::vector<std::string> cells, std::string remark = {});
 
-  /// width 0: no limit. Otherwise a cell that is too wide is shortened to its end.
+  /// width 0: no limit. Otherwise only the end of a cell that is too wide is shown.
   std::string text(int width) const;
 
  private:

@@ -17,9 +17,12 @@ struct WindowCounts {
   Index total() const { return std::accumulate(status.begin(), status.end(), Index{0}); }
 };
 
-/// Subject of a warning. replaced_windows and failed_windows: the batch solver's audit and fits that are not finite.
-/// mixture: the choice of a mixture that makes the bank. iteration_limit and stalled: the fit with measurement noise.
-/// no_stable_mode: stability. unscored: measured samples without a score.
+/// Subject of a warning.
+/// - replaced_windows, failed_windows: the batch solver's audit, and fits that are not finite.
+/// - mixture: the choice of the mixture from which the bank is made.
+/// - iteration_limit, stalled: the fit with measurement noise.
+/// - no_stable_mode: stability.
+/// - unscored: measured samples without a score.
 enum class WarningKind {
   replaced_windows,
   failed_windows,
@@ -44,12 +47,12 @@ std::string refinement_warning(MeasuredFit fit);
 /// Warning that no mode of the bank is stable; empty if one is.
 std::string stability_warning(const Bank& bank);
 
-/// Warning that measured samples have no score, because the bank's filter starts only where its lags are complete.
-/// Empty for a share up to `least_share`. The first samples of each run do not count.
+/// Warning that measured samples have no score: the bank's filter starts only when its lags are complete. Empty for a
+/// share up to `least_share`. The first samples of each run do not count.
 std::string unscored_warning(const Archive& archive, double least_share = 0.0);
 
-/// All warnings of an archive on the basis of its result, so without those on a mixture that refinement replaced.
-/// `show` prints each in its section.
+/// All warnings on an archive's final result. Warnings on a mixture that refinement replaced are left out. `show`
+/// prints each in its section.
 std::vector<Warning> archive_warnings(const Archive& archive);
 
 }  // namespace modebank::app

@@ -15,9 +15,9 @@ std::string windows_text(const WindowFits& common, const WindowCounts& counts, c
 
 /// parameter_labels of the archive's windows; empty if it has none.
 std::vector<std::string> window_labels(const Archive& archive);
-/// The features' names with labels in place of parameter names, also for one-lag fits.
+/// The features' names, with labels in place of parameter names. Also for one-lag fits.
 std::vector<std::string> feature_labels(const Archive& archive, std::vector<std::string> names);
-/// " of one-lag fits of the same windows" if the mixture clusters these, else empty.
+/// " of one-lag fits of the same windows" if these fits are clustered, else empty.
 std::string features_origin(const Archive& archive);
 
 }  // namespace modebank::app

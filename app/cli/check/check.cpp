@@ -22,9 +22,9 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double least_resolved = 0.25;  // in sample periods; shorter time constants cannot be resolved
+constexpr double least_resolved = 0.25;  // sample periods; data cannot resolve a shorter time constant
 
-/// Data that the parts of the report share.
+/// Data that several parts of the report use.
 struct Material {
   std::vector<RunStreams> recorded;
   std::vector<RunPair> ordered;
@@ -34,7 +34,7 @@ struct Material {
   std::vector<std::vector<bool>> states_rest, inputs_still;  // per run and sample
 };
 
-/// Joins the runs as `run` would after all faults that can be corrected are corrected.
+/// Joins the runs as `run` would if all correctable faults were corrected.
 void join_parts(const CheckOptions& options, Material& material, DataCheck& check) {
   DataOptions lenient = options.data;
   lenient.missing = Missing::gap;
@@ -99,7 +99,7 @@ void check_channels(const Material& material, const std::string& name, const std
   summary.values = check_channel(all);
   summary.values.outliers = 0;
   summary.limits = saturation_limits(rows);
-  if (summary.limits.soft && is_state)  // smooth motion reverses slowly, which looks like a limit
+  if (summary.limits.soft && is_state)  // a smooth motion lingers where it reverses, which looks like a limit
     summary.limits = {not_a_number, not_a_number, false};
   summary.saturated = share_beyond(all, summary.limits);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -170,7 +170,7 @@ void check_lags(const CheckOptions& options, const Material& material, DataCheck
   if (!check.has_lag) return;
   try {
     check.lag = choose_lag(material.ordered, {options.data.lag_range_s, options.data.rate_hz});
-  } catch (const DataError&) {  // too few data to fit; find_unusable reports it
+  } catch (const DataError&) {  // too few data to fit; find_unusable reports this
     check.has_lag = false;
     return;
   }
@@ -184,8 +184,8 @@ double median_of(std::vector<double> values) {
   return values.empty() ? 0.0 : median(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
 }
 
-/// Largest share of repeated values in motion among measured inputs. Commands are left out: they are coarse or
-/// switched, while measurements have many values. An input that never changes is left out, too.
+/// Largest share of repeated values in motion, over the measured inputs. Commands do not count, because they are coarse
+/// or switched, while measurements take many values. An input that never changes does not count.
 double repeated_inputs(const Material& material) {
   double most = 0.0;
   for (Index i = 0; i < material.structure.inputs; ++i) {

@@ -21,9 +21,9 @@ struct RunReport {
   RestCheck rest;
   Index excitation = 0;
   RunLag lag;
-  Index transitions = 0;  ///< joined, without gaps
+  Index transitions = 0;  ///< transitions of the joined run, without gaps
   DeficientWindows windows;
-  std::string problem;  ///< reason why it cannot be joined; empty if it can
+  std::string problem;  ///< reason why the run cannot be joined; empty if it can
 };
 
 /// A channel over all runs.
@@ -31,7 +31,7 @@ struct ChannelSummary {
   Channel channel;
   bool is_state = false;
   ChannelCheck values;
-  double repeated = 0.0;  ///< share of samples equal to the one before, while the system moves
+  double repeated = 0.0;  ///< share of samples in motion that equal the sample before
   SaturationLimits limits{0.0, 0.0, false};
   double saturated = 0.0;
 };
@@ -52,8 +52,8 @@ struct DataCheck {
   bool has_lag = false;
   Advice advice;
   Index longest_stretch = 0;            ///< longest sequence of transitions without a gap in the training runs
-  std::vector<std::string> dominating;  ///< remarks on values that would dominate least squares
-  std::string unidentifiable_effects;  ///< a remark on effects that the training runs leave unidentifiable; empty: none
+  std::vector<std::string> dominating;  ///< remarks on large values that would dominate least squares
+  std::string unidentifiable_effects;  ///< remark on effects that are unidentifiable from the training runs; empty if there are none
   std::string unusable;                ///< reason why nothing can be identified; empty if something can
 };
 

@@ -74,7 +74,7 @@ void time_findings(const DataCheck& check, const Config& config, std::vector<std
   }
 }
 
-/// Joint excitation of the inputs in the run with the least; empty if a run has none.
+/// Joint excitation of the inputs in the run with the least excitation; empty if a run has none.
 std::string excitation_words(const DataCheck& check) {
   Index least = check.runs.empty() ? 0 : check.runs.front().excitation;
   for (const RunReport& run : check.runs) least = std::min(least, run.excitation);

@@ -10,20 +10,20 @@
 
 namespace modebank::app {
 
-/// Keys, with values, that change one set of settings into another.
+/// Keys and values that change the first settings into the second.
 KeyValues changed_keys(const Config& config, const Settings& from, const Settings& to);
 
 /// Reason for a trial.
 std::string reason_text(const Trial& trial);
 
-/// The trial's gain with its runs and reason; or the reason why it has no gain.
+/// The trial's gain with the number of runs and the reason. If there is no gain, only why.
 std::string gain_reason(const Suggestions& suggestions, const Trial& trial);
 
 /// Text on the suggestions with their gains, and on trials without improvement.
 std::string suggestions_text(const Suggestions& suggestions, const Config& config);
 nlohmann::json suggestions_json(const Suggestions& suggestions, const Config& config);
 
-/// The configuration file with the command line's keys and the suggestions, to be written as `output`. Throws
+/// The configuration file with the keys of the command line and the suggestions, as the content of `output`. Throws
 /// ConfigurationError for a path that a configuration cannot contain.
 std::string applied_text(const Suggestions& suggestions, const Config& config, const std::filesystem::path& file,
                          const KeyValues& overrides, const std::filesystem::path& output);

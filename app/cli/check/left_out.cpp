@@ -15,7 +15,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// More parts cost more than they add, since each is a chain of its own.
+/// Each part is a chain of its own, so more parts cost more than they add.
 constexpr Index most_parts = 3;
 
 /// Whether periods are equal up to the rounding of rates.
@@ -99,7 +99,7 @@ LeftOut predict_all(const ChainOptions& options, const LeftOutPlan& plan, double
   return left_out;
 }
 
-/// Index of the time nearest to `at_s`, at most half a period away; -1: there is none.
+/// Index of the time nearest to `at_s`; -1 if none lies within half a period.
 Index nearest(const VectorXd& time_s, double at_s, double period_s) {
   const double* const begin = time_s.data();
   const Index after = std::lower_bound(begin, begin + time_s.size(), at_s) - begin;

@@ -1,4 +1,4 @@
-// Settings that suggestions change, as options of a chain, and their values by the data.
+// Settings that suggestions change: the options of a chain, and values that suit the data.
 #include <algorithm>
 #include <cmath>
 

@@ -15,7 +15,7 @@
 namespace modebank {
 namespace {
 
-/// The rule for any addition to a model; a smaller gain would not repeat on other runs.
+/// Every addition to a model must gain this much; a smaller gain would not repeat on other runs.
 bool is_taken(const PairedGain& gain) {
   return is_worth_it(PairedLoss{gain.gain, gain.standard_error},
                      Eigen::VectorXd::Constant(1, static_cast<double>(gain.samples)));
@@ -25,7 +25,7 @@ CheckOptions check_options(const ChainOptions& options) {
   return {options.data, options.window.length, options.window.intercept};
 }
 
-/// The sequence of trials. Predictions of all accepted settings are kept, the present settings first.
+/// The sequence of trials. Keeps the predictions of all accepted settings, those of the present settings first.
 class Search {
  public:
   Search(const ChainOptions& options, const DataCheck& check, const SuggestionScope& scope, const Listener& listener)
@@ -65,7 +65,7 @@ class Search {
 
   Settings& held() { return found_.suggested; }
 
-  /// Without times the configuration states the rate, so it cannot be changed.
+  /// Without a column of times the rate is stated in the configuration and cannot be changed.
   bool has_times() const { return !options_.data.time.empty(); }
 
   double wanted_hz() const { return check_.advice.rate.rate_hz; }
@@ -78,12 +78,12 @@ class Search {
     return 1.0 / (wanted_hz() > 0.0 ? std::min(wanted_hz(), present_hz()) : present_hz());
   }
 
-  /// Whether refinement has random starts, which take at least half of the time.
+  /// Whether refinement has random starts. They take at least half of the time.
   bool has_random_starts() const {
     return !scope_.one_motion && options_.bank.em.restarts > 0 && chain_inputs(options_).bank.bank.refine == Refine::em;
   }
 
-  /// The settings that differ from the present ones, for messages.
+  /// Names of the settings that differ from the present ones, for messages.
   std::string other_words(const Settings& settings) const {
     std::string words;
     if (settings.measurement_variance != found_.present.measurement_variance)
@@ -133,7 +133,7 @@ class Search {
     if (whole_.empty()) whole_.push_back(has_random_starts() ? predict(found_.present, true) : held_.front());
   }
 
-  /// A gain without random starts must repeat with them; otherwise it came from an optimum that `run` does not reach.
+  /// A gain without random starts must repeat with them. Otherwise it came from an optimum that `run` does not reach.
   void confirm(LeftOut said, Trial& trial) {
     start_whole();
     LeftOut whole = has_random_starts() ? predict(trial.to, true) : said;
@@ -176,7 +176,7 @@ class Search {
   }
 
   void try_length() {
-    const bool with_rate = held().rate_hz != found_.present.rate_hz;  // the rate is changed together with the length
+    const bool with_rate = held().rate_hz != found_.present.rate_hz;  // the rate and the windows' length are changed together
     Settings to = held();
     to.window_length = check_.advice.length.length;
     if (to.window_length == 0 || to.window_length == held().window_length || with_rate) return;
@@ -189,7 +189,7 @@ class Search {
     if (check_.advice.loss.tails.transitions > 0 && to.loss != held().loss) attempt(Change::loss, to, check_.advice);
   }
 
-  /// Tries the state's variance at rest as R. Drift is left out, because it needs states measured exactly.
+  /// Tries the state's variance at rest as R. Not with drift, which needs exactly measured states.
   void try_noise() {
     const RestNoise rest = rest_noise(check_);
     if (held().measurement_variance || !(rest.variance > 0.0) || options_.bank.em.drift != Drift::none) return;

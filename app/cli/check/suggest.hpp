@@ -32,7 +32,7 @@ enum class Change { rate, lag, length, loss, noise, restarts };
 /// Which settings to try, and how to judge them.
 struct SuggestionScope {
   std::vector<Change> changes{Change::rate, Change::lag, Change::length, Change::loss};
-  bool one_motion = false;  ///< judges by a bank of one mode, instead of one that is learned as by `run`
+  bool one_motion = false;  ///< whether a bank of one mode judges the trial; otherwise the bank is learned as by `run`
 
   bool has(Change change) const { return std::find(changes.begin(), changes.end(), change) != changes.end(); }
 };
@@ -44,13 +44,13 @@ struct RestNoise {
 };
 RestNoise rest_noise(const DataCheck& check);
 
-/// Other settings, compared with those accepted so far.
+/// A change of settings, compared with the settings accepted so far.
 struct Trial {
   Change change = Change::rate;
   Settings from, to;
   Advice advice;         ///< computed for the data with the settings of the trial
-  PairedGain gain;       ///< of `to` over `from` on training runs left out, if accepted learned as by `run`
-  std::string unscored;  ///< reason of a missing gain; else empty
+  PairedGain gain;       ///< gain of `to` over `from` on training runs left out; for an accepted trial with all starts of `run`
+  std::string unscored;  ///< reason why there is no gain; else empty
   bool accepted = false;
   RestNoise rest = {};  ///< basis of a stated measurement noise
 };
@@ -60,24 +60,27 @@ struct Suggestions {
   std::vector<Trial> trials;
   PairedGain together;     ///< of `suggested` over `present`
   Index runs = 0;          ///< number of training runs that were left out in turn
-  bool whole_runs = true;  ///< false: too few runs, so parts were left out
-  std::string unscored;    ///< reason why nothing could be tried; else empty
+  bool whole_runs = true;  ///< false: there are too few runs, so parts of runs were left out
+  std::string unscored;    ///< reason why no setting could be tried; else empty
 
   bool any() const;
 };
 
-/// Tries settings that suit the data, one after the other. Each trial starts from the accepted settings, on data with
-/// the accepted rate and lag. The order is: the rate with a suitable window length and step; the lag found by
-/// cross-validation; the window length; the loss; the measurement noise by the state's variance at rest; many_restarts.
-/// A trial is accepted if its paired gain on training runs left out (left_out.hpp) exceeds one standard error and 0.001
-/// nats per sample. It must do so first with refinement's starts from the mixture alone, then with all starts of `run`.
-/// If all accepted trials together gain less, the last ones are withdrawn. `check`: the check of the data with
-/// `options`.
+/// Tries settings that suit the data, one after the other.
+/// - Each trial starts from the accepted settings, on data with the accepted rate and lag.
+/// - The order is: the rate with a suitable window length and step; the lag found by cross-validation; the window
+///   length; the loss; the measurement noise by the state's variance at rest; many_restarts.
+/// - A trial is accepted if its paired gain on training runs left out (left_out.hpp) exceeds one standard error and
+///   0.001 nats per sample. It must gain first with refinement's starts from the mixture alone, then with all starts of
+///   `run`.
+/// - If all accepted trials together gain less, the last ones are withdrawn.
+///
+/// `check`: the check of the data with `options`.
 Suggestions suggest(const ChainOptions& options, const DataCheck& check, const SuggestionScope& scope,
                     const Listener& listener);
 
-/// Structure by `window.model` or lags of `auto`, found before suggestions are tried with it. Empty if nothing is
-/// `auto`.
+/// Structure that `window.model` or lags of `auto` found, before suggestions are tried with this structure. Empty if no
+/// key is `auto`.
 std::optional<FoundStructure> find_structure(const ChainOptions& options, const Listener& listener);
 /// The options with this structure, if there is one.
 ChainOptions with_found(ChainOptions options, const std::optional<FoundStructure>& found);

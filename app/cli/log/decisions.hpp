@@ -7,25 +7,26 @@
 #include "app/cli/log/log_configuration.hpp"
 #include "io/archive/archive.hpp"
 
-/// Decisions of `run LOG` where `check` and `next` advise, each with its figure.
+/// Decisions of `run LOG` on settings for which `check` and `next` only advise. Each is stated with its gain.
 namespace modebank::app {
 
-/// How much is tried, counted in searches and not in seconds: the same log gives the same answer on every machine.
+/// Amount of search, in numbers of trials and not in seconds, so that the same log gives the same result on every
+/// machine.
 enum class Effort {
   quick,     ///< what `run` finds by default: lags, delay, and the lag between two instruments
-  normal,    ///< also the lag of the inputs within one table and the measurement noise, judged by one linear motion
-  thorough,  ///< also rate, windows' length, loss and restarts, all judged by banks learned as `run` learns them
+  normal,    ///< also the lag of the inputs within one table and the measurement noise, judged by a bank of one mode
+  thorough,  ///< also rate, window length, loss and restarts, all judged by banks learned as in `run`
 };
 
-/// By its name, which the table of commands has checked.
+/// The effort with this name. The table of commands has checked the name.
 Effort effort_of(const std::string& word);
 
-/// Tries settings on training runs that are left out, and puts those that gain into the configuration, the others into
-/// a comment. Keys in `stated` are not decided. Returns a sentence for each decision.
+/// Tries settings on training runs left out. Settings that gain go into the configuration, the others into a comment.
+/// Keys in `stated` are not changed. Returns one sentence for each decision.
 std::vector<std::string> decide(const Config& config, Effort effort, const KeyValues& stated,
                                 LogConfiguration& configuration, const Listener& listener);
 
-/// Puts what `run` found into the reasons of the keys by which it was found: lag, structure, measurement noise.
+/// Adds the results of `run` to the reasons of the keys that led to them: lag, structure, measurement noise.
 void explain_found(const Archive& archive, LogConfiguration& configuration);
 
 }  // namespace modebank::app

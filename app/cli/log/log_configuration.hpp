@@ -10,8 +10,8 @@
 
 namespace modebank::app {
 
-/// The configuration that `run LOG` makes: what init proposes of the data, and keys of other sections, each with its
-/// reason.
+/// The configuration that `run LOG` writes: the proposal of `init` for the data, and keys of other sections, each with
+/// its reason.
 class LogConfiguration {
  public:
   LogConfiguration(Proposal proposal, std::string command)
@@ -19,19 +19,19 @@ class LogConfiguration {
 
   const Proposal& proposal() const { return proposal_; }
 
-  /// Sets a key, or gives it another reason. `value` empty: a comment alone.
+  /// Sets a key or changes its reason. An empty `value` writes only a comment.
   void set(const std::string& key, const std::string& value, const std::string& why);
-  /// The reason of a key that stands there.
+  /// Changes the reason of a key in the configuration.
   void explain(const std::string& key, const std::string& why);
 
   std::string text() const;
-  /// As the program reads it from `file`, with that archive.
+  /// The configuration as the program reads it from `file`, with that archive.
   Config config(const std::filesystem::path& file, const std::filesystem::path& archive) const;
 
  private:
   Proposal proposal_;
   std::string command_;
-  std::vector<KeyEdit> edits_;  ///< of other sections
+  std::vector<KeyEdit> edits_;  ///< keys of other sections
 };
 
 }  // namespace modebank::app

@@ -15,11 +15,14 @@ struct LogOutputs {
   std::vector<std::filesystem::path> all() const { return {configuration, archive, page}; }
 };
 
-/// Named after archive.output, else after the logs, in the current folder.
+/// Names them after archive.output, else after the logs, in the current folder.
 LogOutputs log_outputs(const CommandLine& line, const std::vector<FileSet>& sets);
 
-/// Throws ConfigurationError where one of them exists and --force was not given, cannot be written, is one of the
-/// logs, or is a file of another form.
+/// Throws ConfigurationError if one of the files
+/// - exists and --force was not given,
+/// - cannot be written,
+/// - is one of the logs,
+/// - or has another form.
 void check_log_outputs(const CommandLine& line, const LogOutputs& outputs, const std::vector<FileSet>& sets);
 
 }  // namespace modebank::app

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder that is one recording: of ROS 2, or with the parts of a recording.
+/// Whether a folder is one recording: a ROS 2 recording, or one in several parts.
 bool is_recording(const fs::path& folder) {
   if (fs::exists(folder / "metadata.yaml")) return true;
   return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const fs::directory_entry& entry) {
@@ -27,8 +27,8 @@ bool is_recording(const fs::path& folder) {
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
-/// The logs of a folder in natural order: recordings in folders of their own, and files with the endings of logs. Text
-/// is a log only where nothing else is one: beside logs it tells about them.
+/// The logs in a folder, in natural order: recordings in folders of their own, and files with the extension of a log. A
+/// text file counts as a log only if there are no other logs, because it may describe them.
 std::vector<std::string> logs_in(const fs::path& folder) {
   std::vector<std::string> logs, texts;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -47,7 +47,7 @@ std::vector<std::string> logs_in(const fs::path& folder) {
   return logs;
 }
 
-/// A folder of logs as its logs.
+/// Replaces a folder of logs by its logs.
 std::vector<std::string> without_folders(const std::vector<std::string>& logs) {
   std::vector<std::string> files;
   for (const std::string& log : logs)

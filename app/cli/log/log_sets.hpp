@@ -6,14 +6,14 @@
 
 #include "app/init/file_sets.hpp"
 
-/// The logs that `init` and `run` are given.
+/// The logs given to `init` and `run`.
 namespace modebank::app {
 
-/// file_sets, each of whose files a configuration can name; a folder stands for the logs in it, unless it is one
+/// file_sets of files that a configuration can name. A folder is replaced by the logs in it, unless it is one
 /// recording. Throws ConfigurationError for a file that no configuration can name, and for a folder without logs.
 std::vector<FileSet> nameable_sets(const std::vector<std::string>& logs);
 
-/// The name of what is made of them, after the first set: pro_*.csv gives pro, and drives/*.csv gives drives.
+/// Name for the output files, from the first set: pro_*.csv gives pro, and drives/*.csv gives drives.
 std::string name_after(const std::vector<FileSet>& sets);
 
 std::vector<std::filesystem::path> files_of(const std::vector<FileSet>& sets);

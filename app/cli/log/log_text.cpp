@@ -23,7 +23,7 @@ std::string value_of(const Proposal& proposal, const std::string& key) {
   return found == nullptr ? "" : found->value;
 }
 
-/// "husky.bag", or of several files the first and their number.
+/// "husky.bag", or for several files the first name and their number.
 std::string files_text(const std::vector<FileSet>& sets) {
   std::vector<std::string> all;
   for (const FileSet& set : sets) {
@@ -40,7 +40,7 @@ std::string time_text(const SurveyedTable& table) {
                      table.sampling.gaps > 0 ? fmt::format(", {} gaps", table.sampling.gaps) : "");
 }
 
-/// The names of a key, and below them what a derived one is made of.
+/// The names of a key's channels, and the formulas of derived ones.
 std::string channels_text(const Proposal& proposal, const std::string& key) {
   std::string text = value_of(proposal, key);
   if (text.empty()) return "none: the system moves by itself";
@@ -56,7 +56,7 @@ std::string channels_text(const Proposal& proposal, const std::string& key) {
   return derived.empty() ? text : fmt::format("{} ({})", text, fmt::join(derived, "; "));
 }
 
-/// How runs come about, and which are held out.
+/// How the log is split into runs, and which runs are held out.
 std::string runs_text(const std::vector<FileSet>& sets, const Proposal& proposal) {
   if (const ProposedKey* const column = proposal.find("run")) return fmt::format("by column {}", column->value);
   if (const ProposedKey* const split = proposal.find("split")) return fmt::format("{} ({})", split->value, split->why);

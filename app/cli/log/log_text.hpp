@@ -9,14 +9,14 @@
 
 namespace modebank::app {
 
-/// The times, states, inputs and runs that `run LOG` takes, and its doubts: labelled paragraphs as on the first screen.
+/// The times, states, inputs and runs that `run LOG` uses, and its doubts: labelled paragraphs as on the first screen.
 std::string taken_text(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                        const Proposal& proposal);
 
-/// Sentences on the corrections of the log that a robot must make, too, when it runs the model live.
+/// Sentences on the corrections of the log that a robot must also make when it runs the model live.
 std::vector<std::string> robot_advice(const Guess& guess, const Archive& archive);
 
-/// A labelled paragraph, as wide as the terminal or the first screen.
+/// A labelled paragraph, wrapped at the width of the terminal or of the first screen.
 std::string paragraph(const std::string& label, const std::string& text);
 
 }  // namespace modebank::app

@@ -38,7 +38,7 @@ bool is_log(const fs::path& path) {
   return looks_like_log(path) || !is_configuration(path);
 }
 
-/// Keys that the logs, or the way there, decide.
+/// Keys that `run LOG` sets itself, from the logs.
 void refuse_keys(const KeyValues& overrides) {
   for (const auto& [key, value] : overrides)
     for (const char* const decided :
@@ -50,7 +50,7 @@ void refuse_keys(const KeyValues& overrides) {
             key));
 }
 
-/// Keys of the command line, as the configuration is to have them.
+/// Keys of the command line, in the form of the configuration file.
 void take_data_keys(const KeyValues& overrides, Proposal& proposal) {
   for (const auto& [key, value] : overrides) {
     if (!key.starts_with("data.")) continue;
@@ -66,7 +66,7 @@ void take_other_keys(const KeyValues& overrides, LogConfiguration& configuration
       configuration.set(key, boost::trim_copy(value), "from the command line");
 }
 
-/// The logs as they are before anything is fitted.
+/// The logs before any fit.
 struct LookedInto {
   std::vector<FileSet> sets;
   std::vector<SurveyedFile> surveyed;
