@@ -19,7 +19,7 @@ std::string field(const json& value) {
   return value.dump();
 }
 
-/// Appends a value's fields and their names; nested lists become one number after the other.
+/// Appends the fields of a value and their names. A nested list becomes one field per number.
 void append(const std::string& name, const json& value, std::vector<std::string>* names,
             std::vector<std::string>& fields) {
   if (!value.is_array()) {

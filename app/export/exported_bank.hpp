@@ -11,36 +11,36 @@
 
 namespace modebank::app {
 
-/// Standard errors: NaN where unknown, 0 for entries that are not estimates (companion rows, an absent c).
+/// Standard errors: NaN if unknown, 0 for entries that are not estimates (companion rows, an absent c).
 struct ModeErrors {
-  Eigen::MatrixXd A, B;  ///< errors of the archive's increment, and so of A = I + increment
+  Eigen::MatrixXd A, B;  ///< errors of the archive's increment, which are also those of A = I + increment
   Eigen::VectorXd c;
 };
 
-/// Content of every exported form, read once. A is I + the archive's increment.
+/// Content of every exported form, read only once. A is I + the archive's increment.
 struct ExportedBank {
   std::string filter;     ///< filter of the archive: bank or a competitor
   std::string archive;    ///< file name
   std::string sha256;     ///< hash of the archive's content
-  Provenance provenance;  ///< of the archive
-  FilterOptions options;  ///< options with which the archive's filter ran
+  Provenance provenance;  ///< version that wrote the archive
+  FilterOptions options;  ///< options of the filter in the archive
   Calibration verdict = Calibration::undecided;
   std::string verdict_words;  ///< verdict with its numbers
-  std::string judged_on;      ///< held-out or training runs; empty: not judged
+  std::string judged_on;      ///< held-out or training runs; empty: the filter was not judged
   double coverage_95 = 0.0;
   std::string finding;  ///< the finding on modes of motion; may be empty
   Bank bank;
   std::vector<Channel> measurements;     ///< n_y
-  std::vector<Channel> states;           ///< n, with lagged ones
-  std::vector<Channel> inputs;           ///< m, with lagged ones
-  std::vector<Channel> recorded_inputs;  ///< u as recorded
-  double input_lag_s = 0.0;              ///< inputs are shifted by this much against their stamps
+  std::vector<Channel> states;           ///< n, including lagged states
+  std::vector<Channel> inputs;           ///< m, including lagged inputs
+  std::vector<Channel> recorded_inputs;  ///< inputs as recorded
+  double input_lag_s = 0.0;              ///< the bank uses inputs this much earlier than recorded
   std::vector<std::string> mode_names;   ///< K
-  std::vector<double> use;               ///< K, mean probability on judged runs; empty of competitors
-  std::vector<ModeFamily> families;      ///< of the modes, most used first; of competitors by share of windows
-  std::vector<std::string> parameter_names, parameter_units;  ///< p, of the modes' theta
+  std::vector<double> use;               ///< K, mean probability on judged runs; empty for competitors
+  std::vector<ModeFamily> families;      ///< families of the modes, most used first; for competitors by share of windows
+  std::vector<std::string> parameter_names, parameter_units;  ///< p, names of the entries of a mode's theta
   std::vector<ModeErrors> errors;                             ///< K
-  std::vector<bool> unidentifiable;  ///< p, whether training runs leave the parameter unidentifiable; or empty
+  std::vector<bool> unidentifiable;  ///< p, whether the training runs leave the parameter unidentifiable; may be empty
 
   const LinearStructure& structure() const { return bank.structure; }
   Eigen::MatrixXd A(Eigen::Index mode) const { return bank.modes[static_cast<std::size_t>(mode)].model.full_form(); }
@@ -53,19 +53,19 @@ struct ExportedBank {
   std::vector<std::string> remarks() const;
 };
 
-/// Remark beside an unreliable value; empty for a reliable one.
+/// Remark on an unreliable value; empty for a reliable one.
 std::string doubt_about(double value, double standard_error);
 /// The same for an entry of a mode's theta.
 std::string doubt_about_parameter(const ExportedBank& bank, Eigen::Index mode, Eigen::Index parameter);
 
-/// The equation in every form, as one line of ASCII.
+/// The model's equation for all forms, as one line of ASCII.
 inline constexpr const char* exported_equation =
     "x[k+1] = A x[k] + B u[k] + c + w, w ~ N(0, Q); y[k] = C x[k] + v, v ~ N(0, R)";
 /// Meaning of the rows of T.
 inline constexpr const char* transition_meaning =
     "T[i][j] = P(mode j next | mode i now): a row is the mode that is left, and sums to one";
 
-/// The filter's bank with everything to be exported. Throws DataError when the archive has no such filter.
+/// The filter's bank with all data for an export. Throws DataError if the archive has no such filter.
 ExportedBank exported_bank(const Archive& archive, const OpenArchive& file, const std::string& filter,
                            const FilterOptions& options, double input_lag_s);
 

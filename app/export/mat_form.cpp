@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// A MAT-file that is being written. Variables are handed over to the file; matio frees what is in them.
+/// A MAT-file for writing. The file takes over the variables; matio frees their data.
 class MatFile {
  public:
   explicit MatFile(const std::filesystem::path& file)
@@ -49,8 +49,8 @@ class MatFile {
   [[noreturn]] void fail(const std::string& what) const {
     throw DataError(fmt::format("{}: {}", file_.string(), what));
   }
-  /// An extent counts characters. SciPy decodes UTF-16 to one character per unit. Octave reads as many bytes of UTF-8
-  /// as the extent. Only UTF-16 without surrogates gives both the same text.
+  /// An extent counts characters. SciPy decodes UTF-16 to one character per unit, Octave reads as many bytes of UTF-8
+  /// as the extent. Both read the same text only from UTF-16 without surrogates.
   static matvar_t* text_variable(const char* name, const std::string& value) {
     std::u16string text = basic_utf16(value);
     std::array<std::size_t, 2> shape{text.empty() ? 0u : 1u, text.size()};
@@ -64,7 +64,7 @@ class MatFile {
   }
 };
 
-/// Modes side by side as MATLAB's third dimension.
+/// The modes along MATLAB's third dimension.
 template <class Get>
 void per_mode_numbers(MatFile& file, const char* name, const ExportedBank& bank, Get get) {
   std::vector<double> values;
@@ -88,7 +88,7 @@ void add_channels(MatFile& file, const std::string& kind, const std::vector<Chan
   file.texts((kind + "_units").c_str(), units);
 }
 
-/// Which family each mode belongs to, counted from one as MATLAB does.
+/// The family of each mode, counted from one as in MATLAB.
 void add_families(MatFile& file, const ExportedBank& exported) {
   MatrixXd family = MatrixXd::Zero(1, exported.bank.mode_count());
   std::vector<std::string> titles;
@@ -100,8 +100,8 @@ void add_families(MatFile& file, const ExportedBank& exported) {
   file.matrix("mode_family", family);
 }
 
-/// Lines that make a model of Control System Toolbox, or of Octave's control package, of mode k. c enters by an input
-/// that is always one.
+/// MATLAB code that makes a model of mode k, for Control System Toolbox or Octave's control package. c enters as the
+/// gain of a constant input 1.
 std::string ss_lines(const ExportedBank& exported) {
   const auto list = [](const std::vector<Channel>& channels) {
     std::vector<std::string> names;

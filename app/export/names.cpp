@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// Keywords of C up to C23 and of C++: a header may be included from either.
+/// Keywords of C up to C23 and of C++, because both may include a header.
 constexpr const char* c_words =
     "alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto bitand bitor bool break case "
     "catch "
@@ -63,7 +63,7 @@ std::string comment_text(std::string_view text) {
   std::string result = nlohmann::json::parse(ascii_json(text)).get<std::string>();
   for (char& c : result)
     if (is_control(c) || c == '\\') c = ' ';
-  // Line breaks beyond ASCII: NEL, LINE SEPARATOR and PARAGRAPH SEPARATOR, which YAML and other formats accept.
+  // Line breaks outside ASCII: NEL, LINE SEPARATOR and PARAGRAPH SEPARATOR. YAML and other formats accept these.
   for (const char* breaks : {"\xc2\x85", "\xe2\x80\xa8", "\xe2\x80\xa9"})
     boost::algorithm::replace_all(result, breaks, " ");
   boost::algorithm::replace_all(result, "*/", "* /");
@@ -74,7 +74,7 @@ std::string comment_text(std::string_view text) {
 
 std::string quoted_scalar(std::string_view text) {
   std::string result = ascii_json(text);
-  boost::algorithm::replace_all(result, "\x7f", "\\u007f");  // YAML readers reject it
+  boost::algorithm::replace_all(result, "\x7f", "\\u007f");  // YAML readers reject this character
   return result;
 }
 

@@ -39,7 +39,7 @@ OrderedJson regime_json(const ExportedBank& exported, Eigen::Index k) {
   return regime;
 }
 
-/// Thresholds of the normalised innovation squared, by the number of signals in a sample.
+/// Thresholds of the normalised innovation squared, for each number of signals in a sample.
 OrderedJson gates_json(Eigen::Index signals) {
   OrderedJson gates = OrderedJson::array();
   for (Eigen::Index n = 1; n <= signals; ++n)

@@ -37,7 +37,7 @@ std::string places(const std::string& comment, const std::string& prefix, const 
   return enumeration(comment, prefix, identifiers(names, Language::c), remarks);
 }
 
-/// Modes by name. A mode without a name has its number.
+/// One enumerator per mode. A mode without a name is called by its number.
 std::string modes(const ExportedBank& exported, const std::string& prefix) {
   std::vector<std::string> names = identifiers(exported.mode_names, Language::c);
   for (std::size_t k = 0; k < names.size(); ++k)
@@ -49,7 +49,7 @@ std::string modes(const ExportedBank& exported, const std::string& prefix) {
   return enumeration("Places in mode_probability", prefix, names, remarks);
 }
 
-/// A double with all digits. A whole number keeps its point.
+/// A double with all digits. A whole number ends in ".0".
 std::string number(double value) {
   std::string text = fmt::format("{:.17g}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
@@ -74,7 +74,7 @@ std::string constant(const std::string& name, const std::string& value, const st
   return fmt::format("/* {} */\nstatic const double {} = {};\n\n", comment, name, value);
 }
 
-/// Text for a comment; unknown errors are named as such.
+/// Standard errors as text for a comment; unknown errors are named.
 std::string errors_text(const MatrixXd& errors) {
   if (errors.size() == 0 || errors.array().isNaN().all()) return "not known";
   std::string text;
@@ -84,7 +84,7 @@ std::string errors_text(const MatrixXd& errors) {
   return text;
 }
 
-/// One value per mode (as text), below a comment with the standard errors of its entries.
+/// One value per mode (as text), below a comment with the values' standard errors.
 template <class Value, class Errors>
 std::string per_mode(const ExportedBank& bank, const std::string& name, const std::string& comment, Value value,
                      Errors errors) {

@@ -4,10 +4,10 @@
 
 #include "app/export/exported_bank.hpp"
 
-/// A bank as the tables that filter.h and filter.c include.
+/// The tables of a bank that filter.h and filter.c include.
 namespace modebank::app::c_form {
 
-/// bank_sizes.h: sizes, and enumerations of signals and modes. `prefix`: start of the enumerators, in capitals.
+/// bank_sizes.h: sizes, and enumerations of signals and modes. `prefix`: first word of the enumerators, in capitals.
 std::string bank_sizes(const ExportedBank& bank, const std::string& prefix);
 /// bank_numbers.h.
 std::string bank_numbers(const ExportedBank& bank);

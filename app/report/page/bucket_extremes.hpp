@@ -4,8 +4,8 @@
 
 namespace modebank {
 
-/// Smallest and largest of every `bucket` consecutive values (the last bucket may have fewer), so that a drawing shows
-/// every extreme of the series. NaN is ignored; a bucket with nothing else is NaN.
+/// Smallest and largest value of every `bucket` consecutive values, so that a drawing shows every extreme of the
+/// series. The last bucket may have fewer values. NaN is ignored; a bucket of only NaN gives NaN.
 struct BucketExtremes {
   Eigen::VectorXd low, high;  ///< ceil(N / bucket)
 };

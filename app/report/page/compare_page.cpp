@@ -23,7 +23,8 @@ namespace {
 using nlohmann::json;
 using Runs = std::vector<ComparedRun>;
 
-/// Keys whose values differ, in the table's order; the value of a key that a run's version lacks is empty.
+/// Keys whose values differ between the runs, in the table's order. The value is empty if a run's version lacks the
+/// key.
 json configuration_differences(const Runs& runs) {
   std::vector<std::map<std::string, std::string>> resolved;
   for (const ComparedRun& run : runs) resolved.push_back(resolved_values(run.archive.config));
@@ -107,7 +108,7 @@ std::string gain_sentence(const PairedGain& gain, const std::string& first, cons
       first, other, ahead, size, gain.margin);
 }
 
-/// Whether the bank of run k predicts better than the first's, with the reason.
+/// Whether the bank of run k predicts better than that of the first run, with the reason.
 json calibration_of(const Runs& runs, std::size_t k) {
   const std::string letter(1, static_cast<char>('A' + k));
   const ArchiveGain found = gain_between(runs[k].archive, runs[0].archive);
@@ -136,8 +137,9 @@ json z_cells(const MatchedMode& pair) {
   return cells;
 }
 
-/// Families of both banks that share time: each of the first's with that of the other it shares most with, and each of
-/// the other's that none has. Empty where no run is in both.
+/// Pairs of families from both banks by their common time. Each family of the first bank is paired with the family of
+/// the other bank with which it shares most time. Then follow families of the other bank that are in no pair. Empty if
+/// the archives have no run in common.
 json families_side_by_side(const Archive& first, const Archive& other) {
   const std::vector<ModeFamily> one = mode_families(first), two = mode_families(other);
   const Eigen::MatrixXd shared = time_in_common(first, other, family_of_modes(one), family_of_modes(two));
@@ -168,7 +170,7 @@ json families_side_by_side(const Archive& first, const Archive& other) {
   return pairs;
 }
 
-/// The modes of run k beside the first's.
+/// The modes of run k beside those of the first run.
 json match_of(const Runs& runs, std::size_t k) {
   const auto &first = runs[0].archive.bank, &other = runs[k].archive.bank;
   if (!first || !other)
@@ -210,7 +212,7 @@ json run_json(const ComparedRun& run, PageArrays& arrays, std::size_t room) {
 
 Page compare_page(const std::vector<ComparedRun>& runs, const ReportConfig& options) {
   constexpr double bytes_per_MB = 1e6,
-                   share_of_signals = 0.8;  // share of the page for the signals of all runs together
+                   share_of_signals = 0.8;  // share of the page's size for the signals of all runs
   const auto room =
       static_cast<std::size_t>(share_of_signals / static_cast<double>(runs.size()) * options.size_mb * bytes_per_MB);
   Page page;

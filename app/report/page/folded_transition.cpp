@@ -5,8 +5,8 @@ namespace modebank {
 Eigen::MatrixXd folded_transition(const Eigen::MatrixXd& transition,
                                   const std::vector<std::vector<Eigen::Index>>& groups, const Eigen::VectorXd& use) {
   const auto shown = static_cast<Eigen::Index>(groups.size()), K = transition.rows();
-  // into: K x groups, which modes make up each group, the last one what no other has; share: of its use within the
-  // group.
+  // into: K x groups, 1 if the mode belongs to the group; the last column has the modes without a group. share: the
+  // mode's share of the group's use.
   Eigen::MatrixXd into = Eigen::MatrixXd::Zero(K, shown + 1);
   for (Eigen::Index g = 0; g < shown; ++g)
     for (const Eigen::Index k : groups[static_cast<std::size_t>(g)]) into(k, g) = 1.0;

@@ -5,9 +5,9 @@
 
 namespace modebank {
 
-/// The transition matrix between groups of modes, and of all modes that are in none taken as one group, which comes
-/// last (where there are any): into a group goes the sum of its modes' probabilities, out of it the mean of theirs, by
-/// `use`.
+/// Transition matrix between groups of modes. Modes without a group, if any, form one last group. The probability of
+/// entering a group is the sum over its modes. The probability of leaving a group is the mean over its modes, weighted
+/// by `use`.
 Eigen::MatrixXd folded_transition(const Eigen::MatrixXd& transition,
                                   const std::vector<std::vector<Eigen::Index>>& groups, const Eigen::VectorXd& use);
 

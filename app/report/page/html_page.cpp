@@ -19,8 +19,8 @@ std::string escaped_html(std::string text) {
 
 namespace {
 
-/// JSON within a script element: no "<" in it can end or comment out the element. Bytes that are not UTF-8 are
-/// replaced.
+/// JSON for a script element. "<" is escaped, so that no text ends or comments out the element. Bytes that are not
+/// UTF-8 are replaced.
 std::string json_in_script(const nlohmann::json& data) {
   std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   boost::replace_all(text, "<", "\\u003c");
@@ -35,7 +35,7 @@ void append_arrays(const PageArrays& arrays, std::string& html) {
   }
 }
 
-/// Hash source of a policy: the element's hash in base64, converted from hexadecimal digits.
+/// An element's hash as a source in a policy: base64, converted from hexadecimal digits.
 std::string hash_source(std::string_view hex) {
   std::string bytes;
   for (std::size_t i = 0; i < hex.size(); i += 2)

@@ -9,10 +9,10 @@
 
 namespace modebank::app::report {
 
-/// One page, without the parts common to all (web/page.html, page.css).
+/// Content of one page, without the parts that all pages share (web/page.html, page.css).
 struct Page {
   std::string title;
-  nlohmann::json data;      ///< input of the script; its texts are always displayed as text
+  nlohmann::json data;      ///< input of the script; the script shows its texts only as text, never as markup
   PageArrays arrays;        ///< the large arrays of the data
   std::string_view script;  ///< an asset of assets.hpp
 };
@@ -20,11 +20,11 @@ struct Page {
 /// Escapes text for use between tags.
 std::string escaped_html(std::string text);
 
-/// Permissions of a page with one of these scripts (Content Security Policy): its own scripts and style, identified by
-/// hashes. It must neither fetch nor send anything.
+/// Content Security Policy of a page with one of these scripts. It allows only the page's own scripts and style,
+/// identified by hashes. Any access to the network is forbidden.
 std::string page_policy(const std::vector<std::string_view>& scripts);
 
-/// The self-contained HTML file, which refers to nothing outside.
+/// The HTML file. It is self-contained and loads nothing from outside.
 std::string html_of(const Page& page);
 
 }  // namespace modebank::app::report

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-/// A mode's parameters as on the page, with their errors; an error of 0 is unknown.
+/// A mode's parameters as on the page, with their standard errors. A standard error of 0 means unknown.
 struct Estimates {
   Eigen::VectorXd values, errors;
 };
@@ -25,7 +25,7 @@ Estimates estimates_of(const Bank& bank, Index k) {
   const Eigen::VectorXd& stated = motion ? mode.motion_standard_error : mode.standard_error;
   estimates.errors = Eigen::VectorXd::Zero(estimates.values.size());
   const bool some =
-      std::any_of(stated.begin(), stated.end(), usable);  // parameters without an error are then unidentifiable
+      std::any_of(stated.begin(), stated.end(), usable);  // then a parameter without a standard error is unidentifiable
   for (Index i = 0; i < estimates.errors.size(); ++i) {
     if (i < stated.size() && usable(stated(i)))
       estimates.errors(i) = stated(i);
@@ -69,7 +69,7 @@ Eigen::MatrixXd nearness(const Bank& first, const Bank& second) {
   return near;
 }
 
-/// Whether neither of two modes shares more time with a third mode of the other bank.
+/// Whether two modes share time, and at least one of them shares no more time with any other mode.
 bool go_together(const Eigen::MatrixXd& shared, Index a, Index b) {
   const double time = shared(a, b);
   return time > 0.0 && (time == shared.row(a).maxCoeff() || time == shared.col(b).maxCoeff());
@@ -90,7 +90,7 @@ ModeMatch match_modes(const Bank& first, const Bank& second, const Eigen::Matrix
   const bool comparable = match.difference.empty();
   if (!comparable && !match.by_time) return match;
   const Index K = first.mode_count(), L = second.mode_count(), most = std::max(K, L);
-  // Padding rows and columns have the same merit for every mode.
+  // Padding rows and columns have the same merit for every mode, so they affect no match.
   Eigen::MatrixXd merit = Eigen::MatrixXd::Zero(most, most);
   merit.topLeftCorner(K, L) = match.by_time ? shared : nearness(first, second);
   const std::vector<Index> column = best_assignment(merit);

@@ -13,9 +13,9 @@ namespace modebank::app::report {
 struct MatchedMode {
   Eigen::Index first = -1, second = -1;  ///< -1: none
   Eigen::VectorXd
-      z;  ///< per parameter: difference over the root of the sum of squared standard errors; empty: not comparable
+      z;  ///< per parameter: difference divided by the root of the sum of squared standard errors; empty: not comparable
   double distance = 0.0;                                     ///< root mean square of z
-  double shared = std::numeric_limits<double>::quiet_NaN();  ///< share of their time in common, 0 to 1
+  double shared = std::numeric_limits<double>::quiet_NaN();  ///< share of time in common, 0 to 1
 
   /// Whether all parameters agree jointly at 95 % (Bonferroni).
   bool agree() const;
@@ -27,13 +27,13 @@ struct ModeMatch {
   std::string difference;          ///< reason why parameters cannot be compared; empty if they can
 };
 
-/// Matches modes one to one such that the sum of `shared` over the pairs is largest. `shared`: K x L, the time in
-/// common of mode a of the first and mode b of the second bank (time_in_common). Two modes are not paired if each has
-/// more time in common with another one.
+/// Matches modes one to one so that the sum of `shared` over all pairs is largest. `shared` (K x L) is the common time
+/// of mode a of the first bank and mode b of the second (time_in_common). Two modes stay unmatched if each has more
+/// time in common with another mode.
 ///
-/// If `shared` is empty, the parameters are used: the sum of log(1 + distance^2) is smallest, so that near pairs count
-/// more than far ones. A missing standard error is replaced by the standard deviation over the mode's windows; without
-/// that the parameter is ignored.
+/// If `shared` is empty, the parameters decide: the sum of log(1 + distance^2) is smallest, so that near pairs count more
+/// than far ones. A missing standard error is replaced by the standard deviation over the mode's windows. Without this
+/// deviation the parameter is ignored.
 ModeMatch match_modes(const Bank& first, const Bank& second, const Eigen::MatrixXd& shared = {});
 
 }  // namespace modebank::app::report

@@ -4,7 +4,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-/// Number formats of the report. Each number is formatted here, once, and passed to the page beside its exact value.
+/// Number formats of the report. Each number is formatted only here, and goes to the page together with its exact
+/// value.
 namespace modebank::app::report {
 
 /// Four significant digits; a dash for an unknown value.
@@ -16,7 +17,7 @@ std::string percent_text(double share);
 /// 1234567 as "1 234 567".
 std::string count_text(long long count);
 
-/// {"t": text, "v": exact value}; the page displays t, and sorts, filters and tests by v.
+/// {"t": text, "v": exact value}. The page shows t; it sorts, filters and tests by v.
 nlohmann::json number(double value);
 nlohmann::json number(double value, const std::string& text);
 /// Several values in one cell, e.g. an RMSE per state; "v" is the list of values.

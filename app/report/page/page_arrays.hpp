@@ -11,11 +11,12 @@ namespace modebank::app::report {
 /// Base64 by RFC 4648, section 4.
 std::string base64(const std::string& bytes);
 
-/// Arrays that a page draws. Each is split into byte planes (all first bytes, all second bytes, ..., since neighbours
-/// there are alike), deflated and stored in base64. The page unpacks an array when it first needs it.
+/// Arrays that a page draws. An array is split into byte planes: all first bytes, all second bytes, and so on, because
+/// neighbours in a plane are alike. Then it is deflated and stored in base64. The page unpacks an array when it first
+/// needs it.
 class PageArrays {
  public:
-  /// Each returns a reference for the page: {"id", "type": "f4" | "f8" | "i4" | "share", "size"}.
+  /// Adds an array and returns a reference for the page: {"id", "type": "f4" | "f8" | "i4" | "share", "size"}.
   nlohmann::json add(const Eigen::Ref<const Eigen::VectorXd>& values);        ///< as float32, for drawing
   nlohmann::json add_exact(const Eigen::Ref<const Eigen::VectorXd>& values);  ///< as float64, for times
   /// Shares from 0 to 1 with an error of 1.5e-5 in two bytes, to draw probabilities.

@@ -29,7 +29,7 @@ bool same_samples(const Trajectory& a, const Trajectory& b) {
   return a.run == b.run && a.role == b.role && a.time_s == b.time_s && a.state == b.state;
 }
 
-/// Indices of the judged runs of one archive, each with that of the same run in the other. Empty unless both have runs
+/// Pairs of judged runs that are the same in both archives, as indices into each. Empty unless both archives have runs
 /// and a scored bank.
 std::vector<std::pair<std::size_t, std::size_t>> common_runs(const Archive& one, const Archive& other) {
   std::vector<std::pair<std::size_t, std::size_t>> common;
@@ -51,7 +51,7 @@ Eigen::MatrixXd mode_probability(const FilterEvaluation& evaluation, std::size_t
   return probability;
 }
 
-/// Sums over the modes of each group; as it is without groups.
+/// Sums the modes' probabilities in each group. Without groups, the probabilities are unchanged.
 Eigen::MatrixXd grouped(const Eigen::MatrixXd& probability, const std::vector<Index>& groups) {
   if (groups.empty() || std::ssize(groups) != probability.rows()) return probability;
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(1 + *std::max_element(groups.begin(), groups.end()), probability.cols());

@@ -24,7 +24,7 @@ ResidualTests pool_autocorrelations(const std::vector<ResidualTests>& runs) {
     weight.leftCols(run.autocorrelation.cols()).array() += samples;
     pooled.samples += run.samples;
     band_weight += samples;
-    band = run.autocorrelation_band * std::sqrt(samples);  // the normal quantile, equal for all runs
+    band = run.autocorrelation_band * std::sqrt(samples);  // the normal quantile, which all runs share
   }
   pooled.autocorrelation = (weight.array() > 0.0).select(sum.cwiseQuotient(weight), not_a_number);
   pooled.autocorrelation_band = band_weight > 0.0 ? band / std::sqrt(band_weight) : not_a_number;

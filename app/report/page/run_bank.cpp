@@ -18,14 +18,14 @@ namespace {
 
 using nlohmann::json;
 
-/// All time constants in one cell, the slowest first, by which the table sorts.
+/// All time constants in one cell, the slowest first. The table sorts by the first.
 json decays_cell(const std::vector<Decay>& decays) {
   std::string text;
   for (const Decay& decay : decays) text += (text.empty() ? "" : "; ") + decay_words(decay, "±");
   return number(decays.empty() ? 0.0 : decays.front().time_constant_s, text);
 }
 
-/// `open`: marks values that the training runs leave unidentifiable; empty: none.
+/// `open`: marks unidentifiable values; empty if there are none.
 json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors,
                const std::vector<bool>& unidentifiable = {}) {
   json cells = json::array();
@@ -108,7 +108,7 @@ json transition_of(const Bank& bank) {
   return rows;
 }
 
-/// The weights of state-dependent transitions; null without them.
+/// The weights of state-dependent transition probabilities; null if T is constant.
 json switch_weights_of(const Bank& bank) {
   const TransitionLogit& logit = bank.transition_logit;
   if (logit.empty()) return nullptr;
@@ -136,7 +136,7 @@ json screened_of(const Bank& bank) {
   return list;
 }
 
-/// Cost of a limit on the number of modes, on the runs of a role; null without a limit.
+/// Loss of log score from a limit on the number of modes, on the runs of a role; null without a limit.
 json merging_of(const Archive& archive, Role role) {
   for (const MergingCost& cost : archive.merging)
     if (cost.role == role)

@@ -7,19 +7,19 @@
 #include "app/text/mode_families.hpp"
 #include "io/archive/archive.hpp"
 
-/// The families of a bank's modes for the page, and what it shows by family.
+/// The families of a bank's modes on the page, and the parts of the page that show families.
 namespace modebank::app::report {
 
-/// Per family its title, modes, use, stay, time constant and gains.
+/// Title, modes, use, stay, time constant and gains of each family.
 nlohmann::json families_of(const Archive& archive, const std::vector<ModeFamily>& families);
 
-/// How many families stand one by one; the rest are others.
+/// Number of families with a row of their own; all others share one row.
 Index told_families(const std::vector<ModeFamily>& families);
 
-/// Between the families that are told and all others as one, which come last.
+/// Transition matrix between the families with a row of their own and all others, which form one last family.
 nlohmann::json folded_transition_of(const Bank& bank, const std::vector<ModeFamily>& families);
 
-/// Which families the bank took each label's samples for; null without labels.
+/// For each label, the families to which the bank assigns its samples; null without labels.
 nlohmann::json label_section(const Archive& archive, const std::vector<ModeFamily>& families);
 
 }  // namespace modebank::app::report

@@ -21,10 +21,10 @@ using nlohmann::json;
 
 constexpr Index line_points = 201, map_points = 61;  // number of points along an axis
 constexpr Index most_samples = 3000;                 // number of samples that are drawn
-/// share of the first feature's effect on the log odds; a smaller second effect is not drawn
+/// share of the first feature's effect on the log odds; a second feature with a smaller effect is not drawn
 constexpr double least_second_effect = 0.05;
 
-/// States and inputs at the start of steps, and the most probable mode after each.
+/// States and inputs at the start of each step, and the most probable mode after the step.
 struct SeenSamples {
   std::vector<Eigen::VectorXd> z;
   std::vector<Index> mode;
@@ -32,7 +32,7 @@ struct SeenSamples {
 
 using Visit = std::function<void(const Eigen::VectorXd& z, Index mode)>;
 
-/// The lagged state at a sample from the filter's states; before the filter's start from the measured ones.
+/// The lagged state at a sample: from the filter's states, and before the filter's start from measurements.
 Eigen::VectorXd lagged_state(const LinearStructure& structure, const Trajectory& run, const RunEvaluation& said,
                              Index sample) {
   Eigen::VectorXd state(structure.dimension());
@@ -46,7 +46,7 @@ Eigen::VectorXd lagged_state(const LinearStructure& structure, const Trajectory&
 
 void visit_run(const Bank& bank, const Trajectory& run, const RunEvaluation& said, const Visit& visit) {
   Eigen::VectorXd z(bank.transition_logit.weights.cols());
-  Index known = 0;  // number of earlier samples in steps of one period
+  Index known = 0;  // number of earlier samples, if steps have the model's period
   RunSamples(bank, run).for_each([&](const SampleFeed& feed, Index k, bool starts) {
     if (starts) {
       known = bank.structure.state_lags;
@@ -91,7 +91,8 @@ Eigen::VectorXd values_of(const SeenSamples& seen, Index feature) {
   return values;
 }
 
-/// For each feature the largest change of the log odds of two modes over one standard deviation.
+/// For each feature, the largest change in the log odds of two modes when the feature changes by one standard
+/// deviation.
 Eigen::VectorXd effects(const TransitionLogit& logit, const SeenSamples& seen) {
   Eigen::VectorXd effect(logit.weights.cols());
   for (Index a = 0; a < effect.size(); ++a) {
@@ -102,7 +103,7 @@ Eigen::VectorXd effects(const TransitionLogit& logit, const SeenSamples& seen) {
   return effect;
 }
 
-/// One or two features, the one with the larger effect first.
+/// One or two features, with the larger effect first.
 std::vector<Index> drawn_features(const Eigen::VectorXd& effect) {
   std::vector<Index> order(static_cast<std::size_t>(effect.size()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -144,7 +145,7 @@ json lines(const Bank& bank, Index feature, const Eigen::VectorXd& along) {
   return rows;
 }
 
-/// The mode with the largest share over two features, row by row upwards, and this share.
+/// The mode with the largest share over two features, and this share; row by row from the bottom.
 void add_map(const Bank& bank, const std::vector<Index>& feature, const Eigen::VectorXd& x, const Eigen::VectorXd& y,
              json& to) {
   json modes = json::array(), shares = json::array();

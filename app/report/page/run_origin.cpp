@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Keys with other values than their defaults, in the table's order.
+/// Keys whose values are not the defaults, in the table's order.
 json changed_settings(const std::string& config) {
   const Config defaults{};
   const std::map<std::string, std::string> values = resolved_values(config);

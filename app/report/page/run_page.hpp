@@ -8,8 +8,8 @@
 
 namespace modebank::app::report {
 
-/// The page of one archive: configuration, verdict, data, local models, selection, bank, filter. `file`: its name, for
-/// the title. The page names parts that the archive lacks.
+/// The page of one archive: configuration, verdict, data, local models, selection, bank, filter. `file`: the archive's
+/// name, for the title. The page states which parts the archive does not have.
 Page run_page(const Archive& archive, const std::string& file, const ReportConfig& options);
 
 }  // namespace modebank::app::report

@@ -14,8 +14,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index most_runs = 6, most_buckets = 1200;  // limits for a picture as wide as a screen
-constexpr double steps = 2000.0;                     // resolution of heights, finer than a picture
+constexpr Index most_runs = 6, most_buckets = 1200;  // enough for a picture as wide as a screen
+constexpr double steps = 2000.0;                     // resolution of heights, finer than the pixels of the picture
 
 /// The most frequent value from index `first` on, -1 included.
 int most_frequent(const Eigen::VectorXi& values, Index first, Index count, std::size_t names) {
@@ -32,7 +32,7 @@ json labels_over(const Eigen::VectorXi& values, Index bucket, std::size_t names)
   return list;
 }
 
-/// The most probable mode in each bucket; -1 where unknown.
+/// The most probable mode in each bucket; -1 if unknown.
 json modes_over(const Eigen::MatrixXd& probability, Index bucket) {
   Eigen::MatrixXd means(probability.rows(), (probability.cols() + bucket - 1) / bucket);
   for (Index k = 0; k < means.rows(); ++k) means.row(k) = bucket_means(probability.row(k).transpose(), bucket);
@@ -67,7 +67,7 @@ json heights(const Eigen::VectorXd& values, const Range& range) {
   return list;
 }
 
-/// Judged runs, at most as many as a picture can show.
+/// Judged runs, at most the number that a picture can show.
 std::vector<std::size_t> pictured_runs(const Recording& recording, Role role) {
   std::vector<std::size_t> runs;
   for (std::size_t i = 0; i < recording.runs.size() && std::ssize(runs) < most_runs; ++i)

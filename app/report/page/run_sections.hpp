@@ -14,13 +14,13 @@ namespace modebank::app::report {
 inline constexpr double drawn_level = 0.95;
 
 nlohmann::json origin_section(const Archive& archive);
-/// Content of the first screen, in the same words and numbers (screen_facts.hpp), and its picture.
+/// Content of the first screen, in the same words and numbers (screen_facts.hpp), with a picture.
 nlohmann::json verdict_section(const Archive& archive);
 /// A small picture of the judged runs: the first state in the colour of the most probable mode, and known labels. It is
-/// drawn before anything else is read.
+/// drawn before the rest of the page is read.
 nlohmann::json picture_of(const Archive& archive);
 
-/// Number of samples per bucket in the finest drawing of a run's signals: for data and bank, and for the other filters.
+/// Samples per bucket in the finest drawing of a run's signals: for data and bank, and for all other filters.
 struct Detail {
   Index finest = 1, finest_others = 1;
 };
@@ -28,9 +28,9 @@ struct Detail {
 std::vector<std::size_t> drawn_runs(const Recording& recording);
 /// Signals of these runs over time, with each filter's evaluation.
 nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const Detail& detail);
-/// Largest possible size of these in the page, without outliers [bytes].
+/// Largest possible size of these signals in the page, without outliers [bytes].
 std::size_t most_signal_bytes(const Archive& archive, const Detail& detail);
-/// The same in the finest detail that fits into `most` bytes.
+/// The same signals, in the finest detail that fits into `most` bytes.
 nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes);
 
 nlohmann::json windows_section(const Archive& archive, PageArrays& arrays);

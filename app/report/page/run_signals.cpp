@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Level of an outlier: a true filter has one sample in a thousand as far out.
+/// level of an outlier: if the model is right, one sample in a thousand lies as far out
 constexpr double outlier_level = 0.999;
 
 json rows_of(PageArrays& arrays, const Eigen::MatrixXd& rows, Index finest, Bucket kind = Bucket::extremes) {
@@ -25,7 +25,7 @@ json rows_of(PageArrays& arrays, const Eigen::MatrixXd& rows, Index finest, Buck
   return list;
 }
 
-/// Times and values of the outliers; if there are very many, only the first.
+/// Times and values of the outliers; only the first ones if there are too many.
 json outliers_of(PageArrays& arrays, const RunEvaluation& evaluation, const Trajectory& run) {
   constexpr std::size_t most = 20000;
   std::vector<Index> samples = outlying_samples(evaluation, outlier_level);
@@ -43,7 +43,8 @@ json outliers_of(PageArrays& arrays, const RunEvaluation& evaluation, const Traj
 json filter_signals(PageArrays& arrays, const Bank& bank, const FilterEvaluation& evaluation, std::size_t i,
                     const Trajectory& run, Index finest) {
   json signals;
-  // One filter after the other, because evaluations of long runs may be in a file and do not fit into memory together.
+  // Evaluations of long runs may be in a file and too large for memory together. So filters are read one after the
+  // other.
   evaluation.with_run(i, {"prediction", "innovation_covariance"}, [&](const RunEvaluation& said) {
     const PredictionBand band = prediction_band(bank, said, drawn_level);
     signals["prediction"] = rows_of(arrays, band.center, finest);
@@ -136,7 +137,8 @@ std::size_t most_run_bytes(const Archive& archive, std::size_t i, const Detail& 
   return bytes;
 }
 
-/// A note on runs and samples that are not drawn one by one; empty if all are.
+/// A note on runs that are left out and samples that are summarised in the plots. Empty if every run and sample is
+/// drawn.
 std::string detail_note(const Detail& detail, std::size_t drawn, std::size_t runs) {
   std::string text;
   if (drawn < runs)
@@ -169,7 +171,7 @@ std::vector<std::size_t> drawn_runs(const Recording& recording) {
 
 namespace {
 
-/// Nullopt if the arrays exceed this size.
+/// Nullopt if the arrays are larger than this size.
 std::optional<json> runs_within(const Archive& archive, PageArrays& arrays, const Detail& detail, std::size_t most) {
   json runs = json::array(), names = json::array();
   const std::vector<std::size_t> drawn = drawn_runs(*archive.recording);
@@ -205,7 +207,7 @@ nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const De
 
 nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes) {
   constexpr Index coarser_others = 16, coarsest = Index{1} << 40;
-  // Even noise does not compress below this share, so a smaller budget need not be tried.
+  // Even noise compresses at least to this share, so a smaller budget need not be tried.
   constexpr double least_share = 0.5;
   if (!archive.recording) return nullptr;
   for (Detail detail;; detail = {detail.finest * (detail.finest_others > 1 ? 2 : 1),

@@ -15,12 +15,12 @@ namespace {
 
 using nlohmann::json;
 
-/// More points would hide each other; then only every second, third, ... window is drawn.
+/// more points would hide each other, so only every second, third, ... window is drawn
 constexpr Index most_windows = 100'000;
-/// With more numbers of covariances windows are drawn without ellipses.
+/// if covariances need more numbers than this, no ellipses are drawn
 constexpr Index most_covariances = 2'000'000;
 
-/// Names for people: parameters by their labels, noise in words, one-lag features with a note.
+/// Names on the page: labels for parameters, words for noise, a note for one-lag features.
 std::vector<std::string> with_labels(std::vector<std::string> features, const Archive& archive) {
   const std::string noise = "log_noise_variance_";
   for (std::string& feature : features)
@@ -41,7 +41,7 @@ json axes_of(const std::vector<std::string>& names, const Unit& units) {
   return axes;
 }
 
-/// The first axes: the paper's A, B1, B2; with lags the first of each.
+/// The first axes: the paper's A, B1, B2; with several lags the first lag of each.
 std::vector<Index> default_axes(const WindowFits& fits, bool of_parameters, Index axes) {
   const Index inputs = fits.structure.dimension();
   std::vector<Index> chosen{0, 1, 2};
@@ -50,7 +50,7 @@ std::vector<Index> default_axes(const WindowFits& fits, bool of_parameters, Inde
   return chosen;
 }
 
-/// The lower triangle of each drawn window's covariance, entry by entry, row by row.
+/// The lower triangle of the covariance of each drawn window, row by row.
 json covariances_of(PageArrays& arrays, const WindowFits& fits, const std::vector<Index>& drawn) {
   const Index p = fits.parameter_count(), count = static_cast<Index>(drawn.size());
   if (count * p * (p + 1) / 2 > most_covariances) return nullptr;
@@ -110,7 +110,7 @@ json modes_of_windows(PageArrays& arrays, const WindowFits& fits, const FilterEv
   return arrays.add(std::vector<std::int32_t>(modes.begin(), modes.end()));
 }
 
-/// The windows that are drawn, with the index of each one's point.
+/// The windows that are drawn, each with the index of its point.
 struct Drawn {
   Index step = 1;
   std::vector<Index> points, windows;
@@ -126,7 +126,7 @@ Drawn choose(const FeatureCloud& cloud) {
   return drawn;
 }
 
-/// Points of all windows: the clustered features, if these are not the windows' own parameters.
+/// Points of all windows, if the clustered features are not the windows' own parameters.
 FeatureCloud cloud_of(const Archive& archive) {
   FeatureCloud cloud =
       make_features(*archive.windows, FeatureSet::parameters_and_noise, WindowChoice::all, archive.recording->states);

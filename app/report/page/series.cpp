@@ -12,7 +12,7 @@ using Eigen::Index;
 using nlohmann::json;
 
 constexpr Index level_factor = 16;
-/// Smaller levels are not stored: the page computes them from the level below.
+/// levels with smaller buckets are not stored: the page computes them from the level below
 constexpr Index least_buckets = 500;
 
 /// Bucket sizes of the levels above the samples themselves.
@@ -43,7 +43,7 @@ double period_of(const Eigen::VectorXd& time_s) {
   return N > 1 ? (time_s(N - 1) - time_s(0)) / static_cast<double>(N - 1) : 1.0;
 }
 
-/// Whether all times are those of a clock with this period, up to a ten-thousandth of a period.
+/// Whether all times belong to a clock with this period, up to a ten-thousandth of a period.
 bool regular(const Eigen::VectorXd& time_s, double period) {
   constexpr double slack = 1e-4;
   for (Index k = 0; k < time_s.size(); ++k)

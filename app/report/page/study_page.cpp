@@ -22,7 +22,7 @@ const NamedColumn& varied_column(const StudyFile& file, const std::string& key) 
   return *std::find_if(file.columns.begin(), file.columns.end(), [&](const NamedColumn& c) { return c.name == key; });
 }
 
-/// Scores that the table shows at first; the others need a click.
+/// Scores that the table shows at first; a click shows the others.
 bool shown_at_first(const std::string& score) {
   for (const char* part : {"_test_log_score", "_test_rmse"})
     if (score.find(part) != std::string::npos) return true;
@@ -38,7 +38,7 @@ json goal_json(const std::string& score, int states) {
   return {{"kind", kind}, {"nominal", goal->nominal}, {"text", goal->text()}};
 }
 
-/// Number of measured states, since each has an RMSE.
+/// Number of measured states: each has an RMSE.
 int measured_states(const StudyTable& table) {
   const auto count = std::count_if(table.score_names.begin(), table.score_names.end(),
                                    [](const std::string& name) { return name.rfind("bank_train_rmse_", 0) == 0; });

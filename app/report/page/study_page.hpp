@@ -10,17 +10,18 @@
 
 namespace modebank::app::report {
 
-/// The table from which study.h5 was made. Throws as read_study_file does, and DataError when columns of a study are
+/// The table from which study.h5 was made. Throws as read_study_file does, and DataError if columns of a study are
 /// missing.
 StudyTable study_table_of(const StudyFile& file);
 
 /// Files of a trial.
 struct TrialPlace {
-  std::string page;     ///< relative to the study's page; empty: none
+  std::string page;     ///< path relative to the study's page; empty if there is no file
   std::string archive;  ///< empty: missing
 };
 
-/// Gain of one setting over another in a score, paired by repeat: repeats of the same number share their seed.
+/// Gain of one setting over another in a score. Repeats with the same number are paired, because they have the same
+/// seed.
 struct RepeatGain {
   Eigen::Index repeats = 0;
   double gain = std::numeric_limits<double>::quiet_NaN();
@@ -30,8 +31,9 @@ struct RepeatGain {
 RepeatGain repeat_gain(const StudyTable& table, const std::vector<std::size_t>& best,
                        const std::vector<std::size_t>& other, std::size_t score);
 
-/// Whether the best setting is better than the next ones: its mean gain in log score over each. There is an error by
-/// runs, if the archives of the first repeat have common runs, and one by repeats. Null for fewer than two settings.
+/// Whether the best setting is better than the next ones: its mean gain in log score over each of them. One standard
+/// error is by runs, if the archives of the first repeat have runs in common; another is by repeats. Null for fewer
+/// than two settings.
 nlohmann::json better_section(const StudyTable& table, const std::vector<TrialPlace>& places,
                               const std::string& headline);
 

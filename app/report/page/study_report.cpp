@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Finished runs with the headline score, the best first.
+/// Finished runs with the headline score, best first.
 std::vector<std::size_t> ranked_rows(const StudyTable& table) {
   const std::string headline = answer(table).headline;
   const auto found = std::find(table.score_names.begin(), table.score_names.end(), headline);

@@ -10,7 +10,7 @@
 namespace modebank::app::report {
 namespace {
 
-/// The columns between varied keys and scores, as merge writes them.
+/// The columns between varied keys and scores, as `merge` writes them.
 const NamedColumn& column(const StudyFile& file, const std::string& name) {
   for (const NamedColumn& candidate : file.columns)
     if (candidate.name == name) return candidate;

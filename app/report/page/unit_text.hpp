@@ -13,14 +13,14 @@ inline std::string with_unit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : name + " [" + unit + "]";
 }
 
-/// "effective track" for effective_track_m: a model's parameter in words, without the unit at its end.
+/// "effective track" for effective_track_m: the name of a model's parameter in words, without its unit.
 inline std::string parameter_words(std::string name, const std::string& unit) {
   if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
 
-/// The common unit of the channels, else all units separated by commas; empty when one is unknown.
+/// The common unit of the channels, else all units separated by commas. Empty if a unit is unknown.
 inline std::string common_unit(const std::vector<Channel>& channels) {
   std::string all;
   bool same = true;

@@ -8,7 +8,7 @@
 
 namespace modebank {
 
-/// A filter's most probable mode over each window, by the mean of mode_probability over its transitions; -1 where
+/// A filter's most probable mode over each window, by the mean of mode_probability over the window's transitions. -1 if
 /// unknown. `length`: transitions per window.
 Eigen::VectorXi window_modes(const std::vector<Window>& windows, Eigen::Index length,
                              const FilterEvaluation& evaluation);

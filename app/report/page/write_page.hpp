@@ -13,7 +13,7 @@
 
 namespace modebank::app::report {
 
-/// Throws ConfigurationError when `path` cannot be written, or is one of the files from which the page is made.
+/// Throws ConfigurationError if `path` cannot be written, or is one of the files from which the page is made.
 void check_page_path(const std::filesystem::path& path, const std::vector<std::filesystem::path>& sources);
 
 /// Reports written files, each as soon as it exists.
@@ -27,15 +27,15 @@ void write_page(const std::filesystem::path& path, const Page& page, Written& wr
 
 /// A study and the location of its archives.
 struct FoundStudy {
-  std::filesystem::path name;  ///< as on the command line: its folder, or study.h5
-  std::filesystem::path file;  ///< study.h5; it may not exist yet
+  std::filesystem::path name;  ///< path as on the command line: the study's folder, or study.h5
+  std::filesystem::path file;  ///< path of study.h5, which may not exist yet
   StudyFile content;
   std::size_t runs = 0, done = 0;
-  std::string digest = {};  ///< of study.h5; empty unless it has all runs of the plan
+  std::string digest = {};  ///< content of study.h5; empty unless it contains all planned runs
 };
 
-/// The study in a folder: from study.h5, or from the finished runs if the study still runs or was not merged since. In
-/// the latter case prints their number.
+/// The study in a folder, from study.h5. If the study still runs or was not merged since, from its finished runs; then
+/// prints their number.
 FoundStudy find_study(const std::filesystem::path& folder, Written& written);
 /// The study of an open study.h5.
 FoundStudy find_study(const OpenArchive& file);

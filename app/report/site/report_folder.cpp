@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Identifies program and settings, on which pages depend beside their archive.
+/// Program and settings as text: a change of this text, or of the archive, needs new pages.
 std::string site_maker(const ReportConfig& options) {
   return fmt::format("modebank {} {}, report.size_mb {}, report.runs {}", build_info::version, build_info::git_revision,
                      options.size_mb, options.runs);
 }
 
-/// The pages of a folder during one run of `report`.
+/// The pages of a folder while `report` runs.
 class Site {
  public:
   Site(fs::path folder, fs::path site, const ReportConfig& options, Written& written)
@@ -57,7 +57,7 @@ class Site {
   }
 
  private:
-  /// The index's row, after the archive's pages are made if needed.
+  /// The index's row. Makes the archive's pages first, if needed.
   json row_of(const fs::path& name) {
     json row = {{"name", name.string()}};
     try {
@@ -101,7 +101,7 @@ class Site {
     return std::all_of(files.begin(), files.end(), [&](const std::string& file) { return fs::exists(site_ / file); });
   }
 
-  /// Address of an archive's page in the site. `write` makes it and the pages below it.
+  /// Address of an archive's page in the site. `write` makes this page and the pages below.
   template <class Write>
   std::string page_of(const fs::path& name, const fs::path& file, const std::string& digest, Write write) {
     const fs::path page = ("pages" / file).replace_extension(".html");

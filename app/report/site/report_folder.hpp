@@ -12,21 +12,25 @@ namespace modebank::app::report {
 /// Result of a run over a folder of archives.
 struct SiteResult {
   std::size_t archives = 0;                                   ///< archives and studies, one row of the index each
-  std::vector<std::pair<std::string, std::string>> problems;  ///< name of an archive, and the reason why it has no page
-  std::vector<std::string> removed;  ///< pages whose archive was removed, or has fewer pages now
+  std::vector<std::pair<std::string, std::string>> problems;  ///< name of an archive, and the reason why there is no page
+  std::vector<std::string> removed;  ///< number of removed pages: the archive is gone, or has fewer pages now
 };
 
-/// Whether a folder is that of a single study, merged or not, rather than of archives.
+/// Whether a folder contains a single study, merged or not, and not archives.
 bool holds_a_study(const std::filesystem::path& folder);
 
-/// The archives (*.h5) in `folder` and the folders below, with names relative to it; a study's folder counts as the
-/// study alone. Hidden files are ignored.
+/// The archives (*.h5) in `folder` and the folders below it, with names relative to it. A study's folder counts as one
+/// study. Hidden files are ignored.
 std::vector<std::filesystem::path> archives_below(const std::filesystem::path& folder);
 
-/// Writes SITE/index.html, with a row for each archive, and pages below SITE/pages. A page is made again only if its
-/// archive's content, modebank's revision or a setting of [report] changed; a page without its archive is removed. The
-/// row of an unreadable archive has the reason. Each file is written under a temporary name and renamed. Throws
-/// ConfigurationError if `folder` has no archive, and as read_site_record does.
+/// Writes SITE/index.html, with a row for each archive, and pages below SITE/pages.
+/// - A page is made again only after a change of its archive's content, of modebank's revision or of a setting of
+///   [report].
+/// - A page without its archive is removed.
+/// - The row of an unreadable archive states the reason.
+/// - Each file is written under a temporary name and then renamed.
+///
+/// Throws ConfigurationError if `folder` has no archive, and as read_site_record does.
 SiteResult report_folder(const std::filesystem::path& folder, const std::filesystem::path& site,
                          const ReportConfig& options, Written& written);
 

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 const char* const record_name = "pages.json";
 
-/// Pages are only below pages/. This check stops a record that was edited by hand from making `report` remove other
+/// Pages are only below pages/. Without this check, a record that was edited by hand could make `report` remove other
 /// files.
 bool is_below_pages(const std::string& file) {
   const fs::path path = file;

@@ -1,4 +1,4 @@
-// A figure of panels with axes as SVG: points, lines, bars, cells. Colours are CSS, so that a change of theme, or
+// A figure of panels with axes as SVG: points, lines, bars, cells. CSS sets the colours, so a change of theme, or
 // printing, needs no new drawing. chart_layout.js places the parts, chart_marks.js draws them.
 import {layoutOf} from './chart_layout.js';
 import {drawChart} from './chart_panel.js';
@@ -62,7 +62,7 @@ export function figure(label, make, caption) {
     keys.replaceChildren(...(plot.drawing.legend ? [legend(plot.drawing.legend)] : []));
     show();
   };
-  // Draws a visible figure again; a hidden one will be drawn in the present state.
+  // Redraws a visible figure. A hidden figure is drawn when it appears.
   element.update = () => (plot.drawing ? element.redraw() : Promise.resolve());
   element.ready = new Promise((resolve, reject) => {
     element.begin = () => {

@@ -27,7 +27,7 @@ function distance({kind, x, y, width}, i, px, py, to) {
   return Math.hypot(to.x(x[i]) - px, to.y(y[i]) - py);
 }
 
-// The cell at a pixel as {mark, i}; i counts cells row by row.
+// The cell at a pixel as {mark, i}; i counts the cells row by row.
 function cellAt(mark, px, py, to) {
   const next = (list, toPixel, at) =>
       list.reduce((best, v, k) => (Math.abs(toPixel(v) - at) < Math.abs(toPixel(list[best]) - at) ? k : best), 0);

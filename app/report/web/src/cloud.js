@@ -13,7 +13,7 @@ async function loadWindows(windows) {
   return {run, begin, end, label, mode, covariance, values: await all(windows.values)};
 }
 
-// The groups of windows with their colours; a button hides and shows each.
+// The groups of windows with their colours. A button shows or hides each group.
 function makeLegend(cloud, redraw) {
   const list = h('ul', {class: 'legend', 'aria-label': 'Groups of windows; press to hide or show'});
   const entry = ([key, members]) => {
@@ -61,7 +61,7 @@ function makeControls(cloud, redraw, fillLegend) {
       windows.bank ? check('Modes of the bank', true, set('showBank')) : null);
 }
 
-// `windows`: from C++'s windows_section. `runs`: names of runs. `goTo(run, begin, end)`: shows this part of the data.
+// `windows`: from windows_section in C++. `runs`: names of runs. `goTo(run, begin, end)`: shows this part of the data.
 // Returns the elements from top to bottom.
 export async function drawCloud(windows, runs, goTo) {
   const cloud = new WindowCloud(windows, await loadWindows(windows), runs);

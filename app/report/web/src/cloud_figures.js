@@ -7,9 +7,9 @@ import {usualRange} from './statistics.js';
 import {titleOf} from './time_rows.js';
 import {digits} from './window_cloud.js';
 
-const many = 20000;  // from this number on windows are small and faint
+const many = 20000;  // if there are this many windows or more, they are small and faint
 
-// The modes of an unrefined bank are the components.
+// In an unrefined bank the modes are the components.
 const colourIn = (cloud, k) => (cloud.by === 'mode' || !cloud.windows.refined ? modeColour(k) : componentColour(k));
 export const groupColour = (cloud, key) => (key < 0 ? palette.unclustered : colourIn(cloud, key));
 

@@ -6,7 +6,7 @@ import {roleNames} from './filters.js';
 import {section} from './page.js';
 import {colours, dashes, letters, pairLegend, symbols} from './pair.js';
 
-// `rows`: those of A, B, ...
+// `rows`: the rows of A, B, ...
 function pitDrawing(rows) {
   const [{band, expected}] = rows;
   const marks = rows.map(

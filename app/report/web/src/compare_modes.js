@@ -42,7 +42,7 @@ function pairColumns(a, b, letter, ofModes, {by_time: byTime, difference}) {
   ];
 }
 
-// Families that share time; nothing where no run is in both, or every mode is a family of its own.
+// Families that share time; empty if no run is in both archives, or if every mode is a family of its own.
 function familyTable({families}, a, b, letter, ofModes) {
   if (!families.length || !(hasFamilies(a) || hasFamilies(b))) return null;
   const columns = [

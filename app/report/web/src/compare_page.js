@@ -55,7 +55,7 @@ const scoreColumns = (runs) =>
      {name: 'Better', text: true, of: (row) => (row.better === null ? 'equal' : letters[row.better])},
 ];
 
-// Rows that differ come first; equal rows need a click.
+// Rows with differences come first; equal rows appear after a click.
 function scoreTables(data) {
   const columns = scoreColumns(data.runs);
   const differing = data.scores.filter((row) => row.better !== null),
@@ -98,7 +98,7 @@ function bankTable(bank, letter) {
       columns, bank.order.map((k) => bank.modes[k]), {caption: `Modes of ${letter}, most used first`, sortable: true});
 }
 
-// Each bank by itself, since the matched tables lack gains and time constants.
+// Each bank by itself, because the tables of matched modes have no gains and time constants.
 function drawBanks(data) {
   section(
       'bank', 'Each bank',

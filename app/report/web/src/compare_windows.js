@@ -17,7 +17,7 @@ function windowPoints(k, x, y, look = {}) {
 
 const place = (mode, at) => at.map((a) => mode.mean[a]);
 
-// The first bank's symbols are filled, the others' hollow and larger, so that equal modes are both visible.
+// The symbols of the first bank are filled, those of the others hollow and larger, so that equal modes stay visible.
 function bankPoints(k, bank, at) {
   const places = bank.map((mode) => place(mode, at[k]));
   return {

@@ -19,7 +19,7 @@ export const shortNames = {
   combined: 'combined',
   global: 'global model'
 };
-// By kind: the scores that count samples on either side of a true filter's interval.
+// Scores by kind that count samples on one side of the interval of an exact model.
 export const sidesOf = {
   z: {above: 'too_far', below: 'too_close'},
   nis: {above: 'nis_above', below: 'nis_below'}

@@ -2,8 +2,8 @@
 
 const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\/-]/g, '\\$&');
 
-// A pattern for any of the names as a whole word, or its plural. Longer names come first: "95 % band" before "band". In
-// a sentence "one motion" need not be the competitor one_motion.
+// A pattern for all names, as whole words or plurals. Longer names come first: "95 % band" before "band". "one motion"
+// in a sentence need not mean the competitor one_motion.
 function anyOf(names) {
   const isOther = (name) => name.includes(' ') && names.includes(name.replace(/ /g, '_'));
   const meant = (name) => name.length > 2 && /^\w/.test(name) && !isOther(name);

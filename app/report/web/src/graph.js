@@ -3,7 +3,7 @@ import {shade} from './colour.js';
 import {s} from './elements.js';
 
 const bend = 0.14;    // sagitta as a share of an arrow's length
-const least = 0.005;  // rarer transitions appear only in the matrix
+const least = 0.005;  // rarer transitions are only in the matrix
 
 const minus = (a, b) => ({x: a.x - b.x, y: a.y - b.y});
 const along = (a, v, length) => ({x: a.x + length * v.x, y: a.y + length * v.y});
@@ -27,7 +27,7 @@ function arrow(from, to, width, colour, title) {
           'stroke-opacity': 0.75,
         }),
         s('path', {d: `M${corners.map(put).join('L')}Z`, fill: shade(colour)}));
-  // Labels are nearer to the arrow's start, since in the middle all would overlap.
+  // Labels are near the arrow's start, because in the middle all of them would overlap.
   const t = 0.3, share = [(1 - t) ** 2, 2 * t * (1 - t), t ** 2];
   const on = (axis) => share[0] * start[axis] + share[1] * middle[axis] + share[2] * end[axis];
   return {element, at: {x: on('x'), y: on('y')}};
@@ -45,7 +45,7 @@ function edgesOf(transition, nodes, places) {
   return {pictures, labels};
 }
 
-// `transition[i][j]`: number cells from C++; `nodes`: {title, short, colour, use}, drawn larger with more use.
+// `transition[i][j]`: formatted numbers from C++; `nodes`: {title, short, colour, use}. A node with more use is larger.
 export function transitionGraph(transition, nodes) {
   const K = nodes.length, size = 420, centre = size / 2, ring = K === 1 ? 0 : size / 2 - 52;
   const angle = (k) => (2 * Math.PI * k) / K;

@@ -25,7 +25,7 @@ export const canvasLook = () => ({
   mark: dark() ? '#e8eaee26' : '#16181d24',
 });
 
-// Modes of one family share a hue, and the most used families have the first ones; what is hardly used is grey.
+// Modes of one family share a hue. The most used families have the first hues; rarely used families are grey.
 export function modeColour(k) {
   if (isOther(k)) return palette.unclustered;
   const {hue, turn} = hueOf(k);

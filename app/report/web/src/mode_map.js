@@ -45,7 +45,7 @@ function map(bank) {
   };
 }
 
-// Samples are below the lines, one row per mode. The most used modes come last, or the others would hide them.
+// Samples are below the lines, one row per mode. The most used modes are drawn last, so that others do not hide them.
 function lines(bank) {
   const {modeMap} = bank, {values} = modeMap.axes[0];
   const rows = sampleMarks(bank, (i) => modeMap.samples.at[0][i], (i, row) => -0.05 - 0.05 * row);

@@ -1,4 +1,5 @@
-// The modes of a bank as the page's sections list them: by family, the most used first, those hardly used as one.
+// The modes of a bank as the page's sections list them: by family, most used first. Rarely used families form one
+// entry.
 import {legend} from './elements.js';
 import {modeColour, palette} from './look.js';
 

@@ -33,7 +33,7 @@ const announce = () => {
   return Promise.all(listeners.map((listener) => listener()));
 };
 
-// Tasks to finish before the page is printed, such as drawing figures out of sight.
+// Tasks before the page is printed, such as drawing figures that are not visible.
 const unfinished = [];
 // `place`: the element of the drawing.
 export function beforePrint(finish, place = null) {
@@ -95,8 +95,8 @@ const painted = () => new Promise((resolve) => {
   setTimeout(resolve, 300);
 });
 
-// Runs the script of a page. `first`: drawn and visible before other data are read. An error is shown and thrown again,
-// so that tests see it.
+// Runs the script of a page. `first` is drawn and visible before other data are read. Errors are shown and thrown
+// again, so that tests detect them.
 export async function draw(body, first = () => undefined) {
   const release = holdPrinting();
   try {

@@ -15,7 +15,7 @@ export function modeColours(data) {
   return ranks.map((of) => (mode) => rankColour(of[mode]));
 }
 
-// `runs`: those of the page's data; `extra`: further entries.
+// `runs`: the runs of the page's data; `extra`: further entries.
 export function pairLegend(runs, extra = []) {
   return legend([...runs.map((run, k) => [colours[k], `${letters[k]}: ${run.name}`]), ...extra]);
 }

@@ -46,7 +46,7 @@ export function canvasPen(context) {
       drawn(path);
       context.fill();
     },
-    // One path with as many pieces would take the browser tens of times as long.
+    // Many small paths: one path with all pieces would take the browser tens of times as long.
     boxes: (boxes, colour) => {
       context.fillStyle = colour;
       for (let i = 0; i < boxes.length; i += 4) context.fillRect(boxes[i], boxes[i + 1], boxes[i + 2], boxes[i + 3]);

@@ -31,7 +31,8 @@ function cellOf(column, cells) {
   return column.kind === 'about' ? wordsOf(cells) : meanCell(cells);
 }
 
-// One row per setting, in the order of their first runs. Choosing it chooses its first run. `members`: its runs.
+// One row per setting, in the order of the first runs. A choice of the row chooses the setting's first run. `members`:
+// runs of the setting.
 export function groupedRows(columns, rows) {
   const groups = new Map();
   for (const row of rows) {

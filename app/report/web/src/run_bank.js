@@ -47,7 +47,7 @@ function numberColumns(bank) {
   ];
 }
 
-// Families as the first screen has them, all of them.
+// All families, in the form of the first screen.
 function familyTable(bank) {
   const {told, others} = familiesOf(bank);
   const rows = [...told, ...others].map((row) => ({...row, colour: modeColour(row.lead)}));

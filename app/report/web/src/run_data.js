@@ -49,7 +49,7 @@ function followLink(state, filters, options) {
     return Promise.resolve();
   };
   addEventListener('hashchange', follow);
-  // After the first view: it is the default, so the address stays unchanged.
+  // Called after the first view: this view is the default, so the address stays unchanged.
   Promise.resolve().then(() => {
     follow();
     state.plots.push({refresh: keep, point: keep});

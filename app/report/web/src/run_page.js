@@ -16,7 +16,7 @@ import {drawSelection} from './run_selection.js';
 import {drawVerdict} from './run_verdict.js';
 import {runChoice, timeControls, TimeState} from './timeview.js';
 
-// Drop-downs of run and filter in several places, all with the same state.
+// Drop-downs of run and filter in several places. All have the same state.
 function pickers(state, filters, options) {
   const all = [];
   const showChosen = () => all.forEach(([run, filter]) => {
@@ -78,7 +78,7 @@ async function drawWindows(windows, runs, goTo) {
   place.querySelector('h2').after(h('p', {}, text));
 }
 
-// State of all sections with a filter: the index of the filter and of the state.
+// State that all sections with a filter share: the index of the filter and of the state.
 function filterOptions(filters) {
   const options = {chosen: Math.max(0, filters.indexOf('bank')), state: 0};
   options.layer = {

@@ -14,7 +14,8 @@ const strip_px = 13, gap_px = 4, above_px = 18, left_px = 66, apart_px = 6;
 const least_name_px = 40;  // smallest width of a run's name; names are narrowed to the width of their run
 const least_px = 60;       // smallest width of a run with times
 
-// Labels are grey, so that they do not look like modes: the share of ink, and the colour on canvas and in the legend.
+// Labels are grey, so that they do not look like modes. The first number is the share of ink, then come the colours on
+// canvas and in the legend.
 const inkShare = (k, count) => 0.12 + (0.58 * k) / Math.max(1, count - 1);
 const labelNow = (k, count) => mixed(groundNow(), inkNow(), inkShare(k, count));
 const labelColour = (k, count) =>
@@ -39,17 +40,17 @@ function layoutOf(picture, width, height) {
   return {plot, places, strips, top, bottom: height - below};
 }
 
-// A family has the colour of its most used mode: shades of one thing would look like confetti.
+// A family has the colour of its most used mode, because many shades would be confusing.
 const familiesOver = (modes) => modes.map((k) => (k < 0 ? k : leadOf(k)));
 
-// Where a share of the range stands; its ends are clear of the frame.
+// Height of a share of the range. The ends do not touch the frame.
 const heightOf = (at, share) => above_px + at.plot * (0.98 - 0.96 * share);
 
 function drawState(pen, picture, at, {run, x, width}) {
   const n = run.low.length, step = width / n, high = run.high || run.low;
   const y = (v) => heightOf(at, v / picture.steps);
   const list = run.mode ? familiesOver(run.mode) : run.low.map(() => -1);
-  // The rarer modes last, or the others would hide them.
+  // The rarer modes are drawn last; otherwise the others would hide them.
   const modes = [...new Set(list)].sort((a, b) => rankOf(a) - rankOf(b));
   for (const mode of modes) {
     pen.beginPath();

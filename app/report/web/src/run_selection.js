@@ -19,7 +19,7 @@ const valueOf = (row, key) => {
   return row.restarts ? (100 * row.agreeing.v) / row.restarts : null;
 };
 
-// A line through the candidates for each shape of covariance.
+// One line through the candidates for each shape of covariance.
 function curves(candidates, key) {
   return shapes.flatMap(([covariance, colour, dash, symbol]) => {
     const rows = candidates.filter(

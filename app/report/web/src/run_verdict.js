@@ -1,5 +1,5 @@
-// The first screen: finding, reliability of the band, next step and a picture. Words and numbers are those of the
-// program's first screen (screen_facts.hpp).
+// The first screen: finding, reliability of the band, next step and a picture. Its words and numbers are the same as in
+// the program's first screen (screen_facts.hpp).
 import {h, value} from './elements.js';
 import {modeColour} from './look.js';
 import {section} from './page.js';
@@ -9,7 +9,7 @@ import {withTips} from './tips.js';
 
 const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-// A cell breaks between its parts, not between a number and its error or unit.
+// A cell breaks between its parts, but never between a number and its error or unit.
 const breakable = (text) => text.replace(/ (±|%|s\b|m\b)/g, '\u00a0$1').replace(/(±|period) /g, '$1\u00a0');
 
 // Commands (`modebank show`) and options (--filter.horizon 10) in a sentence.

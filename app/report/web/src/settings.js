@@ -1,5 +1,5 @@
-// Scores of a study's settings, without drawing. A setting is one combination of varied values; its runs differ in seed
-// alone.
+// Scores of a study's settings, without drawing. A setting is one combination of varied values; its runs differ only in
+// the seed.
 import {isNumber, lossOf, mean} from './statistics.js';
 
 // {rows, mean, sd} of each setting with a score, in the order of rows; sd is null for one run.
@@ -23,14 +23,14 @@ export function bestSetting(settings, goal) {
       (best, one) => (best === null || lossOf(goal, one.mean) < lossOf(goal, best.mean) ? one : best), null);
 }
 
-// Summary of settings: the best of them, so that the best of all levels is the study's best, or the mean of their runs.
+// Summary of settings: the best one, so that the best of all levels is the study's best, or the mean over their runs.
 export function reached(settings, goal, by) {
   if (!settings.length) return null;
   if (by === 'best') return bestSetting(settings, goal).mean;
   return mean(settings.flatMap((one) => one.rows.map(() => one.mean)));
 }
 
-// The level of an axis that a setting has.
+// The level of a setting along an axis.
 export const levelOf = (axis, setting) => axis.of(setting.rows[0]);
 
 // The best cell as {a, b, value}; null if there is none.

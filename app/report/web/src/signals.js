@@ -34,16 +34,16 @@ export async function clock(axis) {
   };
 }
 
-// The samples that a view of `range` shows, and the number in a bucket of the drawing, about a pixel wide. It is a
-// power of two, so that buckets consist of whole buckets of a stored level and stay the same while the view moves. One
-// bucket beyond either edge is drawn, too, so that lines continue to the edge.
+// The samples that a view of `range` shows, and the number of samples in a bucket of the drawing, which is about a
+// pixel wide. The number is a power of two. So each bucket consists of whole buckets of a stored level, and stays the
+// same while the view moves. One more bucket beyond each edge is drawn, so that lines continue to the edge.
 export function view(clockOf, range, pixels) {
   const first = clockOf.near(range[0]), last = clockOf.near(range[1]);
   const per = 2 ** Math.max(0, Math.round(Math.log2((last - first + 1) / pixels)));
   return {first: Math.max(0, first - 2 * per), last: Math.min(clockOf.samples - 1, last + 2 * per), per};
 }
 
-// The coarsest stored level with buckets not larger than the drawing's.
+// The coarsest stored level whose buckets are not larger than those of the drawing.
 function levelFor(signal, per) {
   let best = signal.raw ? {bucket: 1, low: signal.raw, high: signal.raw} : null;
   for (const level of signal.levels) {
@@ -65,14 +65,15 @@ function merged(values, from, to, count, pick) {
 const lower = (a, b) => (a < b || Number.isNaN(b) ? a : b);
 const higher = (a, b) => (a > b || Number.isNaN(b) ? a : b);
 
-// How to make a view's buckets from a level: `count` of the level's in each, from its bucket `from` on.
+// How to compute a view's buckets from a stored level: `count` stored buckets for each, beginning at stored bucket
+// `from`.
 function grouping(level, shown) {
   const count = Math.max(1, Math.floor(shown.per / level.bucket)), per = level.bucket * count;
   return {count, per, from: Math.floor(shown.first / per) * count};
 }
 
-// Buckets of one signal in a view: {first, per, low, high}. Bucket i has the samples from first + i per. With per = 1
-// low and high are the samples.
+// Buckets of one signal in a view: {first, per, low, high}. Bucket i contains `per` samples from sample first + i per
+// on. If per is 1, low and high are the samples.
 async function buckets(signal, shown, edge) {
   const level = levelFor(signal, shown.per);
   const {count, per, from} = grouping(level, shown);
@@ -100,7 +101,7 @@ export async function line(signal, clockOf, shown) {
   return {x, y, per: b.per};
 }
 
-// Means over `count` values each, without unknown ones.
+// Means over `count` values each; unknown values are ignored.
 function means(values, from, to, count) {
   return Float32Array.from({length: Math.ceil((to - from) / count)}, (_, i) => {
     let sum = 0, known = 0;
@@ -113,7 +114,7 @@ function means(values, from, to, count) {
   });
 }
 
-// The same with a mean per bucket, for shares.
+// The same with one mean per bucket, for shares.
 export async function share(signal, clockOf, shown) {
   const level = levelFor(signal, shown.per), values = await array(level.low);
   const {count, per, from} = grouping(level, shown);
@@ -121,7 +122,7 @@ export async function share(signal, clockOf, shown) {
   return {x: Float64Array.from(y, (_, i) => clockOf.at((from + i * count) * level.bucket)), y, per};
 }
 
-const few = 16;  // up to this many samples per bucket a band's edges are computed sample by sample
+const few = 16;  // up to this number of samples per bucket, the edges of a band are computed sample by sample
 
 // Smallest and largest edge of center +- half in buckets of shown.per samples.
 async function edgesOfSamples(center, half, shown) {
@@ -137,8 +138,8 @@ async function edgesOfBuckets(lowest, highest, shown) {
   return {first, per, low, high};
 }
 
-// A band between center - half and center + half: closed outlines, one per part without gaps. For buckets the outline
-// has the smallest and the largest edge in each.
+// A band between center - half and center + half: closed outlines, one for each part without gaps. For buckets, the
+// outline is the smallest and the largest edge in each bucket.
 export async function band({center, half, lowest, highest}, clockOf, shown) {
   const bySample = !lowest.levels.length || (center.raw && shown.per < few);
   const {first, per, low, high} = bySample ?
@@ -177,7 +178,7 @@ function outlines(low, high, time) {
   return {x, y};
 }
 
-// Bounds + half and - half about zero.
+// Bounds at +half and -half.
 export async function bounds(half, clockOf, shown) {
   const up = await line(half, clockOf, shown);
   return {up, down: {...up, y: up.y.map((v) => -v)}};

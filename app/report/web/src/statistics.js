@@ -3,9 +3,10 @@
 export const isNumber = (v) => typeof v === 'number' && Number.isFinite(v);
 export const mean = (values) => values.reduce((a, b) => a + b, 0) / values.length;
 
-const enough = 20000;  // enough values of a list for its quantiles
+const enough = 20000;  // enough values of a list to estimate its quantiles
 
-// The range of nearly all values in the lists: outliers of badly determined windows would hide the others.
+// The range of nearly all values in the lists. Outliers of badly determined windows are excluded, because they would
+// hide the other windows.
 export function usualRange(...lists) {
   const some = lists.flatMap((list) => {
     const step = Math.max(1, Math.floor(list.length / enough));

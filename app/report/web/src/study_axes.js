@@ -34,7 +34,7 @@ export const wayWords = {
 };
 export const wayChoice = (onchange) => choice('Show', ways.map(([, text]) => text), 0, (i) => onchange(ways[i][0]));
 
-// Draws the figure again when other runs are shown.
+// Redraws the figure when the shown runs change.
 export function follow(context, element) {
   context.shown.listeners.push(() => element.update());
 }

@@ -36,7 +36,8 @@ function effectMarks(axis, score, rows, by, showRun) {
   ];
 }
 
-// The range in which levels differ, so that one bad level of another key does not flatten the lines. Null: all values.
+// The range in which levels differ, so that one bad level of another key does not flatten the lines. Null means all
+// values.
 function usefulRange(axes, score, rows, by) {
   const settings = settingsOf(rows, score);
   const values =

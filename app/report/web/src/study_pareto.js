@@ -28,7 +28,7 @@ function runsMark({study, showRun}, points, look) {
   };
 }
 
-// The range of the front and as much below; runs far below would flatten it.
+// The range of the front, and as much again below: runs far below would flatten the front.
 function rangeAround(points, front) {
   const values = front.map((p) => p.y), all = points.map((p) => p.y);
   const low = Math.min(...values), high = Math.max(...values), room = high - low;

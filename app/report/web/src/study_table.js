@@ -1,5 +1,5 @@
-// The table of a study's runs: a click on a heading sorts, text under it filters, a click or Enter on a row chooses the
-// run. Repeats of a setting are one row unless the reader asks for single runs.
+// The table of a study's runs. A click on a heading sorts, text under a heading filters, a click or Enter on a row
+// chooses the run. Repeats of a setting share one row unless the reader selects single runs.
 import {check, controls, details, h} from './elements.js';
 import {filterOf} from './filter_text.js';
 import {sortedRows} from './ordering.js';

@@ -130,7 +130,7 @@ class TimePlot {
     const rows = this.rows();
     const entries = await Promise.all(rows.map((row) => row.read(current, k)));
     if (rows.length !== this.panels.length) return;
-    // Writes only changes, since otherwise every frame of a drag would lay out the page.
+    // Writes only changes; otherwise every frame of a drag would lay out the whole page.
     const said = JSON.stringify([at, k, entries]);
     if (said === this.said && this.panels === this.saidIn) return;
     Object.assign(this, {said, saidIn: this.panels});

@@ -152,7 +152,7 @@ export function probabilityRow(of, title = 'probability of the modes', colourOf 
   const draw = ({run, clock, shown}) => {
     const filter = of(run);
     if (!filter || !filter.probability) return [];
-    // The most used first, as in tables and legends.
+    // Most used modes first, as in tables and legends.
     const order = filter.probability.map((_, k) => k).sort((a, b) => rankOf(a) - rankOf(b));
     return Promise.all(order.map(async (k) => {
       const curve = await share(filter.probability[k], clock, shown);

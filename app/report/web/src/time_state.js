@@ -70,7 +70,7 @@ export class TimeState {
     const [a, b] = this.shown(), by = share * (b - a);
     return this.zoom([a + by, b + by]);
   }
-  // `about`: the time that keeps its place.
+  // `about`: the time that keeps its position on the screen.
   scale(factor, about = null) {
     const [a, b] = this.shown(), center = about === null ? (a + b) / 2 : about;
     return this.zoom([center - factor * (center - a), center + factor * (b - center)]);

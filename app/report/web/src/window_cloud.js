@@ -72,7 +72,7 @@ export class WindowCloud {
     }, 1);
   }
 
-  // The visible groups; wide ones come first, or they would hide the narrow ones.
+  // The visible groups. Wide groups are drawn first; otherwise they would hide the narrow ones.
   shownGroups(axes) {
     return this.groups()
         .filter(([key]) => !this.hidden.has(key))
@@ -80,7 +80,7 @@ export class WindowCloud {
         .sort((a, b) => b.reach - a.reach);
   }
 
-  // Whether all these axes are parameters, which have errors and are in the bank.
+  // Whether all these axes are parameters, which have standard errors and exist in the bank.
   parametersOnly(axes) {
     return axes.every((a) => a < this.windows.parameters);
   }

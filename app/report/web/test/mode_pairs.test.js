@@ -31,7 +31,7 @@ test('matched modes share the colour of the first bank, others come after it', (
   ];
   const [a, b, c] = matchedRanks(banks, matches);
   assert.deepEqual(a, [1, 2, 0, Infinity]);
-  // Mode 3 is matched with a merged mode of A, mode 2 with none: they get the next colours, by their use.
+  // Mode 3 matches a merged mode of A, mode 2 matches none. Both get the next colours, in the order of use.
   assert.deepEqual(b, [2, 1, 4, 3]);
   assert.deepEqual(c, [0]);
   assert.deepEqual(matchedRanks([null, banks[2]], [{modes: [], difference: ''}]), [[], [0]]);

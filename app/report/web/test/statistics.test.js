@@ -27,7 +27,7 @@ test('losses by goal', () => {
 
 test('the Pareto front holds what no other point beats in both', () => {
   const points = [[1, 5], [2, 5], [2, 3], [3, 4], [4, 1], [4, 1], [5, 1]].map(([x, loss]) => ({x, loss}));
-  // By definition, point by point: no other point is at least as good in both and better in one.
+  // The definition, point by point: no other point is at least as good in both and better in one.
   const beaten = (p) => points.some((q) => q.x <= p.x && q.loss <= p.loss && (q.x < p.x || q.loss < p.loss));
   const best = new Set(points.filter((p) => !beaten(p)).map(({x, loss}) => `${x} ${loss}`));
   assert.deepEqual(paretoFront(points).map(({x, loss}) => `${x} ${loss}`), [...best]);

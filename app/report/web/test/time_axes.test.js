@@ -74,7 +74,7 @@ test('buckets are boxes beside each other that hold their extremes; a line\'s to
   const toX = (v) => 1.4 * v, toY = (v) => 100 - v, x = [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5];
   const y = [10, 20, 50, 40, NaN, NaN, 5, 7];
   const line = bucketBoxes({kind: 'line', x, y, width: 2}, toX, toY);
-  // From 10 to 20; from 40 to 50 and down to 20, the previous value of the line; after a gap without a start.
+  // The line goes from 10 to 20, from 40 to 50, and down to 20, its previous value. After a gap it has no start.
   assert.deepEqual(line, [0, 79, 1, 12, 1, 49, 1, 32, 4, 92, 1, 4]);
   const band = bucketBoxes({kind: 'area', x, y}, toX, toY);
   assert.deepEqual(band, [0, 80, 1, 10, 1, 50, 1, 10, 4, 93, 1, 2]);
