@@ -18,7 +18,7 @@ namespace {
 
 void print_help(const CommandLine& line) {
   if (line.markdown && !line.files.empty())
-    throw ConfigurationError("help --markdown is a table of all keys, and takes no name: " + line.files.front());
+    throw ConfigurationError("help --markdown prints a table of all keys, and takes no name: " + line.files.front());
   // `run --help` does the same as `help run`.
   std::vector<std::string> names = line.files;
   if (line.help) names.assign(!line.command.empty(), line.command);

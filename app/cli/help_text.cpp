@@ -49,7 +49,7 @@ std::string when_text(const Option& option) {
   const std::string stage =
       option.stage ? fmt::format(" It changes the stage {} and those that follow.", name_of(*option.stage)) : "";
   return fmt::format("      {}\n",
-                     fmt::join(filled("When to touch it: " + option.when + "." + stage, help_width - 6), "\n      "));
+                     fmt::join(filled("When to change it: " + option.when + "." + stage, help_width - 6), "\n      "));
 }
 
 /// Two columns; the second is wrapped below itself.
@@ -164,7 +164,7 @@ std::string help_overview() {
   return text +
          "\n`modebank help X` explains a command, a section of the configuration, a key, a label of the screen or a "
          "term.\n"
-         "Exit status: 0 done; 1 the content or the run failed; 2 usage, configuration or path.\n";
+         "Exit status: 0 done; 1 a file's content is invalid, or the run failed; 2 usage, configuration or path.\n";
 }
 
 std::string help_on(const std::string& name) {

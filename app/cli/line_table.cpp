@@ -203,7 +203,7 @@ Table LineTable::read(const std::vector<std::string>& lines) {
   Table table;
   try {
     table = rows_of(all, data_.time_unit);
-    if (table.rows() != all.size()) throw DataError("not one row of the table");
+    if (table.rows() != all.size()) throw DataError("not a row of the table");
   } catch (const DataError&) {
     if (take_units(lines.front())) return {};
     throw;

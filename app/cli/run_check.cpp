@@ -100,7 +100,7 @@ void apply(const CommandLine& line, const Config& config, const Suggestions& sug
                {applied_text(suggestions, config, line.files.front(), line.overrides, line.output)});
   print_text(
       line, fmt::format("{}: {}\n", line.output,
-                        suggestions.any() ? "the configuration with what is suggested" : "the configuration as it is"));
+                        suggestions.any() ? "the configuration with the suggested settings" : "the configuration unchanged, because nothing is suggested"));
   page["written"] = {line.output};
 }
 

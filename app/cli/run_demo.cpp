@@ -71,11 +71,11 @@ bool is_of_a_demo(const fs::path& path, const DemoFolder& demo) {
 void refuse_foreign_files(const DemoFolder& demo) {
   if (!fs::exists(demo.folder)) return;
   if (!fs::is_directory(demo.folder))
-    throw ConfigurationError(fmt::format("-o {}: this is no folder", demo.folder.string()));
+    throw ConfigurationError(fmt::format("-o {}: not a folder", demo.folder.string()));
   for (const fs::directory_entry& entry : fs::directory_iterator(demo.folder))
     if (!fs::exists(demo.simulation()) || !is_of_a_demo(entry.path(), demo))
       throw ConfigurationError(fmt::format(
-          "{} is not of a demo, or was changed since: name another folder (-o FOLDER), or --force to write "
+          "{} is not a file of a demo, or was changed since: name another folder (-o FOLDER), or --force to write "
           "{}, {}, {} and {} in this one",
           entry.path().string(), demo.simulation().filename().string(), demo.configuration().filename().string(),
           demo.data().filename().string(), demo.archive().filename().string()));
@@ -94,7 +94,7 @@ std::vector<std::string> options_for(const std::string& command, const CommandLi
     const std::string section = key.substr(0, key.find('.'));
     const bool simulates = section == "simulate";
     if (key == "data.root" || key == "archive.output" || key == "simulate.output")
-      throw ConfigurationError(fmt::format("{}: demo has its files in one folder, -o FOLDER", key));
+      throw ConfigurationError(fmt::format("{}: the files of demo are in one folder; set it by -o FOLDER", key));
     if (section == "job" || simulates == (command == "simulate")) options.push_back(fmt::format("--{}={}", key, value));
   }
   return options;
@@ -135,14 +135,14 @@ void add_truth(const DemoFolder& demo, const CommandLine& simulate, Result& resu
 }
 
 std::string closing_words(const DemoFolder& demo, const std::string& program) {
-  const std::string pages = fmt::format("Look inside: {0} show {1}\nA page of it: {0} report {1} -o {2}.html\n",
+  const std::string pages = fmt::format("All results: {0} show {1}\nAs a page: {0} report {1} -o {2}.html\n",
                                         program, shell_quoted(demo.archive().string()), demo.name);
   return demo.name == "tyres" ? pages : pages + fmt::format("Tyres that slide on ice: {} demo tyres\n", program);
 }
 
 constexpr std::string_view introduction =
     "A simulated robot turns quickly on grip and slowly on ice. Its log has the set speeds of its wheels\n"
-    "(cmd_velL, cmd_velR) and its turn rate (wz). What it does on each ground has to be found from these.\n";
+    "(cmd_velL, cmd_velR) and its turn rate (wz). Its motion on each ground must be found from these.\n";
 
 }  // namespace
 

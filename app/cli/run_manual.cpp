@@ -52,7 +52,7 @@ std::string keys_text(const Command& command) {
                              option.unit.empty() ? "" : " [" + option.unit + "]", value.empty() ? "empty" : value));
   }
   return text.empty() ? ""
-                      : ".SH CONFIGURATION KEYS\nEach may stand in the configuration file, too; here it wins.\n" + text;
+                      : ".SH CONFIGURATION KEYS\nKeys of the configuration file. An option overrides the file.\n" + text;
 }
 
 std::string page_of(const Command& command) {
@@ -81,9 +81,9 @@ std::string main_page() {
     pages.push_back(fmt::format(".BR modebank\\-{} (1)", command.name));
   }
   text += ".SH OPTIONS\n" + options_text(common_options());
-  text += ".SH EXIT STATUS\n" + item("0", "Done.") + item("1", "The content or the run failed.") +
+  text += ".SH EXIT STATUS\n" + item("0", "Done.") + item("1", "A file's content is invalid, or the run failed.") +
           item("2", "Usage, configuration or path.");
-  text += ".SH ENVIRONMENT\n" + item("MODEBANK_DATA", "Where relative data paths begin, unless data.root says.") +
+  text += ".SH ENVIRONMENT\n" + item("MODEBANK_DATA", "The folder from which relative data paths start, unless data.root is set.") +
           item("COLUMNS", "Width of tables.") + item("NO_COLOR", "No colours.");
   return text + fmt::format(".SH SEE ALSO\n{}\n", fmt::join(pages, ",\n"));
 }

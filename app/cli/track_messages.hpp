@@ -40,7 +40,7 @@ class LiveMessages {
   void say_repeats() {
     for (const auto& [kind, repeats] : repeats_)
       if (repeats.count > 1)
-        say(fmt::format("{}: the same {} time{} more, the last at {}", repeats.first, repeats.count - 1,
+        say(fmt::format("{}: this message was repeated {} time{}, last at {}", repeats.first, repeats.count - 1,
                         repeats.count == 2 ? "" : "s", repeats.last));
     repeats_.clear();
   }

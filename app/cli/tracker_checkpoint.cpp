@@ -33,7 +33,7 @@ void Tracker::keep() {
     checkpoint_fails_ = false;
   } catch (const DataError& error) {
     if (!checkpoint_fails_)
-      messages_.say(fmt::format("{}: the filter goes on without, and tries again every {} samples", error.what(),
+      messages_.say(fmt::format("{}: the filter continues without it, and tries again every {} samples", error.what(),
                                 config_.track.checkpoint_interval));
     checkpoint_fails_ = true;
   }

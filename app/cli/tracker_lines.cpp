@@ -15,7 +15,7 @@ void Tracker::follow_lines() {
         "inputs come {:.3g} s after the states that they act on: each estimate waits for its input and has the time "
         "that it is for. {}",
         -lag_s,
-        config_.track.forecast ? "The columns of now forecast to the newest sample"
+        config_.track.forecast ? "The columns now_... forecast to the newest sample"
                                : "--track.forecast true adds the forecast to the newest sample"));
   if (lag_s > 0.0)
     messages_.say(fmt::format("inputs come {:.3g} s before the states that they act on: they are held back", lag_s));
@@ -38,7 +38,7 @@ void Tracker::follow_lines() {
     complain("is too long for a sample");
   }
   take_lines(batch);
-  if (lines_->was_cut()) messages_.say(fmt::format("line {}: stopped within it; it is left out", line_number_ + 1));
+  if (lines_->was_cut()) messages_.say(fmt::format("line {}: the input was stopped inside this line, which is left out", line_number_ + 1));
 }
 
 LineStream::Got Tracker::next(std::string_view& line) {
@@ -64,7 +64,7 @@ void Tracker::take_lines(std::vector<std::string>& lines) {
 void Tracker::take_last_line(const std::string& line) {
   const bool whole = reader_.table().is_open() && reader_.table().is_whole(line);
   messages_.say(fmt::format("line {}: the last line has no line break at its end: {}", line_number_ + 1,
-                            whole ? "it has all its fields and is taken" : "fields are missing, it is left out"));
+                            whole ? "it has all its fields and is used" : "fields are missing, so it is left out"));
   std::vector<std::string> last{line};
   if (whole) take_lines(last);
 }

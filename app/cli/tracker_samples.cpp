@@ -31,7 +31,7 @@ void Tracker::correct_first(double time_s) {
   if (!first_) return;
   const bool has_left = !first_at_ && estimates_ > 0;
   if (has_left)
-    messages_.say(fmt::format("{}: times count another unit than seconds; the first sample's is {} s", place_, time_s));
+    messages_.say(fmt::format("{}: times are not in seconds; the first sample's time is {} s", place_, time_s));
   first_->time_s = time_s;
   first_->rest_s = 0.0;
   last_s_ = time_s;

@@ -52,7 +52,7 @@ void add_open_parameters(const ExportedBank& exported, std::vector<std::string>&
   for (std::size_t i = 0; i < exported.unidentifiable.size() && i < exported.parameter_names.size(); ++i)
     if (exported.unidentifiable[i]) unidentifiable.push_back(exported.parameter_names[i]);
   if (!unidentifiable.empty())
-    list.push_back(fmt::format("not identifiable from the training runs (other values describe these as well): {}",
+    list.push_back(fmt::format("not identifiable from the training runs (other values fit these runs equally well): {}",
                                fmt::join(unidentifiable, ", ")));
 }
 

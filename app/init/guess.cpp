@@ -211,7 +211,7 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
         "no channel looks like a command; without inputs modes differ only in the motion of the state itself");
   else if (!by_place && is_measured_motion(files, guess.inputs.front()))
     guess.reasons.emplace_back(
-        "no command is recorded: measured motion stands in for it, so the model says how one follows the other");
+        "no command is recorded: measured motion is used instead, so the model describes how one follows the other");
   replace_unreachable_commands(files, guess);
   turn_upright(files, guess);
   return guess;

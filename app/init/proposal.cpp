@@ -259,7 +259,7 @@ class Proposer {
       const double fresh = rows.rate_hz * (1.0 - stale);
       const double rate = round_rate(fresh);
       add("rate_hz", fmt::format("{:g}", rate),
-          fmt::format("{:.4g} rows per second, of which {:.0f} % repeat the state before", rows.rate_hz,
+          fmt::format("{:.4g} rows per second; {:.0f} % of them repeat the state of the row before", rows.rate_hz,
                       100.0 * stale));
     }
     if (!one_table() && !guess_.inputs.empty())

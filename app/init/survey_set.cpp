@@ -76,7 +76,7 @@ SurveyedFile survey_set(const FileSet& set) {
   for (std::size_t i = 1; i < set.files.size(); ++i) merge(all, survey_file(set.files[i]), partial);
   if (!partial.empty())
     all.notes.push_back(
-        fmt::format("left out, because not in all of the {} files: {}", set.files.size(), fmt::join(partial, ", ")));
+        fmt::format("left out, because they are not in all {} files: {}", set.files.size(), fmt::join(partial, ", ")));
   return all;
 }
 

@@ -27,7 +27,7 @@ std::string why_no_numbers(const std::vector<std::string>& texts) {
   if (comma || mark == MarkShown::either_point)
     hint = fmt::format(": other numbers have a decimal {} (data.decimal)", comma ? "point" : "comma");
   else if (numbers)
-    hint = ", as others are (data.na lists words for missing values)";
+    hint = ", although other values are (data.na lists words for missing values)";
   return fmt::format("\"{}\" is not a number{}", printable_name(text.substr(0, longest)), hint);
 }
 

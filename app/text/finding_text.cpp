@@ -216,7 +216,7 @@ std::string answer_words(const Finding& finding) {
       return no_evidence_words(finding);
     case Answer::evidence:
       return gain_sentence(finding, "S") +
-             (finding.terms_asked ? "" : " A single nonlinear model would look the same.");
+             (finding.terms_asked ? "" : " A single nonlinear model can give the same gain.");
     case Answer::not_yet:
       return not_yet_words(finding);
   }

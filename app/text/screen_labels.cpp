@@ -30,8 +30,8 @@ const std::vector<ScreenLabel>& screen_labels() {
        "how far the predicted mean is off (RMSE), one and several steps ahead. FIT of 100 % is perfect, 0 % is "
        "as good as the mean of the measurements. Brackets: the same of the best competitor, which the finding "
        "names, and of all filters combined."},
-      {"warning", "a fact that limits what the result is worth. `modebank show ARCHIVE` prints all warnings."},
-      {"next", "what to do now, with the command to type. It begins with ready where nothing has to be settled first."},
+      {"warning", "a fact that limits the use of the result. `modebank show ARCHIVE` prints all warnings."},
+      {"next", "what to do now, with the command to type. It begins with ready if nothing must be settled first."},
       {"use",
        "the model that explains the motion, and the filter that predicts best (chosen by training runs), with the "
        "name to give to --track.filter. Brackets: its gain over the finding's best competitor on the held-out "
@@ -46,14 +46,14 @@ const std::vector<ScreenLabel>& screen_labels() {
       {"doubt",
        "a choice that the log does not settle: check it, and state the key in the configuration if it is wrong."},
       {"decided", "a setting that `run LOG` has chosen on training runs, with its gain."},
-      {"robot", "what a filter on the robot must do as the result was learned with it: turn a sensor, or delay one."},
+      {"robot", "a correction that a filter on the robot must also make: turn a sensor, or delay one."},
       {"files", "the page and the configuration that `run LOG` writes beside the archive."},
       {"data", "the number of runs and steps and the sample period; at the top of `show`, the hash of the data."},
       {"lag",
        "by how much inputs act later or earlier than their stamps state, per run and on average, with standard "
        "errors, and which correction is applied. See also the term State lags."},
       {"windows", "how many windows were fitted, and how their fits ended."},
-      {"solved", "how the windows were solved and how long it took."},
+      {"solved", "the solver of the windows, and its time."},
       {"audit", "how far the fast solver's windows differ from those that Ceres solves alone."},
       {"global", "the linear model that is fitted to all training runs at once."},
       {"mixture",
@@ -61,14 +61,14 @@ const std::vector<ScreenLabel>& screen_labels() {
        "restarts agree."},
       {"merged",
        "how many components were merged because bank.modes limits the modes, and what that costs in log score."},
-      {"bank", "the modes, how many of the components became one, and the measurement noise R."},
+      {"bank", "the modes, the number of components that became modes, and the measurement noise R."},
       {"learned", "how many of the training steps the bank was learned from."},
       {"residuals",
        "how many autocorrelations and input correlations of the errors lie outside their bands: 5 % of a "
        "true model's do."},
       {"modebank", "the version that wrote the archive, and when."},
       {"command", "the command line that made the archive."},
-      {"config", "the hash of the configuration, which the archive holds whole."},
+      {"config", "the hash of the configuration; the archive contains all of it."},
       {"built", "the versions of the libraries that the program was built with."},
       {"reads", "a file that the command would read (--dry-run)."},
       {"writes", "a file that the command would write (--dry-run)."}};

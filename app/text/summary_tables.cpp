@@ -207,7 +207,7 @@ std::string equations_text(const Archive& archive, int width) {
   }
   if (transitions > 0.0)
     text += fmt::format(
-        "{:.1f} % of the {} samples lie outside of these ranges, where terms keep their value at the edge\n",
+        "{:.1f} % of the {} samples lie outside these ranges; there each term is held at its value at the edge\n",
         100.0 * outside / transitions, words_for(role));
   return text;
 }

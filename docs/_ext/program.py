@@ -76,7 +76,7 @@ def keys_page():
         facts += f"; default: `{default}`" if default else "; default: empty"
         facts += "; **basic**" if schema[key]["x-basic"] else ""
         facts += f"; changes the stage {schema[key]['x-stage']} and those that follow" if "x-stage" in schema[key] else ""
-        lines += [f"````{{confval}} {key}", plain(text[:1].upper() + text[1:]) + ".", "", f"*{facts}*", "", f"When to touch it: {plain(schema[key]['x-when'])}.", "````", ""]
+        lines += [f"````{{confval}} {key}", plain(text[:1].upper() + text[1:]) + ".", "", f"*{facts}*", "", f"When to change it: {plain(schema[key]['x-when'])}.", "````", ""]
     return "\n".join(lines)
 
 

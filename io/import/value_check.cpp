@@ -101,7 +101,7 @@ std::string dominating_in(const std::vector<RunStreams>& runs, const Column& col
         place(source, k), run.run, column.name, value,
         found.count > 1 ? fmt::format(" and {} more hold", found.count - 1) : " holds", 100.0 * found.held, column.name,
         trains ? "training" : "held-out",
-        trains ? "a least-squares model follows it alone" : "scores and errors are mostly of it");
+        trains ? "a least-squares model follows only this value" : "it dominates scores and errors");
   });
   return line;
 }

@@ -7,7 +7,7 @@ import h5py
 import session
 from session import PageTest, pooled
 
-MAY_BE_USED = {"calibrated": "use it", "overconfident": "do not rely on it", "underconfident": "usable, wider than need be", "undecided": "cannot tell yet"}
+MAY_BE_USED = {"calibrated": "use it", "overconfident": "do not rely on it", "underconfident": "usable, but wider than necessary", "undecided": "cannot tell yet"}
 DESKTOP, PHONE = (1440, 900), (390, 844)
 # Headings that need no definition.
 PLAIN = {"", "Runs", "Run", "Filter", "Samples", "Shape", "Iterations", "Converged", "Status", "Setting", "Value", "Default", "File", "Bytes", "SHA-256",

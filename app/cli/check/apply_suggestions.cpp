@@ -39,7 +39,7 @@ void keep_root(const Config& config, const std::filesystem::path& output, std::v
   const char* environment = std::getenv("MODEBANK_DATA");
   const std::string stated = resolved_values(text)["data.root"];
   if (stated.empty() && environment && *environment) return;
-  put({"data.root", {config.data.root}, "as from the folder of the file that this was made from"}, edits);
+  put({"data.root", {config.data.root}, "the folder from which the original file's data paths start"}, edits);
 }
 
 void put_suggested(const Suggestions& s, const Config& config, std::vector<KeyEdit>& edits) {

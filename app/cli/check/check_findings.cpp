@@ -230,7 +230,7 @@ std::string loss_reason(const Advice& advice) {
       "noise: 0.006 %, 0 %); {}",
       percent * tails.beyond_four, percent * tails.beyond_eight,
       advice.loss.loss == Loss::trivial ? "so least squares is fine"
-      : advice.loss.loss == Loss::tukey ? "so many gross errors must have no influence"
+      : advice.loss.loss == Loss::tukey ? "this many gross errors must have no influence"
                                         : "a bounded influence is safe, and costs 5 % efficiency at most");
 }
 

@@ -109,7 +109,7 @@ std::string suggestions_text(const Suggestions& s, const Config& config) {
   if (!s.unscored.empty())
     return fmt::format("\nsuggested\n  nothing, because nothing could be scored: {}\n", s.unscored);
   std::string text =
-      fmt::format("\nsuggested, by {}, each on top of those before\n{}", runs_text(s), accepted_text(s, config));
+      fmt::format("\nsuggested, by {}, each in addition to those before\n{}", runs_text(s), accepted_text(s, config));
   std::vector<std::string> in_vain, unscored;
   for (const Trial& trial : s.trials) {
     if (trial.accepted) continue;

@@ -41,7 +41,7 @@ constexpr std::array gone{
     Gone{"filter.parameter_noise", "", "refinement learns what it added to Q"},
     Gone{"filter.time_steps", "", "a longer time between samples is as many prediction steps as fit"},
     Gone{"window.wheel_radius_m", "", "data.derive: vl = 0.165 * wl"},
-    Gone{"window.loss_scale", "", "each loss has 95 % efficiency under normal noise"},
+    Gone{"window.loss_scale", "", "none: the scale of each loss is fixed (95 % efficiency under normal noise)"},
     Gone{"window.sigma", "", "window.scale = run"},
     Gone{"window.scale", "fixed", "run"},
     Gone{"window.prior_sd", "", "the numbers as window.prior"},

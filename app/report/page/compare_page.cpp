@@ -103,7 +103,7 @@ std::string gain_sentence(const PairedGain& gain, const std::string& first, cons
   if (gain.exceeds() || gain.falls_short())
     return fmt::format("the bank of {} predicts better than that of {},{}.", ahead, behind, size);
   return fmt::format(
-      "it cannot be told whether {} or {} predicts better: {} is ahead{}, which does not exceed the {:.3f} that chance "
+      "the data cannot tell whether {} or {} predicts better: {} is ahead{}, which does not exceed the {:.3f} that chance "
       "can explain.",
       first, other, ahead, size, gain.margin);
 }
@@ -174,7 +174,7 @@ json families_side_by_side(const Archive& first, const Archive& other) {
 json match_of(const Runs& runs, std::size_t k) {
   const auto &first = runs[0].archive.bank, &other = runs[k].archive.bank;
   if (!first || !other)
-    return {{"difference", "not both hold a bank"},
+    return {{"difference", "not both have a bank"},
             {"by_time", false},
             {"families", json::array()},
             {"modes", json::array()}};

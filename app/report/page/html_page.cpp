@@ -57,7 +57,7 @@ void append_part(std::string_view name, const Page& page, std::string& html) {
   else if (name == "script")
     html += page.script;
   else
-    throw std::logic_error(fmt::format("page.html has a part {} that nobody fills", name));
+    throw std::logic_error(fmt::format("page.html has a part {} without content", name));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ std::string competitor_words(const std::string& words) { return words.empty() ? 
 json gain_card(const FirstScreen& screen) {
   if (std::isnan(screen.gain)) return nullptr;
   const std::string known =
-      std::isfinite(screen.gain_error) ? "above 0 the bank predicts better" : "its error is not known";
+      std::isfinite(screen.gain_error) ? "above 0 the bank predicts better" : "its error is unknown";
   // Uses the digits of the finding's sentence, so that a number looks the same everywhere on the screen.
   const std::string error = std::isfinite(screen.gain_error) ? fmt::format(" ± {:.3f}", screen.gain_error) : "";
   const json gain = number(screen.gain, fmt::format("{:+.3f}{}", screen.gain, error));
@@ -43,7 +43,7 @@ std::string use_words(const FirstScreen& screen) {
     case Calibration::overconfident:
       return "do not rely on it";
     case Calibration::underconfident:
-      return held_out ? "usable, wider than need be" : "nothing was held out";
+      return held_out ? "usable, but wider than necessary" : "nothing was held out";
     case Calibration::undecided:
       break;
   }
@@ -81,7 +81,7 @@ json cards_of(const FirstScreen& screen) {
     if (!made.is_null()) cards.push_back(made);
   for (const ErrorAhead& error : screen.errors) cards.push_back(error_card(error));
   if (screen.errors.size() == 1)
-    cards.push_back(card("error", "RMSE ten steps ahead", nullptr, "", "not looked at: --filter.horizon 10 does so"));
+    cards.push_back(card("error", "RMSE ten steps ahead", nullptr, "", "not computed; run with --filter.horizon 10"));
   if (screen.free_run_start > 0) cards.push_back(fit_card(screen));
   return cards;
 }

@@ -78,7 +78,7 @@ JudgedGain judged(const ArchiveGain& by_run, const RepeatGain& by_repeat) {
   const std::string repeats = fmt::format("{} repeats", by_repeat.repeats);
   if (by_run.runs == 0)
     return {by_repeat.gain, by_repeat.standard_error, by_repeat.margin,
-            by_repeat.repeats < 2 ? "nothing to pair by" : repeats};
+            by_repeat.repeats < 2 ? "there are no pairs" : repeats};
   const PairedGain& first = by_run.gain;
   const std::string runs = first.by_blocks ? "blocks of samples" : fmt::format("{} runs", by_run.runs);
   if (by_repeat.repeats < 2) return {first.gain, first.standard_error, first.margin, runs};

@@ -49,7 +49,7 @@ std::string note_on(const std::string& task, const TaskState& state) {
     return fmt::format("job {} waits for a dependency that can no longer be met; cancel it with scancel {}", task,
                        task);
   for (const char* lost : {"FAILED", "CANCELLED", "TIMEOUT", "OUT_OF_MEMORY", "NODE_FAIL", "DEADLINE", "BOOT_FAIL"})
-    if (state.state == lost) return fmt::format("task {}: {}; submit again to run what is left", task, state.state);
+    if (state.state == lost) return fmt::format("task {}: {}; submit again for the remaining runs", task, state.state);
   return "";
 }
 

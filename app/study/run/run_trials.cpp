@@ -213,7 +213,7 @@ class StudyRun {
     stop(worker);
     constexpr int most_in_vain = 10;
     if (!why.empty() && ++vain_ > most_in_vain) {
-      result_.broken = "worker processes end before they begin: " + why;
+      result_.broken = "worker processes end before their first run: " + why;
       stopping_ = true;
     }
     worker = {.process = nullptr, .group = worker.group};

@@ -82,7 +82,7 @@ TEST_F(Help, OfEveryKeySaysWhenToTouchIt) {
     EXPECT_FALSE(option.when.ends_with(".")) << option.key << ": the full stop is the printer's";
   }
   const std::string help = modebank({"help", "data.split"}).out;
-  EXPECT_NE(help.find("When to touch it: for a single long run"), std::string::npos) << help;
+  EXPECT_NE(help.find("When to change it: for a single long run"), std::string::npos) << help;
   EXPECT_NE(help.find("changes the stage data and those that follow"), std::string::npos) << help;
 }
 

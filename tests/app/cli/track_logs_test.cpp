@@ -295,7 +295,7 @@ TEST_F(TrackLogs, FailsWhereNoSampleCouldBeUsed) {
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.err, HasSubstr("line 2: column time: \"soon\""));
   EXPECT_THAT(result.err, Not(HasSubstr("\"later\"")));
-  EXPECT_THAT(result.err, HasSubstr("line 2: the same 2 times more, the last at line 4"));
+  EXPECT_THAT(result.err, HasSubstr("line 2: this message was repeated 2 times, last at line 4"));
   EXPECT_THAT(result.err, HasSubstr("no sample could be used: 3 of 3 were left out"));
 }
 

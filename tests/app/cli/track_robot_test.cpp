@@ -80,7 +80,7 @@ TEST_F(TrackRobot, Finding_D6_GoesOnWhereACheckpointCannotBeWritten) {
   EXPECT_TRUE(std::filesystem::exists(file("sub/state.json")));
   const std::string errors = program.errors();
   EXPECT_EQ(lines_of(errors), 2) << errors;
-  EXPECT_THAT(errors, HasSubstr("the filter goes on without, and tries again every 5 samples"));
+  EXPECT_THAT(errors, HasSubstr("the filter continues without it, and tries again every 5 samples"));
   EXPECT_THAT(errors, HasSubstr("is written again"));
 }
 

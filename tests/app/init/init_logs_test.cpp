@@ -242,7 +242,7 @@ TEST_F(InitLogs, SaysWhyTextIsNotTaken) {
         init({write("words.csv", log_of("time,wz,cmd,pressure\n", 400, [&](const Drive& d) {
                       return fmt::format("{:.3f},{:.5f},{},{}", d.t, d.rate, d.left, cell(d.right, word));
                     }))});
-    EXPECT_THAT(written.text, HasSubstr(fmt::format("# not taken, text (\"{}\" is not a number, as others are (data.na "
+    EXPECT_THAT(written.text, HasSubstr(fmt::format("# not taken, text (\"{}\" is not a number, although other values are (data.na "
                                                     "lists words for missing values)): pressure\n",
                                                     word)));
   }

@@ -351,7 +351,7 @@ TEST_F(Init, LooksAtAllFilesOfAKind) {
   const std::string text = write({path("a.csv"), path("b.csv")});
   EXPECT_THAT(config.data.input, ElementsAre("cmd")) << "it stands still in the first alone";
   EXPECT_THAT(listing, HasSubstr("and 1 more"));
-  EXPECT_THAT(listing, HasSubstr("left out, because not in all of the 2 files: only_here"));
+  EXPECT_THAT(listing, HasSubstr("left out, because they are not in all 2 files: only_here"));
   EXPECT_EQ(import_data(config.data).recording.runs.size(), 2U);
 }
 

@@ -85,10 +85,10 @@ TEST_F(StudyCommands, ARepeatedStudyMakesNothingAgain) {
   const std::string table = text("s/study.csv");
   const ProgramResult again = study_six();
   EXPECT_EQ(again.status, 0);
-  EXPECT_NE(again.out.find("0 runs made, 6 were there"), std::string::npos) << again.out;
+  EXPECT_NE(again.out.find("0 runs made, 6 existed"), std::string::npos) << again.out;
   EXPECT_EQ(text("s/study.csv"), table);
   const ProgramResult more = study_six({"--study.vary", "bank.stay = 0.95 | 0.9", "--bank.transition", "labels"});
-  EXPECT_NE(more.out.find("6 runs made, 6 were there"), std::string::npos) << more.out << more.err;
+  EXPECT_NE(more.out.find("6 runs made, 6 existed"), std::string::npos) << more.out << more.err;
 }
 
 TEST_F(StudyCommands, OtherSettingsAndOtherDataAreRefused) {

@@ -122,7 +122,7 @@ TEST_F(StudySurvival, AKilledWorkerEndsItsTrialOnly) {
   EXPECT_NE(result.out.find("its process was ended by signal 9"), std::string::npos) << result.out;
   const ProgramResult resumed = study("one", slow);
   EXPECT_EQ(resumed.status, 0) << resumed.err;
-  EXPECT_NE(resumed.out.find("1 runs made, 23 were there"), std::string::npos) << resumed.out;
+  EXPECT_NE(resumed.out.find("1 runs made, 23 existed"), std::string::npos) << resumed.out;
 }
 
 ino_t identity(const std::filesystem::path& path) {

@@ -137,7 +137,7 @@ TEST_F(Suggest, AppliedFileIsTheSameWhereNothingGains) {
   const ProgramResult result = modebank({"check", config(), "--apply", "-o", file("applied.ini").string()});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(content(file("applied.ini")), content(config()));
-  EXPECT_THAT(result.out, HasSubstr("the configuration as it is"));
+  EXPECT_THAT(result.out, HasSubstr("the configuration unchanged, because nothing is suggested"));
 }
 
 TEST_F(Suggest, UsageErrorsWriteNothing) {
