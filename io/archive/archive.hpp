@@ -45,27 +45,26 @@ struct Provenance {
 struct FilterEvaluation {
   std::string filter;  ///< bank or a competitor
   std::vector<RunEvaluation> runs;
-  std::vector<FreeRun> free_runs = {};  ///< with filter.simulate; archives hold neither pit nor log_density nor notes
-  bool streamed = false;                ///< the runs are in an unfinished file; memory has only what later stages read
+  std::vector<FreeRun> free_runs = {};  ///< only with filter.simulate; archives contain neither pit nor log_density nor notes
+  bool streamed = false;                ///< true: the runs are in an unfinished file, and memory has only what later stages read
 
   using Fields = std::set<std::string>;  ///< names of arrays in the archive
   /// Reads these fields of a run; its other arrays stay empty.
   using Reading = std::function<void(std::size_t run, const Fields& fields, RunEvaluation& said, FreeRun& free_run)>;
-  Reading in_file = {};  ///< reader of runs that were left in their file (Evaluations::in_file)
+  Reading in_file = {};  ///< reader of runs that are still in their file (Evaluations::in_file)
 
-  /// Calls with the evaluation of one run: the one in memory, or these fields from the file.
+  /// Calls `body` with the evaluation of one run: the one in memory, or these fields from the file.
   void with_run(std::size_t run, const Fields& fields, const std::function<void(const RunEvaluation&)>& body) const;
   void with_free_run(std::size_t run, const std::function<void(const FreeRun&)>& body) const;
 };
 
-/// Takes one run's evaluation, with its position in the recording. So not all evaluations need to be in memory.
+/// Receives one run's evaluation and its index in the recording, so that not all evaluations need to be in memory.
 using EvaluationSink =
     std::function<void(const std::string& filter, std::size_t run, const RunEvaluation& said, const FreeRun* free_run)>;
 
 /// Residual tests of one model over all runs of the recording, in its order.
 struct ResidualTestSet {
-  std::string model;  ///< global (tests of its residuals one step ahead), or a filter: bank or a competitor (tests of
-                      ///< its scores z)
+  std::string model;  ///< `global` (residuals one step ahead), or a filter: bank or a competitor (scores z)
   std::vector<ResidualTests> runs;
 };
 
@@ -79,19 +78,20 @@ struct ConfusionRow {
   double share = 0.0;  ///< share of the label's samples
 };
 
-/// The data that an execution read.
+/// The data of an execution.
 struct DataPart {
   std::optional<Recording> recording;
   std::optional<RunLabels> labels;  ///< with data.label
   double step_scatter = 0.0;        ///< scatter of the recording's steps over their median (io/import/sampling.hpp)
-  std::optional<LagReport> lag;     ///< with data.lag_s = auto
+  std::optional<LagReport> lag;     ///< only with data.lag_s = auto
 };
 
-/// The results of one execution, stage by stage; absent stages did not run. (terms_asked is stored in the Finding.)
+/// The results of one execution, stage by stage. A stage that did not run is absent. (terms_asked is stored in the
+/// Finding.)
 struct Archive : DataPart, Learning {
   Provenance provenance;
-  std::string config;                        ///< fully resolved, itself a valid configuration file
-  std::vector<std::string> mode_names = {};  ///< names of the bank's modes; empty for a mode without one
+  std::string config;                        ///< the resolved configuration, itself a valid configuration file
+  std::vector<std::string> mode_names = {};  ///< names of the bank's modes; an empty name: the mode has none
   std::vector<FilterEvaluation> evaluations;
   std::vector<SummaryRow> summary;
   std::vector<HorizonRow> horizons;              ///< with filter.horizon
@@ -99,37 +99,38 @@ struct Archive : DataPart, Learning {
   std::vector<DiagnosticsRow> diagnostics;
   std::vector<ResidualTestSet> residual_tests;
   std::vector<FreeRunRow> free_runs = {};    ///< with filter.simulate
-  std::vector<ConfusionRow> confusion = {};  ///< with data.label and a scored bank
-  std::optional<Finding> finding = {};       ///< with a scored bank
+  std::vector<ConfusionRow> confusion = {};  ///< only with data.label and a scored bank
+  std::optional<Finding> finding = {};       ///< only with a scored bank
 
-  /// Whether modes of the bank are components of the mixture: the bank is not refined, and steps do not scatter.
+  /// Whether modes of the bank are components of the mixture: the bank was not refined, and time steps do not scatter.
   bool mixture_makes_bank() const { return mixture && !unrefined && step_scatter == 0.0; }
   bool one_motion_drifts() const { return one_motion && !one_motion->drift.empty(); }
 };
 
-/// Writes under a temporary name in the same folder, flushes, closes, hashes, renames. Throws DataError on failure and
-/// leaves nothing behind. The layout is described in docs/reference/archive.md; every number is stored as computed.
+/// Writes the archive under a temporary name in the same folder, flushes, closes, hashes and renames it. Throws
+/// DataError on failure and leaves nothing behind. docs/reference/archive.md describes the layout. Every number is
+/// stored as computed.
 void write_archive(const std::filesystem::path& path, const Archive& archive);
-/// The same, with the archive made on disk rather than in memory. write_archive does so by itself for evaluations above
-/// 128 MB and responsibilities above 256 MB, which then are never in memory as a whole.
+/// The same, but the archive is made on disk rather than in memory. write_archive also does this for evaluations above
+/// 128 MB and responsibilities above 256 MB, so these are never in memory as a whole.
 void write_large_archive(const std::filesystem::path& path, const Archive& archive);
 
-/// The same for an archive of data and windows alone. `produce` yields its `count` windows in parts (stream_windows),
-/// so memory holds only a part at a time. Returns the result of `produce`.
+/// The same for an archive of only data and windows. `produce` returns its `count` windows in parts (stream_windows),
+/// so that memory holds only one part at a time. Returns the result of `produce`.
 WindowFits write_archive(const std::filesystem::path& path, const Archive& archive, Index count,
                          const std::function<WindowFits(const WindowSink&)>& produce);
 
-/// The same for an archive whose evaluations are written while they are made. `make` passes them to the sink, from one
-/// thread, and returns the rest of the archive. Throws what `make` throws.
+/// The same for an archive whose evaluations are written as they are made. `make` passes them to the sink, from one
+/// thread, and returns the rest of the archive. Throws the exceptions of `make`.
 void write_archive(const std::filesystem::path& path, const Recording& recording,
                    const std::function<const Archive&(const EvaluationSink&)>& make);
 
-/// Location of an archive's evaluations. `in_file`: they are read on demand (FilterEvaluation::with_run), and windows
-/// lack the arrays that no page shows.
+/// Location of an archive's evaluations. `in_file`: evaluations are read on demand (FilterEvaluation::with_run), and
+/// arrays of windows that no page shows stay empty.
 enum class Evaluations { in_memory, in_file };
 
-/// Reads all stages in the file, bit by bit as written. Throws DataError where shapes disagree or a position lies
-/// outside its array. Values are checked by verify_archive alone.
+/// Reads all stages in the file, bit by bit as written. Throws DataError if shapes disagree or a position lies outside
+/// its array. Only verify_archive checks values.
 Archive read_archive(const OpenArchive& file, Evaluations evaluations = Evaluations::in_memory);
 
 /// Result of a verification; no `problems` means that the archive is complete and valid.
@@ -138,8 +139,8 @@ struct Verification {
   bool ok() const { return problems.empty(); }
 };
 
-/// Checks hash, format and schema version, the layout's required members, and every value: finite, definite, summing to
-/// one. Throws ConfigurationError when the file is missing.
+/// Checks hash, format, schema version, the layout's required members, and every value: finite, definite, summing to
+/// one. Throws ConfigurationError if the file is missing.
 Verification verify_archive(const std::filesystem::path& path);
 /// Problems in the members and values of an open archive.
 std::vector<std::string> problems_of(const OpenArchive& file);

@@ -8,13 +8,13 @@
 
 namespace modebank {
 
-/// An empty archive in a file, to be filled part by part; its user block is zero until the hash is computed.
+/// An empty archive in a file, to be filled part by part. Its user block is zero until the hash is computed.
 hdf5::Handle create_archive_file(const std::filesystem::path& path);
 /// Writes the hash into the user block of a closed archive file.
 void stamp_hash(const std::filesystem::path& path);
 
-/// An archive that is being made. It is in memory, so that a full disk cannot leave HDF5 with a half-flushed file, and
-/// so that its bytes depend on its content alone.
+/// An archive in memory while it is made. A full disk thus cannot leave a half-flushed file, and the bytes depend only
+/// on the content.
 class ArchiveImage {
  public:
   ArchiveImage();

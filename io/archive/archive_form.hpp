@@ -6,8 +6,8 @@
 
 namespace modebank {
 
-/// How check_output recognises an archive, complete or damaged: by the hash, or by HDF5's signature behind it. A
-/// study's table is not an archive.
+/// Tells check_output how to recognise an archive, complete or damaged: by the hash, or by HDF5's signature behind the
+/// hash. A study's table is not an archive.
 FileForm archive_form();
 
 /// Whether a file is a study's table or plan. False for an unreadable file.

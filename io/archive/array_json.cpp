@@ -78,7 +78,7 @@ json nested(hid_t type, const Shape& shape, std::size_t dimension, const char* b
   const std::size_t stride =
       H5Tget_size(type) * element_count(Shape(shape.begin() + static_cast<std::ptrdiff_t>(dimension) + 1, shape.end()));
   json list = json::array();
-  // After an extent of 0 there are no elements, so later extents need not be valid.
+  // An extent of 0 means no elements, so later extents need not be valid.
   const hsize_t extent = element_count(shape) == 0 && stride == 0 ? 0 : shape[dimension];
   for (hsize_t i = 0; i < extent; ++i) list.push_back(nested(type, shape, dimension + 1, bytes + i * stride));
   return list;

@@ -8,10 +8,10 @@
 
 namespace modebank::hdf5 {
 
-/// Every value of an array, nested by its shape; a table is a list of row objects. Integers stay exact. Values that
-/// JSON lacks (NaN, infinities, references, opaque bytes) become null; text that is not UTF-8 is repaired.
+/// Every value of an array, nested by its shape. A table becomes a list of row objects. Integers stay exact. Values
+/// that JSON lacks (NaN, infinities, references, opaque bytes) become null. Text that is not UTF-8 is repaired.
 nlohmann::json to_json(const StoredArray& array);
-/// The same for some rows.
+/// The same for a range of rows.
 nlohmann::json to_json(const StoredArray& array, const Rows& rows);
 
 /// A table's columns in order, with the names of the row objects.

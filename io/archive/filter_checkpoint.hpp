@@ -8,15 +8,15 @@
 
 namespace modebank {
 
-/// How check_output recognises a checkpoint, of any version.
+/// Tells check_output how to recognise a checkpoint of any version.
 FileForm checkpoint_form();
 
-/// Writes a filter's state as JSON, with exact numbers. The file is complete or not written at all. `identity`:
-/// identifies bank and settings of the filter. Throws DataError when the file cannot be written.
+/// Writes a filter's state as JSON with exact numbers. The file is complete or not written at all. `identity`
+/// identifies the bank and settings of the filter. Throws DataError if the file cannot be written.
 void save_checkpoint(const std::filesystem::path& path, const std::string& identity, const FilterSnapshot& snapshot);
 
-/// Reads it back. Throws ConfigurationError when the file does not exist, DataError when it is not a checkpoint or has
-/// another identity.
+/// Reads a checkpoint. Throws ConfigurationError if the file does not exist, and DataError if it is not a checkpoint or
+/// has another identity.
 FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::string& identity);
 
 }  // namespace modebank

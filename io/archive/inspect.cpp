@@ -52,7 +52,7 @@ bool is_of_samples(const std::string& group) {
                               group != "/evaluation/evidence");
 }
 
-/// Whether an array of such a group has a row per sample.
+/// Whether an array of such a group has one row per sample.
 bool has_samples(const std::string& group, const std::string& name) {
   return is_of_samples(group) && !(group == "/data" && (name == "runs" || name == "quantum"));
 }
@@ -140,7 +140,7 @@ std::vector<std::string> components(const std::string& path) {
   return parts;
 }
 
-/// Descends group by group, so that the error for a wrong path lists the existing members.
+/// Descends group by group, so that the error for a wrong path lists the members of the last existing group.
 json json_at(hdf5::Handle group, const std::string& path, const AskedRun& run) {
   std::string so_far = "/";
   const std::vector<std::string> parts = components(path);

@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// The lag report of an archive made with data.lag_s = auto; empty for others. Decodes nothing else of the file. Throws
-/// as load_bank does.
+/// The lag report of an archive with data.lag_s = auto; empty for other archives. The other parts of the file are not
+/// decoded. Throws as load_bank does.
 std::optional<LagReport> load_lag(const OpenArchive& archive);
 
 }  // namespace modebank

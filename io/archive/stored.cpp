@@ -180,7 +180,7 @@ void check_rows(const std::vector<Row>& rows, const std::set<std::string>& runs,
   }
 }
 
-/// Nullopt for an unreadable bank: verification continues without it.
+/// Nullopt for an unreadable bank, so that verification continues without it.
 std::optional<Bank> whole_bank(const Archive& archive, const std::string& filter) try {
   return archive.bank_of(filter);
 } catch (const std::invalid_argument&) {

@@ -11,7 +11,7 @@
 
 namespace modebank {
 
-/// One column of a table whose columns are known at run time only.
+/// One column of a table whose columns are known only at run time.
 struct NamedColumn {
   using Values = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::uint64_t>,
                               std::vector<std::string>>;
@@ -25,7 +25,7 @@ struct NamedTable {
 };
 
 /// A table of runs in a file with the root of an archive: the study's resolved /config, /provenance with the inputs,
-/// and the hash in the user block. It has one compound dataset, and tables of answers.
+/// and the hash in the user block. The file has one compound dataset and the tables of answers.
 struct StudyFile {
   Provenance provenance;
   std::string config;
@@ -38,18 +38,18 @@ struct StudyFile {
 /// Whether /trials/<name> are external links, relative to the file's folder, or copies of the archives' content.
 enum class ArchiveUse { link, copy };
 
-/// Writes under a temporary name, hashes, renames, as write_archive does.
+/// Writes under a temporary name, hashes and renames, as write_archive does.
 void write_study_file(const std::filesystem::path& path, const StudyFile& study, ArchiveUse use = ArchiveUse::link);
 
-/// Reads all but the archives. Throws as read_archive does, and DataError when the table does not exist.
+/// Reads everything except the archives. Throws as read_archive does, and DataError if the table does not exist.
 StudyFile read_study_file(const OpenArchive& file, const std::string& table);
 
-/// The parts of a trial's archive that a study's table takes.
+/// The parts of a trial's archive that a study's table contains.
 struct TrialScores {
   std::string modebank_version, config_hash, data_hash;
   std::int64_t modes = 0;                              ///< number of the bank's modes
   std::string evidence;                                ///< the finding's answer; empty without a finding
-  std::vector<std::pair<std::string, double>> pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's "*"
+  std::vector<std::pair<std::string, double>> pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's rows for run "*"
 };
 
 /// Reads only these parts. Throws as read_archive does.

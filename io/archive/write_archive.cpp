@@ -29,7 +29,7 @@ Index evaluated_numbers(const Archive& archive) {
 /// Whether an archive is made on disk rather than in memory.
 bool is_large(const Archive& archive) {
   constexpr Index most_in_memory = Index{2} << 20;  // doubles
-  constexpr Index numbers_per_parameter = 8;        // per window: value, error and description of the fit
+  constexpr Index numbers_per_parameter = 8;        // numbers per window: value, error and description of the fit
   if (evaluated_numbers(archive) > most_in_memory / 2) return true;
   if (archive.windows &&
       numbers_per_parameter * archive.windows->parameters.size() + archive.windows->covariance.size() > most_in_memory)
@@ -116,7 +116,7 @@ class EvaluationFile {
   std::string latest_;
 };
 
-/// Marks an exception of the caller's function, which is not a failure of writing.
+/// Marks an exception of the caller's function, which is not an error of writing.
 struct NotMade {};
 
 }  // namespace

@@ -124,7 +124,7 @@ bool hdf5_lies_outside(hid_t dataset) {
 
 namespace {
 
-/// The filter of a dataset that is not installed, with a line of Python that copies the file without the filter; empty
+/// The filter of a dataset that is not installed, with a line of Python that copies the file without this filter. Empty
 /// if all filters are installed.
 std::string missing_filter(hid_t dataset) {
   constexpr H5Z_filter_t lzf = 32000;
@@ -221,7 +221,7 @@ std::vector<std::string> pickled_names(const std::string& pickle) {
   while (!rest.empty() && rest != "." && rest != "a.") {
     std::string_view line = take_line();
     if (line.starts_with("a")) line.remove_prefix(1);
-    if (line.starts_with("p")) continue;  // Python's pickler would store an object for later use here
+    if (line.starts_with("p")) continue;  // here Python's pickler would store an object for later use
     if (!line.starts_with("V") || line.find('\\') != std::string_view::npos) return {};
     names.emplace_back(line.substr(1));
   }

@@ -11,7 +11,7 @@ namespace modebank {
 
 haddr_t hdf5_address(hid_t object);
 std::string hdf5_path(hid_t object);
-/// A text of fixed length; empty when the attribute does not exist or has another type.
+/// A text of fixed length; empty if the attribute does not exist or has another type.
 std::string hdf5_text_attribute(hid_t object, const std::string& name);
 /// Value of the attribute units, unit or Units.
 std::string hdf5_unit(hid_t object);
@@ -33,21 +33,21 @@ hdf5::Handle hdf5_open_log(const std::string& path);
 /// Whether a dataset's values are in another file or in other datasets.
 bool hdf5_lies_outside(hid_t dataset);
 
-/// H5Dread. Throws DataError with HDF5's reason; if a filter is not installed, with the line that copies the file
-/// without it.
+/// H5Dread. Throws DataError with HDF5's reason. If a filter is not installed, the message contains the line that
+/// copies the file without it.
 void hdf5_read(hid_t dataset, hid_t memory_type, hid_t memory_space, hid_t file_space, void* to);
 
-/// Rows (from 1) whose chunks were never written, along one line of a dataset of one or two dimensions. HDF5 returns
-/// the fill value for them.
+/// Rows (from 1) in chunks that were never written, along one line of a dataset of one or two dimensions. HDF5 returns
+/// the fill value for these rows.
 std::vector<LineRange> hdf5_unwritten_lines(hid_t dataset, hsize_t along, hsize_t across);
 
 /// The type of a member of a compound; `member` lists names through nested compounds. Without names, the type itself.
 hdf5::Handle hdf5_member_type(hid_t compound, const std::vector<std::string>& member);
-/// An in-memory type of rows with this member alone, of type `cell`.
+/// An in-memory type of rows with only this member, of type `cell`.
 hdf5::Handle hdf5_only_member(const std::vector<std::string>& member, hdf5::Handle cell);
 
-/// Texts of a list that Python pickled in its oldest, plain form (protocol 0), as PyTables does. Nothing is executed;
-/// any other content gives an empty list.
+/// Texts of a list that Python pickled in its oldest, plain form (protocol 0), as PyTables does. Nothing is executed.
+/// Any other content gives an empty list.
 std::vector<std::string> pickled_names(const std::string& pickle);
 
 /// One line of a dataset of one or two dimensions.

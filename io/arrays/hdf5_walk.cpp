@@ -23,7 +23,7 @@ void Hdf5Walk::group(hid_t id, const std::string& path, const std::string& name,
   if (hdf5::has_attribute(id, "OCTAVE_NEW_FORMAT") && hdf5::has_link(id, "value"))
     return octave_variable(id, path, name, depth);
   for (const std::string& member : hdf5::member_names(id)) {
-    if (member.starts_with("#")) continue;  // MATLAB's folder for values that others refer to
+    if (member.starts_with("#")) continue;  // MATLAB's folder for values to which others refer
     if (columns.size() > most_objects)
       throw DataError(fmt::format("more than {} columns, which is too many for a log", most_objects));
     link(id, member, path + "/" + member, name, depth);
@@ -100,7 +100,7 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
   column.whole = hdf5_is_whole(type.id());
   const bool table = H5Tget_class(type.id()) == H5T_COMPOUND;
   if (!table && !column.text && !hdf5_is_number(type.id())) return;
-  if (hdf5::element_count(shape) > 1 && H5Dget_storage_size(id) == 0) {  // HDF5 allocates late: no value was written
+  if (hdf5::element_count(shape) > 1 && H5Dget_storage_size(id) == 0) {  // HDF5 allocates late, so this means that no value was written
     unwritten[full] = fmt::format("its {} values were never written", hdf5::element_count(shape));
     return left_out.push_back(fmt::format("{} is left out: {}", full, unwritten[full]));
   }

@@ -21,7 +21,7 @@ struct Hdf5Place {
 /// Walks through a file and lists its columns.
 class Hdf5Walk {
  public:
-  /// `named`: the file's name, for lines on objects.
+  /// `named`: the file's name, for lines about objects.
   explicit Hdf5Walk(std::string named) : file(std::move(named)) {}
 
   const std::string file;
@@ -35,8 +35,8 @@ class Hdf5Walk {
 
   void group(hid_t id, const std::string& path, const std::string& name, int depth);
 
-  /// Chooses the dimension of matrix rows: the one whose length a vector of the file has, else the usual one of the
-  /// program that wrote the file.
+  /// Chooses the dimension of matrix rows. It is the dimension whose length a vector of the file has, else the usual
+  /// one of the program that wrote the file.
   void turn_matrices();
 
  private:

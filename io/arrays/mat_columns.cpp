@@ -23,7 +23,7 @@ using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
 thread_local std::string last_reason;  ///< last message of matio in this thread
 
-/// A template, because matio 1.5.28 passes its text as `const`.
+/// A template, because in matio 1.5.28 the text is `const`.
 template <class Text>
 void keep_reason(int, Text* text) {
   last_reason = text;
@@ -51,7 +51,7 @@ std::string type_name(const matvar_t& v) {
   return v.isLogical ? "logical" : names[v.class_type - MAT_C_DOUBLE];
 }
 
-/// The product of the extents; the largest number on overflow.
+/// The product of the extents; the largest number if it overflows.
 std::uint64_t elements(const matvar_t& v) {
   std::uint64_t product = v.rank > 0 && v.dims ? 1 : 0;
   for (int i = 0; product > 0 && i < v.rank; ++i)
@@ -68,7 +68,7 @@ struct MatStep {
 struct MatPlace {
   std::string variable;
   std::vector<MatStep> steps;
-  std::size_t first = 0;  ///< index of the first value; the values follow one another down a column
+  std::size_t first = 0;  ///< index of the first value; the values of a column are contiguous
 };
 
 matvar_t* follow(matvar_t* v, const std::vector<MatStep>& steps) {
@@ -173,7 +173,7 @@ class MatColumns : public ColumnStore {
   std::vector<MatPlace> places_;
   std::vector<std::string> left_out_;
 
-  /// Whether as many elements were read as declared; a damaged file may declare more.
+  /// Whether all declared elements were read; a damaged file may declare more.
   static bool holds(const matvar_t& part, std::uint64_t count) {
     return part.data && part.data_size > 0 && part.nbytes / static_cast<std::size_t>(part.data_size) >= count;
   }

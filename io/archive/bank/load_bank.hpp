@@ -9,17 +9,17 @@
 namespace modebank {
 
 /// One bank of an archive: "bank" or the competitor "baseline", "noise_only", "one_motion", "drifting" or "nonlinear".
-/// Decodes nothing else of the file. Throws DataError when the archive has no such bank.
+/// The other parts of the file are not decoded. Throws DataError if the archive has no such bank.
 Bank load_bank(const OpenArchive& archive, const std::string& which = "bank");
 
 class GroupReader;
-/// Calls `body` with the root of an archive; messages contain its path.
+/// Calls `body` with the root of an archive. Error messages contain the archive's path.
 void read_root(const OpenArchive& archive, const std::function<void(GroupReader&)>& body);
 
 /// The resolved configuration from which an archive was made.
 std::string load_configuration(const OpenArchive& archive);
 
-/// The hash of the data from which it was made.
+/// The hash of the data from which an archive was made.
 std::string load_data_hash(const OpenArchive& archive);
 
 }  // namespace modebank

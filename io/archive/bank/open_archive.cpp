@@ -81,7 +81,8 @@ void require_readable(const fs::path& path) {
   if (!fs::is_regular_file(status)) throw DataError("is not a regular file");
 }
 
-/// Throws with the reason why HDF5 does not open a file: from its first bytes and its hash, else HDF5's own reason.
+/// Throws with the reason why HDF5 does not open a file. The reason comes from the first bytes and the hash, else from
+/// HDF5.
 [[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
   std::string bytes(user_block_bytes + hdf5_signature.size(), '\0');
   std::ifstream stream = open_file(path);
@@ -104,7 +105,7 @@ hdf5::Handle open_checked(const fs::path& path) {
   }
 }
 
-/// Returns the hash. Throws DataError unless it is right.
+/// Returns the hash. Throws DataError if it does not match.
 std::string checked_hash(const hdf5::Handle& file) {
   const int descriptor = descriptor_of(file);
   UserBlock block{};

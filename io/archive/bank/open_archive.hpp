@@ -24,15 +24,15 @@ UserBlock make_user_block(std::string_view content_sha256);
 /// Faults of a user block, given the hash of the content; empty if there are none.
 std::vector<std::string> user_block_problems(const UserBlock& block, std::string_view content_sha256);
 
-/// SHA-256 of everything after a file's user block. Throws DataError when the file cannot be read.
+/// SHA-256 of all bytes after a file's user block. Throws DataError if the file cannot be read.
 std::string content_hash(const std::filesystem::path& path);
 
-/// An archive open for reading. It is opened once, and its hash is checked once through the descriptor that HDF5 reads;
-/// copies share it. Functions that read an archive only once also take its path.
+/// An archive open for reading. It is opened once, and its hash is checked once, through the descriptor that HDF5
+/// reads. Copies share this descriptor. Functions that read an archive only once also accept its path.
 class OpenArchive {
  public:
-  /// Throws ConfigurationError when the file is missing. Throws DataError, with the path, for a file that is
-  /// unreadable, truncated, damaged (its hash does not match), not a modebank archive, or of another major schema.
+  /// Throws ConfigurationError if the file is missing. Throws DataError with the path for a file that is unreadable,
+  /// truncated, damaged (its hash does not match), not a modebank archive, or of another major schema.
   OpenArchive(const std::filesystem::path& path);  // NOLINT(google-explicit-constructor): see above
   OpenArchive(const std::string& path) : OpenArchive(std::filesystem::path(path)) {}  // NOLINT
   OpenArchive(const char* path) : OpenArchive(std::filesystem::path(path)) {}         // NOLINT
@@ -40,7 +40,7 @@ class OpenArchive {
   const std::filesystem::path& path() const;
   /// SHA-256 of the content, from the user block: identifies the archive.
   const std::string& digest() const;
-  /// The root group. Calls of HDF5 need a hdf5::Quiet.
+  /// The root group. Calls of HDF5 need a living hdf5::Quiet.
   hdf5::Handle root() const;
 
  private:

@@ -11,7 +11,7 @@ namespace modebank {
 
 /// Forms in which the archive stores structs of another shape. Each `store_` has a `restore_` that returns the same
 /// bits. Arrays have one window or mode per column; matrices within a column are row-major. store_ throws
-/// std::invalid_argument for sizes that disagree, restore_ DataError for invalid content.
+/// std::invalid_argument for sizes that disagree, restore_ throws DataError for invalid content.
 
 /// Puts one matrix per mode into the columns of a (rows * cols) x count array. `what`: its name in messages.
 template <class Get>
@@ -41,17 +41,18 @@ struct StoredChannels {
 StoredChannels store_model_parameters(const std::vector<ModelParameter>& parameters);
 std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored);
 
-/// Throws DataError unless the number of names is the number of the columns, or 0.
+/// Throws DataError unless the number of names is 0 or the number of columns.
 void check_count(const std::string& what, const std::vector<std::string>& names, std::size_t named);
 
-/// The structure with the number of states that its dimension n implies. Throws DataError when p parameters do not fit.
+/// The structure with the number of states that follows from its dimension n. Throws DataError if p parameters do not
+/// fit this structure.
 LinearStructure restore_structure(LinearStructure stored, Eigen::Index dimension, Eigen::Index parameters);
 
-/// Throw DataError for lags that do not fit the number of states, and for a number of parameters that does not fit.
+/// Both throw DataError: for lags that do not fit the number of states, or for a wrong number of parameters.
 void check_lags(const LinearStructure& structure, Eigen::Index dimension);
 [[noreturn]] void parameters_do_not_fit(Eigen::Index parameters, Eigen::Index states);
 
-/// A bank's modes as columns (K of them), and its matrices transposed so that memory is row-major.
+/// A bank's K modes as columns. Matrices are transposed, so that their memory is row-major.
 struct StoredBank {
   std::string model;
   LinearStructure structure;
@@ -91,10 +92,10 @@ struct StoredBank {
   Eigen::MatrixXd bend_standard_error;             ///< n_y*T x K
 };
 StoredBank store_bank(const Bank& bank);
-/// Fills the members of StoredBank in; names, dt_s and screened modes stay as they are.
+/// Reads or writes the members of StoredBank. Names, dt_s and screened modes are not included.
 Bank restore_bank(const StoredBank& stored, Bank named);
 
-/// The arrays of /drifting: a bank of one mode whose noise adapts. Other banks have other arrays.
+/// The arrays of /drifting: a bank of one mode with adaptive noise. Other banks have other arrays.
 struct StoredDrifting {
   LinearStructure structure;
   Eigen::VectorXd parameters;       ///< p
@@ -103,7 +104,7 @@ struct StoredDrifting {
   Eigen::VectorXd horizon, factor;  ///< H
 };
 StoredDrifting store_drifting(const Bank& bank);
-/// Fills the members of StoredDrifting in. Throws DataError where sizes do not fit each other.
+/// Reads or writes the members of StoredDrifting. Throws DataError if sizes disagree.
 Bank restore_drifting(const StoredDrifting& stored, const Bank& rest);
 
 }  // namespace modebank

@@ -11,9 +11,9 @@
 
 namespace modebank {
 
-/// "(a)^2" or "(a)*(b)"; unknown when one of them is.
+/// "(a)^2" or "(a)*(b)"; unknown if one unit is unknown.
 std::string unit_product(const std::string& a, const std::string& b);
-/// "a/b", "1" for equal units; unknown when one of them is.
+/// "a/b", "1" for equal units; unknown if one unit is unknown.
 std::string unit_ratio(const std::string& a, const std::string& b);
 
 /// Units of variances, entry by entry.
@@ -22,7 +22,7 @@ Unit squared(const Unit& unit);
 Unit outer(const Unit& unit);
 /// Row-major units of a matrix that maps `from` to `to`.
 Unit ratios(const Unit& to, const Unit& from);
-/// One text for a table's array column: the common unit, or all of them with commas; empty when one is unknown.
+/// One text for a table's array column: the common unit, or all units with commas. Empty if a unit is unknown.
 std::string joined(const Unit& unit);
 
 /// Units of the recorded channels, and those of a model's arrays that follow from them.
@@ -33,7 +33,7 @@ class Units {
 
   Unit states() const { return of(states_); }
   Unit inputs() const { return of(inputs_); }
-  /// Units of named channels, which include lagged ones: "wz[k-1]" has the unit of its channel.
+  /// Units of named channels. A lagged name such as "wz[k-1]" has the unit of its channel.
   Unit states(const std::vector<std::string>& names) const { return of(states_, names); }
   Unit inputs(const std::vector<std::string>& names) const { return of(inputs_, names); }
 

@@ -17,8 +17,8 @@ struct Column {
   std::string name;
   T Row::*member;
   std::string unit = {};
-  bool optional = false;  ///< archives of earlier minor versions lack it; their rows keep the member's default
-  Rule rule = rule::any;  ///< for its values
+  bool optional = false;  ///< archives of earlier minor versions lack this column; their rows keep the member's default
+  Rule rule = rule::any;  ///< rule for the column's values
 
   Column obeying(const Rule& other) const {
     Column column = *this;
@@ -49,8 +49,8 @@ Column<Row, T> later_column(std::string name, T Row::*member) {
   return {std::move(name), member, {}, true};
 }
 
-/// The value in the file. Booleans are 8-bit integers, because MATLAB and Octave read HDF5's own as enumerations.
-/// Enumerations are words.
+/// The value in the file. Booleans are stored as 8-bit integers, because MATLAB and Octave read HDF5's own booleans as
+/// enumerations. Enumerations are stored as words.
 template <class T>
 auto to_stored(const T& value) {
   if constexpr (std::is_same_v<T, bool>)
@@ -77,7 +77,7 @@ void from_stored(const Stored& stored, T& value) {
   }
 }
 
-/// All rows' values of one column. Vectors become the columns of a matrix and must have equal lengths.
+/// All rows' values of one column. A vector per row becomes a column of a matrix; all vectors must have equal lengths.
 template <class Row, class T>
 hdf5::TableColumn encode(const std::vector<Row>& rows, const Column<Row, T>& column) {
   if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
@@ -102,7 +102,7 @@ inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::Tabl
       [&](const auto& values) {
         using Values = std::decay_t<decltype(values)>;
         if constexpr (std::is_same_v<Values, std::vector<std::string>>)
-          return broken_text(values, true);  // messages may contain line ends
+          return broken_text(values, true);  // messages may contain line breaks
         else if constexpr (std::is_same_v<Values, Eigen::MatrixXd>)
           return broken(rule, sizes, {static_cast<hsize_t>(values.cols()), static_cast<hsize_t>(values.rows())},
                         values.data(), first_row);
@@ -112,7 +112,7 @@ inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::Tabl
       column.values);
 }
 
-/// Reads one column into the rows and resizes them. `judged`: applies all rules, else only those on positions.
+/// Reads one column into the rows and resizes the rows. `judged`: applies all rules, otherwise only rules on positions.
 template <class Row, class T>
 void decode(const hdf5::TableRows& read, const Column<Row, T>& column, const Sizes& sizes, bool judged,
             std::vector<Row>& rows) {
@@ -120,7 +120,7 @@ void decode(const hdf5::TableRows& read, const Column<Row, T>& column, const Siz
   hdf5::TableColumn stored = encode(std::vector<Row>(), column);
   hdf5::read_column(read, stored);
   if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
-    // One value per measured signal, for every table; the column of an empty table has the smallest length.
+    // One value per measured signal, for every table. In an empty table the column has the smallest length.
     const Eigen::Index length = std::get<Eigen::MatrixXd>(stored.values).rows();
     if (const auto signals = sizes.find("n_y");
         signals && read.rows.count > 0 && *signals != static_cast<hsize_t>(length))

@@ -7,7 +7,7 @@ namespace modebank {
 
 namespace {
 
-/// A problem whose text already has its path; enclosing groups must not add theirs.
+/// A problem whose text already contains its path, so that enclosing groups do not add their own paths.
 struct PlacedError : DataError {
   using DataError::DataError;
 };

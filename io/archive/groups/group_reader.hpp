@@ -23,10 +23,11 @@ struct LeftOut {
   bool evaluations = false;      ///< arrays of filters over the samples
 };
 
-/// Reader by the layout's description, with the calls of GroupWriter. Shapes must agree, and numbers that become
-/// positions or sizes must be within bounds; the first problem is thrown as DataError. Verification passes a list of
-/// problems: then all values are checked, problems are listed and reading continues. It checks large arrays block by
-/// block and leaves them empty.
+/// Reads members as the layout describes them, with the same calls as GroupWriter.
+/// - Shapes must agree, and numbers that become positions or sizes must be within bounds. The first problem is thrown
+///   as DataError.
+/// - With a list of problems (verification), all values are checked, problems are listed and reading continues. Large
+///   arrays are checked block by block and left empty.
 class GroupReader {
  public:
   static constexpr bool reads = true;
@@ -39,7 +40,7 @@ class GroupReader {
 
   /// Whether all values are checked.
   bool verifies() const { return problems_ != nullptr; }
-  /// This reader and its member groups do not read `parts`, which must outlive them.
+  /// Parts that this reader and its member groups skip. `parts` must outlive the readers.
   void leave_out(const LeftOut& parts) { left_out_ = &parts; }
   bool leaves_evaluations() const { return left_out_ && left_out_->evaluations; }
 
@@ -100,7 +101,7 @@ class GroupReader {
       check_values(rule, array.shape(), values, 0);
     });
   }
-  /// An array that is written block by block.
+  /// An array that was written block by block.
   template <class Source>
   void through_rows(const std::string& name, Source& values, const Letters& letters, const Rule& rule = rule::any) {
     Eigen::MatrixXd all;
@@ -157,16 +158,16 @@ class GroupReader {
     body(stored);
     finish([&] { value = from(stored); });
   }
-  /// Runs `step`, which relies on members read from this group, unless these had problems.
+  /// Runs `step`, which uses members read from this group, unless these members had problems.
   void finish(const std::function<void()>& step);
   /// The same for a step that only checks.
   void judge(const std::function<void()>& step) {
     if (verifies()) finish(step);
   }
 
-  /// Binds a letter to an extent that no array of the group has.
+  /// Binds a letter to an extent that no array of the group states.
   void set_size(const std::string& letter, std::size_t extent) { sizes_.set(letter, extent); }
-  /// 0 for a letter that no array has bound.
+  /// Extent of a letter; 0 if no array has bound this letter.
   Eigen::Index size(const std::string& letter) const {
     return static_cast<Eigen::Index>(sizes_.find(letter).value_or(0));
   }
@@ -186,7 +187,7 @@ class GroupReader {
   static constexpr H5T_class_t kind_of() {
     return std::is_floating_point_v<StoredOf<Derived>> ? H5T_FLOAT : H5T_INTEGER;
   }
-  /// Resizes an array to take rows of this shape.
+  /// Resizes an array for rows of this shape.
   template <class Derived>
   static void shape_values(Eigen::PlainObjectBase<Derived>& values, const hdf5::Shape& shape, Eigen::Index rows) {
     if constexpr (Derived::IsVectorAtCompileTime)
@@ -194,7 +195,7 @@ class GroupReader {
     else
       values.resize(static_cast<Eigen::Index>(hdf5::element_count({shape.begin() + 1, shape.end()})), rows);
   }
-  /// `shape`: of these values, which begin with row `first` of the array.
+  /// `shape`: shape of these values, which begin with row `first` of the array.
   template <class Derived>
   void check_values(const Rule& rule, const hdf5::Shape& shape, const Eigen::PlainObjectBase<Derived>& values,
                     hsize_t first) const {

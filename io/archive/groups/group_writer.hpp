@@ -13,11 +13,11 @@
 
 namespace modebank {
 
-/// Binds the letters of an array; throws std::invalid_argument, with its path, where extents disagree.
+/// Binds the letters of an array. Throws std::invalid_argument with the array's path if extents disagree.
 void agree(Sizes& sizes, const std::string& place, const Letters& letters, const hdf5::Shape& shape);
 
-/// Shape of an array with one sample, window or mode per column; for three extents, the middle one must be bound.
-/// `all`: the first extent where `values` are only some of the rows, else 0.
+/// Shape of an array with one sample, window or mode per column. For three extents, the middle one must be bound.
+/// `all`: the first extent of the whole array if `values` are only some of its rows, else 0.
 hdf5::Shape shape_of(Sizes& sizes, const std::string& place, const Letters& letters, hsize_t rows, hsize_t cols,
                      bool is_vector, hsize_t all);
 template <class Derived>
@@ -27,18 +27,18 @@ hdf5::Shape shape_of(Sizes& sizes, const std::string& place, const Letters& lett
                   Derived::IsVectorAtCompileTime, all);
 }
 
-/// The attribute `units`: one for all entries, or one for each entry of the trailing extents.
+/// The attribute `units`: one unit for all entries, or one for each entry of the trailing extents.
 void write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape);
 
-/// Writer by the layout's description (io/archive/layout.hpp): one group of a file. Arrays have one sample, window or
-/// mode per column, so their memory is the row-major (count, ...) dataset.
+/// Writes members as the layout describes them (io/archive/layout.hpp), in one group of a file. Arrays have one sample,
+/// window or mode per column, so that their memory is the row-major (count, ...) dataset.
 class GroupWriter {
  public:
   static constexpr bool reads = false;
 
   explicit GroupWriter(hdf5::Handle group, std::string path = {}) : group_(std::move(group)), path_(std::move(path)) {}
 
-  /// Makes a member group, or reopens an existing one, and calls `body(writer)` with it.
+  /// Makes a member group, or reopens an existing one, and calls `body(writer)` with this group.
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
     if (!complete()) return;
@@ -53,7 +53,7 @@ class GroupWriter {
   }
 
   /// Later calls write windows first .. first + count - 1 of `total`. Arrays over windows (letter M) are written into
-  /// these rows, all others with the last part. `texts`: all values that texts may have.
+  /// these rows, all other arrays with the last part. `texts`: all values that texts may have.
   void windows_from(hsize_t first, hsize_t count, hsize_t total, std::vector<std::string> texts) {
     part_ = Part{first, count, total, std::move(texts)};
   }
@@ -96,8 +96,8 @@ class GroupWriter {
     hdf5::write_texts(group_.id(), hdf5::Place::dataset, name, values, {values.size()});
   }
 
-  /// A vector has one letter. A matrix has two, or three when each column is itself a matrix; then the middle extent
-  /// must be bound.
+  /// A vector has one letter. A matrix has two, or three if each column is itself a matrix; then the middle extent must
+  /// be bound.
   template <class Derived>
   void field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
              const Unit& unit = {}, const Rule& = rule::any) {
@@ -129,7 +129,7 @@ class GroupWriter {
                        {{static_cast<hsize_t>(first), static_cast<hsize_t>(block.cols())}}, block.data());
     }
   }
-  /// An array computed from others, for users of the file; readers here ignore it.
+  /// An array that is computed from others, for users of the file. modebank's readers ignore it.
   template <class Derived>
   void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                      const Unit& unit = {}, const Rule& = rule::any) {
@@ -160,8 +160,8 @@ class GroupWriter {
     if (!rows.empty()) table(name, rows, columns...);
   }
 
-  /// A long table: make(append) calls append(rows) for each part of the rows, since rows take several times as much
-  /// memory as their columns.
+  /// A long table: make(append) calls append(rows) for each part of the rows, because rows take several times as much
+  /// memory as columns.
   template <class Make, class Take, class Row, class... T>
   void table_rows(const std::string& name, Make make, const Take& /*take*/, const Column<Row, T>&... columns) {
     std::vector<hdf5::TableColumn> encoded{encode(std::vector<Row>(), columns)...};
@@ -180,7 +180,7 @@ class GroupWriter {
     body(stored);
   }
 
-  /// Binds a letter to an extent that no array of the group has.
+  /// Binds a letter to an extent that no array of the group states.
   void set_size(const std::string& letter, std::size_t extent) { sizes_.set(letter, extent); }
   /// Extents bound so far, for a member group.
   Sizes known(const Letters& letters) const { return sizes_.only(letters); }
@@ -197,7 +197,7 @@ class GroupWriter {
     hdf5::write_array(group_.id(), hdf5::Place::attribute, name, hdf5::file_type<Number>(), hdf5::memory_type<Number>(),
                       {}, &value);
   }
-  /// The dataset for parts of windows; it is created with the first part.
+  /// The dataset for parts of windows; the first part creates it.
   hdf5::Handle rows_of(const std::string& name, hid_t file_type, const hdf5::Shape& shape) const;
   void write_column_units(const hdf5::Handle& table, const std::vector<std::string>& units);
 

@@ -90,7 +90,7 @@ std::string broken_sums(Rule::Form form, const RowRange& rows, std::span<const d
   for (std::size_t begin = 0; row > 0 && begin < values.size(); begin += row) {
     double sum = 0.0;
     for (std::size_t i = begin; i < begin + row; ++i) sum += values[i];
-    const bool above = sum > 1.0 + tolerance, below = sum < 1.0 - tolerance;  // neither if a value is missing
+    const bool above = sum > 1.0 + tolerance, below = sum < 1.0 - tolerance;  // no verdict if a value is missing
     if (above || (below && form == Rule::Form::probabilities))
       return "holds probabilities that sum to " + number_text(sum) + place(rows, begin);
   }

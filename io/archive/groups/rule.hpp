@@ -10,13 +10,13 @@
 
 namespace modebank {
 
-/// Allowed values of a member, beside its type and extents. The layout names a rule where not every value is allowed,
-/// and readers enforce it.
+/// Allowed values of a member, beside its type and extents. The layout names a rule if some values are not allowed, and
+/// readers enforce the rule.
 struct Rule {
   /// Rules on all numbers of a member together.
   enum class Form {
     none,
-    increasing,           ///< each above the one before
+    increasing,           ///< each value is above the one before
     probabilities,        ///< each slice along the last extent sums to 1, unless a value is missing
     parts,                ///< each slice along the last extent sums to at most 1
     covariances,          ///< each slice along the last two extents is a symmetric, positive semidefinite matrix
@@ -27,16 +27,16 @@ struct Rule {
   bool above_least = false;     ///< excludes `least` itself
   bool finite = true;           ///< false: allows infinities within the bounds
   bool may_be_missing = false;  ///< NaN marks an unknown value
-  std::string below = {};       ///< a letter: values are positions below its extent
-  double beyond = 0.0;          ///< how far above the last position values may lie; 1: counts
+  std::string below = {};       ///< a letter: values are positions below this letter's extent
+  double beyond = 0.0;          ///< by how much values may exceed the last position; 1: counts
   Form form = Form::none;
-  bool index = false;  ///< values become positions or sizes, so every reader checks them, not only verification
+  bool index = false;  ///< values become positions or sizes, so that every reader checks them, not only verification
 };
 
 /// The rules that the layout uses.
 namespace rule {
 
-/// Any value, NaN and infinities included: for computed values that are only shown.
+/// Any value, including NaN and infinities: for computed values that are only shown.
 inline const Rule any{.finite = false, .may_be_missing = true};
 inline const Rule finite{};
 inline const Rule finite_or_missing{.may_be_missing = true};
@@ -46,7 +46,7 @@ inline const Rule not_negative_or_missing{.least = 0.0, .finite = false, .may_be
 inline constexpr double one = 1.0 + 1e-9;  ///< with room for rounding
 inline const Rule share{.least = 0.0, .most = one};
 inline const Rule share_or_missing{.least = 0.0, .most = one, .may_be_missing = true};
-/// May be infinite: its divisor may be zero.
+/// May be infinite, because the divisor may be zero.
 inline const Rule at_most_one{.most = one, .finite = false, .may_be_missing = true};
 inline const Rule at_least_one{.least = 1.0, .index = true};
 inline const Rule increasing{.form = Rule::Form::increasing};
@@ -58,29 +58,30 @@ inline const Rule covariances{.form = Rule::Form::covariances};
 inline const Rule computed_covariances{
     .finite = false, .may_be_missing = true, .form = Rule::Form::computed_covariances};
 
-/// Numbers of lags and channels: beyond any use, but small enough that products of sizes do not overflow.
+/// Numbers of lags and channels. The limit is far above any use, but small enough that products of sizes do not
+/// overflow.
 inline const Rule lags{.least = 1.0, .most = 1000.0, .index = true};
 inline const Rule delay{.least = 0.0, .most = 1000.0, .index = true};
 inline const Rule channels{.least = 0.0, .most = 1e5, .index = true};
 
 inline Rule between(double least, double most) { return {.least = least, .most = most, .index = true}; }
-/// Positions below the letter's extent; any position while no array has bound the letter.
+/// Positions below the letter's extent; any position if no array has bound the letter.
 inline Rule position(std::string letter) { return {.least = 0.0, .below = std::move(letter), .index = true}; }
-/// The same, or -1 for none.
+/// The same, or -1 for no position.
 inline Rule position_or_none(std::string letter) { return {.least = -1.0, .below = std::move(letter), .index = true}; }
 /// A count of the letter's items: 0 to its extent.
 inline Rule count_of(std::string letter) { return {.least = 0.0, .below = std::move(letter), .beyond = 1.0}; }
 
 }  // namespace rule
 
-/// First fault of the values, `shape` in row-major order, by the rule, e.g. "holds 255 at (3), must lie in 0 .. 3";
-/// empty if there is none. `first_row`: index in the whole array of the first of these rows.
+/// The first value that breaks the rule, for example "holds 255 at (3), must lie in 0 .. 3"; empty if there is none.
+/// `shape` is in row-major order. `first_row`: index of the first of these rows in the whole array.
 template <class Number>
 std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::Shape& shape, const Number* values,
                    hsize_t first_row = 0);
 
-/// First control character in the texts, which a terminal would execute when names are printed; empty if there is none.
-/// `whole`: the text is not a name and may contain line ends and tabs.
+/// The first control character in the texts; empty if there is none. A terminal would execute it when names are
+/// printed. `whole`: the text is not a name, so that line breaks and tabs are allowed.
 std::string broken_text(const std::vector<std::string>& texts, bool whole = false);
 
 }  // namespace modebank

@@ -10,8 +10,8 @@
 
 namespace modebank {
 
-/// Reader of arrays over the samples of all runs (letter S). It returns the rows of one run, and reads short runs in
-/// blocks of several.
+/// Reads arrays over the samples of all runs (letter S). Returns the rows of one run; short runs are read in blocks of
+/// several runs.
 class SampleReader {
  public:
   static constexpr bool reads = true;
@@ -19,7 +19,7 @@ class SampleReader {
   /// Reads arrays of the group, which must outlive this. `total`: samples of all runs.
   SampleReader(GroupReader& group, hsize_t total);
 
-  /// Later fields are those of the run with these rows. `wanted`: the fields to read; null: all.
+  /// Selects a run for the next fields, by its rows. `wanted`: the fields to read; null: all.
   void begin_run(const hdf5::Rows& rows, const std::set<std::string>* wanted = nullptr) {
     run_ = rows;
     wanted_ = wanted;
@@ -42,7 +42,7 @@ class SampleReader {
       column.has_problem = false;
     });
   }
-  /// Left empty where no run has the array, or where all its rows of this run are NaN or -1.
+  /// Left empty if no run has the array, or if all its rows of this run are NaN or -1.
   template <class Derived>
   void optional_field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                       const Unit& unit = {}, const Rule& rule = rule::any) {
@@ -66,7 +66,7 @@ class SampleReader {
     std::string cells = {};
   };
   Column& column_of(const std::string& name);
-  /// The run's rows as in memory, with `cell_bytes` per number.
+  /// The run's rows in their memory form, with `cell_bytes` per number.
   void read_rows(Column& column, hid_t memory_type, std::size_t cell_bytes, void* values) const;
   template <class Derived>
   void read_run(Column& column, const Letters& letters, Eigen::PlainObjectBase<Derived>& values) {

@@ -9,7 +9,7 @@ namespace modebank {
 namespace {
 
 constexpr hsize_t block_rows = 65536;
-/// HDF5's time to join parts of a selection grows with the square of their number.
+/// The time that HDF5 needs to join the parts of a selection grows with the square of their number.
 constexpr std::size_t most_stretches = 256;
 
 }  // namespace

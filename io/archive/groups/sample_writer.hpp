@@ -9,9 +9,10 @@
 
 namespace modebank {
 
-/// Writer of arrays over the samples of all runs (letter S): one array per quantity, in which each run has its rows.
-/// Rows are collected over runs into blocks, and each block is written by one call per array. Runs come in any order,
-/// each once. An array that no run has is absent; a run without it has NaN or -1 in its rows.
+/// Writes arrays over the samples of all runs (letter S): one array per quantity, in which each run has its rows.
+/// - Rows of several runs are collected into blocks; each block is written by one call per array.
+/// - Runs come in any order, each once.
+/// - An array that no run has is absent. If only some runs have an array, the rows of the others are NaN or -1.
 class SampleWriter {
  public:
   static constexpr bool reads = false;
@@ -19,7 +20,7 @@ class SampleWriter {
   /// Writes arrays into the group; `total`: samples of all runs.
   SampleWriter(const GroupWriter& group, hsize_t total);
 
-  /// Later fields are those of the run with these rows.
+  /// Selects a run for the next fields, by its rows.
   void begin_run(const hdf5::Rows& rows);
   /// Writes the collected rows.
   void flush();
@@ -45,7 +46,7 @@ class SampleWriter {
   }
 
  private:
-  /// One array, with its waiting rows as in memory.
+  /// One array, with its waiting rows in their memory form.
   struct Column {
     std::string name;
     hdf5::Handle dataset;
@@ -79,7 +80,7 @@ class SampleWriter {
   const hdf5::Handle group_;
   std::string path_;
   Sizes sizes_;
-  hsize_t total_, came_ = 0;  ///< number of rows, and of those from runs so far
+  hsize_t total_, came_ = 0;  ///< number of rows in all, and of rows from runs so far
   hdf5::Rows run_;
   bool at_once_ = false;  ///< the run is written directly from the caller's memory
   std::vector<Column> columns_;

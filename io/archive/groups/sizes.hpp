@@ -16,15 +16,15 @@ using Unit = std::vector<std::string>;
 /// Letters of the layout (M windows, K modes, n states, ...), one per dimension of an array.
 using Letters = std::vector<std::string>;
 
-/// The extents bound to letters so far within one part of the archive. The first array with a letter binds it; every
-/// later one must agree.
+/// The extents of the letters within one part of the archive. The first array with a letter binds it; all later arrays
+/// must agree.
 class Sizes {
  public:
   void set(const std::string& letter, hsize_t extent) { extents_[letter] = extent; }
   std::optional<hsize_t> find(const std::string& letter) const;
-  /// Only these letters, if they are bound.
+  /// Only these letters, as far as they are bound.
   Sizes only(const Letters& letters) const;
-  /// Binds free letters. Returns a disagreement, e.g. "shape (10, 3), but M is 12"; empty without one.
+  /// Binds free letters. Returns the disagreement, for example "shape (10, 3), but M is 12"; empty if there is none.
   std::string agree(const Letters& letters, const hdf5::Shape& shape);
 
  private:
