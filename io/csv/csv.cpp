@@ -41,10 +41,10 @@ struct TableSink {
   StampColumn stamps;
   bool time_may_miss;
   std::string first, second;    // parts of the row's stamp
-  std::size_t header_rows = 1;  // header rows still to come
+  std::size_t header_rows = 1;  // number of header rows that follow
   CsvNumbers parse;
   bool rows_seen = false, empty_line_seen = false;
-  std::vector<std::uint64_t> comment_lines;  // empty lines that replace comments
+  std::vector<std::uint64_t> comment_lines;  // number of empty lines in place of comments
   std::size_t next_comment = 0;
   std::size_t fields = 0;
   std::uint64_t line = 1;
@@ -89,7 +89,7 @@ struct TableSink {
     if (!parse.decimal_comma())
       if (const NumberStatus status = stamps.add(text); status != NumberStatus::text) return status;
     if (const std::optional<std::string> number = parse.with_point(text)) return stamps.add(*number);
-    // Beside decimal commas, 12.5 is an error; dates keep their points.
+    // If decimal commas are in use, 12.5 is an error; dates keep their points.
     const bool other_mark = parse_number(text).status == NumberStatus::ok;
     return other_mark || !parse.decimal_comma() ? NumberStatus::text : stamps.add(commas_as_points(text));
   }
@@ -180,7 +180,7 @@ bool has_late_comment(std::string_view text) {
   return false;
 }
 
-/// Reads one request from a text whose head is known.
+/// Reads one request from a text whose head has been read.
 Table parse_rows(std::string_view file, std::string_view text, const CsvHead& head, const TableRequest& request,
                  const std::vector<std::string>& na) {
   const auto rows_at_most = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));

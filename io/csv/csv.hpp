@@ -10,20 +10,21 @@
 namespace modebank {
 
 /// Comma-separated values (RFC 4180, read by libcsv) and similar dialects (io/csv/csv_dialect.hpp). A header row names
-/// the columns, in any order and with exact case. Fields may be quoted; in quotes "" is a quote, and separators and
-/// line breaks are text. UTF-16, a byte-order mark, CRLF and blanks around fields are accepted, and so are a missing
-/// last line break and empty lines before the header or after the last row. Malformed quotes, rows of another width
-/// than the header and empty lines between rows are errors.
+/// the columns, in any order and with exact case.
+/// - Fields may be quoted. In quotes, "" is a quote; separators and line breaks are text.
+/// - Also accepted: UTF-16, a byte-order mark, CRLF, blanks around fields, a missing last line break, and empty lines
+///   before the header or after the last row.
+/// - Errors: malformed quotes, rows of another width than the header, and empty lines between rows.
 
-/// Column names of the file. Reads only as far as needed. Throws ConfigurationError when the file cannot be read or has
-/// no header, DataError when the header's quotes are malformed.
+/// Column names of the file. Reads only as far as needed. Throws ConfigurationError if the file cannot be read or has
+/// no header, and DataError if the header's quotes are malformed.
 std::vector<std::string> read_csv_header(const std::filesystem::path& path);
 
-/// Reads the requested columns of `content`. `file`: name for messages. Throws as TableReader::read does.
+/// Reads the requested columns of `content`. `file`: name for error messages. Throws as TableReader::read does.
 Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request,
                 const FormatOptions& options = {});
 
-/// The columns of such a text, or of its beginning. Throws as read_csv_header does.
+/// The columns of a text, or of its beginning. Throws as read_csv_header does.
 TableInfo csv_columns(std::string_view file, std::string_view content, const FormatOptions& options);
 
 /// A text file: one table without a name.

@@ -94,13 +94,14 @@ bool has_decimal_commas(const std::vector<Fields>& rows, Separator separator) {
       either_comma = either_comma || shown == MarkShown::either_comma;
       either_point = either_point || shown == MarkShown::either_point;
     }
-  // Between commas a field with a comma is quoted, and the comma more often separates thousands than decimals.
+  // If commas separate fields, a field with a comma is quoted, and this comma more often separates thousands than
+  // decimals.
   return comma || (either_comma && !either_point && separator != Separator::comma);
 }
 
 bool any_value(const Fields& row) { return std::any_of(row.begin(), row.end(), is_value); }
 
-/// Whether the first row has values in the same columns as the second, and at least one.
+/// Whether the first row has values in the same columns as the second row, in at least one column.
 bool is_headless(const std::vector<Fields>& rows, const std::vector<std::string>& na) {
   if (rows.empty() || !any_value(rows[0])) return false;
   if (rows.size() < 2) return true;
@@ -116,7 +117,7 @@ bool has_units_row(const std::vector<Fields>& rows) {
          any_value(rows[2]);
 }
 
-/// Names in the last comment before the rows, as numpy.savetxt writes them; empty if their number is not that of the
+/// Names in the last comment before the rows, as numpy.savetxt writes them. Empty if there are more or fewer names than
 /// fields.
 Fields commented_names(const std::vector<TextRecord>& records, Separator separator, std::size_t width) {
   std::string_view last;
@@ -152,9 +153,9 @@ std::size_t lines_above_table(std::string_view text, bool complete, const Format
     for (std::size_t i = first; i < end; ++i)
       found = found && rows[i].size() == width && (i < first + names_and_units || any_value(rows[i]));
     if (!found) continue;
-    // R's headers lack the name of row numbers, which makes them look like a title.
+    // R's headers have no name for the row numbers, so that a header looks like a title.
     if (first == 1 && rows[0].size() > 1 && rows[0].size() + 1 == width && any_value(rows[1])) return 0;
-    // Comments after the title are kept, since the last may name the columns.
+    // Comments after the title are kept, because the last one may name the columns.
     const auto behind = std::find_if(all.begin(), all.end(),
                                      [&](const TextRecord& record) { return record.line > records[first - 1].line; });
     return static_cast<std::size_t>(behind->line) - 1;

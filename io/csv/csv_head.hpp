@@ -15,8 +15,8 @@ struct CsvHead {
   std::vector<std::string> names, units;
 };
 
-/// The head of a text, or (unless `complete`) of its beginning. `file`: name for messages. Throws ConfigurationError
-/// without a header, DataError where its quotes are malformed.
+/// The head of a text; unless `complete`, the text is only a beginning. `file`: name for error messages. Throws
+/// ConfigurationError without a header, and DataError if the header's quotes are malformed.
 CsvHead read_csv_head(std::string_view file, std::string_view text, bool complete, const FormatOptions& options);
 
 /// The head of a file. Reads only as far as needed.

@@ -10,7 +10,7 @@ namespace modebank {
 
 namespace {
 
-/// Blanks that spreadsheets put between thousands: no-break, narrow no-break and thin ones.
+/// Blanks that spreadsheets put between thousands: no-break, narrow no-break and thin blanks.
 constexpr std::string_view wide_blanks[]{"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
 
 /// Length in bytes of a thousands separator at the start of the text; 0: none.
@@ -59,7 +59,7 @@ std::optional<Grouped> grouped(std::string_view field, char decimal, char mark) 
   }
   const bool has_exponent = rest.find_first_of("eE") != std::string_view::npos;
   if (result.marks > 0 && !result.has_decimals && has_exponent)
-    return std::nullopt;  // the mark in 2.499e3 is a decimal one
+    return std::nullopt;  // the mark in 2.499e3 is a decimal mark
   result.digits += rest;  // decimals and an exponent; parse_number checks them
   return result;
 }

@@ -12,21 +12,21 @@ namespace modebank {
 /// Numbers in a text file: their decimal mark, the thousands separators between groups of three digits, and words for
 /// missing values (data.na).
 ///
-/// With a decimal comma, points, blanks and apostrophes separate thousands: 2.499 is 2499, and 2.49 is an error. With a
-/// decimal point, commas, blanks and apostrophes do. But a single comma needs a point beside it: 2,499.5 is 2499.5,
-/// while 2,499 is an error, because others write 2.499 in this way.
+/// - With a decimal comma, points, blanks and apostrophes separate thousands: 2.499 is 2499, and 2.49 is an error.
+/// - With a decimal point, commas, blanks and apostrophes separate thousands. A single comma is accepted only with a
+///   point: 2,499.5 is 2499.5, while 2,499 is an error, because it may also mean 2.499.
 class CsvNumbers {
  public:
-  /// `missing`: words in any case; numbers among them (-999) are compared by value.
+  /// `missing`: words, compared without case. Words that are numbers (-999) are compared by value.
   CsvNumbers(bool decimal_comma, const std::vector<std::string>& missing);
 
   ParsedNumber parse(std::string_view field) const;
 
-  /// The field with a decimal point and without thousands separators, for other readers of numbers and times; nullopt
-  /// if its marks are different.
+  /// The field with a decimal point and without thousands separators, for other readers of numbers and times. Nullopt
+  /// if the field's marks do not fit.
   std::optional<std::string> with_point(std::string_view field) const;
 
-  /// The word of data.na that equals the field; null: none.
+  /// The word of data.na that equals the field; null if there is none.
   const std::string* missing_word(std::string_view field) const;
 
   bool decimal_comma() const { return decimal_comma_; }

@@ -13,9 +13,9 @@
 namespace modebank {
 
 /// One pass of libcsv over a text. It counts lines, passes fields and rows to `Sink`, and stops at the sink's first
-/// error. Exceptions must not cross libcsv's C frames, so errors are stored until the pass ends. A Sink has void
-/// field(std::string_view), void row() (also for empty lines), bool done(), and the members fields (in this row so
-/// far), line (where the row starts) and error (empty: none).
+/// error. Exceptions must not cross libcsv's C frames, so errors are stored until the pass ends. A Sink has
+/// - void field(std::string_view), void row() (also for empty lines) and bool done();
+/// - the members fields (number in this row so far), line (start of the row) and error (empty: no error).
 template <class Sink>
 class CsvPass {
  public:
@@ -84,7 +84,7 @@ class CsvPass {
         fmt::format("{}:{}: malformed quotes: a quoted field must end before the next separator", file_, line_));
   }
 
-  static constexpr std::size_t chunk_bytes = 1 << 18;  // parsed before the sink is asked again whether it is done
+  static constexpr std::size_t chunk_bytes = 1 << 18;  // bytes that are parsed before the sink is asked again whether it is done
 
   std::string_view file_;
   Sink& sink_;

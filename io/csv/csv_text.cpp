@@ -116,7 +116,7 @@ bool is_comment(std::string_view record) {
 }
 
 std::vector<std::string> fields_of(std::string_view record, char separator) {
-  if (separator == '\t')  // a tab at the end separates, too
+  if (separator == '\t')  // a tab at the end also separates
     while (!record.empty() && (record.back() == '\r' || record.back() == '\n')) record.remove_suffix(1);
   else
     record = without_blanks(record);

@@ -11,13 +11,13 @@ namespace modebank {
 bool is_utf16(std::string_view content);
 
 /// The text as UTF-8, without a byte-order mark. Lines that are not UTF-8 are read as Windows-1252. UTF-8 is returned
-/// without a copy; `storage` has any other text.
+/// without a copy; any other text is converted into `storage`.
 std::string_view as_utf8(std::string_view content, std::string& storage);
 
 /// The text after this number of lines.
 std::string_view without_first_lines(std::string_view text, std::size_t lines);
 
-/// The text up to its last row with more than separators and blanks; spreadsheets write such rows below a table.
+/// The text without its last rows of only separators and blanks. Spreadsheets write such rows below a table.
 std::string_view without_empty_tail(std::string_view text, char separator);
 
 /// Records of a text up to its last line break, or to its end if it is `complete`. Line breaks within quotes do not end
@@ -31,11 +31,11 @@ std::vector<TextRecord> first_records(std::string_view text, bool complete, std:
 /// Whether a record is a comment: it begins with '#' or '%'.
 bool is_comment(std::string_view record);
 
-/// More columns than any log has, but few enough for memory if every second byte were a name.
+/// More columns than any log has, but few enough for memory even if every second byte were a name.
 inline constexpr std::size_t most_csv_columns = 100'000;
 
-/// The fields of a record, without blanks and quotes around them, at most most_csv_columns + 1. `separator` ' ': any
-/// number of blanks and tabs.
+/// The fields of a record, without blanks and quotes around them; at most most_csv_columns + 1. `separator` ' ' means
+/// any number of blanks and tabs.
 std::vector<std::string> fields_of(std::string_view record, char separator);
 
 /// Rewrites text for libcsv: comments become empty lines, whose numbers are recorded, and sequences of blanks become

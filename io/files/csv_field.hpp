@@ -9,7 +9,7 @@ namespace modebank {
 std::string quoted_field(std::string_view text);
 
 /// The same for tables that people open. A text that a spreadsheet would execute as a formula gets an apostrophe in
-/// front: if it begins with = + - @, a tab or a carriage return, and is not a number.
+/// front. Such a text begins with = + - @, a tab or a carriage return, and is not a number.
 std::string csv_field(std::string_view text);
 
 }  // namespace modebank

@@ -5,11 +5,11 @@
 
 namespace modebank {
 
-/// A file in memory for a library that takes file names and does not report a full disk (libmatio). Its content is
-/// complete and is written to disk by replace_file.
+/// A file in memory, for a library that takes file names and does not report a full disk (libmatio). replace_file then
+/// writes the complete content to disk.
 class MemoryFile {
  public:
-  /// Throws DataError without memory.
+  /// Throws DataError if there is no memory.
   MemoryFile();
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;

@@ -21,7 +21,7 @@ std::string front_of(const fs::path& path, std::size_t bytes) {
   return front;
 }
 
-/// Reason why the path cannot be written, including links that lead back to themselves; empty if there is none.
+/// Reason why the path cannot be written, including links that lead back to themselves; empty if it can.
 std::string obstacle_at(const fs::path& path) {
   fs::path target;
   try {

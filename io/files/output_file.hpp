@@ -14,7 +14,7 @@ struct FileForm {
   std::function<bool(const std::filesystem::path&)> is_one;  ///< called for regular files that are not empty
 };
 
-/// A form recognised by text near the start of the file: `sign` within the first `within` bytes.
+/// A form that is recognised by text near the start of the file: `sign` within the first `within` bytes.
 FileForm form_by_front(std::string name, std::string sign, std::size_t within);
 
 /// An output file that a user names.
@@ -24,9 +24,12 @@ struct OutputFile {
   FileForm form;               ///< form of its content
 };
 
-/// Protects every output. Throws ConfigurationError, with option and path, for a file that cannot be written, for one
-/// of `sources` (input files of the command) by any name or link, and for an existing file of another form. An empty
-/// file may be replaced. Throws DataError when the disk fails.
+/// Protects every output. Throws ConfigurationError with option and path for
+/// - a file that cannot be written,
+/// - one of `sources` (input files of the command), by any name or link,
+/// - an existing file of another form. An empty file may be replaced.
+///
+/// Throws DataError if the disk fails.
 void check_output(const OutputFile& output, const std::vector<std::filesystem::path>& sources);
 
 }  // namespace modebank

@@ -9,7 +9,7 @@
 
 namespace modebank {
 
-/// Opens for binary reading. Throws ConfigurationError, naming path and reason, when the file cannot be read.
+/// Opens a file for binary reading. Throws ConfigurationError with path and reason if the file cannot be read.
 std::ifstream open_file(const std::filesystem::path& path);
 
 /// All bytes of a file. Throws as open_file does.
@@ -18,8 +18,8 @@ std::string read_file(const std::filesystem::path& path);
 /// Reads up to `count` bytes at an offset of an open file; returns their number, smaller at the end or on `error`.
 std::size_t read_at(int descriptor, char* to, std::size_t count, std::uintmax_t offset, std::error_code& error);
 
-/// Throws DataError, with the path, if it is a device, a pipe or a folder (or a link to one), since reading these may
-/// never end. A missing path is fine.
+/// Throws DataError with the path for a device, a pipe or a folder, or a link to one, because reading these may never
+/// end. A missing path is accepted.
 void refuse_special_file(const std::filesystem::path& path);
 
 }  // namespace modebank

@@ -21,14 +21,14 @@ namespace fs = std::filesystem;
 
 std::string system_reason() { return std::generic_category().message(errno); }
 
-/// Failure of a disk, in a folder that would otherwise take the file.
+/// Throws for an error of the disk in a folder that could otherwise take the file.
 struct DiskFailure : DataError {
   using DataError::DataError;
 };
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-/// An open descriptor; close() reports errors, which a destructor cannot.
+/// An open descriptor. Its close() reports errors, unlike a destructor.
 class Descriptor {
  public:
   Descriptor(const fs::path& path, int flags) : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
@@ -51,7 +51,7 @@ class Descriptor {
     }
   }
   void sync() const {
-    // Some file systems cannot sync a folder and return EINVAL; that is ignored.
+    // Some file systems cannot sync a folder and return EINVAL, which is ignored.
     if (::fsync(descriptor_) != 0 && errno != EINVAL) throw DataError(system_reason());
   }
   void close() {
@@ -111,8 +111,8 @@ bool is_disk_failure(const std::error_code& error) {
 
 namespace {
 
-/// Reason why a path cannot be written, as far as it shows beforehand; empty if none. A symbolic link is fine: the file
-/// replaces it.
+/// Reason why a path cannot be written, as far as this is known beforehand; empty if none is known. A symbolic link is
+/// no reason: the file replaces the link.
 std::string seen_obstacle(const fs::path& path) {
   std::error_code error;
   if (!path.has_filename()) return "'" + path.string() + "' is not the name of a file";
@@ -125,7 +125,7 @@ std::string seen_obstacle(const fs::path& path) {
   return {};
 }
 
-/// Once per folder and process, since a study writes thousands of files into one folder.
+/// Done once per folder and process, because a study writes thousands of files into one folder.
 void tidy_once(const fs::path& folder) {
   static std::mutex guard;
   static std::set<fs::path> tidied;
@@ -168,7 +168,7 @@ std::string write_obstacle(const fs::path& path) {
 
 namespace {
 
-/// `named`: the path in messages.
+/// `named`: the path for error messages.
 void replace(const fs::path& path, const fs::path& named, const std::function<void(const fs::path&)>& fill) {
   try {
     if (const std::string obstacle = seen_obstacle(path); !obstacle.empty()) throw DataError(obstacle);

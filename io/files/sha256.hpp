@@ -9,7 +9,7 @@ struct evp_md_ctx_st;  // type of libcrypto
 
 namespace modebank {
 
-/// Incremental SHA-256 (FIPS 180-4) by libcrypto. Throws std::runtime_error if libcrypto lacks it.
+/// Incremental SHA-256 (FIPS 180-4) by libcrypto. Throws std::runtime_error if libcrypto does not have it.
 class Sha256 {
  public:
   Sha256();

@@ -50,7 +50,7 @@ std::size_t longest(const std::vector<std::string>& texts) {
 
 Handle array_text_type(const std::vector<std::string>& texts) {
   Handle type = string_type(longest(texts));
-  // ASCII is valid UTF-8, but Octave's load drops a whole group at a UTF-8 dataset such as /windows/run.
+  // ASCII is valid UTF-8, but Octave's load drops a whole group if a dataset such as /windows/run is UTF-8.
   if (is_ascii(texts)) check(H5Tset_cset(type.id(), H5T_CSET_ASCII), "make an ASCII type");
   return type;
 }
@@ -172,7 +172,8 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
   Handle space;
   if (place == Place::dataset) {
     object_ = Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
-    // modebank's archives have all their data inside. A layout with outside data must not make us read other files.
+    // modebank's archives contain all their data. A layout with outside data must not make the program read other
+    // files.
     if (lies_outside(object())) throw DataError(what + " has its content in another file");
     type_ = Handle(H5Dget_type(object()), H5Tclose, "read the type of " + what);
     space = Handle(H5Dget_space(object()), H5Sclose, "read the shape of " + what);
@@ -216,7 +217,7 @@ void StoredArray::read_rows(const Rows& rows, hid_t memory_type, void* data) con
 
 namespace {
 
-/// Whether values of the type are contiguous bytes without references.
+/// Whether values of the type are plain bytes without references.
 bool is_plain(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);
   if (kind == H5T_ARRAY) return is_plain(Handle(H5Tget_super(type), H5Tclose, "read a type").id());

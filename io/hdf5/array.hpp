@@ -11,7 +11,7 @@ namespace modebank::hdf5 {
 
 using Shape = std::vector<hsize_t>;
 
-/// Datasets and attributes have the same arrays; only the calls that create and open them differ.
+/// Arrays of datasets and attributes are equal; only the calls that create and open them differ.
 enum class Place { dataset, attribute };
 
 /// Memory and file type of a number; files are little-endian on every machine.
@@ -38,7 +38,7 @@ Handle string_type(std::size_t bytes);
 /// Type of a dataset with these texts: ASCII if all are.
 Handle array_text_type(const std::vector<std::string>& texts);
 std::size_t longest(const std::vector<std::string>& texts);
-/// Packs texts into contiguous cells of `bytes` each, and back.
+/// Packs texts into contiguous cells of `bytes` each, and unpacks them.
 std::string pack_texts(const std::vector<std::string>& texts, std::size_t bytes);
 std::vector<std::string> unpack_texts(const std::string& cells, std::size_t bytes);
 
@@ -62,11 +62,11 @@ struct Rows {
 };
 /// Creates a dataset that is written in rows. The content of rows that are never written is undefined.
 Handle create_rows(hid_t parent, const std::string& name, hid_t file_type, const Shape& shape);
-/// The same for rows that may stay unwritten: each entry then is `missing`, a value of `memory_type`. `prefill`: some
-/// rows will not be written.
+/// The same for rows that may stay unwritten. An unwritten entry is `missing`, a value of `memory_type`. `prefill`:
+/// some rows will not be written.
 Handle create_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
                    const void* missing, bool prefill);
-/// Writes several ranges of rows by one call; `data` has them one after the other.
+/// Writes several ranges of rows by one call; `data` contains them one after the other.
 void write_rows(const Handle& dataset, hid_t memory_type, const std::vector<Rows>& rows, const void* data);
 
 Handle write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
@@ -84,7 +84,7 @@ class StoredArray {
   const Shape& shape() const { return shape_; }
   hsize_t elements() const { return elements_; }
   void read(hid_t memory_type, void* data) const;
-  /// Some rows of a dataset, which must be within its first extent.
+  /// A range of rows of a dataset, within its first extent.
   void read_rows(const Rows& rows, hid_t memory_type, void* data) const;
   /// Rows of a table as in the file, of type `type()`. Throws DataError for members that are neither numbers nor texts
   /// of fixed length.

@@ -57,7 +57,7 @@ void check(herr_t status, const std::string& what) {
 
 namespace {
 
-/// Locked by one thread at a time if HDF5 was built without thread safety; unlocked if it is thread-safe.
+/// Locked by one thread at a time if HDF5 was built without thread safety.
 std::unique_lock<std::recursive_mutex> one_thread() {
   static std::recursive_mutex mutex;
   static const bool has_its_own = [] {
@@ -82,7 +82,7 @@ Handle open_file(const std::string& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the file access");
   check(H5Pset_file_locking(access.id(), false, true), "switch file locking off");
   hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id());
-  // If h5py in the same process has the file open, HDF5 requires its lock setting, the default.
+  // If h5py has the file open in the same process, HDF5 requires the same lock setting, the default.
   if (file < 0) file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   return {file, H5Fclose, "open the file"};
 }
@@ -102,8 +102,8 @@ herr_t append_name(hid_t, const char* name, const Info*, void* list) {
 
 }  // namespace
 
-// Both lists are sorted here. For a given order HDF5 1.10 builds a table, and crashes when it frees a half-filled one
-// of a damaged file.
+// Both lists are sorted here. If asked for an order, HDF5 1.10 builds a table, and crashes when it frees the
+// half-filled table of a damaged file.
 std::vector<std::string> member_names(hid_t group) {
   std::vector<std::string> names;
   check(H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, append_name<H5L_info_t>, &names), "list the members");

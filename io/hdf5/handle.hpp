@@ -31,12 +31,12 @@ class Handle {
   Closer close_ = nullptr;
 };
 
-/// Throws DataError "cannot <what>: <HDF5's innermost reason>" when the status is negative.
+/// Throws DataError "cannot <what>: <HDF5's innermost reason>" if the status is negative.
 void check(herr_t status, const std::string& what);
 
-/// Lives while a function works with HDF5. Unless HDF5 is thread-safe, other threads wait. Meanwhile this thread's HDF5
-/// prints no error stack; afterwards the application's own setting returns. After a failure the setting does not
-/// return, because HDF5 1.10 leaks memory at a wrong metadata checksum and would print messages when the process ends.
+/// Must live while a function calls HDF5. Unless HDF5 is thread-safe, other threads wait. Meanwhile HDF5 prints no
+/// error stack in this thread; afterwards the application's own setting returns. After a failure it does not return:
+/// HDF5 1.10 leaks memory at a wrong metadata checksum, and would print messages when the process ends.
 class Quiet {
  public:
   Quiet();
@@ -50,7 +50,7 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-/// Opens an existing file for reading. Takes no lock, since archives never change under their final name and many file
+/// Opens an existing file for reading. Takes no lock: archives never change under their final name, and many file
 /// systems have no locks.
 Handle open_file(const std::string& path);
 /// A member group; "/": the root.

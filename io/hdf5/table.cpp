@@ -76,8 +76,8 @@ struct StoredColumn {
   std::string cells;
 };
 
-/// The cells of a member, after a check of its type. Rows are read once for all columns, because HDF5 would allocate
-/// and clear a megabyte for each member.
+/// The cells of a member, after a check of its type. Rows are read once for all columns: for each member, HDF5 would
+/// allocate and clear a megabyte.
 StoredColumn stored_column(const TableRows& all, const std::string& name, H5T_class_t expected) {
   const StoredArray& table = all.table;
   const int index = H5Tget_member_index(table.type(), name.c_str());
@@ -106,7 +106,7 @@ const std::string& converted(StoredColumn& column, hid_t stored, hid_t wanted, s
 template <class T>
 void read_values(const TableRows& rows, const std::string& name, Vector<T>& values) {
   StoredColumn stored = stored_column(rows, name, std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER);
-  // For a narrower number a small file could require much memory.
+  // With a narrower number, a small file could require much memory.
   if (stored.cell_bytes != sizeof(T)) throw DataError("column '" + name + "' holds numbers of another width");
   values.resize(static_cast<std::size_t>(rows.rows.count));
   const std::string& cells = converted(stored, stored.type.id(), memory_type<T>(), values.size());
@@ -164,7 +164,7 @@ Handle write_table(hid_t group, const std::string& name, std::vector<TableColumn
   const Handle type = row_type(columns, cells, &CellTypes::file),
                in_memory = row_type(columns, cells, &CellTypes::memory);
   const std::size_t row_bytes = H5Tget_size(in_memory.id());
-  // Writes whole rows, because HDF5 would allocate and clear a megabyte for each member.
+  // Writes whole rows: for each member, HDF5 would allocate and clear a megabyte.
   std::string packed(static_cast<std::size_t>(rows) * row_bytes, '\0');
   std::size_t offset = 0;
   for (std::size_t i = 0; i < columns.size(); ++i) {

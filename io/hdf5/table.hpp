@@ -10,7 +10,7 @@
 
 namespace modebank::hdf5 {
 
-/// One column of a compound table. A matrix is an array column: one row of the table per matrix column.
+/// One column of a compound table. A matrix is an array column: each of its columns belongs to one row of the table.
 struct TableColumn {
   using Values =
       std::variant<std::vector<std::int8_t>, std::vector<std::int32_t>, std::vector<std::int64_t>,
@@ -23,7 +23,7 @@ struct TableColumn {
 void append(std::vector<TableColumn> more, std::vector<TableColumn>& columns);
 
 /// Writes a 1-D compound dataset of `rows` packed rows and returns it open. Columns are freed as they are packed, so
-/// that memory never has a long table twice.
+/// that a long table is never in memory twice.
 Handle write_table(hid_t group, const std::string& name, std::vector<TableColumn> columns, hsize_t rows);
 
 /// Whether a compound dataset has a member of that name.
@@ -35,12 +35,12 @@ struct TableRows {
   Rows rows;
   std::string bytes;
 };
-/// Throws DataError when the dataset is not a table.
+/// Throws DataError if the dataset is not a table.
 TableRows read_rows(const StoredArray& table, const Rows& rows);
 TableRows read_all_rows(const StoredArray& table);
 
-/// Fills `column.values` from the member of that name; the variant's alternative states the expected type. Throws
-/// DataError when the member is missing or has another type. Other members are ignored.
+/// Fills `column.values` from the member of that name. The variant's alternative states the expected type. Throws
+/// DataError if the member is missing or has another type. Other members are ignored.
 void read_column(const TableRows& rows, TableColumn& column);
 
 }  // namespace modebank::hdf5

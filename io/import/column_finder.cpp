@@ -45,7 +45,7 @@ const ColumnInfo* find_time(const TableInfo& table, const DataOptions& options) 
   return options.time == DataOptions().time ? own_stamps(table) : nullptr;
 }
 
-/// The time column of this table ("log.cmd.t"), where the configuration has the full name of another table's
+/// The time column of this table ("log.cmd.t") if the configuration has the full name of another table's time column
 /// ("log.imu.t").
 const ColumnInfo* find_time_of_another(const TableInfo& table, const std::vector<TableInfo>& tables,
                                        const std::string& name) {
@@ -56,7 +56,7 @@ const ColumnInfo* find_time_of_another(const TableInfo& table, const std::vector
   return nullptr;
 }
 
-/// Columns of a file for messages, or its tables where the columns are too many.
+/// Columns of a file for messages; only its tables if there are too many columns.
 std::string listing(const std::vector<TableInfo>& tables) {
   constexpr std::size_t most_columns = 100;
   Texts columns, names;

@@ -8,14 +8,14 @@
 namespace modebank {
 
 /// Finds columns in the tables of a plan's files and adds them to the requests of its sources. Throws
-/// ConfigurationError, with the existing names, for a column that does not exist.
+/// ConfigurationError with the existing names if a column does not exist.
 class ColumnFinder {
  public:
-  /// `plan` must have its readers.
+  /// The readers of `plan` must be open.
   ColumnFinder(FilePlan& plan, std::shared_ptr<const DerivedChannels> derived);
 
   /// A column of numbers: a derived channel, or a column of the first of `files` (indices in FilePlan::paths) that has
-  /// it. A derived channel may use other files, too.
+  /// this column. A derived channel may also use other files.
   ColumnRef number(const std::string& column, const std::vector<std::size_t>& files);
   std::vector<ColumnRef> numbers(const std::vector<std::string>& columns, const std::vector<std::size_t>& files);
 
@@ -24,7 +24,7 @@ class ColumnFinder {
   /// A source of the column.
   std::size_t clock_of(ColumnRef ref) const;
 
-  /// The source for a file from which only times are needed: its one table, or `states` if that is in the same file.
+  /// The source for a file of which only times are needed: its only table, or `states` if that is in the same file.
   std::size_t source_without_column(std::size_t file, std::size_t states);
 
   /// The first of `sources` whose table has the times, or the column.

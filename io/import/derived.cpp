@@ -88,7 +88,7 @@ std::vector<Rows> ordered_runs(const Table& table, std::optional<std::size_t> ru
   return runs;
 }
 
-/// Seconds from the first stamp, since nanoseconds since 1970 would cost precision.
+/// Seconds from the first stamp, because nanoseconds since 1970 would lose precision.
 std::vector<double> seconds_of(const Table& table, double rate_hz) {
   std::vector<double> time_s(table.rows());
   std::int64_t first = missing_stamp;

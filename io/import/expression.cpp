@@ -18,7 +18,7 @@ namespace modebank {
 struct ExpressionToken {
   enum class Kind { number, channel, function, constant, symbol };
   Kind kind = Kind::symbol;
-  std::string text;    ///< for a number its value in muParser's syntax, for a channel its name
+  std::string text;    ///< for a number its text in muParser's syntax, for a channel its name
   std::size_t at = 0;  ///< position in the user's text, from 0
 };
 

@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// A formula over channels, such as v * tan(steer) or diff(unwrap(yaw(qx, qy, qz, qw))). muParser evaluates it row by
-/// row; its program has only numbers, operators, the functions below and identifiers made here.
+/// A formula over channels, such as v * tan(steer) or diff(unwrap(yaw(qx, qy, qz, qw))). muParser evaluates the formula
+/// row by row. muParser's program contains only numbers, operators, the functions below and identifiers made here.
 ///
 /// A channel is written by its name (letters, digits, _ and ., no digit first). In single quotes a name may have any
 /// characters ('' is a quote): '/odom.twist.twist.linear.x', '/joint_states.velocity{left}'. Operators: + - * / ^, ==
@@ -24,23 +24,23 @@ namespace modebank {
 /// A row is missing if a channel of the formula is missing (NaN), or if its value is not finite.
 class Expression {
  public:
-  /// `key` names the formula in messages. Throws ConfigurationError, with the position, for an invalid formula and for
-  /// one that is too long (2,000 characters) or nested too deeply (50 parentheses).
+  /// `key` names the formula in messages. Throws ConfigurationError with the position for a formula that is invalid,
+  /// longer than 2,000 characters or nested deeper than 50 parentheses.
   Expression(std::string key, std::string_view text);
 
-  /// The formula's channels, each once, in order of first use.
+  /// The formula's channels in order of first use, without repetition.
   const std::vector<std::string>& channels() const { return channels_; }
   const std::string& key() const { return key_; }
 
-  /// For each diff and unwrap of the formula, the last row of the previous batch.
+  /// The last row of the previous batch, for each diff and unwrap of the formula.
   struct RowBefore {
     double time_s, value;
   };
   using Memory = std::vector<RowBefore>;
 
   /// One value per row. `operands` are the channels' columns; all are as long as `time_s`. With `memory` (empty at
-  /// first) batches of rows give the same values as all rows together. The exception is diff in the very first row,
-  /// which is missing.
+  /// first), batches of rows give the same values as all rows together. Only the diff of the very first row differs: it
+  /// is missing.
   std::vector<double> evaluate(const std::vector<std::span<const double>>& operands, std::span<const double> time_s,
                                Memory* memory = nullptr) const;
 
@@ -59,14 +59,14 @@ class Expression {
   std::vector<Step> steps_;
 };
 
-/// Removes a name, quoted or not, from the start of `text` and returns it; empty when there is none.
+/// Removes a name, quoted or not, from the start of `text` and returns the name; empty if there is none.
 std::string take_channel_name(std::string_view& text);
 
-/// The name in single quotes, in the form that take_channel_name reads.
+/// The name in single quotes, so that take_channel_name can read it.
 std::string quoted_channel_name(std::string_view name);
 
-/// Whether a configuration can contain a name from the data: it is not empty and has neither line ends nor other
-/// control characters.
+/// Whether a configuration can contain a name: it must not be empty, nor contain line breaks or other control
+/// characters.
 bool can_be_stated(std::string_view name);
 
 /// Names separated by commas for a configuration; a name that needs quotes is in single quotes.

@@ -18,8 +18,8 @@ void differentiate(std::vector<double>& column, std::span<const double> time_s) 
   if (!column.empty()) column[0] = column.size() > 1 ? column[1] : not_a_number;
 }
 
-/// The same after the row `before`. Among rows with equal times only the first has a slope, and the next row's slope
-/// starts from it.
+/// The same with the previous row `before`. Among rows with equal times only the first has a slope, and the next row's
+/// slope starts from that row.
 void differentiate(std::vector<double>& column, std::span<const double> time_s, Expression::RowBefore& before) {
   for (std::size_t k = 0; k < column.size(); ++k) {
     const double seconds = time_s[k] - before.time_s;

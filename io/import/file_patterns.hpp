@@ -8,8 +8,8 @@
 namespace modebank {
 
 /// A path with at most one `*`, in the name of the file or of one folder. `*` matches one or more characters of that
-/// name, except '/', and except a leading '.' where the name begins with `*`, as in a shell. Every other character is
-/// literal. The matched text names the run; without `*` the file's stem does.
+/// name except '/'. As in a shell, a `*` at the start of a name does not match a leading '.'. All other characters are
+/// literal. The matched text names the run; without `*` the file's stem names it.
 class FilePattern {
  public:
   /// `key` names the pattern in messages. `root` is put before a relative pattern. Throws ConfigurationError for an
@@ -22,8 +22,8 @@ class FilePattern {
   std::string text() const { return path_of("*").string(); }
   /// The file of one run.
   std::filesystem::path path_of(std::string_view run) const;
-  /// Names of all runs whose file exists, in byte order. If there is none, throws ConfigurationError with the absolute
-  /// pattern and the folder that is missing.
+  /// Names of all runs whose file exists, in byte order. If there are none, throws ConfigurationError with the absolute
+  /// pattern and the missing folder.
   std::vector<std::string> runs() const;
 
  private:
@@ -32,13 +32,13 @@ class FilePattern {
 
   std::string key_;
   bool has_star_ = false;
-  std::filesystem::path folder_;  // part of the path before the name with `*`; the whole path without one
+  std::filesystem::path folder_;  // part of the path before the name that contains `*`; the whole path without `*`
   std::string before_, after_;    // parts of this name around `*`
   std::filesystem::path rest_;    // part of the path after this name
 };
 
-/// Files that a key names: one path with at most one *, or several without, one per run ("a.csv, b.csv"). A run's
-/// recording may be given in parts, in the order in which they were written ("a_0.bag + a_1.bag").
+/// Files of a key: one path with at most one *, or several paths without *, one per run ("a.csv, b.csv"). A run's
+/// recording may consist of parts, in the order in which they were written ("a_0.bag + a_1.bag").
 class RunFiles {
  public:
   struct File {
@@ -46,15 +46,15 @@ class RunFiles {
     std::vector<std::filesystem::path> parts;  ///< one file, or the parts of a recording
   };
 
-  /// If the text with its commas is an existing file, it is that file. Throws ConfigurationError as FilePattern does,
-  /// and for a list with a *, with an empty entry or with two files of the same stem.
+  /// If a file has the whole text as its name, commas included, the text means that file. Throws ConfigurationError as
+  /// FilePattern does, and for a list with a *, with an empty entry or with two files of the same stem.
   RunFiles(const std::string& key, const std::string& root, const std::string& text);
 
   bool one() const { return entries_.size() == 1 && !entries_.front().front().has_star(); }
   /// Files in byte order of their runs. Throws ConfigurationError for a missing file.
   std::vector<File> files() const;
-  /// The file of each of these runs; in a list, the one at the run's position in `theirs`. Throws ConfigurationError,
-  /// with both names, when a file is missing, and when only one of the two is a list or has a *.
+  /// The file of each of these runs. In a list, it is the file at the run's position in `theirs`. Throws
+  /// ConfigurationError with both names if a file is missing, or if only one of the two is a list or has a *.
   std::vector<File> partners(const RunFiles& theirs, const std::vector<std::string>& runs) const;
 
  private:
@@ -64,8 +64,8 @@ class RunFiles {
   std::vector<std::vector<FilePattern>> entries_;  // parts of each file
 };
 
-/// The states file of each run. Throws ConfigurationError, with both files, when one is missing and when only one of
-/// the two patterns has a `*`.
+/// The states file of each run. Throws ConfigurationError with both files if one is missing, or if only one of the two
+/// patterns has a `*`.
 std::vector<std::filesystem::path> find_partners(const FilePattern& inputs, const FilePattern& states,
                                                  const std::vector<std::string>& runs);
 

@@ -55,7 +55,7 @@ void refuse_control_characters(const std::vector<Channel>& channels) {
           printable(channel.name), printable(channel.unit)));
 }
 
-/// Result of reading one plan, or its failure; the failure of the first plan in order is reported.
+/// Result of reading one plan, or its error. If several plans fail, the error of the first in order is reported.
 struct Outcome {
   FileContent content;
   std::exception_ptr error;
@@ -76,9 +76,9 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_
   return outcome;
 }
 
-/// Reads plans in parallel. Results arrive in order, as the hash over all of them requires. After a failure no further
+/// Reads plans in parallel. Results arrive in order, as the hash over all of them requires. After an error no further
 /// plan starts, but running ones end. An exception within the pipeline would cancel the readers' own parallel work and
-/// pass on half of it.
+/// return only half of it.
 std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
                                  bool as_they_stand) {
   std::vector<RunStreams> runs;
@@ -119,7 +119,7 @@ std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions
   tbb::parallel_pipeline(in_flight, tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, take) &
                                         tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, read) &
                                         tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, collect));
-  if (agree_on_stamps(forms, plans)) {  // even after a failure, which may come from wrongly read stamps
+  if (agree_on_stamps(forms, plans)) {  // even after an error, because wrongly read stamps may have caused it
     data.files.clear();
     data.notes.clear();
     return read_all(plans, options, data, as_they_stand);
@@ -149,7 +149,7 @@ void set_roles(std::vector<RunStreams>& runs, const DataOptions& options) {
   runs = std::move(kept);
 }
 
-/// Splits every run into blocks. These have their own roles unless data.train or data.test names runs.
+/// Splits every run into blocks. Blocks have their own roles unless data.train or data.test names runs.
 void split_runs(std::vector<RunStreams>& runs, const DataOptions& options, std::vector<std::string>& notes) {
   std::vector<RunStreams> blocks;
   for (const RunStreams& run : runs) {
@@ -187,7 +187,7 @@ class LeftOut {
   static Index measured(const Trajectory& run) { return run.state.array().isFinite().colwise().any().count(); }
 };
 
-/// Called after roles are set: data.train and data.test name whole runs, or blocks of runs.
+/// Must be called after roles are set: data.train and data.test name whole runs, or blocks of runs.
 std::vector<Trajectory> without_missing_values(const Trajectory& run, const std::vector<bool>& kept, Missing missing,
                                                std::vector<std::string>& notes) {
   const bool predict = missing == Missing::predict;

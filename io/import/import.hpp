@@ -22,30 +22,30 @@ struct ImportedData {
   std::vector<InputFile> files;     ///< in run order, inputs before states
   std::vector<std::string> notes;   ///< remarks on the data for the user
   std::optional<RunLabels> labels;  ///< with DataOptions::label
-  std::optional<LagReport> lag;     ///< with DataOptions::lag_auto: the lag that was found and applied
+  std::optional<LagReport> lag;     ///< the lag that was found and applied; only with DataOptions::lag_auto
   double step_scatter = 0.0;        ///< LogSampling::step_scatter
   std::string data_hash;            ///< hash of the files, see io/files/input_file.hpp
 };
 
-/// Finds, checks and reads all runs. Throws ConfigurationError for errors that show before samples are read: a pattern
-/// without a match, a run without its states file, an empty file, a missing column (with the existing ones), an unknown
-/// run. Throws DataError, with file and line, for bad content: text in a number, NaN, time not increasing, too few
-/// samples, streams that do not overlap, unequal numbers of rows under Join::row. With `memory` these tables are the
-/// runs, and data.root, data.inputs and data.states are ignored. `learned`: as in choose_sampling
-/// (io/import/sampling.hpp), for data on which an existing bank is judged.
+/// Finds, checks and reads all runs.
+/// - Throws ConfigurationError for errors that show before samples are read: a pattern without a match, a run without
+///   its states file, an empty file, a missing column (with the existing ones), an unknown run.
+/// - Throws DataError with file and line for bad content: text in a number, NaN, time not increasing, too few samples,
+///   streams that do not overlap, unequal numbers of rows under Join::row.
+/// - With `memory` these tables are the runs; data.root, data.inputs and data.states are ignored.
+/// - `learned`: as in choose_sampling (io/import/sampling.hpp), for data on which an existing bank is judged.
 ImportedData import_data(const DataOptions& options, const MemoryTables* memory = nullptr,
                          const AveragedColumns* learned = nullptr);
 
-/// All runs' streams as in the files, to be checked: nothing is sorted, missing values and times are NaN, roles are
-/// set, runs are sorted by name. Throws as import_data does, except for errors that data.missing and data.disorder
-/// treat.
+/// All runs' streams as in the files, for checks. Nothing is sorted, missing values and times are NaN, roles are set,
+/// runs are sorted by name. Throws as import_data does, except for errors that data.missing and data.disorder treat.
 std::vector<RunStreams> read_streams(const DataOptions& options);
 
 /// A file that import_data would read.
 struct DataFile {
   std::filesystem::path path;
-  std::vector<std::string> tables = {};      ///< the tables to read, sorted; the file's hash depends on them
-  std::function<InputFile()> describe = {};  ///< the entry of ImportedData::files; throws when the file cannot be read
+  std::vector<std::string> tables = {};      ///< the tables to read, sorted, because the file's hash depends on them
+  std::function<InputFile()> describe = {};  ///< the file's entry in ImportedData::files; throws if the file cannot be read
 };
 
 /// All files, in the order of ImportedData::files. Throws ConfigurationError as import_data does.

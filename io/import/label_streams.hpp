@@ -10,11 +10,11 @@
 
 namespace modebank {
 
-/// Turns recorded labels into labels of the runs' samples: each sample has the last label at or before it; samples
-/// before the first label have none.
+/// Converts recorded labels into labels of the runs' samples. Each sample has the last label at or before its time;
+/// samples before the first label have none.
 class LabelHolder {
  public:
-  /// `parts`: the runs that were made of `source`.
+  /// `parts`: the runs into which `source` was split.
   void hold(const LabelStream& source, const std::vector<Trajectory>& parts);
 
   /// Labels in the order of `runs`; names in byte order.
@@ -24,8 +24,8 @@ class LabelHolder {
   std::map<std::string, std::vector<std::string>> of_run_;  // labels per sample, by run; empty: unknown
 };
 
-/// Checks that labels name a few kinds. Throws ConfigurationError for a label that differs in nearly every row, as
-/// measurements and names of rows do. Adds a doubt to `notes` where this is uncertain.
+/// Checks that labels have few distinct values. Throws ConfigurationError for a label that differs in nearly every row,
+/// like a measurement or a name of each row. Adds a doubt to `notes` if this is uncertain.
 void check_labels(const std::string& column, const RunLabels& labels, std::vector<std::string>& notes);
 
 }  // namespace modebank

@@ -31,7 +31,7 @@ struct Format {
   std::shared_ptr<const TableReader> (*open)(const Path& path, const FormatOptions& options);
 };
 
-/// In the order of the tests; any other file is read as text.
+/// In the order of the tests. Any other file is read as text.
 constexpr std::array formats{
     Format{is_ros_log,
            [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
@@ -80,7 +80,7 @@ import pandas, modebank
 frame = pandas.read_feather("FILE")
 archive = modebank.run({"drive": frame}, state="wz", input=["left", "right"], time="time", **{"data.split": "blocks 10"}))";
 
-/// A format that is not read, by the bytes it begins with; without them a telemetry log (is_telemetry).
+/// A format that the program does not read, by its first bytes; without these a telemetry log (is_telemetry).
 struct Foreign {
   std::string_view magic, name, advice, python = {};
 };
@@ -137,7 +137,7 @@ void refuse_octave_text(const Path& path, std::string_view first) {
                   path.string(), (path.parent_path() / (path.stem().string() + "_v7.mat")).string()));
 }
 
-/// A MAVLink telemetry log has no magic of its own: eight bytes of time, then a packet of version 1 or 2.
+/// A MAVLink telemetry log has no magic bytes: eight bytes of time, then a packet of version 1 or 2.
 bool is_telemetry(const Path& path, std::string_view first) {
   constexpr std::size_t time_bytes = 8;
   return path.extension() == ".tlog" && first.size() > time_bytes &&

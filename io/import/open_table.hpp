@@ -8,8 +8,8 @@
 
 namespace modebank {
 
-/// The reader for a file, chosen by its first bytes. Throws ConfigurationError when the file cannot be read and for
-/// known formats without a reader, with advice.
+/// The reader for a file, chosen by its first bytes. Throws ConfigurationError if the file cannot be read. For known
+/// formats without a reader, the message contains advice.
 std::shared_ptr<const TableReader> open_table(const std::filesystem::path& path, const FormatOptions& options);
 /// The same for one file, or for a recording's parts in the order in which they were written. Throws ConfigurationError
 /// also for several files that are not recordings.
