@@ -17,8 +17,8 @@ struct EnumNames<Join> {
   static constexpr Names<2> values{"time", "row"};
 };
 
-/// Treatment of a missing value (empty, NaN or infinite): refuse the data, split the run there, or keep the sample. A
-/// kept sample with a missing state is only predicted; a missing input takes its last known value.
+/// Treatment of a missing value (empty, NaN or infinite): refuse the data, split the run there, or keep the sample. In
+/// a kept sample a missing state is only predicted, and a missing input takes its last known value.
 enum class Missing { error, gap, predict };
 
 template <>
@@ -52,43 +52,43 @@ inline constexpr double highest_rate_hz = 1e6;
 /// Options of the [data] section.
 struct DataOptions {
   std::string root;    ///< absolute prefix of relative patterns
-  std::string inputs;  ///< one file per run; the part matched by * names the run (io/import/file_patterns.hpp)
-  std::string states;  ///< the same for states; empty: states are columns of the inputs file
+  std::string inputs;  ///< one file per run; the part that * matches names the run (io/import/file_patterns.hpp)
+  std::string states;  ///< the same for states; empty: states are columns of the inputs files
   std::vector<std::string> state;  ///< column names
   std::vector<std::string> input;
   std::vector<std::string> truth;       ///< true states; as many as states, or none
   std::vector<std::string> derive;      ///< computed channels, each "NAME [unit] = EXPRESSION" (io/import/derived.hpp)
-  std::string where;                    ///< a gap where this expression is false or missing; empty: none
+  std::string where;                    ///< where this expression is false or missing, there is a gap; empty: no condition
   std::vector<std::string> state_unit;  ///< one per state, one for all, or none
   std::vector<std::string> input_unit;
-  /// Column of sample weights, at least 0 (Trajectory::weight); looked for in the states file first, as truth is.
-  /// Empty: none.
+  /// Column of sample weights, at least 0 (Trajectory::weight); empty: no weights. It is searched in the states file
+  /// first, as truth is.
   std::string weight;
-  /// Column of a known class such as the ground, text or whole numbers. A missing value repeats the one before. Empty:
-  /// none.
+  /// Column of a known class such as the ground, as text or whole numbers; empty: none. A missing value repeats the one
+  /// before.
   std::string label;
-  /// Column of times (one; or seconds and nanoseconds, or date and time of day). In a recording "time" means header
-  /// stamps, or receive times for messages without them; receive_time always means receive times. Empty: row k of a
-  /// file is at k / rate_hz.
+  /// Column of times: one column; or two, for seconds and nanoseconds, or date and time of day. In a recording "time"
+  /// means header stamps, or receive times for messages without these; receive_time always means receive times. Empty:
+  /// row k of a file is at k / rate_hz.
   std::vector<std::string> time{"time"};
   TimeUnit time_unit = TimeUnit::automatic;
   std::string time_format;  ///< format of times as text (io/table/stamp_pattern.hpp); empty: found
   Join join = Join::time;
-  /// Column whose value separates runs inside one file. It names the run, after "<matched part>_" where inputs has a *.
-  /// Join::time needs it in both files; otherwise the states file is searched first, as for `time`.
+  /// Column whose value separates the runs inside one file. The value names the run, after "<matched part>_" if inputs
+  /// has a *. Join::time needs the column in both files. Otherwise the states file is searched first, as for `time`.
   std::string run;
   double rate_hz = 0.0;         ///< 0: the inputs file's own times; else resampled (states linear, inputs held)
-  double lag_s = 0.0;           ///< inputs act this much later: at time t the input is u(t - lag_s), held
+  double lag_s = 0.0;           ///< inputs act this much later: at time t the input is u(t - lag_s)
   bool lag_auto = false;        ///< lag_s is estimated on the training runs (ident/lag/choice.hpp)
   double lag_range_s = 2.5;     ///< largest lag, of either sign, that the estimate searches
-  std::vector<double> quantum;  ///< rounding step of the states, one each or one for all [state unit]; empty: none
-  bool quantum_auto = false;    ///< found in the training runs (io/import/quanta.hpp)
+  std::vector<double> quantum;  ///< rounding step of the states, one for each or one for all [state unit]; empty: none
+  bool quantum_auto = false;    ///< the step is found in the training runs (io/import/quanta.hpp)
   FormatOptions format;         ///< formats that files do not state themselves
   Missing missing = Missing::error;
   Disorder disorder = Disorder::error;
   SplitOptions split;
-  std::vector<std::string> train;  ///< run names; empty: all not in test, or positions 0, 2, 4, ... in name order
-  std::vector<std::string> test;   ///< run names; empty: all that are not train
+  std::vector<std::string> train;  ///< run names; empty: all runs that are not in test, or positions 0, 2, 4, ... in name order
+  std::vector<std::string> test;   ///< run names; empty: all runs that do not train
 };
 
 }  // namespace modebank

@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Below this share of the residuals' standard deviation, rounding adds less than a hundredth to their variance.
+/// With a step below this share of the residuals' standard deviation, rounding adds less than a hundredth to their
+/// variance.
 constexpr double least_share = 1.0 / 3.0;
 
 /// All training values of a state, missing ones left out.

@@ -10,7 +10,7 @@
 
 namespace modebank {
 
-/// Whether a run's states were interpolated between samples (join_run does so) rather than taken from them.
+/// Whether a run's states were interpolated between samples (join_run does this), and not taken from samples.
 bool is_interpolated(const Stream& states, const Trajectory& joined);
 
 /// Finds the rounding steps of states.
@@ -21,10 +21,10 @@ class Quanta {
   /// Call it while the streams exist. `joined`: the run made of them.
   void look_at(const RunStreams& run, const Trajectory& joined);
 
-  /// data.quantum by state, as in Recording::quantum. With auto it is the step that check_channel finds in the training
-  /// runs, if this is at least a third of the standard deviation of their residuals about one linear model; finer steps
-  /// do not affect a filter. States that were interpolated in any run get none. Adds the decision to `notes`. Throws
-  /// ConfigurationError for a number of values that fits no states.
+  /// data.quantum by state, as in Recording::quantum. With `auto` it is the step that check_channel finds in the
+  /// training runs, if this step is at least a third of the standard deviation of their residuals about one linear
+  /// model. Finer steps do not affect a filter. States that were interpolated in any run get no step. Adds the decision
+  /// to `notes`. Throws ConfigurationError for a wrong number of values.
   Eigen::VectorXd decide(const Recording& recording, std::vector<std::string>& notes) const;
 
  private:

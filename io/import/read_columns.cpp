@@ -93,8 +93,8 @@ bool try_read(const TableReader& reader, const std::vector<AskedColumns>& pieces
   }
 }
 
-/// Columns [first, end) of a piece of numbers. On failure they are halved until columns that are not numbers are alone;
-/// those become texts.
+/// Columns [first, end) of a piece of numbers. If these cannot be read as numbers, they are halved until each column
+/// that is not numeric is alone; such a column becomes text.
 void read_numbers(const TableReader& reader, const AskedColumns& piece, std::size_t first, std::size_t end,
                   FileColumns& result) {
   AskedColumns part;
@@ -113,7 +113,7 @@ void read_numbers(const TableReader& reader, const AskedColumns& piece, std::siz
 void read_apart(const TableReader& reader, const AskedColumns& piece, FileColumns& result) {
   if (!piece.request.numbers.empty()) {
     read_numbers(reader, piece, 0, piece.columns.size(), result);
-  } else if (!piece.request.time.column.empty()) {  // a column with a name of times that has none
+  } else if (!piece.request.time.column.empty()) {  // a column with the name of times, but without valid times
     AskedColumns number;
     number.request.table = piece.request.table;
     number.add_number(piece.columns.front(), piece.request.time.column);

@@ -28,8 +28,8 @@ using ColumnChoice = std::function<bool(const TableInfo& table, const ColumnInfo
 ColumnChoice choice_of(const std::string& file, const std::vector<TableInfo>& tables,
                        const std::vector<std::string>& chosen);
 
-/// Reads the columns of `tables` that `wanted` chooses, in one pass if all have the types that the format states.
-/// Throws as TableReader::read does for a table without a readable column.
+/// Reads the columns of `tables` that `wanted` chooses. One pass is enough if all columns have the types that the
+/// format states. Throws as TableReader::read does for a table without a readable column.
 FileColumns read_columns(const TableReader& reader, const std::vector<TableInfo>& tables, const ColumnChoice& wanted);
 
 }  // namespace modebank

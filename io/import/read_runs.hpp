@@ -23,9 +23,10 @@ struct FileContent {
   std::map<std::string, std::size_t> missing_words;  ///< sum of Table::missing_words
 };
 
-/// Reads one plan's files into streams, run by run. If it throws, `result` still has the stamps' formats. Where a run's
-/// states (or inputs) come from several tables, the first table gives the times: other states are interpolated to them,
-/// other inputs held. These streams are put in order by options.disorder. Throws DataError (io/import/import.hpp).
+/// Reads one plan's files into streams, run by run. If it throws, `result` still has the formats of the stamps. If a
+/// run's states (or inputs) come from several tables, the first table gives the times: other states are interpolated to
+/// these times, other inputs held. options.disorder puts these streams in order. Throws DataError
+/// (io/import/import.hpp).
 void read_runs(const FilePlan& plan, const DataOptions& options, FileContent& result);
 
 }  // namespace modebank

@@ -24,7 +24,7 @@ struct RunSlice {
 /// Rows that were left out, stamped before the clock was set.
 struct UnsetRows {
   std::size_t count = 0;
-  std::string example = {};  ///< text on the first of them, with its neighbours' stamps
+  std::string example = {};  ///< text on the first of these rows, with the stamps of its neighbours
 
   void add(const UnsetRows& other) {
     if (count == 0) example = other.example;
@@ -33,7 +33,7 @@ struct UnsetRows {
   std::string note() const;  ///< empty if there are none
 };
 
-/// Rows of tables by run, with access to their values. Keeps references.
+/// Rows of tables by run, with access to their values. Keeps references to its arguments.
 class RowReader {
  public:
   RowReader(const FilePlan& plan, const std::vector<Table>& tables, const DataOptions& options)
@@ -44,11 +44,11 @@ class RowReader {
   /// Origin of the run's times: 0, or its first sample if that is long after 0.
   std::int64_t origin_ns(const std::vector<Rows>& rows) const;
 
-  /// The samples of `clock` with the columns `refs`. Columns of other sources are brought to its times; channels
-  /// derived from several sources are computed there.
+  /// The samples of `clock` with the columns `refs`. The values of other sources' columns are computed at the times of
+  /// `clock`, and so are channels derived from several sources.
   FileStream stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run, Bring bring) const;
 
-  /// Removes rows from the run that were stamped before the clock was set.
+  /// Removes rows of the run that were stamped before the clock was set.
   UnsetRows leave_out_unset(RunSlice& run) const;
 
   /// Throws DataError for stamps that differ from their neighbours by orders of magnitude.
@@ -72,8 +72,8 @@ class RowReader {
 
   Eigen::VectorXd times(std::size_t source, const RunSlice& run) const;
 
-  /// Times of a source with its own columns; rows of other sources' columns stay empty. Where rows correspond, all
-  /// columns are its own.
+  /// Times of a source with its own columns. Rows of other sources' columns stay empty. If rows correspond, all columns
+  /// are the source's own.
   FileStream own_stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run) const;
 
   Eigen::VectorXd column(ColumnRef ref, const Rows& rows) const;

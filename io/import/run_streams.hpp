@@ -23,8 +23,8 @@ struct FileStream {
   std::string time_text(Index k) const;
 };
 
-/// Sorts by time and keeps the first of samples with equal times (Disorder::sort). With Disorder::error it throws
-/// DataError, with file and line, where time repeats or goes backwards.
+/// With Disorder::sort, sorts by time and keeps the first of samples with equal times. With Disorder::error, throws
+/// DataError with file and line if time repeats or goes backwards.
 void put_in_order(FileStream& source, Disorder disorder);
 
 /// Recorded labels of a run.
@@ -33,20 +33,20 @@ struct LabelStream {
   std::vector<std::string> text;  ///< empty: no labels
 };
 
-/// The streams of one run, before they are joined. Under Join::row, and where states and inputs are columns of one
-/// file, both have the same times.
+/// The streams of one run, before they are joined. Under Join::row, or if states and inputs are columns of one file,
+/// both streams have the same times.
 struct RunStreams {
   std::string run;
   Role role = Role::train;
   FileStream states, inputs;
-  /// A column that is sampled with the states, or with the inputs.
+  /// A column that is sampled together with the states, or with the inputs.
   struct Companion {
     bool with_states = true;
     Eigen::VectorXd values;
   };
   std::vector<Companion> truth;
-  std::vector<Companion> weight;  ///< one, or none
-  std::vector<Companion> where;   ///< one or none; 1 where data.where is true, else 0
+  std::vector<Companion> weight;  ///< at most one column
+  std::vector<Companion> where;   ///< at most one column, whose values are 1 if data.where is true, else 0
 
   LabelStream label;  ///< empty without labels
 
@@ -57,8 +57,8 @@ struct RunStreams {
 /// Keeps the samples at these positions.
 void take(FileStream& source, const std::vector<Index>& positions);
 
-/// Whether data.where is true, per sample of the joined run: at the states' samples on both sides, or at the inputs in
-/// force. Empty without data.where.
+/// For each sample of the joined run, whether data.where is true: at the states' samples on both sides, or at the
+/// inputs in force. Empty without data.where.
 std::vector<bool> kept_samples(const RunStreams& run, const Trajectory& joined);
 
 /// Puts both streams and their companions in order.
@@ -67,9 +67,9 @@ void put_in_order(RunStreams& run, Disorder disorder);
 struct LogSampling;
 
 /// The run in the form that identification uses, sampled by `sampling`: states interpolated or averaged, inputs held or
-/// averaged. Inputs are delayed by the constant options.lag_s or, with options.lag_auto, by `clock` (evaluated in the
-/// middle of each transition, see hold_mid_transition). Samples whose delayed input is unknown are dropped. Throws
-/// DataError when fewer than two remain.
+/// averaged. Inputs are delayed by the constant options.lag_s. With options.lag_auto they are delayed by `clock`,
+/// evaluated in the middle of each transition (hold_mid_transition). Samples whose delayed input is unknown are
+/// dropped. Throws DataError if fewer than two remain.
 Trajectory join_run(const RunStreams& run, const DataOptions& options, const LogSampling& sampling,
                     const InputClock& clock);
 

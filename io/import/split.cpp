@@ -32,7 +32,7 @@ double period_s(const VectorXd& time_s) {
   return *middle;
 }
 
-/// Intervals of the blocks, without the gaps between them. The last one has no end.
+/// Time intervals of the blocks, without the gaps between blocks. The last interval has no end.
 std::vector<Interval> intervals(const RunStreams& run, const SplitOptions& options, double rate_hz) {
   const VectorXd &states = run.states.stream.time_s, &inputs = run.inputs.stream.time_s;
   const double first = std::max(least(states), least(inputs)), last = std::min(largest(states), largest(inputs));

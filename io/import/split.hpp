@@ -7,14 +7,16 @@
 
 namespace modebank {
 
-/// The blocks of a run, in order of time: RUN.b1, RUN.b2, ..., of equal length; or the part before the last percents,
-/// and these. The first, third, ... train, the others test. `options.gap_samples` of the joined run are dropped at the
-/// end of every block but the last, so that no window or lag crosses a boundary. Without a split the run itself. Throws
-/// DataError for blocks that are shorter than the gap.
+/// Splits a run. Without a split, returns the run itself.
+/// - Blocks of equal length, in order of time: RUN.b1, RUN.b2, .... The first, third, ... train, the others test.
+/// - Or two parts: the last percents, which test, and the part before, which trains.
+///
+/// At the end of every block but the last, `options.gap_samples` of the joined run are dropped, so that no window or
+/// lag crosses a boundary. Throws DataError for a block that is shorter than the gap.
 std::vector<RunStreams> split_run(const RunStreams& run, const SplitOptions& options, double rate_hz);
 
-/// A value for data.split, for one run of this many samples with `gap_samples` dropped between blocks: at most ten
-/// blocks, each at least four gaps long; else the last 30 %.
+/// A value of data.split for one run of this length. `gap_samples` are dropped between blocks. Blocks: at most ten,
+/// each at least four gaps long; otherwise the last 30 %.
 std::string proposed_split(Index samples, Index gap_samples);
 
 /// Sentence on the split, for the user.

@@ -15,9 +15,9 @@ struct FileStamps {
   StampForm form;
 };
 
-/// Finds one stamp format for all files of one pattern. If some files were read in another format, sets it in the
-/// requests of `plans` and returns true: read them again. Throws DataError, with both readings and the key that
-/// decides, where files contradict each other or several readings remain.
+/// Finds one stamp format for all files of one pattern. If some files were read in another format, sets the format in
+/// the requests of `plans` and returns true: these files must be read again. Throws DataError with both readings and
+/// the deciding key if files contradict each other or several readings remain.
 bool agree_on_stamps(const std::vector<FileStamps>& forms, std::vector<FilePlan>& plans);
 
 }  // namespace modebank

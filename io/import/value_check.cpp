@@ -39,7 +39,7 @@ struct Column {
   std::string name;
 };
 
-/// Calls visit(run, source, k, value) for every value of a column that data.where keeps.
+/// Calls visit(run, source, k, value) for every value of a column, except where data.where is false.
 template <class Visit>
 void for_each_value(const std::vector<RunStreams>& runs, const Column& column, Visit visit) {
   for (const RunStreams& run : runs) {
@@ -56,12 +56,12 @@ void for_each_value(const std::vector<RunStreams>& runs, const Column& column, V
 
 /// The values with the largest distance from a column's median.
 struct Furthest {
-  double median = 0.0, largest = 0.0, held = 0.0;  ///< held: their share of the sum of squared distances
+  double median = 0.0, largest = 0.0, held = 0.0;  ///< held: the share of these values in the sum of squared distances
   std::ptrdiff_t count = 0;
 };
 
-/// The smallest set of values with more than half of the sum of squares, far from all others; count 0 if it is not
-/// small.
+/// The smallest set of values with more than half of the sum of squares, far from all others. If this set is not small,
+/// count is 0.
 Furthest furthest_of(const VectorXd& values) {
   constexpr Index fewest = 50, one_in = 1000, few = 5, one_in_short = 25;
   constexpr double half = 0.5, beyond = 10.0;
@@ -84,7 +84,7 @@ Furthest furthest_of(const VectorXd& values) {
   return found;
 }
 
-/// The remark on one column; empty if no few values dominate it.
+/// The remark on one column; empty if no few values dominate the column.
 std::string dominating_in(const std::vector<RunStreams>& runs, const Column& column) {
   std::vector<double> all;
   for_each_value(runs, column,

@@ -35,8 +35,8 @@ class Bag : public PieceFile {
     return std::string(find_field(fields, name, head.payload_at).value_or(""));
   }
 
-  /// The recorded topic is in the record's header. Publishers need not repeat it (those in C++ do not), and one whose
-  /// topic was remapped repeats another.
+  /// The recorded topic is in the record's header. Publishers need not repeat it (publishers in C++ do not), and a
+  /// publisher whose topic was remapped repeats another topic.
   ConnectionName name_of(const RecordHead& head, ByteSource& bytes) const override {
     const std::string header = read_record(bytes, head.at, head.end).header, fields = publisher_fields(head, bytes);
     const auto topic = find_field(header, "topic", head.at);
@@ -123,7 +123,7 @@ class Bag : public PieceFile {
     return chunks;
   }
 
-  /// Adds a chunk of the index. Its own index, which follows it, must have the same numbers of messages.
+  /// Adds a chunk of the index. The chunk's own index, which follows the chunk, must have the same numbers of messages.
   std::uint64_t check_chunk(const Record& info, std::uint64_t least_at) {
     const auto at = info.number<std::uint64_t>("chunk_pos");
     if (at < least_at || at >= info.at) throw Damage(info.at, "chunks are not in order");
@@ -183,7 +183,7 @@ class Bag : public PieceFile {
     }
   }
 
-  /// A chunk that the end of the file cuts off still has complete messages.
+  /// A chunk that the end of the file cuts off may still have complete messages.
   void scan_cut_chunk(std::uint64_t at) try {
     const auto rest = file_.size() - std::min(at, file_.size());
     if (rest < 8) return;

@@ -42,7 +42,7 @@ struct Record {
 /// The record at `at`. Throws Damage unless it ends by `end`.
 Record read_record(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
 
-/// The same in a short form, for records that are skipped by the million.
+/// The same in a short form: records are skipped by the million.
 RecordHead read_head(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
 
 /// One of several named fields; nullopt if it is missing.

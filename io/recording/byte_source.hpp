@@ -10,7 +10,7 @@
 
 namespace modebank {
 
-/// A recording is damaged from byte `at`; bytes before are usable.
+/// A recording is damaged from byte `at` on; the bytes before are usable.
 struct Damage : std::runtime_error {
   Damage(std::uint64_t at_byte, const std::string& what) : std::runtime_error(what), at(at_byte) {}
   std::uint64_t at = 0;
@@ -61,7 +61,7 @@ class FileBytes : public ByteSource {
   FileBytes& operator=(const FileBytes&) = delete;
 
   std::uint64_t size() const override { return size_; }
-  /// Closes the file until `open`, since a pattern may match thousands of files.
+  /// Closes the file until the next `open`, because a pattern may match thousands of files.
   void close();
   void open();
   /// Copies up to `bytes` bytes without the window and returns their number. Threads may call it at the same time.

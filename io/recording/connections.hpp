@@ -14,9 +14,9 @@ struct Connection {
   std::string type;
   enum class Encoding { ros1, cdr, unknown };
   Encoding encoding = Encoding::unknown;
-  std::string encoding_name;    ///< name by the recording
+  std::string encoding_name;    ///< name in the recording
   std::string definition;       ///< text; may be empty
-  std::string definition_form;  ///< "ros1msg", "ros2msg", or another word of the recording
+  std::string definition_form;  ///< "ros1msg", "ros2msg", or another word that the recording uses
   std::uint64_t messages = 0;
 };
 
@@ -34,11 +34,11 @@ class Container {
   virtual ~Container() = default;
 
   const std::vector<Connection>& connections() const { return connections_; }
-  /// Findings at opening that a user should know: damage, a missing index.
+  /// Facts from opening that a user should know: damage, a missing index.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Visits all messages of the wanted connections, in the file's order. Returns the reason of an early end; empty
-  /// without one.
+  /// Visits all messages of the wanted connections, in the file's order. Returns the reason if the visit ends early,
+  /// else an empty text.
   virtual std::string visit(const std::vector<bool>& wanted, const MessageSink& sink) = 0;
   /// Visits at least the first and the last message of every connection, in the file's order.
   virtual std::string sample(const MessageSink& sink) = 0;

@@ -19,7 +19,7 @@ struct SqlError : std::runtime_error {
 
 class Database {
  public:
-  /// `immutable`: no locks and no journal, and nothing is written beside the file.
+  /// `immutable`: SQLite uses no locks and no journal, and writes nothing beside the file.
   Database(const std::filesystem::path& path, bool immutable) {
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE;
     const int status = sqlite3_open_v2(uri(path, immutable).c_str(), &handle_, flags, nullptr);
@@ -184,7 +184,7 @@ class Db3 : public Container {
     std::unordered_map<std::size_t, std::pair<std::int64_t, std::int64_t>> ends;
     std::size_t of_no_topic = 0;
     try {
-      // Row by row, so that rows before damage count. The payload, behind these columns, is not read.
+      // Row by row, so that rows before any damage count. The payload, which comes after these columns, is not read.
       Query query(*database_, "SELECT rowid, topic_id FROM messages ORDER BY rowid");
       while (query.next()) {
         const auto found = by_id_.find(query.integer(1));

@@ -91,7 +91,7 @@ class ZstdStream {
 
 template <class Stream>
 Unpacked unpack_stream(std::string_view packed, std::size_t declared, Buffer& buffer) {
-  // Images are compressed by a smaller ratio; for a higher one more rounds follow.
+  // Images have smaller ratios of compression; for a higher ratio more rounds follow.
   constexpr std::size_t usual_ratio = 8, least = 1 << 16;
   Stream stream;
   std::size_t made = 0;

@@ -23,12 +23,12 @@ class Buffer {
 };
 
 struct Unpacked {
-  std::string_view bytes;  ///< in the buffer: all, or those before the failure
-  std::string failure;     ///< reason of a failure, or empty
+  std::string_view bytes;  ///< bytes in the buffer: all, or those before the error
+  std::string failure;     ///< reason of an error, else empty
 };
 
-/// Decompresses a chunk that declares `declared` bytes. Memory grows with the actual output, so a false size costs
-/// none. More bytes than declared are a failure.
+/// Decompresses a chunk that declares `declared` bytes. Memory grows with the actual output, so a false size costs no
+/// memory. More bytes than declared are an error.
 Unpacked unpack(Compression compression, std::string_view packed, std::uint64_t declared, Buffer& buffer);
 
 /// Size that a zstd frame declares; if it declares none, more than any message has.

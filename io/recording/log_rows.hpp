@@ -14,8 +14,8 @@ class RowCollector {
  public:
   RowCollector(const LogTopic& topic, const LogRequest& request);
 
-  /// Adds a reader for messages of a connection with this decoder; returns its number for `take`. Throws DataError
-  /// without a definition and ConfigurationError when the definition lacks a requested column.
+  /// Adds a reader for messages of a connection with this decoder. Returns the reader's number for `take`. Throws
+  /// DataError without a definition, and ConfigurationError if the definition lacks a requested column.
   std::size_t add_reader(const TopicDecoder& decoder);
 
   /// Adds a message. Throws DataError when it does not fit its definition.

@@ -89,7 +89,8 @@ class Mcap : public PieceFile {
     if (crc != footer.crc) throw Damage(footer.at, "the summary has another checksum");
   }
 
-  /// Reads the summary. False unless it covers every message: all are in chunks, and each chunk's channels are indexed.
+  /// Reads the summary. False unless the summary covers every message: all messages are in chunks, and each chunk's
+  /// channels are indexed.
   bool try_summary() {
     try {
       const Footer footer = read_footer();

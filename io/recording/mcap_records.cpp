@@ -6,7 +6,7 @@ namespace modebank::mcap {
 
 namespace {
 
-/// A copy of a record's content, since later views invalidate it.
+/// A copy of a record's content, because later views invalidate the content.
 std::string content_of(ByteSource& bytes, const Record& record) {
   constexpr std::uint64_t most_bytes = 16 * most_definition_bytes;
   if (record.content_bytes > most_bytes)

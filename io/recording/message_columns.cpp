@@ -68,7 +68,7 @@ class Listing {
     skip_elements(field, count - listed, payload_);
   }
 
-  /// Names that are not unique are useless, so none are returned then.
+  /// Names that are not unique are useless; then no names are returned.
   std::vector<std::string> list_names(const std::string& path, std::uint64_t count) {
     std::vector<std::string> names;
     Value value;

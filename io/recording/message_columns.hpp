@@ -16,8 +16,8 @@ struct MessageColumn {
   Form form = Form::number;
 };
 
-/// The columns of a message: every value, except elements of sequences after the first 64, and blobs (more than 64
-/// bytes in a row). Throws PayloadError when the message does not fit the schema or bytes are left over.
+/// The columns of a message: all values except blobs (more than 64 bytes in a row) and elements of sequences after the
+/// first 64. Throws PayloadError if the message does not fit the schema or bytes are left over.
 std::vector<MessageColumn> columns_of(const Schema& schema, std::string_view payload, unsigned wide_bytes);
 
 /// Adds new columns, each after a column of the same array if there is one.

@@ -144,7 +144,7 @@ void MessageReader::read_array(const Field& field, const Want& want, const std::
                                PayloadReader& payload, std::vector<Value>& row) {
   std::uint64_t next = 0;
   const std::uint64_t count = length_of(field, payload);
-  // An element may be requested by index and by name; it is then read twice.
+  // If an element is requested both by index and by name, it is read twice.
   std::multimap<std::uint64_t, const Want*> wanted;
   for (const auto& [index, element] : want.elements)
     if (index < count) wanted.emplace(index, &element);

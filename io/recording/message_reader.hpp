@@ -19,8 +19,8 @@ class MessageReader {
   /// column.
   std::size_t add(std::string_view path);
 
-  /// Fills `row` with one value per requested column; missing where an array is too short. Throws PayloadError as
-  /// columns_of does.
+  /// Fills `row` with one value per requested column. A value is missing if its array is too short. Throws PayloadError
+  /// as columns_of does.
   void read(std::string_view payload, std::vector<Value>& row) const;
 
  private:

@@ -88,7 +88,7 @@ void PayloadReader::read(Kind kind, Value& value) {
       return;
     case Kind::time:
     case Kind::duration: {
-      // In ROS 1 the seconds of a time are unsigned, those of a duration signed; only the latter has signed
+      // In ROS 1 the seconds of a time are unsigned. The seconds of a duration are signed, and so are only its
       // nanoseconds.
       const auto seconds = static_cast<std::uint32_t>(bits(4)), nanoseconds = static_cast<std::uint32_t>(bits(4));
       const bool natural = !cdr_ && kind == Kind::time;

@@ -10,7 +10,7 @@
 namespace modebank {
 
 bool PieceFile::learn(const RecordHead& head, ByteSource& bytes) {
-  constexpr std::size_t most_given_again = 4096;  // limit, because every message searches them
+  constexpr std::size_t most_given_again = 4096;  // limit, because every message searches these
   const auto known = position(head.connection);
   if (known) {
     const Connection& other = connections_[*known];

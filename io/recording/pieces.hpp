@@ -71,14 +71,14 @@ class PieceFile : public Container {
   /// Reads a record of Kind::definition, to which later connections refer.
   virtual void define(const RecordHead& /*head*/, ByteSource& /*bytes*/) {}
 
-  /// Reads a record of Kind::connection. Numbers of connections may be repeated for the same connection, or reassigned
-  /// to another, to which later messages then belong. Returns true for a reassignment.
+  /// Reads a record of Kind::connection. A connection's number may be repeated for the same connection. It may also be
+  /// reassigned to another connection, to which later messages then belong; in this case returns true.
   bool learn(const RecordHead& head, ByteSource& bytes);
   /// The connection of a number at the current position.
   std::optional<std::size_t> position(std::uint32_t number) const { return position(number, given_again_.size()); }
-  /// Connections and counts come from an index. Records of connections in the pieces are compared with it.
+  /// Uses the connections and counts of an index. Records of connections in the pieces are compared with the index.
   void trust_index() { from_index_ = true; }
-  /// Compares those of the pieces that `sample` reads. Throws Damage where they differ.
+  /// Compares the connections in the pieces that `sample` reads. Throws Damage if they differ from the index.
   void check_names();
 
   /// Reads a piece for its connections and message counts, and adds the part before any damage. Then throws Damage if
@@ -91,7 +91,7 @@ class PieceFile : public Container {
   void forget_all();
 
   void note(std::string text) { notes_.push_back(std::move(text)); }
-  /// Stores the position of damage; visits end there without another message.
+  /// Stores the position of damage. Visits end there without another message.
   void note_damage(const Damage& damage);
   std::string damage_text(std::uint64_t at, const std::string& what) const;
 

@@ -68,7 +68,8 @@ void check_numbers(const std::string& file, const TableRequest& request, Table& 
   }
 }
 
-/// Stamps are exact. Other columns have the unit of TimeRequest::unit, or one that is found as for any file.
+/// Stamps are exact. Other columns of times have the unit of TimeRequest::unit, or a unit that is found as for any
+/// file.
 void set_times(const std::string& file, const TimeRequest& request, bool is_stamp, LogColumn& column,
                const LogColumn* second, Table& table) {
   if (!request.may_miss) {
@@ -100,7 +101,7 @@ void set_times(const std::string& file, const TimeRequest& request, bool is_stam
   stamps.finish(file, table);
 }
 
-/// Lines of Python that read messages of Protobuf into a frame; docs/howto/any_reader.md has them, too.
+/// Lines of Python that read Protobuf messages into a frame; docs/howto/any_reader.md contains the same lines.
 std::string protobuf_lines(const std::string& path) {
   return fmt::format(R"( (topics and columns are examples):
 from mcap.reader import make_reader

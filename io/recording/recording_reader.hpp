@@ -14,14 +14,14 @@ namespace modebank {
 class RecordingReader : public TableReader {
  public:
   /// `files`: one file, or parts in the order in which they were written. `definitions`: a folder of .msg files for
-  /// types that neither the recording nor the library defines; empty: none.
+  /// types that are defined neither by the recording nor by the library; empty: none.
   RecordingReader(const std::vector<std::filesystem::path>& files, const std::filesystem::path& definitions);
 
   std::vector<TableInfo> tables() const override;
   InputFile describe(const std::vector<TableRequest>& requests) const override;
   std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const override;
   std::string why_without(const std::string& column) const override;
-  /// Topics that cannot be read, and for messages of Protobuf lines of Python that read them.
+  /// Topics that cannot be read. For Protobuf messages, lines of Python that read them.
   std::vector<std::string> left_out() const override;
 
  private:

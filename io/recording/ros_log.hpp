@@ -22,7 +22,7 @@ struct LogTopic {
   std::vector<MessageColumn> columns;  ///< full names, "/topic.field"; "/topic.receive_time" is the last
   std::uint64_t messages = 0;
   std::string
-      problem;  ///< reason why its messages are unreadable, with the receive time as the only column; else empty
+      problem;  ///< reason why the messages are unreadable, so that the receive time is the only column; else empty
 };
 
 /// A requested column, and the form of its values.
@@ -55,12 +55,12 @@ struct LogRows {
   std::vector<std::uint64_t> message;  ///< per row its index in the topic's messages, from 1
 };
 
-/// A recording of ROS: bag, MCAP or db3, one file or several in the order in which they were written. Messages are
+/// A recording of ROS: bag, MCAP or db3, in one file or several, in the order in which they were written. Messages are
 /// flattened to columns.
 class RosLog {
  public:
-  /// Reads the index and a few messages. Throws ConfigurationError when a file cannot be read, and DataError when it
-  /// has another format or is damaged from the beginning.
+  /// Reads the index and a few messages. Throws ConfigurationError if a file cannot be read, and DataError if it has
+  /// another format or is damaged from the beginning.
   RosLog(std::vector<std::filesystem::path> files, const KnownDefinitions& known);
   /// The same for recording_files(path).
   RosLog(const std::filesystem::path& path, const KnownDefinitions& known);
@@ -71,8 +71,8 @@ class RosLog {
   /// Remarks on the recording for the user.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Reads the requested columns in one pass; `notes` gets remarks on the values. Throws ConfigurationError for an
-  /// unknown column. Throws DataError, with topic, type and message, for a message that does not fit its definition.
+  /// Reads the requested columns in one pass; `notes` receives remarks on the values. Throws ConfigurationError for an
+  /// unknown column. Throws DataError with topic, type and message for a message that does not fit its definition.
   /// `used`, unless null, receives all messages of these topics.
   std::vector<LogRows> read(const std::vector<LogRequest>& requests, std::vector<std::string>& notes,
                             UsedMessages* used = nullptr) const;

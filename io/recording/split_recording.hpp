@@ -5,9 +5,10 @@
 
 namespace modebank {
 
-/// The files of a recording: the file itself, or those of a folder in the order in which they were written. That order
-/// is in metadata.yaml; without it all files of one ending (.bag, .mcap or .db3) are taken, by the numbers in their
-/// names. Throws ConfigurationError for a folder with no ending or several, and for a list that leaves the folder.
+/// The files of a recording: the file itself, or the files of a folder in the order in which they were written.
+/// metadata.yaml states this order. Without metadata.yaml, all files with the extension .bag, .mcap or .db3 are taken,
+/// ordered by the numbers in their names. Throws ConfigurationError for a folder without such files or with several
+/// extensions, and for a list with a file outside the folder.
 std::vector<std::filesystem::path> recording_files(const std::filesystem::path& path);
 
 }  // namespace modebank

@@ -33,7 +33,7 @@ void add_embedded(const Connection& connection, Schemas& candidates, std::string
   }
 }
 
-/// The columns of the samples by this definition; nullopt, with the reason, if it does not fit.
+/// The columns of the samples by this definition. Nullopt with the reason if the definition does not fit.
 std::optional<std::vector<MessageColumn>> try_schema(const Schema& schema, unsigned wide_bytes,
                                                      const std::vector<std::string>& samples, std::string& problem) {
   try {

@@ -11,10 +11,10 @@
 
 namespace modebank {
 
-/// The definition for one connection's messages: the first candidate that fits its first and its last message without
-/// leftover bytes.
+/// The definition for the messages of one connection: the first candidate that fits the first and the last message
+/// without leftover bytes.
 struct TopicDecoder {
-  std::shared_ptr<const Schema> schema;  ///< null: `problem` has the reason
+  std::shared_ptr<const Schema> schema;  ///< null: `problem` states the reason
   unsigned wide_bytes = 4;
   std::vector<MessageColumn> columns;  ///< columns of its first and its last message
   std::string problem;

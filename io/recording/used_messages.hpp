@@ -12,8 +12,8 @@
 namespace modebank {
 
 /// Identifies the data that are read from a recording: names and types of topics, definitions, receive times and
-/// payloads of messages. Other topics, the packing of chunks and the split into files do not change it, so only the
-/// messages that are used have to be read.
+/// payloads of messages. Other topics, the packing of chunks and the split into files do not change the result, so only
+/// the used messages must be read.
 class UsedMessages {
  public:
   /// Adds the definition of a connection; its messages follow.
@@ -21,8 +21,8 @@ class UsedMessages {
   /// Adds a message; call it in the recording's order.
   void take(const std::string& topic, const RecordedMessage& message);
 
-  /// SHA-256 so far, in lowercase hex. It covers, for each topic by name, its name, type, definitions and the SHA-256
-  /// of its messages. Each text and payload comes after its length.
+  /// SHA-256 so far, in lowercase hex. For each topic in order of name, it covers name, type, definitions and the
+  /// SHA-256 of the messages. The length of each text and payload comes first.
   std::string hex() const;
 
  private:

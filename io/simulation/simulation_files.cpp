@@ -81,7 +81,8 @@ bool has_truth(const std::set<std::string>& columns) {
          std::any_of(columns.begin(), columns.end(), [](const auto& name) { return name.starts_with("true_"); });
 }
 
-/// Whether a run's files are simulated: one of them has truth columns, the other the columns that these belong to.
+/// Whether a run's files are simulated: one file has truth columns, and the other has the columns to which these
+/// belong.
 bool is_simulated(const fs::path& path) {
   const std::set<std::string> columns = columns_of(path);
   if (has_truth(columns)) return true;
@@ -92,8 +93,8 @@ bool is_simulated(const fs::path& path) {
          });
 }
 
-/// A folder inside the target, on the same file system. The destructor removes it, and the target, too, if this object
-/// created it and it is empty.
+/// A folder inside the target, on the same file system. The destructor removes this folder. It also removes the target
+/// if this object created the target and it is empty.
 class StagingFolder {
  public:
   explicit StagingFolder(const fs::path& target) : target_(target) {
@@ -133,7 +134,7 @@ void check_targets(const fs::path& folder, const std::vector<std::string>& names
       check_output({"simulate.output", folder / name, {"a simulated run", is_simulated}}, {});
 }
 
-/// Moves the files to their places. Old files are kept until all are moved, and restored if a move fails.
+/// Moves the files to their places. Old files are kept until all files are moved, and restored if a move fails.
 void move_all(const fs::path& from, const fs::path& to, const std::vector<std::string>& names) {
   const auto kept = [&](const std::string& name) { return from / (name + ".before"); };
   std::size_t moved = 0;

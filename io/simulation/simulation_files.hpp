@@ -22,16 +22,16 @@ struct SimulationTables {
   SimulationTable states;  ///< imu_NN.csv
 };
 
-/// Throws ConfigurationError when a column's name is empty or occurs twice.
+/// Throws ConfigurationError if a column's name is empty or occurs twice.
 void check_column_names(const std::vector<std::string>& names);
 
 /// Whether a file name is one of a run: pro_*.csv or imu_*.csv.
 bool is_run_file(const std::string& name);
 
 /// Writes pro_NN.csv and imu_NN.csv of `runs` runs, with numbers in the shortest form that reads back exactly. Either
-/// all files are written or none: they are complete in a folder beside the old ones before they are moved. The folder
-/// is created if its parent exists. Throws ConfigurationError when it cannot be created. It also throws when it has
-/// other pro_ or imu_ files, which are not simulated or would be read by `run` as further runs.
+/// all files are written or none: they are complete in a folder beside the old files before they are moved. The folder
+/// is created if its parent exists. Throws ConfigurationError if the folder cannot be created, or contains other pro_
+/// or imu_ files, which `run` would read as further runs.
 void write_simulation_files(const std::filesystem::path& folder, std::size_t runs,
                             const std::function<SimulationTables(std::size_t)>& tables_of);
 

@@ -24,8 +24,8 @@ std::string text_of(const MemoryColumn& column, std::size_t row) {
   return std::visit([&](const auto& values) { return fmt::format("{}", values[row]); }, column.values);
 }
 
-/// Adds the column's name and values to the hash. Each text comes after its length, so different columns have different
-/// bytes.
+/// Adds the column's name and values to the hash. The length of each text comes first, so that different columns have
+/// different bytes.
 void add_to_hash(const MemoryColumn& column, Sha256& hash, std::uint64_t& bytes) {
   const auto add = [&](const void* data, std::size_t size) {
     hash.update(data, size);

@@ -17,7 +17,7 @@ struct MemoryColumn {
 };
 
 /// A table in memory that a program passes in place of a file. Its hash is that of the names and values of the columns
-/// that are read. Messages have the form name:row, from 0.
+/// that are read. Messages name a value as name:row, with rows from 0.
 class MemoryTable final : public TableReader {
  public:
   /// Throws std::invalid_argument unless all columns have equal lengths.

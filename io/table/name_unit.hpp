@@ -7,7 +7,7 @@ namespace modebank {
 /// A channel's name with its unit in brackets after a blank: "wz [deg/s]", "t (ms)".
 struct NameAndUnit {
   std::string_view name;
-  std::string_view unit;  ///< empty: the name has none
+  std::string_view unit;  ///< empty: the name contains no unit
 };
 NameAndUnit split_unit(std::string_view name);
 

@@ -9,7 +9,7 @@ namespace modebank {
 
 inline constexpr std::int64_t billion = 1'000'000'000;
 
-/// A stamp as written: a whole number of units, and billionths of a unit, 0 to 999,999,999.
+/// A stamp as written: a whole number of units, and billionths of a unit from 0 to 999,999,999.
 struct Stamp {
   std::int64_t whole = 0;
   std::int32_t billionths = 0;
@@ -34,7 +34,7 @@ Stamp stamp_of(double value);
 class DayCount {
  public:
   /// Seconds since the midnight before the first time. A time of day that is hours earlier than the last one belongs to
-  /// the next day. One that is nearly a day later, after midnight has passed, is a late row of the previous day.
+  /// the next day. After midnight, a time of day that is nearly a day later is a late row of the previous day.
   std::int64_t on(std::int64_t time_of_day_s);
 
  private:

@@ -162,7 +162,7 @@ std::string StampColumn::complaint(NumberStatus status, std::string_view text) c
       shown);
 }
 
-/// A stated unit or one in the name takes precedence over one that the numbers indicate.
+/// A stated unit, or a unit in the name, takes precedence over a unit that the numbers indicate.
 StampForm StampColumn::found_form(std::vector<std::string>& notes) const {
   using Ground = StampForm::Ground;
   if (!request_.second.empty()) return {Ground::stated, TimeUnit::s};
@@ -187,7 +187,7 @@ std::int64_t StampColumn::nanoseconds(std::size_t row, const StampForm& form) co
   return stamps_[row].whole * scale + stamps_[row].billionths / (billion / scale);
 }
 
-/// Prefers patterns whose stamps advance evenly. Patterns that read all stamps alike count as one.
+/// Prefers patterns whose stamps advance evenly. Several patterns that read all stamps alike count as one.
 void StampColumn::decide_reading(Table& table) {
   const auto uneven = [&](const Reading& reading) { return !reading.is_even(as_written_); };
   if (readings_.size() > 1 && !std::all_of(readings_.begin(), readings_.end(), uneven))

@@ -13,8 +13,8 @@
 
 namespace modebank {
 
-/// A column of stamps, read row by row. For numbers the unit is found at the end. Texts are read by every pattern that
-/// fits all of them. The stamps of every format use this class, so all are read alike.
+/// A column of stamps, read row by row. The unit of numbers is found at the end. Texts are read by several patterns;
+/// only patterns that fit every text remain. All formats use this class, so that all read stamps alike.
 class StampColumn {
  public:
   /// `stated_unit`: unit in the format ("ms"), else empty. Throws std::invalid_argument for a request with an invalid
@@ -31,11 +31,11 @@ class StampColumn {
   /// Adds a missing stamp.
   void add_missing();
 
-  /// The end of a message on a text for which `add` returned this status.
+  /// The end of a message on a text, by the status that `add` returned for it.
   std::string complaint(NumberStatus status, std::string_view text) const;
 
-  /// Finds the format and fills time_ns, time_s, form and notes of `table`, whose lines are set. Throws DataError, with
-  /// `file`, for a stamp that overflows 64 bits of nanoseconds. Call it once, as the last.
+  /// Finds the format and sets time_ns, time_s, form and notes of `table`, whose lines are set. Throws DataError with
+  /// `file` for a stamp that overflows 64 bits of nanoseconds. Call it only once, after all stamps were added.
   void finish(std::string_view file, Table& table);
 
  private:
@@ -60,7 +60,7 @@ class StampColumn {
 
   TimeRequest request_;
   std::string stated_unit_;
-  std::vector<StampPattern> patterns_;  // one if the user states it, else several
+  std::vector<StampPattern> patterns_;  // one pattern if the user states it, else several
   enum class Kind { unknown, number, text } kind_ = Kind::unknown;
   std::vector<Stamp> stamps_;       // stamps from numbers
   std::vector<double> as_written_;  // NaN: missing

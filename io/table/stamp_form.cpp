@@ -39,8 +39,8 @@ Numbers first_numbers(const std::vector<double>& values) {
 
 bool is_multiple(double value, double of) { return std::fmod(value, of) == 0.0; }
 
-/// Whether a logger that stamps in whole units since an epoch samples at this interval: at least every minute, or at
-/// each full minute, hour or day.
+/// Whether this is a sampling interval of a logger that stamps in whole units since an epoch: at most a minute, or a
+/// full minute, hour or day.
 bool is_logging_interval(double seconds) {
   if (seconds <= minute_s) return true;
   if (seconds <= hour_s) return is_multiple(seconds, minute_s);
@@ -61,7 +61,7 @@ std::optional<TimeUnit> unit_of_epoch(const Numbers& numbers, bool whole) {
 }
 
 /// The unit of whole numbers. A robot samples at 0.1 Hz or faster, so numbers more than ten apart are not seconds,
-/// unless they are full minutes. It runs for less than ten days, unless it would then sample faster than 2 kHz.
+/// unless they are full minutes. A robot runs for less than ten days, unless the sampling rate would then exceed 2 kHz.
 TimeUnit unit_of_spacing(const Numbers& numbers) {
   constexpr double slowest_s = 10.0, longest_s = 9e5, fastest_s = 5e-4;
   if (numbers.spacing <= slowest_s || (numbers.spacing <= hour_s && is_multiple(numbers.spacing, minute_s)))
@@ -75,8 +75,8 @@ TimeUnit unit_of_spacing(const Numbers& numbers) {
   return TimeUnit::ns;
 }
 
-/// Whether numbers, taken as days, are at full seconds or minutes at which loggers write: every 5 or 10 s, every
-/// minute, every quarter of an hour.
+/// Whether numbers, read as days, lie at full seconds or minutes at which loggers write: every 5 or 10 s, every minute,
+/// every quarter of an hour.
 bool are_at_logging_intervals(const Numbers& numbers) {
   constexpr double rounding_s = 0.1;  // rounding of days with six decimals
   const double interval_s = std::round(numbers.spacing * day_s);
@@ -87,8 +87,8 @@ bool are_at_logging_intervals(const Numbers& numbers) {
   });
 }
 
-/// Whether numbers are days since an epoch with the time of day as fraction. They are if, as seconds, they would be
-/// sampled faster than 20 kHz, or faster than 1 kHz at full seconds of days.
+/// Whether numbers are days since an epoch with the time of day as fraction. They are if, read as seconds, they would
+/// be sampled faster than 20 kHz, or faster than 1 kHz and are at full seconds of days.
 bool are_serial_days(const Numbers& numbers) {
   constexpr double fastest_s = 5e-5, fast_s = 1e-3;
   return first_day_of(numbers.size) != 0 && numbers.spacing > 0.0 &&

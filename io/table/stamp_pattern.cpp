@@ -19,13 +19,13 @@ namespace {
 
 constexpr int seconds_per_day = 86400;
 
-/// The program around this library may have set another locale.
+/// The program that uses this library may have set another locale.
 locale_t c_locale() {
   static const locale_t locale = newlocale(LC_ALL_MASK, "C", nullptr);
   return locale;
 }
 
-/// The text after the part that fits; null if none fits.
+/// The text after the part that fits; null if no part fits.
 const char* parse(const char* text, const std::string& pattern, tm& time) {
   return strptime_l(text, pattern.c_str(), &time, c_locale());
 }

@@ -31,22 +31,22 @@ struct TableInfo {
   std::uint64_t skipped = 0;  ///< number of title lines above a table of text
 };
 
-/// The columns of times; empty requests none. A stamp in two columns has nanoseconds in the second, or the time of day
-/// beside a date.
+/// The columns of times; if empty, none are requested. A stamp in two columns has nanoseconds in the second column, or
+/// the time of day beside a date.
 struct TimeRequest {
   std::string column = {};
   std::string second = {};
   TimeUnit unit = TimeUnit::automatic;
-  std::string format = {};  ///< a StampPattern; empty: find one
-  bool may_miss = false;    ///< whether a missing stamp becomes missing_stamp; else it is an error
+  std::string format = {};  ///< a StampPattern; empty: a pattern is found
+  bool may_miss = false;    ///< true: a missing stamp becomes missing_stamp; false: it is an error
 };
 
-/// Requested columns of a table; other columns are skipped without a check.
+/// Requested columns of a table. Other columns are skipped without a check.
 struct TableRequest {
   std::size_t table = 0;                ///< index in TableReader::tables
   std::vector<std::string> numbers;     ///< columns of finite numbers, each once
   std::vector<std::string> texts = {};  ///< columns of text, each once
-  std::vector<bool> may_miss = {};      ///< per number: whether missing values become NaN; empty: they are errors
+  std::vector<bool> may_miss = {};      ///< for each number, whether missing values become NaN; empty: they are errors
   TimeRequest time = {};
 };
 
@@ -57,7 +57,7 @@ struct LineRange {
 
 /// "rows 3 to 7 and 2 more ranges"; needs at least one range.
 std::string rows_text(const std::vector<LineRange>& ranges);
-/// The range that contains the line, or the end.
+/// The range that contains the line; the end if there is none.
 std::vector<LineRange>::const_iterator range_of(const std::vector<LineRange>& ranges, std::uint64_t line);
 /// "; rows 3 to 7 were never written" if a range contains the line, else empty.
 std::string unwritten_text(const std::vector<LineRange>& ranges, std::uint64_t line);
@@ -67,42 +67,43 @@ inline constexpr std::int64_t missing_stamp = std::numeric_limits<std::int64_t>:
 struct Table {
   std::vector<std::vector<double>> numbers;     ///< one vector per requested column, one value per row
   std::vector<std::vector<std::string>> texts;  ///< the same for texts, without blanks around them
-  std::vector<std::uint64_t> line;              ///< per row its line or message number, for messages file:line
+  std::vector<std::uint64_t> line;              ///< for each row its line or message number, for messages file:line
   std::vector<std::int64_t> time_ns;            ///< per row, exact; empty when no time was requested
   /// Stamps written as seconds in text, which may be finer than time_ns; else empty.
   std::vector<double> time_s;
   std::map<std::string, std::size_t> missing_words;  ///< number of missing values by word of data.na
   StampForm form = {};                               ///< stamp format, if the times were numbers or text
-  std::vector<std::string> notes;  ///< remarks of the reader for the user; without the file's name, so that equal
-                                   ///< remarks on many files are merged
+  std::vector<std::string> notes;  ///< remarks of the reader for the user, without the file's name, so that equal remarks on many files are merged
 
-  std::vector<LineRange> unwritten;  ///< lines whose times were never written, so that they read as a fill value
+  std::vector<LineRange> unwritten;  ///< lines whose times were never written and so have the file's fill value
 
-  /// A sentence if consecutive rows belong to different frames, with the key that separates them.
+  /// If consecutive rows belong to different frames, a sentence with the key that separates them.
   std::string alternation;
 
   std::size_t rows() const { return line.size(); }
 };
 
-/// The interface between file formats and runs: a file's tables and their values. All code behind it (plans, joining,
-/// lags, gaps, roles) is independent of formats. A new format derives a class and is listed in open_table.
+/// The interface between file formats and runs: a file's tables and their values. All code behind this interface
+/// (plans, joining, lags, gaps, roles) is independent of formats. A new format needs a derived class and an entry in
+/// open_table.
 class TableReader {
  public:
   virtual ~TableReader() = default;
 
-  /// The tables and their columns. Reads only as far as needed. Throws ConfigurationError when the file cannot be read
-  /// or has no columns, DataError when it is malformed.
+  /// The tables and their columns. Reads only as far as needed. Throws ConfigurationError if the file cannot be read or
+  /// has no columns, and DataError if it is malformed.
   virtual std::vector<TableInfo> tables() const = 0;
 
-  /// Identifies the data of these requests: equal data have equal hashes. Throws when the file cannot be read.
+  /// Identifies the data of these requests: equal data have equal hashes. Throws if the file cannot be read.
   virtual InputFile describe(const std::vector<TableRequest>& requests) const = 0;
 
   /// Reads the requested columns in one pass over the file, one table per request. Sets `file`, unless null, to the
-  /// result of `describe`. Throws as column_position does. Throws DataError, with file, line and column, for text in
-  /// place of a number, a missing value (empty, NaN or infinite) in a column without may_miss, and a malformed row.
+  /// result of `describe`. Throws as column_position does. Throws DataError with file, line and column for text in
+  /// place of a number, for a malformed row, and for a missing value (empty, NaN or infinite) in a column without
+  /// may_miss.
   virtual std::vector<Table> read(const std::vector<TableRequest>& requests, InputFile* file) const = 0;
 
-  /// One line, with advice, for every object of the file that gives no table.
+  /// One line, with advice, for every object of the file that is not a table.
   virtual std::vector<std::string> left_out() const { return {}; }
 
   /// Reason why a column that a user may expect is missing; empty if unknown.
@@ -111,7 +112,7 @@ class TableReader {
 
 std::vector<std::string> column_names(const TableInfo& table);
 
-/// Index of a column. Throws ConfigurationError, with `file`, when it is missing (with the existing names and the
+/// Index of a column. Throws ConfigurationError with `file` if the column is missing (with the existing names and the
 /// nearest one) or occurs twice.
 std::size_t column_position(std::string_view file, const std::vector<std::string>& columns, const std::string& column);
 

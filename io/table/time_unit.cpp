@@ -45,14 +45,14 @@ std::optional<TimeUnit> unit_of_word(std::string_view word) {
   return found == units.end() ? std::nullopt : std::optional(found->unit);
 }
 
-/// The part from the last capital letter that follows a small one: US of TimeUS.
+/// The part from the last capital letter that follows a small letter: US of TimeUS.
 std::string_view last_capitalised(std::string_view word) {
   for (std::size_t i = word.size(); i-- > 1;)
     if (is_upper(word[i]) && is_lower(word[i - 1])) return word.substr(i);
   return {};
 }
 
-/// The part after a word for times: ns of timestampns.
+/// The part after a word that means time: ns of timestampns.
 std::string_view behind_time(std::string_view word) {
   for (const std::string_view time : {"timestamp", "time", "stamp", "clock"})
     if (word.size() > time.size() + 1 && word.starts_with(time)) return word.substr(time.size());
