@@ -1,4 +1,4 @@
-// Predictions several samples ahead, by each filter and by all of them combined.
+// Predictions several samples ahead, by each filter and by the combination of all filters.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -16,14 +16,14 @@
 namespace modebank {
 namespace {
 
-/// Removes horizons that no judged run reaches, which have no scores. `stated`: the configuration names them, so
-/// throws.
+/// Removes horizons that no judged run reaches, because these have no scores. `stated`: the configuration names the
+/// horizons, so an unreachable one throws.
 void keep_reached_horizons(Archive& archive, bool stated) {
   std::vector<Index> unreached;
   for (const HorizonRow& row : archive.horizons)
     if (row.filter == "bank" && row.run == "*" && row.role == judged_role(archive) && row.samples == 0)
       unreached.push_back(row.horizon);
-  // Lags shorten a run only when it is modelled, so horizons cannot be checked before.
+  // Lags shorten a run only when the run is modelled, so horizons cannot be checked earlier.
   if (stated && !unreached.empty())
     throw DataError(
         fmt::format("filter.horizon = {}: no run is long enough; the filter starts at sample {}. Give a smaller number",

@@ -38,7 +38,7 @@ void Chain::provide(Stage stage, const StagePart& part) {
   if (held == wanted) return;
   held.clear();  // if this throws, the archive belongs to no run
   const Stopwatch watch;
-  // Results written to a file while they are made are not in memory, so a later run cannot reuse them.
+  // Results that are written to a file while they are made are not in memory. So a later run cannot reuse them.
   const bool streamed = sink_ && (stage == Stage::competitor_scores || stage == Stage::bank_scores);
   if (streamed)
     part.compute();
@@ -60,7 +60,7 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
   sink_ = sink;
   seconds_.fill(0.0);
   inputs_ = chain_inputs(options);
-  wanted_ = stage_keys(inputs_, "");  // the data's hash is known once they are read
+  wanted_ = stage_keys(inputs_, "");  // the data's hash is known after reading
   import(inputs_.data);
   if (last >= Stage::bank_scores && options.scoring.horizon != ScoringOptions::default_horizon)
     refuse_unreached_horizons(*archive_.recording, options.scoring.horizon);
@@ -144,7 +144,7 @@ void Chain::provide_learned(Stage stage, const std::function<void()>& compute) {
 }
 
 void Chain::provide_windows(const std::function<void()>& compute) {
-  constexpr double written_per_s = 1e5;  // with their samples, on a slow disk
+  constexpr double written_per_s = 1e5;  // windows written per second, with their samples, on a slow disk
   const WindowInputs& inputs = inputs_.windows;
   const auto in_time = [&] {
     tell_if_long(listener_, "windows", expected_windows_s(*archive_.recording, inputs.window),

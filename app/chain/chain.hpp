@@ -13,11 +13,11 @@
 
 namespace modebank {
 
-/// How a stage's result enters the chain's archive and leaves it. No part of it is copied.
+/// How a stage's result enters and leaves the chain's archive. No part of the result is copied.
 struct StagePart {
   std::function<void()> compute;
-  std::function<Archive()> give;        ///< an archive of the result alone, which `take` must get back
-  std::function<void(Archive&&)> take;  ///< puts the result from such an archive in its place
+  std::function<Archive()> give;        ///< an archive with only the result, which `take` must receive again
+  std::function<void(Archive&&)> take;  ///< puts the result of such an archive back in its place
   double writing_s = 0.0;               ///< expected time to write it; a result computed faster is not worth a file
 };
 
@@ -29,7 +29,7 @@ class StageSource {
   virtual void provide(Stage, const std::string& /*key*/, const StagePart& part) { part.compute(); }
 };
 
-/// Takes data and stages up to `until` from an archive, as far as it has them. The others are computed.
+/// Takes data and stages up to `until` from an archive, as far as the archive has them. All other stages are computed.
 class StoredStages : public StageSource {
  public:
   /// Throws DataError when the archive holds no data.
@@ -48,22 +48,22 @@ struct Execution {
   Provenance provenance;
 };
 
-/// The one order of stages, from data to scores. A stage is skipped if its key is that of the last run. So a series of
-/// options is fastest when neighbours share early stages.
+/// The one order of stages, from data to scores. A stage is skipped if its key equals that of the last run. So a series
+/// of options is fastest if neighbours share early stages.
 class Chain {
  public:
   /// All arguments must outlive the chain. `memory`: runs in memory; null: the data are files.
   Chain(StageSource& source, const Listener& listener, const MemoryTables* memory = nullptr)
       : source_(source), listener_(listener), memory_(memory) {}
 
-  /// The archive after the stage `last` (bank_scores: all stages), which must not be earlier than in the run before.
-  /// Throws what the stages throw; results up to then are not reused. `sink` takes evaluations as they are made, and
-  /// the archive then has none; null: the archive has them.
+  /// The archive after the stage `last` (bank_scores: all stages). `last` must not be earlier than in the run before.
+  /// Throws the exceptions of the stages; earlier results are then not reused. `sink` receives evaluations as they are
+  /// made, and the archive then has none; null: the archive has them.
   const Archive& run(const ChainOptions& options, Stage last, const Execution& execution,
                      const EvaluationSink* sink = nullptr);
 
-  /// Scores the banks of another archive on the data, without learning. Throws DataError when their channels do not fit
-  /// the data's. One chain calls either this or run().
+  /// Scores the banks of another archive on the data, without learning. Throws DataError if the banks' channels do not
+  /// fit the data's. A chain calls either this function or run(), never both.
   const Archive& judge_stored(const std::filesystem::path& banks, const ChainOptions& options,
                               const Execution& execution, const EvaluationSink* sink = nullptr);
 

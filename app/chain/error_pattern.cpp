@@ -34,7 +34,7 @@ Recording runs_of_errors(const Recording& recording, const FilterEvaluation& ban
   return errors;
 }
 
-/// Residuals of a least-squares fit to `z`, where each fold of parts is predicted from the others.
+/// Residuals of a least-squares fit to `z`. Each fold of parts is predicted by a fit to the other folds.
 MatrixXd left_out_errors(const TermRows& rows, const MatrixXd& z) {
   const Index folds = std::min(most_folds, rows.parts);
   MatrixXd errors = z;

@@ -68,8 +68,8 @@ std::vector<std::pair<std::string, double>> coefficients_of(const Bank& bank) {
   return coefficients;
 }
 
-/// Resolution of each state over all judged runs. `quantum`: rounding steps of the bank; scores of such a state already
-/// take values as intervals. Samples at rest are left out, because there a fine measurement repeats, too.
+/// Resolution of each state over all judged runs. `quantum`: rounding steps of the bank; the scores of such a state
+/// already treat values as intervals. Samples at rest are left out, because fine measurements also repeat at rest.
 std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Eigen::VectorXd& quantum,
                                     const Recording& recording, Role role) {
   const Rests rests = rests_of(recording);

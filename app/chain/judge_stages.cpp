@@ -32,8 +32,8 @@ struct Scored {
 
 using Positions = std::vector<std::size_t>;
 
-/// The runs of a role in order, in parts whose evaluations fit into memory together: one run per thread, and more while
-/// runs are short.
+/// The runs of a role in order, in parts whose evaluations fit into memory together. A part has one run per thread, or
+/// more if runs are short.
 std::vector<Positions> parts_of(const std::vector<Trajectory>& runs, Role role) {
   constexpr Index samples_at_once = 200000;
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
@@ -51,8 +51,8 @@ std::vector<Positions> parts_of(const std::vector<Trajectory>& runs, Role role) 
   return parts;
 }
 
-/// Drops arrays that no judge reads. States and covariances are judged only where the truth is known. A state also
-/// marks a sample with a mode if a sequence of modes is missing.
+/// Drops arrays that no judge reads. States and covariances are judged only if the truth is known. If there is no
+/// sequence of modes, a state also marks a sample with a mode.
 void keep_for_judges(const Trajectory& run, RunEvaluation& e) {
   for (Eigen::MatrixXd* array :
        {&e.prediction, &e.smoothed_state, &e.smoothed_covariance, &e.mode_probability_predicted})

@@ -49,7 +49,7 @@ std::vector<Row> rows_out_of(std::vector<Row>& all, const std::vector<std::strin
   return rows;
 }
 
-/// Removes all results on these models, and the recording: an archive of scores has them.
+/// Removes all results on these models, and the recording. An archive of scores contains both.
 inline Archive scores_out_of(Archive& archive, const std::vector<std::string>& models) {
   Archive part;
   part.recording = std::exchange(archive.recording, {});
@@ -61,7 +61,7 @@ inline Archive scores_out_of(Archive& archive, const std::vector<std::string>& m
   return part;
 }
 
-/// Whether a part is stored with the recording. A part from a file has a recording of its own, with the same data.
+/// Whether a part is stored together with the recording. A part from a file has its own recording with the same data.
 inline void put_back_recording(Archive& part, Archive& archive) {
   if (!archive.recording) archive.recording = std::move(part.recording);
 }

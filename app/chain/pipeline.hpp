@@ -23,9 +23,9 @@ class Adviser : public Listener {
 void check_request(const std::string& command, const Config& config, const std::filesystem::path& file,
                    const MemoryTables* memory = nullptr);
 
-/// Runs the chain's stages up to `last`, or scores the banks of an archive (`banks`, else empty), and writes the result
-/// to `output`. Too many evaluations for memory are written as they are made. Returns the archive, in that case without
-/// evaluations.
+/// Runs the chain's stages up to `last` and writes the result to `output`. With `banks` (else empty), scores the banks
+/// of that archive instead. Evaluations that do not fit into memory are written as they are made. Returns the archive,
+/// in that case without evaluations.
 const Archive& run_and_write(Chain& chain, const ChainOptions& options, Stage last, const std::string& banks,
                              const Execution& execution, const std::filesystem::path& output);
 

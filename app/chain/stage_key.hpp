@@ -9,8 +9,8 @@
 namespace modebank {
 
 /// For each stage the SHA-256 of everything that determines its numbers: its inputs struct field by field, the keys of
-/// the stages before it, the data's hash and modebank's version. Equal keys mean equal numbers. Numbers may be equal
-/// although keys differ.
+/// earlier stages, the data's hash and modebank's version. Equal keys mean equal numbers; different keys need not mean
+/// different numbers.
 using StageKeys = std::array<std::string, stage_count>;
 StageKeys stage_keys(const ChainInputs& inputs, const std::string& data_hash);
 

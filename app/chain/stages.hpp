@@ -14,7 +14,7 @@
 /// their inputs struct. They throw ConfigurationError for inputs that do not fit the data, DataError for unusable data.
 namespace modebank {
 
-/// Whether there are so many windows that they are written to the file as they are fitted.
+/// Whether there are so many windows that they are written to the file during the fit.
 bool streams_windows(const Recording& recording, const WindowInputs& inputs);
 
 /// Fits windows and writes them to an archive of `before` (data) and windows alone. `report` is called with
@@ -31,11 +31,11 @@ struct FilterScores {
   ResidualTestSet residual_tests = {};
 };
 
-/// Destination of evaluations that are written as soon as they are made. Only what find_modes and confusion_of read
-/// stays in memory.
+/// Destination of evaluations that are written as soon as they are made. Memory keeps only the data that find_modes and
+/// confusion_of need.
 struct EvaluationStream {
   EvaluationSink sink;
-  bool labelled = false;  ///< the data have labels, with which the bank's mode probabilities are compared
+  bool labelled = false;  ///< whether the data have labels, with which the bank's mode probabilities are compared
 };
 /// Whether there are so many samples that the evaluations of all filters do not fit into memory.
 bool streams_evaluations(const Recording& recording);
@@ -53,8 +53,8 @@ std::optional<FilterScores> score_combined(const FilterOptions& filter, const Sc
 /// Adds the predictions of each filter and of their combination, as far ahead as configured.
 void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive);
 
-/// Remarks on free runs, one line each: runs of which the bank predicted nothing, and sample paths that any filter
-/// lost.
+/// Remarks on free runs, one line each: runs without any prediction by the bank, and sample paths that left the finite
+/// range.
 std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,
                                  const std::vector<FreeRun>& free_runs);
 

@@ -50,11 +50,11 @@ struct JobConfig {
 enum class SimulatedSystem { linear, vehicle };
 
 struct SimulateConfig {
-  std::string name = "husky_ice";  ///< of a built-in system, or a system file; it sets all members down to ground_names
+  std::string name = "husky_ice";  ///< name of a built-in system, or a system file, which sets all members down to ground_names
   SimulatedSystem kind = SimulatedSystem::linear;
-  SimulationOptions system;               ///< the linear system; commands, runs and outliers also of the vehicle
-  VehicleSimulationOptions vehicle;       ///< what only a vehicle has
-  std::vector<std::string> ground_names;  ///< of the kinds of ground, or of the linear system's modes
+  SimulationOptions system;               ///< the linear system; a vehicle also uses its commands, runs and outliers
+  VehicleSimulationOptions vehicle;       ///< parameters that only a vehicle has
+  std::vector<std::string> ground_names;  ///< names of the kinds of ground, or of the linear system's modes
   std::string output = "simulated";
   double rate_hz = 6.5;
   double state_rate_hz = 65.0;
@@ -63,7 +63,7 @@ struct SimulateConfig {
 /// Origin of a number of lags, of the delay or of the windows' length.
 enum class LagChoice { by_model, automatic, number };
 
-/// Whether the number is searched for. `by_model`: the model decides, because the configuration leaves the key out.
+/// Whether the number is searched for. `by_model`: the configuration does not state the key, so the model decides.
 inline bool is_automatic(LagChoice choice, bool by_model) {
   return choice == LagChoice::automatic || (choice == LagChoice::by_model && by_model);
 }
@@ -86,7 +86,7 @@ struct Config {
   BankOptions bank;
   std::vector<std::string> mode_names;
   FilterOptions filter;
-  ScoringOptions scoring;  ///< the keys of [filter] that do not change how a filter steps
+  ScoringOptions scoring;  ///< keys of [filter] that do not change a filter's steps
   TrackConfig track;
   ReportConfig report;
   ArchiveConfig archive;
@@ -98,10 +98,10 @@ struct Config {
 /// The options that determine the numbers of a run.
 ChainOptions chain_options(const Config& config);
 
-/// The data section, with the gap between the blocks of data.split that a window and its lags need.
+/// The data section. It includes the gap between blocks of data.split, which depends on a window and its lags.
 DataOptions data_options_of(const Config& config);
 
-/// The window section as a model is fitted, before lags are searched for.
+/// The window section as used for a fit before lags are searched for.
 FitOptions window_options_of(const Config& config);
 /// Which of its lags are searched for.
 SearchedLags searched_lags_of(const Config& config);

@@ -28,7 +28,7 @@ Config config_of_text(const std::string& bytes, const std::filesystem::path& pat
 
 /// Whether a name ends as those of logs do: .csv, .bag and others.
 bool has_ending_of_logs(const std::filesystem::path& path);
-/// Whether a file is a log by its name, or because it holds bytes that no text has.
+/// Whether a file is a log, by its name or because it contains bytes that no text has.
 bool looks_like_log(const std::filesystem::path& path);
 
 /// The [data] and [filter] keys and the seed of an archive's configuration, then the overrides. Keys that this version
@@ -50,8 +50,8 @@ bool decides_numbers(const std::string& key);
 /// SHA-256 over the resolved keys that determine numbers, in name order.
 std::string config_hash(const Config& config);
 
-/// Throws ConfigurationError, which begins with `where`, for a text outside the option's range. `has_comment`: a
-/// comment followed in the same line.
+/// Throws ConfigurationError, beginning with `where`, for a text outside the option's range. `has_comment`: a comment
+/// followed in the same line.
 void set_option(Config& config, const Option& option, const std::string& where, const std::string& value,
                 bool has_comment);
 

@@ -8,7 +8,7 @@
 
 namespace modebank::app {
 
-/// The faults of a configuration or a command line, collected so that the user can mend all of them at once.
+/// The faults of a configuration or a command line. All are collected, so that users can correct them at once.
 class Faults {
  public:
   /// Calls `read` and keeps the message of a ConfigurationError that it throws.
@@ -22,7 +22,7 @@ class Faults {
   }
   void add(std::string message) { messages_.push_back(std::move(message)); }
 
-  /// Throws ConfigurationError with a single fault as it is, and with several as one line for each.
+  /// Throws ConfigurationError. A single fault is the whole message; several faults are one line each.
   void refuse() const {
     if (messages_.empty()) return;
     if (messages_.size() == 1) throw ConfigurationError(messages_.front());

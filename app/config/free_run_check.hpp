@@ -5,7 +5,7 @@
 
 namespace modebank {
 
-/// Throws ConfigurationError, naming the key, where a free run of this model needs more measured samples at its start.
+/// Throws ConfigurationError with the key if a free run of this model needs more measured samples at its start.
 void check_free_run(const LinearStructure& structure, const FreeRunOptions& options);
 
 }  // namespace modebank

@@ -29,7 +29,7 @@ bool takes_quotes(const std::string& key) {
 
 namespace {
 
-/// The value in the quotes that `text` begins with; nullopt where text other than a comment follows them.
+/// The value in quotes at the start of `text`. Nullopt if text other than a comment follows the quotes.
 std::optional<std::string> unquoted(std::string_view text) {
   std::string value;
   std::size_t i = 1;

@@ -19,7 +19,7 @@
 /// Functions that build the lines of the option table.
 namespace modebank::app {
 
-/// For touch(): the key is among the few that most users set.
+/// For touch(): the key is one of the few that most users set.
 inline constexpr bool basic = true;
 
 /// A range of numbers: its words for help, and its bounds.

@@ -53,7 +53,7 @@ double number_in(const std::string& text, const std::string& braces) {
   return value;
 }
 
-/// A span between braces: low..high, with what divides it.
+/// A span between braces: low..high, and how it is divided.
 struct Span {
   double low = 0.0, high = 0.0, argument = 0.0;
   std::string kind;  ///< step, lin, log or empty

@@ -63,7 +63,8 @@ void find_pattern(FileSet& set) {
 bool is_of_a_kind(const std::vector<std::string>& a, const std::vector<std::string>& b) {
   const auto shared = std::count_if(
       a.begin(), a.end(), [&](const std::string& name) { return std::find(b.begin(), b.end(), name) != b.end(); });
-  // A name shared by two instruments of a robot (a gyro's and an odometry's frames) does not make them one kind.
+  // If two instruments of a robot share a name (the frames of a gyro and of an odometry), their files are still of two
+  // kinds.
   return 5 * shared >= 4 * std::ssize(a) && 5 * shared >= 4 * std::ssize(b);
 }
 

@@ -30,8 +30,8 @@ struct Candidate {
 
 bool same_table(const ChannelPlace& a, const ChannelPlace& b) { return a.file == b.file && a.table == b.table; }
 
-/// Adds hints other than names. A value that is held while other channels of its table move is a command. Units such as
-/// rad/s mark measurements, units such as V mark inputs.
+/// Adds hints other than names. A value that is held while other channels of its table move indicates a command. Units
+/// such as rad/s indicate measurements, units such as V inputs.
 void add_hints(std::vector<Candidate>& all) {
   constexpr int held = 3, unit = 2;
   constexpr double moving =
@@ -68,8 +68,8 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
   return all;
 }
 
-/// The channels of the table of the best candidate with nearly as many points: at most `slack` fewer, by all hints or
-/// by the name. Order: as in the file.
+/// The channels in the table of the best candidate that have nearly as many points: at most `slack` fewer, by all hints
+/// or by the name. The order is that of the file.
 std::vector<const Candidate*> best_of(const std::vector<Candidate>& all, int NameScore::*points, int slack,
                                       std::size_t most) {
   const Candidate* best = nullptr;
@@ -101,8 +101,8 @@ void guess_state_by_place(const std::vector<Candidate>& all, Guess& guess) {
   guess.states = {least->place};
 }
 
-/// Used where no name means an input. Takes channels beside the state that are not measured with it, if they are held
-/// or the table has few channels.
+/// Used if no name indicates an input. Takes channels beside the state that are not measured together with the state.
+/// They must be held, or the table must have few channels.
 void guess_inputs_by_place(const std::vector<Candidate>& all, bool by_place, Guess& guess) {
   constexpr std::ptrdiff_t few = 4;
   const auto beside = std::count_if(all.begin(), all.end(),

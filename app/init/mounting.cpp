@@ -21,7 +21,7 @@ const SurveyedChannel* channel_of(const SurveyedTable& table, Axis axis, bool (*
   return nullptr;
 }
 
-/// The yaw rate that another table measures.
+/// The yaw rate in another table.
 std::pair<const SurveyedTable*, const SurveyedChannel*> other_yaw_rate(const std::vector<SurveyedFile>& files,
                                                                        const ChannelPlace& z_rate) {
   for (std::size_t f = 0; f < files.size(); ++f)

@@ -24,7 +24,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// Whether a name contains characters that a list of names or a configuration line uses otherwise.
+/// Whether a name contains characters with another meaning in a list of names or in a configuration line.
 bool needs_quotes(const std::string& name) { return name.find_first_of(",#'\"") != std::string::npos; }
 
 /// The last two parts of a channel's name, as an identifier. Spreadsheets write the unit behind a comma: Flow, l/h.

@@ -173,7 +173,7 @@ class TableSurvey {
     table.time_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(std::max<Eigen::Index>(rows - 1, 0)));
   }
 
-  /// Times rise evenly by any step; counters of rows rise by whole ones.
+  /// Times rise evenly by any step; row counters rise by whole numbers.
   static bool advances_steadily(const Eigen::VectorXd& values) {
     return rises_evenly(values) &&
            (values.tail(values.size() - 1).array() - values.head(values.size() - 1).array() != 1.0).any();
@@ -190,7 +190,7 @@ class TableSurvey {
     return 10 * near > 9 * steps.size();
   }
 
-  /// Takes the channel for the times if its rate is one that instruments have.
+  /// Uses the channel as times if its rate is a usual one of instruments.
   bool take_steady(SurveyedTable& table, const std::string& name) {
     constexpr double lowest_hz = 0.01, highest_hz = 20e3;
     if (!take_times(table, stamps_of({name}))) return false;
@@ -235,8 +235,8 @@ class TableSurvey {
 
   static bool jumps_back(const Eigen::VectorXd& time_s, Eigen::Index k) { return time_s(k) < time_s(k - 1); }
 
-  /// Takes a column that changes wherever time jumps back. Without jumps, takes a text that changes only at gaps and
-  /// never returns to an earlier value.
+  /// Finds the column that separates runs. It changes wherever time jumps back. Without jumps it is a text that changes
+  /// only at gaps and never returns to an earlier value.
   void find_run(SurveyedTable& table) {
     std::vector<Eigen::Index> jumps;
     for (Eigen::Index k = 1; k < table.time_s.size(); ++k)

@@ -9,7 +9,7 @@
 
 namespace modebank::app {
 
-/// So large a share of repeated values means that an instrument is slower than the file's rows.
+/// If this share of the values is repeated, the instrument is slower than the file's rows.
 constexpr double most_repeated = 0.5;
 
 /// Survey of one channel.

@@ -42,7 +42,7 @@ Row row_of(const SurveyedChannel& channel, const SurveyedTable& table) {
   return {name, channel.unit, range + notes};
 }
 
-/// Elements of an array that all do not move share a row.
+/// Elements of an array share a row if none of them moves.
 std::vector<Row> rows_of(const SurveyedTable& table) {
   const std::vector<SurveyedChannel>& channels = table.channels;
   std::vector<Row> rows;

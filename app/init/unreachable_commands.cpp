@@ -33,7 +33,7 @@ double reach_of(const SurveyedChannel& channel) {
   return std::max(std::abs(channel.check.least), std::abs(channel.check.largest));
 }
 
-/// The channel beside the command that measures the same; empty: there is none.
+/// The channel beside the command that measures the same quantity; empty if there is none.
 std::optional<std::size_t> counterpart(const SurveyedTable& table, const SurveyedChannel& command) {
   const std::string rest = without(command_words, command.name);
   if (rest.empty()) return std::nullopt;
@@ -42,8 +42,8 @@ std::optional<std::size_t> counterpart(const SurveyedTable& table, const Surveye
   return std::nullopt;
 }
 
-/// Whether a tenth of the commands is a fifth beyond what is ever measured, while both have the same unit: moderate
-/// commands are followed by a slope between a half and two.
+/// Whether a tenth of the commands exceeds all measurements by a fifth. Both must have the same unit, and measurements
+/// must follow moderate commands with a slope between a half and two.
 bool is_beyond_reach(const SurveyedChannel& command, const SurveyedChannel& measured) {
   constexpr double beyond = 1.2, least_share = 0.1, moderate = 0.5, least_slope = 0.5, largest_slope = 2.0;
   const double reach = reach_of(measured);

@@ -12,8 +12,8 @@
 namespace modebank::app {
 
 /// Mean of a score over all trials with one value of a varied key (for keys with many numbers: a range of values).
-/// Unless the plan is a full grid, other keys confound the mean, and bad settings of them lower it. `best` is free of
-/// this: it is the score of the best setting with this value.
+/// Unless the plan is a full grid, other keys confound this mean, and their bad settings lower it. `best` does not have
+/// this problem: it is the score of the best setting with this value.
 struct MainEffect {
   std::string key, value, score;
   int trials = 0;
@@ -37,7 +37,7 @@ struct BestSetting {
   std::size_t row = 0;  ///< row of its first finished repeat
 };
 
-/// A setting such that no other with as few modes has a better log score.
+/// A setting for which no other setting with as few or fewer modes has a better log score.
 struct ParetoSetting {
   double modes = 0.0;  ///< mean over the repeats, as the log score is
   double log_score = 0.0;

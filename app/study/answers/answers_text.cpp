@@ -44,7 +44,7 @@ std::vector<KeyInfluence> ranked_influences(const Answers& answers) {
   return ranked;
 }
 
-/// The other keys that were varied in step with one, and so have the same effects.
+/// The other keys that were varied together with this key, and so have the same effects.
 std::vector<std::string> keys_in_step(const StudyTable& table, std::size_t key) {
   const std::vector<ValueGroup> groups = value_groups(table, key);
   const auto same_rows = [](const ValueGroup& a, const ValueGroup& b) { return a.rows == b.rows; };
@@ -58,7 +58,7 @@ std::vector<std::string> keys_in_step(const StudyTable& table, std::size_t key) 
   return names;
 }
 
-/// The key with those varied in step with it; empty if one of them is already printed.
+/// The key with the keys that were varied together with it; empty if one of these is already printed.
 std::string effect_heading(const StudyTable& table, const KeyInfluence& influence, std::set<std::string>& printed) {
   const auto key = std::find(table.varied_keys.begin(), table.varied_keys.end(), influence.key);
   std::string heading = influence.key;

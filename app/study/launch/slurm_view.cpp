@@ -55,7 +55,7 @@ std::string note_on(const std::string& task, const TaskState& state) {
 
 SlurmJobView view_of(const SlurmJob& job) {
   SlurmJobView view{job.id, job.role, "", {}, {}};
-  // squeue is authoritative for jobs that it lists; sacct, if installed, has those that have ended.
+  // squeue decides for jobs that it lists. sacct, if installed, lists the jobs that have ended.
   TaskStates states = task_states(fmt::format("sacct -X -n -P -j {} -o JobID,State", shell_word(job.id)));
   if (!states.empty()) view.source = "sacct";
   const TaskStates queued = task_states(fmt::format("squeue -h -r -t all -j {} -o '%i|%T|%r'", shell_word(job.id)));

@@ -63,7 +63,7 @@ std::string this_host() {
   return fmt::format("{} {}", name.data(), numbers.data());
 }
 
-/// A process that has ended but was not reaped is not gone: its parent still has to settle its work.
+/// A process that has ended but was not reaped is not gone: its parent must still complete its work.
 bool is_gone(pid_t process, long long start) {
   const std::optional<ProcessState> found = process_state(process);
   if (!found || found->start != start) return true;

@@ -9,10 +9,11 @@
 namespace modebank::app {
 
 /// A small file that marks work in progress. It contains host, number and start time of the process, and a time. A
-/// thread renews this time every minute while the work goes on. A claim ends when its process is gone on this host, or
-/// when it was not renewed for ten minutes. It also ends if its time lies ten minutes in the future, because the clock
-/// was set back. Times are those of files written in the folder, since the clocks of machines that share a folder
-/// differ. The next process takes the claim over by rename.
+/// thread renews this time every minute during the work.
+/// - A claim ends when its process is gone on this host, or when it was not renewed for ten minutes. It also ends if
+///   its time lies ten minutes in the future, because the clock was set back.
+/// - Times are those of files written in the folder, because the clocks of machines that share a folder differ.
+/// - The next process takes the claim over by rename.
 ///
 /// Claims only avoid double work. After a long pause, or on a file system without hard links, two processes may hold
 /// the same claim; both then make the same result.

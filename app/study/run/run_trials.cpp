@@ -58,13 +58,13 @@ std::size_t threads_per_trial(const Config& study) {
   return std::max<std::size_t>(1, study.job.thread_count() / job_count(study.study));
 }
 
-/// The report on a trial from an earlier execution; empty when the trial is to be run. A damaged archive is removed. A
-/// record of failure is removed too, so that the trial is tried again.
+/// The report on a trial from an earlier execution; empty if the trial must be run. A damaged archive is removed. A
+/// record of failure is also removed, so that the trial is tried again.
 std::optional<TrialReport> left_before(const TrialStore& store, const TrialStore::Listing& there, const TrialRow& row,
                                        std::size_t place) {
   if (there.archives.count(row.key) > 0) {
     const std::vector<std::string> problems = store.problems(row.key);
-    // A process that was killed just after it made the archive has left its claim.
+    // A process that was killed just after it had made the archive has left a claim.
     if (problems.empty() && there.claims.count(row.key) > 0) static_cast<void>(Claim::take(store.claim(row.key)));
     if (problems.empty())
       return TrialReport{.row = place,
@@ -91,7 +91,7 @@ class StudyRun {
     const Clock::time_point start = Clock::now();
     const TaskFile file(pack_task(task_));
     const std::size_t count = std::min(job_count(settings_.config.study), task_.rows.size());
-    // A random start, because processes on other machines run the same groups.
+    // A random start: processes on other machines run the same groups.
     const std::size_t any = std::random_device()();
     for (std::size_t i = 0; i < count && !stopping_; ++i)
       start_worker(file, (any + i * starts_.size() / count) % starts_.size());
@@ -227,7 +227,7 @@ class StudyRun {
     if (worker.last) Claim::end_of(worker.process->process(), store_.claim(rows_[*worker.last].key));
   }
 
-  /// Several workers may report the same trial as present; the report of the worker that made it counts.
+  /// Several workers may report that the same trial exists; only the report of the worker that made it counts.
   void finish(pid_t process, const TrialReport& report) {
     const auto [place, fresh] = finished_.try_emplace(report.row, report);
     if (!fresh && report.outcome != TrialOutcome::computed) return;

@@ -27,7 +27,8 @@ class TaskFile {
 /// A process of this program that works on trials (study_worker.hpp), and the pipe on which it reports.
 class WorkerProcess {
  public:
-  /// `first`: index of its first row. Throws DataError when the process cannot be started.
+  /// `first`: index of the first row of the task that this process works on. Throws DataError if the process cannot be
+  /// started.
   WorkerProcess(const TaskFile& task, std::size_t first);
   /// Kills and reaps the process.
   ~WorkerProcess();

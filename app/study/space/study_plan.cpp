@@ -98,7 +98,7 @@ const std::vector<T>& values_of(const StudyFile& file, std::size_t column, const
   return *values;
 }
 
-/// Checks a row, since a plan may come from another program and its keys become file names.
+/// Checks a row: a plan may come from another program, and its keys become file names.
 void check_row(const TrialRow& row, std::size_t r) {
   const bool dropped = row.status == TrialStatus::dropped;
   if (!is_sha256(row.key) && !(dropped && row.key.empty()))
