@@ -39,7 +39,8 @@ std::vector<Command> commands_to_start() {
        "demo",
        {"[tyres]", "takes at most one word", 0, 1},
        "simulate a robot on two grounds, find them, and compare them with the truth",
-       "Needs no file. The motion on each ground is linear. With the word tyres the robot slides on ice, and its motion is nonlinear.",
+       "Needs no file. The motion on each ground is linear. With the word tyres the robot slides on ice, and its "
+       "motion is nonlinear.",
        "modebank demo",
        {"data", "window", "mixture", "bank", "filter", "archive", "job", "simulate"},
        {as_json(), output("FOLDER", "folder of its files (modebank_demo, modebank_tyres)"),

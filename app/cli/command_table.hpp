@@ -58,7 +58,7 @@ const std::vector<CommandOption>& common_options();
 /// Throws ConfigurationError with the replacement if the command is one of an earlier version.
 void refuse_gone_command(const std::string& name);
 
-/// Null if there is no command of that name.
+/// Null if no command has that name.
 const Command* find_command(const std::string& name);
 
 }  // namespace modebank::app

@@ -51,7 +51,8 @@ KeptStages::KeptStages(const fs::path& output)
   for (std::size_t i = 0; i < signals.size(); ++i) {
     before_[i] = std::signal(signals[i], say_what_is_kept);
     if (before_[i] == SIG_IGN)
-      std::signal(signals[i], SIG_IGN);  // a signal that was ignored stays ignored, as under nohup and for background jobs
+      std::signal(signals[i],
+                  SIG_IGN);  // a signal that was ignored stays ignored, as under nohup and for background jobs
   }
   if (folder_is_link())
     spdlog::warn("{} is a symbolic link, so no stage is kept there; remove the link", folder_.string());

@@ -50,7 +50,7 @@ class LineTable {
   std::string head_;                  ///< for CSV: the lines before the first row, with their line breaks
   std::vector<std::string> columns_;  ///< for CSV all columns, for NDJSON the members that the program reads
   std::optional<FilePlan> plan_;
-  std::string first_row_;                   ///< these lines precede later CSV rows, so that the reader finds the same format
+  std::string first_row_;  ///< these lines precede later CSV rows, so that the reader finds the same format
   std::size_t rows_ = 0, rows_before_ = 0;  ///< rows_before_: before the table of the last read
   double first_s_ = 0.0;
   std::optional<double> corrected_first_s_;

@@ -28,7 +28,7 @@ class ProgressMeter {
   std::thread thread_;
 };
 
-/// "windows: 12000 of 50000, 3.1e+04 per s, 1.2 s left". Before the first item there is no time left.
+/// "windows: 12000 of 50000, 3.1e+04 per s, 1.2 s left". Before the first item the time left is missing.
 std::string progress_text(const WorkDone& work);
 
 }  // namespace modebank::app

@@ -98,9 +98,9 @@ Suggestions tell(const CommandLine& line, const Config& config, const DataCheck&
 void apply(const CommandLine& line, const Config& config, const Suggestions& suggestions, nlohmann::json& page) {
   replace_file(final_target(line.output),
                {applied_text(suggestions, config, line.files.front(), line.overrides, line.output)});
-  print_text(
-      line, fmt::format("{}: {}\n", line.output,
-                        suggestions.any() ? "the configuration with the suggested settings" : "the configuration unchanged, because nothing is suggested"));
+  print_text(line, fmt::format("{}: {}\n", line.output,
+                               suggestions.any() ? "the configuration with the suggested settings"
+                                                 : "the configuration unchanged, because nothing is suggested"));
   page["written"] = {line.output};
 }
 

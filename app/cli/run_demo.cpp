@@ -83,7 +83,7 @@ void refuse_foreign_files(const DemoFolder& demo) {
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
-  fs::create_directory(folder, error);  // an existing folder is no error
+  fs::create_directory(folder, error);  // sets no error for an existing folder
   if (error) throw ConfigurationError(fmt::format("cannot make folder {}: {}", folder.string(), error.message()));
 }
 
@@ -135,8 +135,8 @@ void add_truth(const DemoFolder& demo, const CommandLine& simulate, Result& resu
 }
 
 std::string closing_words(const DemoFolder& demo, const std::string& program) {
-  const std::string pages = fmt::format("All results: {0} show {1}\nAs a page: {0} report {1} -o {2}.html\n",
-                                        program, shell_quoted(demo.archive().string()), demo.name);
+  const std::string pages = fmt::format("All results: {0} show {1}\nAs a page: {0} report {1} -o {2}.html\n", program,
+                                        shell_quoted(demo.archive().string()), demo.name);
   return demo.name == "tyres" ? pages : pages + fmt::format("Tyres that slide on ice: {} demo tyres\n", program);
 }
 

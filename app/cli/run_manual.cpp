@@ -51,8 +51,9 @@ std::string keys_text(const Command& command) {
                  fmt::format("{}. {}{} (default: {}).", option.help, option.range,
                              option.unit.empty() ? "" : " [" + option.unit + "]", value.empty() ? "empty" : value));
   }
-  return text.empty() ? ""
-                      : ".SH CONFIGURATION KEYS\nKeys of the configuration file. An option overrides the file.\n" + text;
+  return text.empty()
+             ? ""
+             : ".SH CONFIGURATION KEYS\nKeys of the configuration file. An option overrides the file.\n" + text;
 }
 
 std::string page_of(const Command& command) {
@@ -83,7 +84,8 @@ std::string main_page() {
   text += ".SH OPTIONS\n" + options_text(common_options());
   text += ".SH EXIT STATUS\n" + item("0", "Done.") + item("1", "A file's content is invalid, or the run failed.") +
           item("2", "Usage, configuration or path.");
-  text += ".SH ENVIRONMENT\n" + item("MODEBANK_DATA", "The folder from which relative data paths start, unless data.root is set.") +
+  text += ".SH ENVIRONMENT\n" +
+          item("MODEBANK_DATA", "The folder from which relative data paths start, unless data.root is set.") +
           item("COLUMNS", "Width of tables.") + item("NO_COLOR", "No colours.");
   return text + fmt::format(".SH SEE ALSO\n{}\n", fmt::join(pages, ",\n"));
 }

@@ -28,7 +28,8 @@ class Watchdog {
 
  private:
   double period_s_, told_s_;
-  std::size_t lines_ = 0, samples_ = 0, all_samples_ = 0;  ///< counts since the last status line; all_samples_ counts since the start
+  std::size_t lines_ = 0, samples_ = 0,
+              all_samples_ = 0;  ///< counts since the last status line; all_samples_ counts since the start
   double stamp_s_ = 0.0, slowest_s_ = 0.0;
   Eigen::VectorXd mode_probability_;
 

@@ -38,7 +38,8 @@ void Tracker::follow_lines() {
     complain("is too long for a sample");
   }
   take_lines(batch);
-  if (lines_->was_cut()) messages_.say(fmt::format("line {}: the input was stopped inside this line, which is left out", line_number_ + 1));
+  if (lines_->was_cut())
+    messages_.say(fmt::format("line {}: the input was stopped inside this line, which is left out", line_number_ + 1));
 }
 
 LineStream::Got Tracker::next(std::string_view& line) {

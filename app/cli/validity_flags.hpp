@@ -10,7 +10,7 @@ namespace modebank::app {
 
 /// Reasons not to rely on an output line of `track`.
 struct ValidityFlags {
-  bool warming_up = false;             ///< the filter has not started, or has made fewer than ten predictions since its start
+  bool warming_up = false;  ///< the filter has not started, or has made fewer than ten predictions since its start
   bool input_beyond_training = false;  ///< an input is outside its range in the training runs
   bool unlike_any_mode = false;        ///< no mode predicts the measurement
   bool stamp_late = false;             ///< at least one and a half model steps since the sample before

@@ -50,7 +50,8 @@ struct JobConfig {
 enum class SimulatedSystem { linear, vehicle };
 
 struct SimulateConfig {
-  std::string name = "husky_ice";  ///< name of a built-in system, or a system file, which sets all members down to ground_names
+  std::string name =
+      "husky_ice";  ///< name of a built-in system, or a system file, which sets all members down to ground_names
   SimulatedSystem kind = SimulatedSystem::linear;
   SimulationOptions system;               ///< the linear system; a vehicle also uses its commands, runs and outliers
   VehicleSimulationOptions vehicle;       ///< parameters that only a vehicle has

@@ -37,7 +37,7 @@ struct ExportedBank {
   double input_lag_s = 0.0;              ///< the bank uses inputs this much earlier than recorded
   std::vector<std::string> mode_names;   ///< K
   std::vector<double> use;               ///< K, mean probability on judged runs; empty for competitors
-  std::vector<ModeFamily> families;      ///< families of the modes, most used first; for competitors by share of windows
+  std::vector<ModeFamily> families;  ///< families of the modes, most used first; for competitors by share of windows
   std::vector<std::string> parameter_names, parameter_units;  ///< p, names of the entries of a mode's theta
   std::vector<ModeErrors> errors;                             ///< K
   std::vector<bool> unidentifiable;  ///< p, whether the training runs leave the parameter unidentifiable; may be empty

@@ -54,7 +54,8 @@ void propose_times(const SurveyedTable& states, const SurveyedTable& inputs, Pro
     proposal.doubt(fmt::format("{} rises evenly, {:.4g} times a second, and is taken for the times",
                                states.time.front(), states.sampling.rate_hz));
   propose_form(states, proposal);
-  if (own(states) && own(inputs)) return;  // the recording's default stamps are found without data.time, so this key is not written
+  if (own(states) && own(inputs))
+    return;  // the recording's default stamps are found without data.time, so this key is not written
   const std::string time = listed_channel_names(states.time);
   if (states.time != inputs.time)
     proposal.doubt(fmt::format("the column of times is {} in one table and {} in the other; data.time takes one name",

@@ -92,8 +92,8 @@ RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
                  [&](const TrialRow& row, const TrialReport& report, std::size_t finished, std::size_t all) {
                    progress.tell(row, report, finished, all);
                  });
-  const std::string counts = fmt::format("{} runs made, {} existed, {} failed, in {}", result.computed,
-                                         result.present, result.failed.size(), duration_text(result.seconds));
+  const std::string counts = fmt::format("{} runs made, {} existed, {} failed, in {}", result.computed, result.present,
+                                         result.failed.size(), duration_text(result.seconds));
   if (result.broken)
     throw DataError(
         fmt::format("the study stopped ({}): {}\nfinished runs are kept; the same command continues from there", counts,

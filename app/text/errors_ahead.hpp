@@ -17,7 +17,8 @@ struct ErrorAhead {
   Eigen::VectorXd competitor, combined;  ///< n_y, root mean square [state unit]; empty if unknown
   Eigen::VectorXd other;                 ///< n_y, the least error of all competitors for each state; empty if unknown
   Eigen::VectorXd fit_percent;           ///< n_y, FIT of the bank [%]; empty if unknown
-  std::string bank_words, other_words;   ///< errors of the bank with units; errors of the competitor and of `combined` with their names
+  std::string bank_words,
+      other_words;  ///< errors of the bank with units; errors of the competitor and of `combined` with their names
 };
 
 /// Errors one step ahead and at the longest scored horizon. `competitor` is empty if there is none.

@@ -10,16 +10,18 @@ namespace modebank {
 
 /// The decay of one eigenvalue of I + A.
 struct Decay {
-  double per_sample = 0.0;       ///< share left after one sample: the eigenvalue, or the modulus of a complex pair
-  double time_constant_s = 0.0;  ///< -dt / log |lambda|; infinite for an integrator, negative for growth; 0: decays at once
-  double frequency_hz = 0.0;     ///< |arg lambda| / (2 pi dt); half the sample rate for a negative real lambda
+  double per_sample = 0.0;  ///< share left after one sample: the eigenvalue, or the modulus of a complex pair
+  double time_constant_s =
+      0.0;  ///< -dt / log |lambda|; infinite for an integrator, negative for growth; 0: decays at once
+  double frequency_hz = 0.0;           ///< |arg lambda| / (2 pi dt); half the sample rate for a negative real lambda
   double time_constant_error_s = 0.0;  ///< standard error; NaN if unknown
 };
 
 /// The response of a mode to a step of its inputs.
 struct ModeDynamics {
-  std::vector<Decay> decays;   ///< one per eigenvalue or conjugate pair, slowest first
-  Eigen::MatrixXd gain;        ///< n_y x recorded inputs: C (-A)^-1 B for a constant input; NaN if the mode integrates or grows and never settles
+  std::vector<Decay> decays;  ///< one per eigenvalue or conjugate pair, slowest first
+  Eigen::MatrixXd gain;  ///< n_y x recorded inputs: C (-A)^-1 B for a constant input; NaN if the mode integrates or
+                         ///< grows and never settles
   Eigen::MatrixXd gain_error;  ///< standard errors of the gains; NaN if unknown
 };
 

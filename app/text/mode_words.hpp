@@ -6,7 +6,7 @@
 #include "app/text/mode_dynamics.hpp"
 #include "io/archive/archive.hpp"
 
-/// The bank's modes in words: use, stay, time constants, steady gains. app/text/mode_tables.hpp makes tables of them;
+/// The bank's modes in words: use, stay, time constants, gains. app/text/mode_tables.hpp makes tables of them;
 /// app/text/summary_tables.hpp prints their parameters.
 namespace modebank::app {
 

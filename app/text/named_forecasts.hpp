@@ -16,8 +16,9 @@ struct NamedForecast {
   double error = not_a_number;   ///< standard error over runs; NaN for fewer than two
   std::string c_filter;          ///< the best filter that can be exported to C; empty if that is the filter itself
   double c_loss = not_a_number;  ///< loss of that filter against the named one [nats/sample]
-  std::string point_filter;  ///< the filter with the smallest error if the named filter's error is over 2 % larger; else the named filter
-  double point_gain = 0.0;   ///< share of the filter's error that point_filter saves on training runs
+  std::string point_filter;      ///< the filter with the smallest error if the named filter's error is over 2 % larger;
+                                 ///< else the named filter
+  double point_gain = 0.0;       ///< share of the filter's error that point_filter saves on training runs
 };
 
 /// One entry per scored horizon, 1 first; empty without scores.

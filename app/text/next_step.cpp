@@ -81,8 +81,8 @@ std::string more_runs(const Finding& finding) {
   const double times = std::pow(std::max(least->margin / least->gain, 1.0), 2.0);
   if (times > too_many)
     return fmt::format(
-        "the data cannot tell: so small a gain needs over {:.0f} times as many runs. It predicts as well: "
-        "`modebank track ARCHIVE --track.filter {}`",
+        "the data cannot tell: so small a gain needs over {0:.0f} times as many runs; {1} predicts as well: "
+        "`modebank track ARCHIVE --track.filter {1}`",
         too_many, least->competitor);
   const double runs = std::ceil((times - 1.0) * static_cast<double>(finding.runs));
   return fmt::format("record {} like these, enough to confirm the gain over {}{}",

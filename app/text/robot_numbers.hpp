@@ -21,7 +21,7 @@ struct RobotBank {
   const Bank& bank;
   const std::vector<Channel>& measurements;     ///< n_y
   const std::vector<Channel>& recorded_inputs;  ///< u as recorded
-  double input_lag_s = 0.0;                     ///< shift of the inputs: the bank uses inputs this much earlier than recorded
+  double input_lag_s = 0.0;  ///< shift of the inputs: the bank uses inputs this much earlier than recorded
 };
 
 /// Indices of the robot's channels; -1: there is none.
@@ -50,7 +50,7 @@ struct Estimate {
 struct RobotNumbers {
   Estimate separation_m, left_multiplier, right_multiplier;  ///< factors of the wheel's radius
   Estimate yaw_delay_s, forward_delay_s;
-  Estimate yaw_variance, forward_variance;  ///< variance of the state about its steady value
+  Estimate yaw_variance, forward_variance;  ///< variance of the state about its stationary value
 };
 RobotNumbers robot_numbers(const RobotBank& bank, Index mode, const RobotChannels& channels, const RobotSizes& sizes);
 

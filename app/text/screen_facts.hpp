@@ -15,7 +15,7 @@
 /// page.
 namespace modebank::app {
 
-/// Whether the archive contains a bank and its scores, without which there is no screen.
+/// Whether the archive contains a bank and its scores, which the screen needs.
 bool has_first_screen(const Archive& archive);
 
 /// The screen's content, computed once. first_screen prints it, the report's page shows it. A sentence is empty if it
@@ -26,7 +26,7 @@ struct FirstScreen {
   std::vector<NamedForecast> forecasts;  ///< the filter to predict with, as numbers
   bool inputs_ahead = false;             ///< whether the stamps of the inputs are late
   Role role = Role::test;                ///< role of the judged runs
-  std::string competitor;                ///< competitor with the highest log score, with which the gain is compared; empty without
+  std::string competitor;  ///< competitor with the highest log score, with which the gain is compared; empty without
   std::optional<Answer> answer;
   double gain = 0.0, gain_error = 0.0;  ///< of log score over the competitor [nats/sample]; NaN if unknown
   double coverage = 0.0, coverage_lower = 0.0, coverage_upper = 0.0;  ///< coverage of the 95 % band; NaN if unknown

@@ -45,8 +45,9 @@ struct Provenance {
 struct FilterEvaluation {
   std::string filter;  ///< bank or a competitor
   std::vector<RunEvaluation> runs;
-  std::vector<FreeRun> free_runs = {};  ///< only with filter.simulate; archives contain neither pit nor log_density nor notes
-  bool streamed = false;                ///< true: the runs are in an unfinished file, and memory has only what later stages read
+  std::vector<FreeRun> free_runs =
+      {};                 ///< only with filter.simulate; archives contain neither pit nor log_density nor notes
+  bool streamed = false;  ///< true: the runs are in an unfinished file, and memory has only what later stages read
 
   using Fields = std::set<std::string>;  ///< names of arrays in the archive
   /// Reads these fields of a run; its other arrays stay empty.

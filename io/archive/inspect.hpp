@@ -13,8 +13,9 @@ namespace modebank {
 ///   objects, and "columns" lists their names in the file's order.
 /// - NaN becomes null.
 ///
-/// With the name of a run, arrays over samples contain only this run's rows, and so do tables with the column `run`. The
-/// root becomes {"run": the run's row of /data/runs, "members": arrays of /data and of every filter's evaluation, by path}.
+/// With the name of a run, arrays over samples contain only this run's rows, and so do tables with the column `run`.
+/// The root becomes {"run": the run's row of /data/runs, "members": arrays of /data and of every filter's evaluation,
+/// by path}.
 ///
 /// Throws ConfigurationError for a path that does not exist (with the members of the deepest existing group), for an
 /// unknown run (with the known runs), and for a path without arrays by run.

@@ -47,9 +47,10 @@ StudyFile read_study_file(const OpenArchive& file, const std::string& table);
 /// The parts of a trial's archive that a study's table contains.
 struct TrialScores {
   std::string modebank_version, config_hash, data_hash;
-  std::int64_t modes = 0;                              ///< number of the bank's modes
-  std::string evidence;                                ///< the finding's answer; empty without a finding
-  std::vector<std::pair<std::string, double>> pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's rows for run "*"
+  std::int64_t modes = 0;  ///< number of the bank's modes
+  std::string evidence;    ///< the finding's answer; empty without a finding
+  std::vector<std::pair<std::string, double>>
+      pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's rows for run "*"
 };
 
 /// Reads only these parts. Throws as read_archive does.

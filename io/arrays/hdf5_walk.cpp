@@ -100,7 +100,8 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
   column.whole = hdf5_is_whole(type.id());
   const bool table = H5Tget_class(type.id()) == H5T_COMPOUND;
   if (!table && !column.text && !hdf5_is_number(type.id())) return;
-  if (hdf5::element_count(shape) > 1 && H5Dget_storage_size(id) == 0) {  // HDF5 allocates late, so this means that no value was written
+  if (hdf5::element_count(shape) > 1 &&
+      H5Dget_storage_size(id) == 0) {  // HDF5 allocates late, so this means that no value was written
     unwritten[full] = fmt::format("its {} values were never written", hdf5::element_count(shape));
     return left_out.push_back(fmt::format("{} is left out: {}", full, unwritten[full]));
   }

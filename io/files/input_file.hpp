@@ -11,7 +11,8 @@ namespace modebank {
 struct InputFile {
   std::string path;  ///< absolute path, with control characters as \x1b, because people read it
   std::uint64_t bytes = 0;
-  std::string sha256;  ///< SHA-256 of the content in lowercase hex. For recordings it covers the messages that were used (UsedMessages).
+  std::string sha256;  ///< SHA-256 of the content in lowercase hex. For recordings it covers the messages that were
+                       ///< used (UsedMessages).
 };
 
 /// Path, size and hash of the content of any file. Throws ConfigurationError when it cannot be read.

@@ -9,7 +9,7 @@ namespace modebank {
 /// writes the complete content to disk.
 class MemoryFile {
  public:
-  /// Throws DataError if there is no memory.
+  /// Throws DataError if memory is exhausted.
   MemoryFile();
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;

@@ -44,8 +44,9 @@ std::vector<RunStreams> read_streams(const DataOptions& options);
 /// A file that import_data would read.
 struct DataFile {
   std::filesystem::path path;
-  std::vector<std::string> tables = {};      ///< the tables to read, sorted, because the file's hash depends on them
-  std::function<InputFile()> describe = {};  ///< the file's entry in ImportedData::files; throws if the file cannot be read
+  std::vector<std::string> tables = {};  ///< the tables to read, sorted, because the file's hash depends on them
+  std::function<InputFile()> describe =
+      {};  ///< the file's entry in ImportedData::files; throws if the file cannot be read
 };
 
 /// All files, in the order of ImportedData::files. Throws ConfigurationError as import_data does.

@@ -52,7 +52,7 @@ struct FilePlan {
   /// Sources of the times of states and of inputs. They are equal where rows correspond, or where the first state and
   /// the first input are in one table. Columns of other sources are brought to these times.
   std::size_t states_clock = 0, inputs_clock = 0;
-  std::size_t runs_source = 0;     ///< if rows correspond: the source whose text column has the run names, if there is one
+  std::size_t runs_source = 0;  ///< if rows correspond: the source whose text column has the run names, if there is one
   std::optional<ColumnRef> label;  ///< column of labels, in TableRequest::texts
   std::vector<std::string> notes;
 

@@ -88,8 +88,7 @@ struct Foreign {
 constexpr std::array foreign{
     Foreign{"version https://git-lfs.github.com/spec/"sv, "a Git LFS pointer to a file that was not fetched",
             "git lfs pull fetches it"},
-    Foreign{"/annex/objects/"sv, "a git-annex pointer to a file that was not fetched",
-            "git annex get '{0}'"},
+    Foreign{"/annex/objects/"sv, "a git-annex pointer to a file that was not fetched", "git annex get '{0}'"},
     Foreign{"Octave-1-"sv, "in Octave's binary format",
             "octave --eval \"s = load('{0}'); save('-v7', '{0}.mat', '-struct', 's')\""},
     Foreign{"PAR1"sv, "an Apache Parquet file",

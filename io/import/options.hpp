@@ -56,9 +56,9 @@ struct DataOptions {
   std::string states;  ///< the same for states; empty: states are columns of the inputs files
   std::vector<std::string> state;  ///< column names
   std::vector<std::string> input;
-  std::vector<std::string> truth;       ///< true states; as many as states, or none
-  std::vector<std::string> derive;      ///< computed channels, each "NAME [unit] = EXPRESSION" (io/import/derived.hpp)
-  std::string where;                    ///< where this expression is false or missing, there is a gap; empty: no condition
+  std::vector<std::string> truth;   ///< true states; as many as states, or none
+  std::vector<std::string> derive;  ///< computed channels, each "NAME [unit] = EXPRESSION" (io/import/derived.hpp)
+  std::string where;                ///< where this expression is false or missing, there is a gap; empty: no condition
   std::vector<std::string> state_unit;  ///< one per state, one for all, or none
   std::vector<std::string> input_unit;
   /// Column of sample weights, at least 0 (Trajectory::weight); empty: no weights. It is searched in the states file
@@ -87,8 +87,9 @@ struct DataOptions {
   Missing missing = Missing::error;
   Disorder disorder = Disorder::error;
   SplitOptions split;
-  std::vector<std::string> train;  ///< run names; empty: all runs that are not in test, or positions 0, 2, 4, ... in name order
-  std::vector<std::string> test;   ///< run names; empty: all runs that do not train
+  std::vector<std::string>
+      train;  ///< run names; empty: all runs that are not in test, or positions 0, 2, 4, ... in name order
+  std::vector<std::string> test;  ///< run names; empty: all runs that do not train
 };
 
 }  // namespace modebank

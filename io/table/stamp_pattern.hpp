@@ -26,8 +26,9 @@ class StampPattern {
 
  private:
   std::string text_;
-  std::string head_, tail_;  ///< parts before and after the fraction; `head_` ends in the point if the point is required
-  bool fraction_ = false;    ///< whether the pattern has a fraction
+  std::string head_,
+      tail_;               ///< parts before and after the fraction; `head_` ends in the point if the point is required
+  bool fraction_ = false;  ///< whether the pattern has a fraction
   bool may_lack_fraction_ = false, has_date_ = false;
 };
 

@@ -73,7 +73,8 @@ struct Table {
   std::vector<double> time_s;
   std::map<std::string, std::size_t> missing_words;  ///< number of missing values by word of data.na
   StampForm form = {};                               ///< stamp format, if the times were numbers or text
-  std::vector<std::string> notes;  ///< remarks of the reader for the user, without the file's name, so that equal remarks on many files are merged
+  std::vector<std::string> notes;  ///< remarks of the reader for the user, without the file's name, so that equal
+                                   ///< remarks on many files are merged
 
   std::vector<LineRange> unwritten;  ///< lines whose times were never written and so have the file's fill value
 

@@ -53,8 +53,9 @@ struct DataCheck {
   Advice advice;
   Index longest_stretch = 0;            ///< longest sequence of transitions without a gap in the training runs
   std::vector<std::string> dominating;  ///< remarks on large values that would dominate least squares
-  std::string unidentifiable_effects;  ///< remark on effects that are unidentifiable from the training runs; empty if there are none
-  std::string unusable;                ///< reason why nothing can be identified; empty if something can
+  std::string unidentifiable_effects;   ///< remark on effects that are unidentifiable from the training runs; empty if
+                                        ///< there are none
+  std::string unusable;                 ///< reason why nothing can be identified; empty if something can
 };
 
 /// The data to check, and the length of their windows.

@@ -16,7 +16,7 @@ KeyValues changed_keys(const Config& config, const Settings& from, const Setting
 /// Reason for a trial.
 std::string reason_text(const Trial& trial);
 
-/// The trial's gain with the number of runs and the reason. If there is no gain, only why.
+/// The trial's gain with the number of runs and the reason; without a gain, the reason for that.
 std::string gain_reason(const Suggestions& suggestions, const Trial& trial);
 
 /// Text on the suggestions with their gains, and on trials without improvement.

@@ -176,7 +176,8 @@ class Search {
   }
 
   void try_length() {
-    const bool with_rate = held().rate_hz != found_.present.rate_hz;  // the rate and the windows' length are changed together
+    const bool with_rate =
+        held().rate_hz != found_.present.rate_hz;  // the rate and the windows' length are changed together
     Settings to = held();
     to.window_length = check_.advice.length.length;
     if (to.window_length == 0 || to.window_length == held().window_length || with_rate) return;

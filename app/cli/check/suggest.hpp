@@ -48,9 +48,10 @@ RestNoise rest_noise(const DataCheck& check);
 struct Trial {
   Change change = Change::rate;
   Settings from, to;
-  Advice advice;         ///< computed for the data with the settings of the trial
-  PairedGain gain;       ///< gain of `to` over `from` on training runs left out; for an accepted trial with all starts of `run`
-  std::string unscored;  ///< reason why there is no gain; else empty
+  Advice advice;  ///< computed for the data with the settings of the trial
+  PairedGain
+      gain;  ///< gain of `to` over `from` on training runs left out; for an accepted trial with all starts of `run`
+  std::string unscored;  ///< reason of a missing gain; else empty
   bool accepted = false;
   RestNoise rest = {};  ///< basis of a stated measurement noise
 };

@@ -34,7 +34,7 @@ std::string files_text(const std::vector<FileSet>& sets) {
 }
 
 std::string time_text(const SurveyedTable& table) {
-  if (table.time.empty()) return "the row number, because there is no column of times";
+  if (table.time.empty()) return "the row number, because the log lacks a column of times";
   return fmt::format("{} ({:.4g} Hz, {:.4g} s{})", fmt::join(table.time, " + "), table.sampling.rate_hz,
                      table.sampling.duration_s,
                      table.sampling.gaps > 0 ? fmt::format(", {} gaps", table.sampling.gaps) : "");

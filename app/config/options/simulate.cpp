@@ -19,7 +19,9 @@ std::vector<Option> common_parameters() {
       words("system.kind", "kind of system: a switching linear system, or a skid-steer robot on patches of ground",
             MODEBANK_FIELD(simulate.kind))
           .touch("always"),
-      text("system.ground_names", "words", "names in the column ground of the states file; empty: no such column (the column mode has the ground's number)",
+      text("system.ground_names", "words",
+           "names in the column ground of the states file; empty: no such column (the column mode has the ground's "
+           "number)",
            MODEBANK_FIELD(simulate.ground_names))
           .touch("when modes shall be named after the grounds"),
       numeric("system.outlier_fraction", between(0, 1), "", "share of measurements with an outlier",

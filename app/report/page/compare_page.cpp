@@ -103,7 +103,8 @@ std::string gain_sentence(const PairedGain& gain, const std::string& first, cons
   if (gain.exceeds() || gain.falls_short())
     return fmt::format("the bank of {} predicts better than that of {},{}.", ahead, behind, size);
   return fmt::format(
-      "the data cannot tell whether {} or {} predicts better: {} is ahead{}, which does not exceed the {:.3f} that chance "
+      "the data cannot tell whether {} or {} predicts better: {} is ahead{}, which does not exceed the {:.3f} that "
+      "chance "
       "can explain.",
       first, other, ahead, size, gain.margin);
 }

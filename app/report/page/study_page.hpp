@@ -16,7 +16,7 @@ StudyTable study_table_of(const StudyFile& file);
 
 /// Files of a trial.
 struct TrialPlace {
-  std::string page;     ///< path relative to the study's page; empty if there is no file
+  std::string page;     ///< path relative to the study's page; empty if the file does not exist
   std::string archive;  ///< empty: missing
 };
 

@@ -11,8 +11,9 @@ namespace modebank::app::report {
 
 /// Result of a run over a folder of archives.
 struct SiteResult {
-  std::size_t archives = 0;                                   ///< archives and studies, one row of the index each
-  std::vector<std::pair<std::string, std::string>> problems;  ///< name of an archive, and the reason why there is no page
+  std::size_t archives = 0;  ///< archives and studies, one row of the index each
+  std::vector<std::pair<std::string, std::string>>
+      problems;                      ///< name of an archive, and the reason of its missing page
   std::vector<std::string> removed;  ///< number of removed pages: the archive is gone, or has fewer pages now
 };
 

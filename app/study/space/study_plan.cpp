@@ -262,7 +262,8 @@ void check_plan_goes_on(const StudyPlan& before, const StudyPlan& now, const std
   if (lost == 0) return;
   const std::string head =
       fmt::format("{}: {} of its {} runs are no longer in the plan", folder.string(), lost, before.table.rows.size());
-  const std::string advice = "\na study may get more values, but must keep its present values; set another study.output";
+  const std::string advice =
+      "\na study may get more values, but must keep its present values; set another study.output";
   if (before.provenance.modebank_version != now.provenance.modebank_version)
     throw ConfigurationError(fmt::format("{}: it was planned by modebank {}, but this is {}{}", head,
                                          before.provenance.modebank_version, now.provenance.modebank_version, advice));

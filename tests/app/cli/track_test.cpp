@@ -252,7 +252,9 @@ TEST_F(Track, EndsCleanlyWhenNobodyReadsOrASignalComes) {
     program.send_signal(signal);
     EXPECT_EQ(program.wait(), 0);
     const std::string errors = program.errors();
-    EXPECT_TRUE(errors.empty() || errors == "modebank: line 3: the input was stopped inside this line, which is left out\n") << errors;
+    EXPECT_TRUE(errors.empty() ||
+                errors == "modebank: line 3: the input was stopped inside this line, which is left out\n")
+        << errors;
   }
   PipedProgram empty(command());
   empty.close_input();

@@ -242,9 +242,10 @@ TEST_F(InitLogs, SaysWhyTextIsNotTaken) {
         init({write("words.csv", log_of("time,wz,cmd,pressure\n", 400, [&](const Drive& d) {
                       return fmt::format("{:.3f},{:.5f},{},{}", d.t, d.rate, d.left, cell(d.right, word));
                     }))});
-    EXPECT_THAT(written.text, HasSubstr(fmt::format("# not taken, text (\"{}\" is not a number, although other values are (data.na "
-                                                    "lists words for missing values)): pressure\n",
-                                                    word)));
+    EXPECT_THAT(written.text,
+                HasSubstr(fmt::format("# not taken, text (\"{}\" is not a number, although other values are (data.na "
+                                      "lists words for missing values)): pressure\n",
+                                      word)));
   }
   const Written brake = init({write("switch.csv", log_of("time,wz,brake,note,ground\n", 400, [](const Drive& d) {
                                       return fmt::format("{:.3f},{:.5f},{},dry,{}", d.t, d.rate,
@@ -397,7 +398,8 @@ TEST(ShippedConfigurations, FindTheirData) {
   for (const auto& entry : fs::directory_iterator(test::project_dir() / "configs")) {
     if (!entry.is_regular_file()) continue;  // the folder of systems
     const std::string name = entry.path().stem().string();
-    if (name == "minimal" || name == "reference" || name == "demo" || name == "tyres" || name.starts_with("simulate")) continue;
+    if (name == "minimal" || name == "reference" || name == "demo" || name == "tyres" || name.starts_with("simulate"))
+      continue;
     Config config = load_config(entry.path(), {{"data.root", test::shared_data_dir().string()}});
     config.data.lag_auto = false;
     EXPECT_NO_THROW(imported += import_data(data_options_of(config)).recording.runs.empty() ? 0 : 1) << name;
