@@ -21,15 +21,17 @@ void fill_criteria(Candidate& candidate, double total_weight, double cost);
 /// Value of a row under the criterion. For every criterion a lower value is better.
 double criterion_value(const Candidate& candidate, Criterion criterion);
 
-/// Position of the best row by the criterion: the first on a tie, ignoring rows that are not finite; -1 if no rows
-/// remain. Rows whose fit is at the covariance floor come after all others, because the floor determined their
-/// likelihood.
+/// Position of the best row by the criterion, the first on a tie; -1 if no row is finite. Rows whose fit is at the
+/// covariance floor come after all others, because the floor determined their likelihood.
 Eigen::Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion);
 
-/// Reasons against trusting the selected row, one sentence each. They are: restarts that disagree, the covariance
-/// floor, the edge of the range, fits that did not converge, and another number of components that describes left-out
-/// runs better by more than two standard errors. Disagreement of criteria does not count, because AIC nearly always
-/// chooses more components than BIC.
+/// Reasons against trusting the selected row, one sentence each:
+/// - restarts disagree;
+/// - the fit is at the covariance floor;
+/// - the row is at the edge of the range;
+/// - fits did not converge;
+/// - another number of components describes left-out runs better, by more than two standard errors.
+/// Disagreement of criteria does not count, because AIC nearly always chooses more components than BIC.
 std::vector<std::string> selection_warnings(const std::vector<Candidate>& candidates);
 
 }  // namespace modebank

@@ -26,14 +26,15 @@ struct EmResult {
 void check_points(const PointSet& points);
 
 /// Fits K components: the best of options.restarts restarts, improved by split-and-merge moves (Ueda et al. 2000) and
-/// by crossing (restarts.hpp). Points must be finite, up to 1e150 in magnitude. The fit uses units of each feature's
-/// typical error, or else its standard deviation, so it does not depend on the features' units. A constant feature
-/// keeps its unit; the floor limits its variance, as it does for coinciding points.
-/// The floored M step is the exact constrained maximiser, so the likelihood never falls. Squared extrapolation
-/// (Varadhan & Roland 2008) reduces the iterations. A component that explains less than 1e-14 of the weight keeps its
-/// mean and covariance.
-/// Points with error covariances are deconvolved: the components describe the error-free points (Bovy, Hogg & Roweis
-/// 2011, Ann. Appl. Stat. 5, eq. 16). Zero errors change nothing.
+/// by crossing (restarts.hpp). Points must be finite, up to 1e150 in magnitude.
+/// - Units: a feature is measured in its typical error, or else its standard deviation. So the fit does not depend on
+///   the features' units. A constant feature keeps its unit; the floor limits its variance, and also that of coinciding
+///   points.
+/// - The M step with the floor is the exact constrained maximiser, so the likelihood never falls. A component that
+///   explains less than 1e-14 of the weight keeps its mean and covariance.
+/// - Squared extrapolation (Varadhan & Roland 2008) reduces the iterations.
+/// - Points with error covariances are deconvolved: the components describe the error-free points (Bovy, Hogg &
+///   Roweis 2011, Ann. Appl. Stat. 5, eq. 16). Zero errors change nothing.
 /// Throws std::invalid_argument for K < 1, K > N, invalid options, weights, points or error covariances. The result has
 /// the same bits for any number of threads.
 EmResult fit_em(const PointSet& points, Eigen::Index components, const EmOptions& options, std::uint64_t seed);

@@ -27,12 +27,14 @@ enum class WindowErrors { ignore, include };
 
 /// The cloud of the clustered windows, without failed fits and non-finite windows.
 ///
-/// With errors, a point is the estimate from the window's data alone. The prior is removed, because clustering would
-/// count it once per window. This works in directions where data have at least 5 % of the information. The point's
-/// covariance is that of theta. The logarithm of a noise variance has variance 2 / (L - rank / n), uncorrelated with
-/// theta (delta method: an estimate of sigma^2 on nu degrees of freedom has variance 2 sigma^4 / nu under Gaussian
-/// noise). Windows with a non-finite covariance are skipped: they are rank deficient without a prior, and their theta
-/// measures nothing.
+/// With errors, a point is the estimate from the window's data alone.
+/// - The prior is removed, because clustering would count it once per window. This works in directions where data
+///   have at least 5 % of the information.
+/// - The point's covariance is that of theta. The logarithm of a noise variance has variance 2 / (L - rank / n),
+///   uncorrelated with theta (delta method: an estimate of sigma^2 on nu degrees of freedom has variance 2 sigma^4 / nu
+///   under Gaussian noise).
+/// - Windows with a non-finite covariance are skipped: they are rank deficient without a prior, and their theta
+///   measures nothing.
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
                            const std::vector<Channel>& states, WindowsOverSwitch over_switch = WindowsOverSwitch::keep,
                            WindowErrors errors = WindowErrors::ignore);

@@ -8,12 +8,10 @@ namespace modebank {
 /// The constants of refinement, each with its reason. They cannot be configured. Constants that come from experiments
 /// were set inside training runs (docs/explanation/refinement.md).
 struct RefineTuning {
-  // The cross-validation inside the training runs. Left-out runs are scored after these numbers of iterations, and at
-  // the iteration limit. The first is 10. The start has used all training runs, and the fit needs some iterations to
-  // forget the left-out ones. Earlier checkpoints made results on ICE worse.
-  /// Iterations after which left-out runs are scored; the iteration limit counts as one. Not before 10, because the
-  /// start has used all training runs, and the fit needs some iterations to forget the left-out ones. Earlier
-  /// checkpoints made results on ICE worse.
+  // The cross-validation inside the training runs.
+  /// Numbers of iterations after which left-out runs are scored. The iteration limit is another. The first is 10,
+  /// because the start has used all training runs, and the fit needs some iterations to forget the left-out runs.
+  /// Earlier checkpoints made results on ICE worse.
   std::array<std::ptrdiff_t, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
   /// A start is dropped if its score stays at least least_gain below its best score for this number of checkpoints in a
   /// row. On ICE, FLOORING and DRIVE (training runs; 13, 13 and 10 starts) no start recovered after two checkpoints,
@@ -33,8 +31,7 @@ struct RefineTuning {
   /// be missed.
   double most_loss = 0.02;
 
-  // The rule for additions (left_out/rule.hpp). Probability that any proposal is accepted although there is nothing to
-  // be found.
+  // The rule for additions (left_out/rule.hpp).
   /// Probability that any proposal is accepted if there is nothing to be found.
   double taken_by_chance = 0.05;
   /// Number of proposals for one configuration: number of modes, prior, measurement noise, noise by input, transitions
@@ -46,7 +43,7 @@ struct RefineTuning {
                                                          ///< transitions
   std::array<double, 2> other_Q_transitions{1.0, 16.0};  ///< also tried for the best start; each is a factor of four
                                                          ///< away
-  double Q_transitions_unvalidated = 1.0;  ///< used if no run can be left out to choose by: unit information
+  double Q_transitions_unvalidated = 1.0;                ///< used if no run can be left out: unit information
   double Q_transitions_with_R = 1.0;  ///< additional transitions of the modes' own harmonic mean, for unknown states
   /// Share of the largest information that is added in every direction of theta, so that unit information is definite.
   double least_information = 1e-8;

@@ -77,7 +77,7 @@ struct Bank {
   double dt_s = 0.0;  ///< median sample period of the training data
   std::vector<ScreenedMode> screened;
   Shrinking shrinking;                            ///< shrinkage of the learned modes
-  std::vector<ModelParameter> motion_parameters;  ///< parameters of a motion model; empty for linear ones
+  std::vector<ModelParameter> motion_parameters;  ///< parameters of a motion model; empty for linear models
   NoiseAdaptation noise_adaptation;               ///< used by filters with adaptive noise
   BankDrift drift;                                ///< drift of each mode's theta within a run; empty without drift
   MotionTerms terms = {};                         ///< nonlinear terms, the same for all modes; empty without terms
@@ -106,8 +106,9 @@ Bank one_mode_bank(const LinearStructure& structure, const Eigen::VectorXd& thet
 /// Whether the bank has several modes with the same theta, which differ in noise alone.
 bool has_one_theta(const Bank& bank);
 
-/// Throws std::invalid_argument that names the first invalid part. Invalid are: a size that does not fit the others, a
-/// number that is not finite, a negative variance, invalid probabilities, a noise adaptation out of range.
+/// Throws std::invalid_argument with the name of the first invalid part. A part is invalid if its size does not fit the
+/// others, a number is not finite, a variance is negative, probabilities are invalid, or a noise adaptation is out of
+/// range.
 void validate(const Bank& bank);
 /// Checks the sizes only, for candidates of an optimiser: these have valid sizes but may have extreme numbers.
 void check_sizes(const Bank& bank);

@@ -10,7 +10,8 @@
 
 namespace modebank {
 
-/// A filter's results for one sample. NaN where a value does not exist: before the start, and for missing measurements.
+/// A filter's results for one sample. A value is NaN if it does not exist: before the start, and for missing
+/// measurements.
 struct FilterEstimate {
   Eigen::VectorXd prediction;             ///< n, combined prediction of the state before the measurement
   Eigen::VectorXd innovation;             ///< n_y, measurement minus combined prediction
@@ -55,9 +56,9 @@ class BankFilter {
   BankFilter(BankFilter&&) noexcept;
   BankFilter& operator=(BankFilter&&) noexcept;
 
-  /// Processes the next sample in time order. time: NaN means one step after the last. input (m): recorded at that
-  /// time; non-finite values are replaced by the last known ones, at first zero. measurement (n_y): NaN where missing.
-  /// The first complete measurement starts the filter. Throws std::invalid_argument for other sizes.
+  /// Processes the next sample in time order. time: NaN means one step after the last sample. input (m): recorded at
+  /// that time. A non-finite input is replaced by its last known value, which is zero at first. measurement (n_y): NaN
+  /// where missing. The first complete measurement starts the filter. Throws std::invalid_argument for other sizes.
   const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                              const Eigen::Ref<const Eigen::VectorXd>& measurement);
   /// The result of the last step.

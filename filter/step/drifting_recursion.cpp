@@ -55,7 +55,7 @@ DriftingRecursion::DriftingRecursion(const Bank& bank)
   start(Eigen::VectorXd::Zero(structure_.dimension()));
 }
 
-/// Gives each output its own P.
+/// Makes a separate P for each output.
 void DriftingRecursion::own_P() {
   std::iota(P_of_.begin(), P_of_.end(), Index{0});
   P_count_ = structure_.states;

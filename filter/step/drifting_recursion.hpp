@@ -18,11 +18,10 @@ namespace modebank {
 /// Choices that the method leaves open, with reasons:
 /// - The first step after a start uses theta0 with covariance p0 v I, without leak or q.
 /// - After a step the coefficients are updated, then the variance, then leak and q. So a sample does not influence
-///   its
-///   own score.
+///   its own score.
 /// - A step without a measurement also applies leak and q, because time passes. Its prediction replaces the sample.
 /// - If some signals of a sample are missing, only the coefficients of the other signals learn. From then on these
-///   have a P of their own.
+///   outputs have a separate P.
 /// - If samples are further apart, one step is taken per sample period with the inputs held, as in other banks.
 class DriftingRecursion {
  public:
@@ -60,7 +59,7 @@ class DriftingRecursion {
   Eigen::MatrixXd theta0_, direction_;      ///< r x n, of scaled regressors
   Eigen::MatrixXd theta_;                   ///< r x n
   std::vector<Eigen::MatrixXd> P_;          ///< n of r x r, lower triangles; the first P_count_ are in use
-  std::vector<Eigen::Index> P_of_;          ///< n, index of each output's P
+  std::vector<Eigen::Index> P_of_;          ///< n, position of each output's P
   Eigen::Index P_count_ = 1;                ///< one P serves all outputs until a signal is missing
   Eigen::VectorXd z_, v_;
   Eigen::VectorXd h_, prediction_, variance_, innovation_, sample_;

@@ -21,7 +21,7 @@ struct NoiseFactor {
 
   bool empty() const { return weights.size() == 0; }
 
-  /// log f; NaN if an entry is not finite. Does not allocate.
+  /// log f; NaN if z or v has an entry that is not finite. Does not allocate.
   template <class Z, class V>
   double log_at(const Z& z, const V& v) const {
     double sum = -offset;

@@ -34,7 +34,7 @@ struct TransitionWorkspace {
 /// stay possible.
 inline constexpr double largest_log_odds = 200.0;
 
-/// The probabilities at (x, v); T if z is not finite. Does not allocate.
+/// The probabilities at (x, v). T if x or v is not finite. Does not allocate.
 template <class X, class V>
 const Eigen::MatrixXd& transition_at(const Eigen::MatrixXd& T, const TransitionLogit& logit, const X& x, const V& v,
                                      TransitionWorkspace& at) {

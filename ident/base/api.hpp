@@ -19,7 +19,7 @@ auto api_call(Call&& call) {
   }
 }
 
-/// Throws std::invalid_argument unless the matrix holds as many numbers as it has elements.
+/// Throws std::invalid_argument if the number of stored values differs from the number of elements.
 inline void check_filled(const Matrix& matrix, const std::string& name) {
   if (matrix.rows < 0 || matrix.cols < 0 ||
       matrix.rows * matrix.cols != static_cast<std::ptrdiff_t>(matrix.values.size()))

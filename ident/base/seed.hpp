@@ -17,8 +17,8 @@ inline std::mt19937_64 make_generator(std::uint64_t seed, std::string_view use, 
   return std::mt19937_64(derive_seed(seed, use, index));
 }
 
-/// Draws one position from each of `count` equal shares of 0 .. size - 1, in order. Fewer if shares are shorter than
-/// one.
+/// Draws one position from each of `count` equal shares of 0 .. size - 1, in order. Draws fewer if a share would be
+/// shorter than one.
 std::vector<std::ptrdiff_t> one_of_each_share(std::ptrdiff_t size, std::ptrdiff_t count, std::mt19937_64& generator);
 
 }  // namespace modebank

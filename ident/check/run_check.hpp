@@ -42,9 +42,9 @@ struct RestCheck {
 };
 RestCheck check_rest(const Stream& states, const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Order of persistent excitation (Ljung 1999, def. 13.2). It is the largest d <= most for which the second-moment
-/// matrix of the inputs and their first d - 1 delays has all eigenvalues above 1e-4. Each input is in units of its root
-/// mean square.
+/// Order of persistent excitation (Ljung 1999, def. 13.2). Consider the second-moment matrix of the inputs and their
+/// first d - 1 delays. The order is the largest d <= most for which all of its eigenvalues are above 1e-4. Each input
+/// is in units of its root mean square.
 inline constexpr Eigen::Index most_excitation_order = 10;
 Eigen::Index excitation_order(const Eigen::MatrixXd& inputs, Eigen::Index most = most_excitation_order);
 

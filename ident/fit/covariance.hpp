@@ -21,8 +21,9 @@ struct CovarianceInput {
 ///
 /// `model`: (sum J_k' G^-1 J_k + P)^-1 with G_ij = K_i K_j [sum psi_i psi_j / (L - f)] / (mean psi'_i mean psi'_j).
 /// psi'_i is the derivative of psi_i by r_i. K_i = 1 + (f / L) var(psi'_i) / (mean psi'_i)^2. f is the sum of a state's
-/// leverages; for states i and j, L - f is the geometric mean of theirs. Without a prior f is q. With a prior f is the
-/// part of q that data determine; sum r^2 / (L - f) is then unbiased if the truth is drawn from the prior.
+/// leverages. For two states i and j, L - f is the geometric mean of the two values. Without a prior f is q. With a
+/// prior f is the part of q that data determine; sum r^2 / (L - f) is then unbiased if the truth is drawn from the
+/// prior.
 ///
 /// For one state this is K^2 sigma^2 [sum psi^2 / (L - f)] / [mean psi']^2 (X'X)^-1 with the prior's information added.
 /// K is Huber's correction for few samples (1981, eqs. 7.6.3 and 7.6.7); without it 95 % regions at L = 25 cover 93.7 %

@@ -146,7 +146,7 @@ class Fitting {
     common_.loss = options.loss;
   }
 
-  /// theta of windows fitted without prior, one per column; NaN where rank deficient.
+  /// theta of windows fitted without prior, one per column; NaN for rank-deficient windows.
   Eigen::MatrixXd unregularised_fits() {
     const auto batch = linear_ ? BatchWindows::make(*linear_, plan_.count(), nullptr) : nullptr;
     const auto ranges = prior_ranges(plan_, longest_range(batch.get()), fitter_->options().seed);

@@ -37,8 +37,8 @@ WindowFits stream_windows(const Recording& recording, const FitOptions& options,
 /// excitation stay there. The global model always uses one-step residuals. Throws the errors of fit_windows.
 WindowFits fit_windows(const Recording& recording, const FitOptions& options, const MotionModel& model);
 
-/// The options with the name of the given model. Throws std::invalid_argument for the name of a linear model and for
-/// states or inputs that differ from the recording's.
+/// The options with the name of the given model. Throws std::invalid_argument for the name of a linear model, and if
+/// states or inputs differ from those of the recording.
 FitOptions options_for(const MotionModel& model, const Recording& recording, FitOptions options);
 
 /// Throws ConfigurationError unless FitOptions name one model that fits n states and m inputs. Examples of errors are

@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// Summary of all windows of one fit: medians over the windows where a value is defined (NaN if it never is).
+/// Summary of all windows of one fit: medians over the windows with a defined value. NaN if no window has one.
 struct WindowSummary {
   Eigen::VectorXd parameter;       ///< p, median theta
   Eigen::VectorXd standard_error;  ///< p, median

@@ -11,7 +11,7 @@
 namespace modebank {
 
 /// How inputs are shifted. none: not at all. pooled: every run by the pooled lag. per_run: every training run by its
-/// own lag, held-out runs by the pooled one. drift: like per_run, with drifts.
+/// own lag, and held-out runs by the pooled lag. drift: like per_run, with drifts.
 enum class LagCorrection { none, pooled, per_run, drift };
 
 template <>

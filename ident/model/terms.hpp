@@ -5,8 +5,8 @@
 
 #include "modebank/base/names.hpp"
 
-/// Terms make a motion nonlinear. They are functions of the regressors and are added to the linear ones. Each has a
-/// coefficient per state, so the model stays linear in its parameters.
+/// Terms make a motion nonlinear. They are functions of the regressors and are added to the linear part. Each term has
+/// one coefficient per state, so the model stays linear in its parameters.
 namespace modebank {
 
 /// product: of up to three variables. magnitude: |z|. hinge: max(0, z - knot).

@@ -15,8 +15,8 @@ struct GroundKind {
   double resistance = 0.0;  ///< motion resistance over normal load, at least 0
 };
 
-/// An endless plane of square tiles. The kind of each tile is drawn independently; all kinds are equally likely. It
-/// depends on the seed and the tile alone.
+/// An endless plane of square tiles. The kind of each tile is drawn independently; all kinds are equally likely. The
+/// draw depends on the seed and the tile alone.
 class Ground {
  public:
   /// Requires at least one kind. With tile_m = 0 the whole plane has kind `everywhere`.

@@ -67,7 +67,7 @@ Eigen::MatrixXd transition_of(const SimulationOptions& o) {
   return T;
 }
 
-/// pi with pi' T = pi'; if there are several, the one of least norm.
+/// pi with pi' T = pi'. If there are several solutions, the one of least norm.
 Eigen::VectorXd stationary_distribution(const Eigen::MatrixXd& T) {
   const Index K = T.rows();
   Eigen::MatrixXd equations(K + 1, K);

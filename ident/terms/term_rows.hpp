@@ -18,7 +18,7 @@ struct TermRows {
   Eigen::Index parts = 0;
 
   Eigen::Index count() const { return X.rows(); }
-  /// Regressors of a structure with the same delay and at most as many lags.
+  /// Regressors of a structure with the same delay and no additional lags.
   Eigen::MatrixXd regressors(const LinearStructure& structure) const;
   /// The rows of some parts, with new part numbers. Fewer than six parts are cut into stretches.
   TermRows some(const std::vector<bool>& of_part) const;

@@ -57,7 +57,7 @@ EmResult climb(const PointBlocks& points, GaussianMixture start, int spent, cons
   return result;
 }
 
-/// Continues EM from where `result` stopped.
+/// Continues EM from the end of `result`.
 void follow(const PointBlocks& points, const EmOptions& options, double hopeless_below, EmResult& result) {
   const int spent = result.iterations;
   EmResult rest = iterate(points, std::move(result.mixture), with_iterations_left(options, spent), Steps::extrapolated,

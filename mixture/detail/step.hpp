@@ -25,9 +25,9 @@ MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture,
 /// `expect` without the components' sums. Log-likelihood and noise are the same to the last bit.
 MixtureMoments measure(const PointBlocks& points, const GaussianMixture& mixture);
 
-/// M step in place. Covariance eigenvalues (diagonal: variances) below `floor` are raised to it. That is the exact
-/// maximiser under the constraint, so the likelihood never falls. A component that explains less than 1e-14 of the
-/// total weight keeps its mean and covariance. Returns whether the floor acted on any component.
+/// M step in place. Eigenvalues of covariances (for diagonal ones, variances) are raised to at least `floor`. The
+/// result is the exact maximiser under this constraint, so the likelihood never falls. A component that explains less
+/// than 1e-14 of the total weight keeps its mean and covariance. Returns whether the floor acted on any component.
 bool maximise(const MixtureMoments& moments, double floor, GaussianMixture& mixture);
 
 }  // namespace modebank

@@ -211,7 +211,7 @@ TEST(RobustnessErrors, CallersMistakesThrow) {
   EXPECT_THROW(fit_em(points, unweighted, 2, wrong, 1), std::invalid_argument);
 }
 
-/// The floor is a share of each feature's error variance. The points have no effect.
+/// The floor is a share of each feature's error variance, for any points.
 TEST(Robustness, TheFloorIsRelativeToThePointsErrors) {
   EmOptions options;
   options.covariance_floor = 1e-4;

@@ -171,8 +171,8 @@ TEST(SelectionWarnings, TheFloorIsNamedWhereNothingElseIsLeft) {
   EXPECT_TRUE(named);
 }
 
-/// Twenty windows at one point, like those of a stretch of standstill. By BIC they would be worth a component, whatever
-/// the floor.
+/// Twenty windows at one point, like those of a stretch of standstill. By BIC they would be worth a component, for any
+/// floor.
 TEST(Selection, AClusterWithoutExtentIsNotChosen) {
   Eigen::MatrixXd points(2, 220);
   points.leftCols(200) = draw(three_clusters(0.0), 200, 6);

@@ -17,7 +17,7 @@ constexpr double outside_level = 0.99;
 
 bool within(double value, double least, double largest) { return value >= least && value <= largest; }
 
-/// Verdict of the mean NIS: -1 underconfident, 1 overconfident, 0 neither.
+/// Verdict of the mean NIS: -1 for underconfident, 1 for overconfident, 0 for neither.
 int judge_nis(const BandCounts& counts) {
   if (!counts.chi_square_nis) return 0;
   const double degrees = counts.nis_degrees, mean = mean_distance(counts.nis, degrees);

@@ -23,8 +23,8 @@ namespace modebank {
 /// known variance. Otherwise (mixture, adaptive noise) the NIS is not chi-square and only sets a flag.
 ///
 /// Autocorrelated samples count as fewer. The effective number follows from an autocorrelation time with a margin for
-/// its own error. This time is the longer of two: that of the band's misses, and that of the sizes of all samples.
-/// (Short runs have too few misses.)
+/// its own error. Two times are computed: that of the band's misses, and that of the sizes of all samples, because
+/// short runs have too few misses. The longer one is used.
 enum class Calibration { undecided, calibrated, overconfident, underconfident };
 
 template <>

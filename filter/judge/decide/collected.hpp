@@ -11,7 +11,7 @@
 
 namespace modebank {
 
-/// Statistics of the samples that belong to one row.
+/// Statistics of the samples of one row.
 struct Collected {
   Eigen::Index samples = 0, entropy_samples = 0;
   double usage = 0.0, entropy = 0.0, differences = 0.0, visits = 0.0, visited = 0.0;

@@ -12,7 +12,7 @@
 namespace modebank {
 
 /// One row of /evaluation/diagnostics: a filter, or one of its modes, on the pooled runs of a role. A mode is judged on
-/// the samples where it was the most probable before the measurement. If the model is correct, these samples are
+/// those samples where it was the most probable mode before the measurement. If the model is correct, these samples are
 /// calibrated, too, because the transform is uniform given all earlier information (Rosenblatt 1952; Diebold, Gunther &
 /// Tay 1998). Intervals have 95 % confidence. Fractions: Clopper & Pearson (1934), for the effective number of
 /// independent samples (calibration.hpp). Mean NIS and NEES: chi-square (squared_distances.hpp). The intervals hold for

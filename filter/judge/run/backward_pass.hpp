@@ -44,7 +44,7 @@ class FilteredHistory {
   Eigen::Index n_, K_;
   std::vector<double> values_;  ///< per moment: means of the known rows; then mean and covariance of the other rows,
                                 ///< per mode
-  Eigen::VectorX<Eigen::Index> first_;  ///< index of each moment's first value
+  Eigen::VectorX<Eigen::Index> first_;  ///< index of the first value of each moment
   Eigen::MatrixXd probability_;
   Eigen::VectorXd noise_scale_;
   Eigen::VectorX<Eigen::Index> uncertain_;
@@ -107,7 +107,7 @@ class BackwardPass {
         transition_(model.mode_count(), model.transition_logit),
         combined_(n()) {}
 
-  /// Begins at the end of a stretch, where the smoothed estimates are the filtered ones.
+  /// Begins at the end of a stretch. There the smoothed estimates equal the filtered ones.
   void begin(Eigen::Index t) {
     for (std::size_t j = 0; j < modes.size(); ++j) history_.get(t, j, modes[j]);
     probability = history_.probability(t);

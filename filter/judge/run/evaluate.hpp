@@ -32,12 +32,12 @@ struct RunEvaluation {
   Eigen::VectorXi viterbi_mode;         ///< N, most probable sequence of modes; -1 before the start
 };
 
-/// Filters one run, whose `state` holds the measurements (n_y x N), from x[0] = y[0], P[0] = R.
-/// A signal with a NaN measurement is only predicted; the others update the state and score the sample. Without any
-/// measurement, innovation and scores are NaN. The filter starts at the first complete measurement; earlier results are
-/// NaN except the mode probabilities. A bank with lags starts at the first sample whose lagged samples are all
-/// measured. Longer times between samples: see FilterOptions. Throws std::invalid_argument if sizes disagree, and
-/// DataError for an input that is not finite.
+/// Filters one run, whose `state` holds the measurements (n_y x N), from x[0] = y[0], P[0] = R. A signal with a NaN
+/// measurement is only predicted. The other signals update the state and score the sample. Without any measurement,
+/// innovation and scores are NaN. The filter starts at the first complete measurement; earlier results are NaN except
+/// the mode probabilities. A bank with lags starts at the first sample whose lagged samples are all measured.
+/// FilterOptions describes longer times between samples. Throws std::invalid_argument if sizes disagree, and DataError
+/// for an input that is not finite.
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 /// Evaluates any filter whose estimates have the sizes of `frame`.

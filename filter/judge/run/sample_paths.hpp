@@ -17,8 +17,9 @@ namespace modebank {
 using TransitionRow = std::function<void(Eigen::Index mode, const Eigen::Ref<const Eigen::VectorXd>& state,
                                          const Eigen::Ref<const Eigen::VectorXd>& inputs, Eigen::VectorXd& row)>;
 
-/// Random futures of a switching system from a filter's estimate at one moment. Each path draws its state and mode
-/// there, then mode and noise in every step. One generator serves all paths in order, so equal seeds give equal paths.
+/// Random futures of a switching system from a filter's estimate at one moment. Each path draws its state and mode from
+/// this estimate, then mode and noise in every step. One generator serves all paths in order, so equal seeds give equal
+/// paths.
 class SamplePaths {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
@@ -47,7 +48,7 @@ class SamplePaths {
   std::mt19937_64 generator_;
   std::vector<Eigen::MatrixXd> noise_, noise_root_;  ///< K, scaled as at the origin
   Eigen::MatrixXd states_, predicted_;
-  Eigen::VectorXd noise_factor_;  ///< of every path in the last step
+  Eigen::VectorXd noise_factor_;  ///< noise factor of every path in the last step
   std::vector<Eigen::Index> modes_;
   Eigen::VectorXd probability_, regressor_, next_, normal_;
   TermValues terms_;

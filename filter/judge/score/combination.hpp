@@ -101,7 +101,7 @@ class ForecastTables {
   std::vector<Weights> weights_;                             ///< per run
   std::vector<std::vector<Eigen::MatrixXd>> densities_;      ///< per training run and horizon: filters x some samples
   Eigen::Index every_ = 1;                                   ///< every how many-th sample is kept in densities_
-  std::vector<std::vector<double>> start_;                   ///< per horizon; empty: equal weights
+  std::vector<std::vector<double>> start_;                   ///< per horizon; if empty, weights are equal
 
   Weights weights_of(Role role) const;
   bool combines() const { return filters_.size() > 1; }

@@ -18,7 +18,7 @@ inline constexpr double true_tail = 0.025;
 class ScoreBands {
  public:
   struct Hits {
-    std::array<bool, coverage_levels.size()> outside;  ///< of each central band
+    std::array<bool, coverage_levels.size()> outside;  ///< whether |z| lies outside each central band
     bool far, close;                                   ///< z^2 above the upper or below the lower true_tail quantile of
                                                        ///< chi-square(1)
   };

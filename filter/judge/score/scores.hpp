@@ -19,7 +19,7 @@ struct SummaryRow {
   std::string run;           ///< "*": all runs of the role pooled
   Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample], higher is better
-  Eigen::VectorXd rmse;      ///< n_y, of the one-step prediction [state unit]
+  Eigen::VectorXd rmse;      ///< n_y, RMSE of the one-step prediction [state unit]
   double nis_mean = 0.0;     ///< sum of NIS over the number of scored signals, times n_y; n_y for a correct model
   double nis_above = 0.0;    ///< share of NIS above the 97.5 % quantile of chi-square for the sample's signals
   double nis_below = 0.0;    ///< share of NIS below the 2.5 % quantile

@@ -16,7 +16,7 @@ struct Interval {
 /// freedom if the prediction is one Gaussian of known variance.
 struct SquaredDistances {
   SeriesByRun value;
-  SeriesByRun degrees;  ///< d of each distance
+  SeriesByRun degrees;  ///< degrees of freedom of each distance
 
   void begin_run();
   /// `d`: degrees of freedom; 0 adds nothing.
@@ -30,9 +30,10 @@ Eigen::Index scored_signals(const RunEvaluation& evaluation, Eigen::Index sample
 /// is therefore `of_all`, even with missing signals. Samples count by their degrees. NaN without samples.
 double mean_distance(const SquaredDistances& distances, double of_all);
 
-/// Variance of the distances about their share of the mean, over that of chi-square terms with the same mean and
-/// degrees. For a correct model with single Gaussian predictions it is 1. It is larger if a few terms are large, as
-/// with modes that are rare and distant. A factor on the distances does not change it. 1 without values or variance.
+/// Dispersion of the distances: their variance about their share of the mean, divided by that of chi-square terms with
+/// the same mean and degrees. It is 1 for a correct model with single Gaussian predictions. It is larger if a few terms
+/// are large, for example with modes that are rare and distant. A factor on the distances does not change it. 1 without
+/// values or variance.
 double dispersion(const SquaredDistances& distances);
 
 /// Interval that contains mean_distance of a correct model with probability `level`. The sum is treated as chi-square.

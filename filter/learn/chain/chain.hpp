@@ -21,7 +21,7 @@ struct LearningHooks {
 /// `one_model`: whether the bank is the baseline. This is set if the time steps have many lengths. Such steps would
 /// turn one motion into modes, and only least squares preserves its time constant.
 ///
-/// Throws what the stages throw (stages.hpp).
+/// Throws the errors of the stages (stages.hpp).
 void learn_all(const Recording& recording, const LearningOptions& options, Stage last, bool one_model,
                const LearningHooks& hooks, const Progress& progress, Learning& learned);
 

@@ -70,7 +70,7 @@ std::string lags_of(const LinearStructure& s) {
   return fmt::format("({}, {}, {})", s.state_lags, s.input_lags, s.input_delay);
 }
 
-/// Fits the terms given in the configuration, whatever their gain.
+/// Fits the terms given in the configuration, even if they do not gain.
 FoundTerms take_stated(const Recording& recording, const LinearStructure& structure, const std::string& terms) {
   constexpr Index enough_rows = 200000;
   std::vector<std::string> names = state_names(recording, structure);

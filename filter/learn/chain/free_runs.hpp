@@ -8,7 +8,7 @@
 
 namespace modebank {
 
-/// Free runs of all runs, in parallel; empty if none is requested (options.samples = 0). Throws what free_run throws.
+/// Free runs of all runs, in parallel; empty if free runs are off (options.samples = 0). Throws the errors of free_run.
 std::vector<FreeRun> free_runs(const Bank& bank, const std::vector<Trajectory>& runs, const FilterOptions& filter,
                                const FreeRunOptions& options);
 

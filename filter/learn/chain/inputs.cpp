@@ -51,7 +51,7 @@ CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOpti
           options.competitors};
 }
 
-/// one_motion is learned by refinement, whatever makes the bank.
+/// one_motion is learned by refinement, for every source of the bank.
 std::optional<OneMotionInputs> one_motion_inputs(const LearningOptions& options) {
   if (options.filter.variant == FilterVariant::kf) return std::nullopt;
   BankOptions learned;

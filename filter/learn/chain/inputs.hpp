@@ -31,9 +31,8 @@ struct CompetitorInputs {
   std::uint64_t seed = 1;             ///< selects these transitions
   std::string terms = "auto";         ///< terms of `nonlinear`
   RefineOptions em = {};              ///< how `nonlinear` is learned
-  std::optional<Lags> linear = {};    ///< lags of baseline, noise_only and nonlinear; empty: the
-                                      ///< windows'
-  std::optional<Lags> drifting = {};  ///< lags of `drifting`; empty: the windows'
+  std::optional<Lags> linear = {};    ///< lags of baseline, noise_only and nonlinear; if empty, those of the windows
+  std::optional<Lags> drifting = {};  ///< lags of `drifting`; if empty, those of the windows
   /// For all competitors but baseline and drifting, and for the bank.
   NoiseByInput noise_by_input = NoiseByInput::none;
   bool all = true;  ///< false: only the baseline and the decision on the noise factor
@@ -43,8 +42,8 @@ struct CompetitorInputs {
 struct OneMotionInputs {
   BankOptions bank;
   FilterOptions filter;             ///< its filter
-  std::vector<Index> horizon = {};  ///< horizons at which left-out training runs are predicted, besides one sample
-                                    ///< ahead
+  std::vector<Index> horizon = {};  ///< horizons at which left-out training runs are predicted, in addition to one
+                                    ///< sample ahead
   std::optional<Lags> lags = {};    ///< if empty, those of the windows
 };
 

@@ -12,7 +12,7 @@
 #include "ident/lag/structure.hpp"
 #include "mixture/select.hpp"
 
-/// The results of each stage of learning; absent stages did not run.
+/// The results of each stage of learning. A result is absent if its stage did not run.
 namespace modebank {
 
 struct StructurePart {

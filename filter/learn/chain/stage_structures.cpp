@@ -54,8 +54,8 @@ std::vector<Index> delays_of(const StructureScore& linear, const SearchedLags& s
   return delays;
 }
 
-/// Positions of 1 to `most` equal state and input lags (of the searched ones). Runs must have enough samples before
-/// their first prediction.
+/// Positions of 1 to `most` equal state and input lags, as far as they are searched. Runs must have enough samples
+/// before their first prediction.
 std::vector<std::size_t> positions_of_equal(Rows& rows, Index most, const SearchedLags& searched) {
   const StructureScore linear = marked(rows, &StructureScore::linear);
   std::vector<std::size_t> positions;

@@ -34,8 +34,8 @@ struct OneModel {
   LinearStructure structure;
   GlobalModel global;
 };
-/// Fits one model with these lags; if empty, with those of the windows. `motion`: motion model of the windows, null for
-/// linear ones.
+/// Fits one model with these lags; without lags, with those of the windows. `motion`: motion model of the windows, null
+/// for linear models.
 OneModel one_model(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
                    const std::optional<Lags>& lags);
 
@@ -52,7 +52,7 @@ struct LearnedFrom {
   const WindowFits& windows;
   const MixtureResult& mixture;
   const Bank& baseline;
-  const MotionModel* motion = nullptr;  ///< motion model of the windows; null for linear ones
+  const MotionModel* motion = nullptr;  ///< motion model of the windows; null for linear models
 };
 
 /// Learns the bank, and refines it if the options require.

@@ -16,7 +16,7 @@
 namespace modebank {
 namespace {
 
-constexpr double smallest_r_share = 1e-8;  // of the residual variance; effect of R at its bound on a prediction
+constexpr double smallest_r_share = 1e-8;  // share of the residual variance: effect of R at its bound on a prediction
 constexpr double bound_tolerance = 1e-5;   // nats per sample; acceptable loss with R at its bound
 constexpr double least_gain = 1e-9;        // nats per sample; a better start must exceed rounding
 constexpr AscentLimits limits{200, 1e-12};
@@ -43,7 +43,7 @@ struct NoiseSearch {
   LikelihoodTarget target;
   Eigen::VectorXd scale;            ///< n residual variances, the unit of the starts
   Eigen::VectorXd bound;            ///< n lower bounds of R's diagonal
-  Eigen::VectorXd theta_unit = {};  ///< p standard errors; empty: theta is known
+  Eigen::VectorXd theta_unit = {};  ///< p standard errors; empty if theta is known
 
   double samples() const { return static_cast<double>(target.recording.transitions(Role::train)); }
 

@@ -40,8 +40,9 @@ struct DriftingScores {
 
 /// Scores the grid for the competitor `drifting`, a bank of one mode that drifts, with running noise. `start`: a bank
 /// with theta, scale, Q and choice of drifting coefficients from the training runs; its other settings are ignored.
-/// There is one recursion of the coefficients per (q, p0, leak). All running variances follow from it, and all
-/// densities from these. Throws std::invalid_argument for an empty grid, and DataError if nothing can be scored.
+/// Each (q, p0, leak) has one recursion of the coefficients. All running variances follow from this recursion, and all
+/// densities follow from the variances. Throws std::invalid_argument for an empty grid, and DataError if no sample can
+/// be scored.
 DriftingScores score_drifting_grid(const Bank& start, const Recording& recording, const DriftingGrid& grid);
 
 /// Root mean square of every regressor over the training transitions, with equal weights; 1 if a regressor is always

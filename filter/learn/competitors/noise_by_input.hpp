@@ -20,10 +20,11 @@ struct EnumNames<NoiseByInput> {
   static constexpr Names<2> values{"auto", "none"};
 };
 
-/// The most likely factor on the noise of one motion (method: section 2a, item 5). theta is Huber's for the structure
-/// and the terms. Maximum likelihood of Student t residuals with scale exp(g'z / 2) follows. z holds logarithms of the
-/// newest states, the newest inputs, their changes (if the structure has the previous input), and each state's forecast
-/// contribution from inputs. Empty if all residuals are zero. Throws DataError without usable transitions.
+/// The most likely factor on the noise of one motion (method: section 2a, item 5). First theta is Huber's estimate for
+/// the structure and the terms. Then the factor maximises the likelihood of Student t residuals with scale exp(g'z /
+/// 2). z holds logarithms of the newest states, the newest inputs, their changes (if the structure has the previous
+/// input), and each state's forecast contribution from inputs. Empty if all residuals are zero. Throws DataError
+/// without usable transitions.
 NoiseFactor fit_noise_factor(const Recording& recording, const LinearStructure& structure,
                              const MotionTerms& terms = {});
 

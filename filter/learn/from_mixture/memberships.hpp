@@ -9,10 +9,12 @@
 namespace modebank {
 
 /// Membership of each training transition in each mixture component, N x K. The row of a usable transition sums to one,
-/// or to its sample weight. It is the mean responsibility of the clustered windows that cover the transition. If no
-/// window covers it, the row is that of the nearest clustered window of its run (the earlier one on a tie). In a run
-/// without clustered windows the row holds the mixture weights. With a noise component the row excludes the probability
-/// of noise, so noise does not influence any mode. Rows of unusable transitions are zero.
+/// or to its sample weight.
+/// - Covered transition: the row is the mean responsibility of the clustered windows that cover the transition.
+/// - Other transition: the row is that of the nearest clustered window of its run (the earlier one on a tie).
+/// - Run without clustered windows: the row holds the mixture weights.
+/// With a noise component the row excludes the probability of noise, so noise does not influence any mode. Rows of
+/// unusable transitions are zero.
 Eigen::MatrixXd transition_memberships(const TrainingTransitions& transitions, const WindowFits& fits,
                                        const MixtureResult& mixture);
 

@@ -45,7 +45,7 @@ TrainingTransitions gather_training_transitions(const Recording& recording, cons
 /// factor.
 Eigen::VectorXd divide_by_noise(const NoiseFactor& factor, const LinearStructure& structure, Transitions& rows);
 
-/// Sums over the rows of each run. `rows`: N.
+/// Sums over the rows of each run. `rows`: N values.
 Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::VectorXd& rows);
 
 /// Sums over weighted transitions that a regression needs. r is the residual (increment minus prediction) for the

@@ -24,8 +24,9 @@ Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::Vec
   return gradients.array().isNaN().select(0.0, gradients);
 }
 
-/// Inverse variances of Q and T under the prior alone. For Q they are those of a scatter of that number of transitions.
-/// For T every switch has that number of counts, except the row's most frequent switch, which balances the others.
+/// Inverse variances of Q and T under the prior alone. The prior on Q counts as a scatter of its number of transitions.
+/// The prior on T counts as its number of switches of every kind, except the row's most frequent switch, which balances
+/// the others.
 Eigen::VectorXd information_of_noise_and_switches(const BankCoordinates& around, const SwitchingPrior& prior) {
   const ParameterPlaces at = around.places();
   const Bank& bank = around.origin();

@@ -14,10 +14,10 @@
 namespace modebank {
 namespace {
 
-/// Chooses the noise adaptation. Candidates are those within one standard error of the best, over the differences on
-/// left-out runs (Breiman et al. 1984, section 3.4.3). Among these it takes the one whose scale leaves its start
-/// soonest. The reason: new runs differ more from the training runs than the training runs differ from each other.
-/// `scores`: of each candidate, one per run; `samples`: of each run.
+/// Chooses the noise adaptation. Candidates are within one standard error of the best over left-out runs (Breiman et
+/// al. 1984, section 3.4.3). Of these the scale that leaves its start soonest is taken. The reason: new runs differ
+/// more from the training runs than the training runs differ from each other. `scores`: scores of each candidate, one
+/// per run. `samples`: number of samples of each run.
 std::size_t soonest_of_the_good(const std::vector<NoiseAdaptation>& ways, const std::vector<Eigen::VectorXd>& scores,
                                 const Eigen::VectorXd& samples) {
   const auto lower = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return is_below(a.sum(), b.sum()); };

@@ -49,7 +49,7 @@ class CrossValidation {
   double mean_score(const LeftOutScores& scores) const;
 
   /// Chooses the noise adaptation for the filter of these banks, one per split. If the left-out runs cannot separate
-  /// several, the one that leaves its start soonest is chosen.
+  /// several adaptations, the one that leaves its start soonest is chosen.
   NoiseAdaptation adaptation(const std::vector<Bank>& of_splits) const;
 
  private:

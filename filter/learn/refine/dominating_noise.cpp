@@ -19,7 +19,7 @@ namespace {
 constexpr std::array<double, 2> R_shares{0.6, 0.25};
 constexpr double Q_share = 0.05;
 constexpr AscentLimits climb_limits{100, 1e-7};
-/// Above this number of state coefficients, a search over all of them takes minutes.
+/// Above this number of state coefficients, a search over all coefficients takes minutes.
 constexpr Index most_coefficients = 4;
 /// Two lags determine a velocity; with more lags, their coefficients replace R.
 constexpr Index most_lags = 2;

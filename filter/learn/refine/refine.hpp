@@ -45,10 +45,11 @@ struct Refinement {
 /// - The last fit uses all training runs. Unstable, starved and duplicate modes are then removed and listed, and the
 ///   other modes are refined further.
 ///
-/// The prior: theta is normal about the global model. Its standard deviation is prior_sd of the windows; without
-/// prior_sd, the prior is worth one transition (unit information: Kass & Wasserman 1995). Q has 1, 4 or 16 additional
-/// transitions of the global residual covariance, chosen by cross-validation. Every count of T and of first modes has
-/// 0.1 added.
+/// The prior:
+/// - theta is normal about the global model. Its standard deviation is prior_sd of the windows. Without prior_sd, the
+///   prior is worth one transition (unit information: Kass & Wasserman 1995).
+/// - Q has 1, 4 or 16 additional transitions of the global residual covariance, chosen by cross-validation.
+/// - Every count of T and of first modes has 0.1 added.
 ///
 /// States first count as measured exactly, which is exact for R = 0. Otherwise Q contains the measurement noise and
 /// theta is biased (errors in variables). R and the remaining Q are then estimated by the filter's likelihood

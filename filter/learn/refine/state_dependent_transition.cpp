@@ -47,7 +47,7 @@ std::vector<LogitStart> from_constant_fits(const RefineInput& in, const std::vec
 bool likelier(const LogitStart& a, const LogitStart& b) { return a.log_likelihood > b.log_likelihood; }
 
 /// The most likely model of each number of modes, the most modes first. The candidates are the continued fits with
-/// constant T. Further candidates come from the best of these, by merging one pair of modes after another.
+/// constant T. Further candidates come from the best of these fits, by merging one pair of modes after another.
 std::vector<LogitStart> logit_starts(const RefineInput& in, const std::vector<Fit>& fits) {
   std::vector<LogitStart> all = from_constant_fits(in, fits);
   if (all.empty()) return all;

@@ -16,12 +16,12 @@ struct ScreenedModel {
 
 /// The model without its worst unusable mode; empty if all modes are usable. The last mode always stays. Reasons, worst
 /// first:
-/// - "starved": fewer effective transitions than regressors + 1;
-/// - "unstable": spectral radius of I + A above 1, the largest first, as long as the switching system with it is not
-///   mean-square stable (a mode that never lasts may be unstable by itself);
-/// - "duplicate" of another: pooling both modes' transitions costs less than a likelihood-ratio test at 5 % would
-///   detect. Pooling is the moment-preserving merge of Runnalls 2007, IEEE Trans. AES 43(3); the cost is its bound, the
-///   increase of 1/2 sum W log det Q. The other mode takes over its part in T.
+/// - "starved": the mode has fewer effective transitions than regressors + 1.
+/// - "unstable": the spectral radius of I + A is above 1 and the switching system with the mode is not mean-square
+///   stable. The largest radius comes first. (A mode that never lasts may be unstable by itself.)
+/// - "duplicate" of another mode: pooling the transitions of both costs less than a likelihood-ratio test at 5 %
+///   would detect. Pooling is the moment-preserving merge of Runnalls 2007, IEEE Trans. AES 43(3). The cost is its
+///   bound, the increase of 1/2 sum W log det Q. The other mode also receives the transitions in T.
 /// `one_theta`: modes differ in Q alone, and the test counts only Q.
 std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                                 const SwitchingRegression& model, bool one_theta,

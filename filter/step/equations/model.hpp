@@ -108,9 +108,9 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
   start_covariance = start.covariance;
 }
 
-/// Calls f.template operator()<N, NY>() with fixed sizes where they pay. One state and one signal run three times as
-/// fast (K = 9, GPB2: 1.5 us instead of 4.9 us). Two and three states run only 1.7 and 1.5 times as fast, and the IMM
-/// has vector kernels for those sizes. This is the only place where run-time sizes become compile-time sizes.
+/// Calls f.template operator()<N, NY>(), with fixed sizes if these are faster. One state and one signal run three times
+/// as fast (K = 9, GPB2: 1.5 us instead of 4.9 us). Two and three states run only 1.7 and 1.5 times as fast, and the
+/// IMM has vector kernels for those sizes. This is the only place where run-time sizes become compile-time sizes.
 template <class F>
 auto with_sizes(Eigen::Index states, Eigen::Index measurements, F&& f) {
   if (states == 1 && measurements == 1) return f.template operator()<1, 1>();

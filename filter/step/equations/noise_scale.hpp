@@ -77,7 +77,7 @@ template <class Model, class Sensor, class Step, class State>
 void adapt_noise_scale(const Model& model, const Sensor& sensor, const Eigen::VectorXd& prior, Step& step,
                        State& state) {
   const double s = state.noise_scale, n_y = static_cast<double>(step.residual.size() - step.partial.missing);
-  // An impossible mode is excluded, however well it fits, like in Bayes' rule (imm.hpp).
+  // An impossible mode is excluded even if it fits well, like in Bayes' rule (imm.hpp).
   double largest = -std::numeric_limits<double>::infinity();
   for (Eigen::Index h = 0; h < prior.size(); ++h)
     if (prior(h) >= impossible_probability) largest = std::max(largest, step.log_likelihood(h));

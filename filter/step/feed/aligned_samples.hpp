@@ -33,17 +33,17 @@ struct Alignment {
 
 /// Applies a lag between inputs and states, and a rate, to live samples. io/import does the same with whole runs.
 /// States are interpolated and inputs held. If samples come fast enough for averages (is_averaged_at), columns are
-/// averaged over the step that ends at the new sample. The early stream waits for the other one. With a negative lag a
-/// state waits for the input that acts on it, which arrives -lag_s later. Samples slower than three quarters of the
-/// rate pass unchanged.
+/// averaged over the step that ends at the new sample. The stream that is ahead waits for the other stream. With a
+/// negative lag a state waits for its acting input, which arrives -lag_s later. Samples slower than three quarters of
+/// the rate pass unchanged.
 class AlignedSamples {
  public:
   explicit AlignedSamples(const Alignment& alignment) : alignment_(alignment) {}
 
   /// Adds the next sample in time order.
   void push(const TimedSample& sample);
-  /// Returns the next finished sample, valid until the next call; null if none is ready. Drops samples that have no
-  /// input because of a positive lag. Also drops the first sample if no complete step leads up to it.
+  /// Returns the next finished sample, valid until the next call; null if no sample is ready. Drops samples that have
+  /// no input because of a positive lag. Also drops the first sample if no complete step leads up to it.
   const TimedSample* next();
   /// Forgets all samples.
   void restart() { *this = AlignedSamples(alignment_); }

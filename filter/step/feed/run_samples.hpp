@@ -11,8 +11,8 @@
 /// A recorded run in the form for filters: sample by sample, or moment by moment for random access.
 namespace modebank {
 
-/// Throws std::invalid_argument if the bank's sizes do not fit each other or the run, and DataError for an input that
-/// is not finite.
+/// Throws std::invalid_argument if the sizes of the bank do not fit each other or the run. Throws DataError for an
+/// input that is not finite.
 void check_run(const Bank& bank, const Trajectory& run);
 
 /// Time of a sample; NaN for a run without times.

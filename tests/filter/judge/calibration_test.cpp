@@ -107,7 +107,7 @@ std::vector<double> related_scores(int samples, double rho, bool sizes_alone, st
   return scores;
 }
 
-/// Counts of a filter that states standard deviation 1 where the true one is `scale`.
+/// Counts of a filter that states standard deviation 1 although the true one is `scale`.
 BandCounts counts_of(const std::vector<double>& scores, double scale, bool with_nis) {
   BandCounts counts;
   for (HitsByRun* hits : {&counts.far, &counts.close}) hits->emplace_back();

@@ -67,9 +67,9 @@ Recording another_mode_each_run(std::uint64_t seed) {
   return recording;
 }
 
-/// Fewer lags that gain are accepted without regard to the standard error. Regression test: a system of two states and
-/// four modes kept three lags and a delay of five samples from its linear model, although one lag gained 0.2 nats per
-/// sample.
+/// Structures with fewer lags that gain are accepted without regard to the standard error. Regression test: a system of
+/// two states and four modes kept three lags and a delay of five samples from its linear model, although one lag gained
+/// 0.2 nats per sample.
 TEST(StructureScore, FewerLagsThatGainNeedNoStandardError) {
   const StructuresOfModes compared =
       compare_structures(another_mode_each_run(1), {lags(1, 1), lags(8, 8)}, 1, false, 1);

@@ -101,7 +101,7 @@ TEST(AlignedSamples, OfASlowStreamKeepTheirTimes) {
   for (Index k = 0; k < 50; ++k) EXPECT_EQ(samples[static_cast<std::size_t>(k)].time_s, run.time_s(k));
 }
 
-/// After a pause, three samples of a fast log pass unchanged; later ones come at the rate.
+/// After a pause, three samples of a fast log pass unchanged. Later samples come at the rate.
 TEST(AlignedSamples, FindTheRateAfterAPause) {
   Recorded run(400, 0.01, 0.0);
   run.time_s.tail(399).array() += 0.7;

@@ -202,7 +202,7 @@ TEST(VectorImm, CorrelatedNoiseAndImpossibleModes) {
   expect_agreement(bank, run, adaptive(), 1e-11);
 }
 
-/// The noise scale follows the possible modes, however well an impossible mode fits.
+/// The noise scale follows the possible modes, even if an impossible mode fits well.
 TEST(VectorImm, AnImpossibleModeHasNoSayInTheNoise) {
   Bank bank = many_modes(1, 3);
   bank.transition = TransitionMatrix((MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());

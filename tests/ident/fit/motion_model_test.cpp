@@ -185,7 +185,7 @@ TEST(MotionModel, LinearModelThroughEitherDoorIsTheSame) {
         const ModelResiduals residuals(*motion, {{&run, 0, run.transitions()}});
         const LocalModel general = fit_model(residuals, make_model_estimator(*motion, options), sigma,
                                              Eigen::VectorXd::Zero(1), p, Eigen::Vector3d::Zero());
-        // Ceres stops where costs are equal up to rounding, at about sqrt(2 epsilon cost) = 5e-8 standard errors.
+        // Ceres stops if costs are equal up to rounding, at about sqrt(2 epsilon cost) = 5e-8 standard errors.
         const Eigen::ArrayXd standard_error = linear.covariance.diagonal().array().sqrt();
         EXPECT_LT(((general.theta - linear.theta).array() / standard_error).abs().maxCoeff(), 5e-7)
             << name_of(options.loss);

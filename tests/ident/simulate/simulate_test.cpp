@@ -199,7 +199,7 @@ TEST(InputLaw, WhiteIsUniformAndNewEverySample) {
   const MatrixXd u = inputs_of(options);
   EXPECT_LE(u.cwiseAbs().maxCoeff(), 0.5);
   EXPECT_TRUE(((u.rightCols(19999) - u.leftCols(19999)).array() != 0.0).all());
-  const double variance = 1.0 / 12;  // of a uniform variable on +-0.5
+  const double variance = 1.0 / 12;  // variance of a uniform variable on +-0.5
   EXPECT_NEAR(u.array().square().mean(), variance, 4 * std::sqrt(1.0 / 180 / 40000));
   EXPECT_NEAR((u.row(0).array() * u.row(1).array()).mean(), 0.0, 4 * variance / std::sqrt(20000.0));
 }

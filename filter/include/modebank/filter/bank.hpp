@@ -44,8 +44,8 @@ struct NoiseByState {
 /// Drift of every mode's theta within a run, per regressor of [z; v; (1)]. If empty, theta is constant.
 struct CoefficientDrift {
   std::vector<double> scale;  ///< size of each regressor; the regressor's coefficient drifts in the inverse unit
-  double rate = 0.0;          ///< variance that each step adds to each coefficient, in units of Q, >= 0
-  double start = 0.0;         ///< variance of each coefficient at the start of a run, in units of Q, >= 0
+  double rate = 0.0;          ///< variance that each step adds to a coefficient, in units of Q, >= 0
+  double start = 0.0;         ///< variance of a coefficient at the start of a run, in units of Q, >= 0
   double leak = 1.0;  ///< factor per step on the difference of a coefficient from the mode's coefficient, in (0, 1]
   Wandering wandering = Wandering::all;  ///< coefficients that drift; a value other than `all` requires RunningNoise
 };
@@ -71,13 +71,13 @@ struct NoiseMemory {
 /// ~ N(0, R).
 struct BankDescription {
   std::vector<Mode> modes;      ///< K >= 1
-  Matrix C;                     ///< n_y x n; empty: identity
+  Matrix C;                     ///< n_y x n; if empty, the identity
   Matrix R;                     ///< n_y x n_y, covariance of the measurement noise [state unit^2]
   std::vector<double> quantum;  ///< n_y, spacing of measured values [state unit]; 0 marks a continuous signal, an empty
                                 ///< vector all signals as continuous
   Matrix transition;            ///< K x K, row i: probabilities of the next mode after mode i
   StateDependentTransition state_dependent_transition;  ///< empty: constant
-  std::vector<double> initial_probability;              ///< K; empty: equal
+  std::vector<double> initial_probability;              ///< K; if empty, all are equal
   std::vector<std::string> state_names;                 ///< names of the measured states; may be empty
   std::vector<std::string> input_names;                 ///< names of the inputs; may be empty
   double dt_s = 0.0;                                    ///< sample period of one step [s]; 0: not fixed

@@ -49,10 +49,10 @@ class BankFilter {
   /// Moves the filter and its stream.
   BankFilter& operator=(BankFilter&&) noexcept;
 
-  /// Processes the next sample in time order. `time_s`: seconds (NaN: one step after the last sample). `input`:
-  /// inputs() numbers recorded at that time; non-finite ones are replaced by the last known value, at first zero.
-  /// `measurement`: measurements() numbers; NaN where missing. The first complete measurement starts the filter. Does
-  /// not allocate.
+  /// Processes the next sample in time order. `time_s`: seconds; NaN means one step after the last sample. `input`: the
+  /// inputs() numbers recorded at that time. A non-finite input is replaced by its last known value, which is zero at
+  /// first. `measurement`: the measurements() numbers, NaN where missing. The first complete measurement starts the
+  /// filter. Does not allocate.
   const Estimate& step(double time_s, const double* input, const double* measurement);
   /// `step` for any type with data() and size(): std::vector, std::array, Eigen vectors. Throws std::invalid_argument
   /// for other sizes.

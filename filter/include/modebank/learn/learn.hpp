@@ -15,8 +15,8 @@
 
 namespace modebank::learn {
 
-/// Parameters and standard errors of a bank of K modes. Each mode is a linear model with p parameters theta: A (row by
-/// row), B and c of each measured state in turn. For a motion model: the parameters of its linearisation.
+/// Parameters and standard errors of a bank of K modes. A mode is a linear model with p parameters theta: A (row by
+/// row), B and c of each measured state in turn. For a motion model, theta are the parameters of its linearisation.
 struct Uncertainty {
   std::vector<std::string> parameter_names;         ///< p
   Matrix theta;                                     ///< p x K
@@ -24,7 +24,7 @@ struct Uncertainty {
   std::vector<Matrix> Q_standard_error;             ///< K of n x n; empty without refinement
   Matrix R_standard_error;                          ///< n_y x n_y; empty unless R was estimated with the bank
   Matrix transition_standard_error;                 ///< K x K; empty without refinement
-  std::vector<std::string> motion_parameter_names;  ///< parameters of a motion model; empty for linear ones
+  std::vector<std::string> motion_parameter_names;  ///< parameters of a motion model; empty for linear models
   Matrix motion_theta;                              ///< parameters of a motion model, one mode per column
   Matrix motion_theta_standard_error;               ///< standard errors of motion_parameters
 };

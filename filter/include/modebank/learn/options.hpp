@@ -104,7 +104,7 @@ struct BankOptions {
   TransitionSource transition = TransitionSource::labels;  ///< source of the transition matrix
   double stay = 0.95;                          ///< diagonal of the transition matrix for TransitionSource::stay
   double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
-  std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; empty: the baseline's R
+  std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; if empty, that of the baseline
   bool screen = true;                          ///< whether unstable and starved modes are removed
   std::ptrdiff_t modes = 0;                    ///< largest number of modes; the closest components are merged; 0: no
                                                ///< limit

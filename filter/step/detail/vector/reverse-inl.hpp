@@ -240,7 +240,7 @@ template <std::size_t N>
 HWY_INLINE void back_to_state(const ModeRows& p, const ReverseRows& d, std::size_t j) {
   const std::size_t stride = p.stride;
   const double prior = p.predicted_probability[j];
-  if (!(prior >= impossible_probability)) {  // an impossible mode kept its own state
+  if (!(prior >= impossible_probability)) {  // an impossible mode keeps its own state
     for (std::size_t a = 0; a < N; ++a) d.mean[a * stride + j] += d.by_mixed_mean[a * stride + j];
     for (std::size_t k = 0; k < packed_size(N); ++k)
       d.covariance[k * stride + j] += d.by_mixed_covariance[k * stride + j];

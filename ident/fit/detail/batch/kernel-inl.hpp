@@ -1,4 +1,4 @@
-// Fits as many consecutive windows as a vector has lanes, from samples to LocalModel.
+// Fits one vector of consecutive windows, one window per lane, from samples to LocalModel.
 #if defined(MODEBANK_BATCH_KERNEL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_KERNEL_INL
 #undef MODEBANK_BATCH_KERNEL_INL

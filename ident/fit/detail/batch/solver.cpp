@@ -50,7 +50,7 @@ batch::Kernel choose_kernel(const batch::Settings& settings) {
   return batch::find_kernel(settings.loss, settings.regressors);
 }
 
-/// Whether all rows are finite. The sum of the values times zero is NaN if one is not.
+/// Whether all rows are finite. Otherwise the sum of the values times zero is NaN.
 bool finite(const Transitions& t, Index rows) {
   double sum = (t.increments.col(0).head(rows) * 0.0).sum();
   for (Index j = 0; j < t.regressors.cols(); ++j) sum += (t.regressors.col(j).head(rows) * 0.0).sum();

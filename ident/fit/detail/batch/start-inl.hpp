@@ -1,4 +1,4 @@
-// Least squares, rank and scale of as many consecutive windows as a vector has lanes.
+// Least squares, rank and scale of one vector of consecutive windows, one window per lane.
 #if defined(MODEBANK_BATCH_START_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_START_INL
 #undef MODEBANK_BATCH_START_INL

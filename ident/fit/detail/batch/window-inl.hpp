@@ -1,4 +1,4 @@
-// Passes over the samples of as many consecutive windows as a vector has lanes. A lane's results depend on its own
+// Passes over the samples of one vector of consecutive windows, one window per lane. A lane's results depend on its own
 // window alone: samples of neighbouring windows are masked.
 #if defined(MODEBANK_BATCH_WINDOW_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_WINDOW_INL

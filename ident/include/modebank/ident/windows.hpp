@@ -13,7 +13,7 @@ namespace modebank::ident {
 
 /// Local models: the fits of M windows of n states with p parameters each. An element or column belongs to one window.
 struct Windows {
-  std::vector<std::string> parameter_names;  ///< p; linear models: A (row by row), B, c of each state in turn
+  std::vector<std::string> parameter_names;  ///< p; for linear models A (row by row), B and c of each state in turn
   std::vector<std::ptrdiff_t> run;           ///< M, position in RecordedRuns::runs
   std::vector<std::ptrdiff_t> begin;         ///< M, first sample of the window
   std::vector<std::ptrdiff_t> end;           ///< M, last sample of the window: begin + length

@@ -70,9 +70,9 @@ struct EnumNames<FeatureSet> {
 /// few hundred independent windows determine.
 inline constexpr std::ptrdiff_t most_features = 12;
 
-/// Which windows are clustered. `automatic`: windows whose data determine all parameters. In two cases it means all
-/// windows: with error_aware, and if the determined windows hold less than two windows' worth of data per feature (and
-/// a prior gives the others a theta). With a prior, windows that are not clustered are assigned to the components
+/// Which windows are clustered. `automatic`: windows whose data determine all parameters. In two cases `automatic`
+/// means all windows: with error_aware; and if the determined windows hold less data than two windows per feature, and
+/// a prior gives the other windows a theta. With a prior, windows that are not clustered are assigned to the components
 /// afterwards, as far as their data allow.
 enum class WindowChoice { automatic, full_rank, all };
 
