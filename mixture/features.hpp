@@ -13,11 +13,11 @@ namespace modebank {
 /// The cloud that is clustered: one point per clustered window.
 struct FeatureCloud {
   std::vector<std::string> names;     ///< F: parameter names, then "log_noise_variance_<state>" when noise is included
-  Eigen::MatrixXd points;             ///< F x N, physical units
+  Eigen::MatrixXd points;             ///< F x N, points in physical units
   Eigen::MatrixXd covariances;        ///< F*F x N, covariance of each point's error; empty unless requested
   Eigen::VectorXd typical_error;      ///< F, median standard deviation of the windows' errors; 0 if it is unknown
-  std::vector<Eigen::Index> windows;  ///< N, window of each point
-  std::vector<Eigen::Index> runs;     ///< N, run of that window
+  std::vector<Eigen::Index> windows;  ///< N; an entry is the window of a point
+  std::vector<Eigen::Index> runs;     ///< N; an entry is the run of a point's window
 
   PointSet point_set() const { return PointSet(points, detail::no_weights, covariances, typical_error); }
 };

@@ -27,7 +27,7 @@ struct UniformNoise {
 /// Weighted sum of K Gaussians over F features, with an optional uniform noise component. Points are F x N, one point
 /// per column.
 struct GaussianMixture {
-  Eigen::VectorXd weights;                   ///< K, sums to 1 - noise.weight
+  Eigen::VectorXd weights;                   ///< K, weights; the sum is 1 - noise.weight
   Eigen::MatrixXd means;                     ///< F x K
   std::vector<Eigen::MatrixXd> covariances;  ///< K of F x F
   CovarianceType type = CovarianceType::full;

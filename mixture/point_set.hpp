@@ -16,6 +16,7 @@ struct PointSet {
   const Eigen::VectorXd& weights;      ///< N, nonnegative; if empty, all weights are one
   const Eigen::MatrixXd& covariances;  ///< F*F x N, each column the covariance of that point's error; empty without
                                        ///< errors
+
   /// F, standard deviation of a typical point's error, which is the unit of that feature in the fit. 0 or empty if
   /// unknown
   const Eigen::VectorXd& typical_error;

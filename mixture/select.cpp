@@ -29,6 +29,7 @@ using Eigen::Index;
 namespace {
 
 constexpr Index affordable_heldout = 20000;  // points
+
 /// Number of points that represent a cloud of more than most_compared. Comparing candidates on them takes a tenth of
 /// the time for 700,000 points.
 constexpr Index compared_part = 50'000;
@@ -45,7 +46,7 @@ struct Task {
   const SampleDesign& design;
   const SelectionOptions& options;
   std::uint64_t seed;
-  const GaussianMixture* start;  ///< may be null
+  const GaussianMixture* start;  ///< start of the first restart; may be null
   double total_weight;
   Index distinct_points;
 

@@ -20,6 +20,7 @@ inline constexpr Eigen::Index most_compared = 100'000;
 /// Sampling design of the points: independent samples and runs.
 struct SampleDesign {
   double effective_samples = 0.0;  ///< effective number of independent samples of the points; 0 if all are independent
+
   /// N, run of each point; runs are left out as a whole. If empty, runs are unknown, and no held-out scores are
   /// computed.
   std::vector<Eigen::Index> runs;
@@ -50,6 +51,7 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
 struct MixtureResult {
   GaussianMixture mixture;                 ///< physical units
   std::vector<std::string> feature_names;  ///< F
+
   /// F x M, NaN for windows without features. If empty, the features begin with the windows' own parameters.
   Eigen::MatrixXd features;
   Eigen::VectorXi labels;  ///< M, component of each window; -1 for noise, and for windows that are neither clustered

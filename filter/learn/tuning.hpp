@@ -9,6 +9,7 @@ namespace modebank {
 /// were set inside training runs (docs/explanation/refinement.md).
 struct RefineTuning {
   // The cross-validation inside the training runs.
+
   /// Numbers of iterations after which left-out runs are scored. The iteration limit is another. The first is 10,
   /// because the start has used all training runs, and the fit needs some iterations to forget the left-out runs.
   /// Earlier checkpoints made results on ICE worse.
@@ -32,6 +33,7 @@ struct RefineTuning {
   double most_loss = 0.02;
 
   // The rule for additions (left_out/rule.hpp).
+
   /// Probability that any proposal is accepted if there is nothing to be found.
   double taken_by_chance = 0.05;
   /// Number of proposals for one configuration: number of modes, prior, measurement noise, noise by input, transitions
@@ -45,6 +47,7 @@ struct RefineTuning {
                                                          ///< away
   double Q_transitions_unvalidated = 1.0;                ///< used if no run can be left out: unit information
   double Q_transitions_with_R = 1.0;  ///< additional transitions of the modes' own harmonic mean, for unknown states
+
   /// Share of the largest information that is added in every direction of theta, so that unit information is definite.
   double least_information = 1e-8;
 
@@ -56,6 +59,7 @@ struct RefineTuning {
 
   // Screening of fitted modes.
   double duplicate_significance = 0.95;  ///< level of the likelihood-ratio test that separates two modes
+
   /// Tolerance above 1. The mean-square growth of double integrators cannot be computed more accurately, and
   /// integrators must be kept.
   double growth_slack = 1e-4;
@@ -63,6 +67,7 @@ struct RefineTuning {
       10;  ///< equal to the first checkpoint; the other modes adapt to the removal
 
   // Look-ahead learning.
+
   /// Weights of the prior towards one motion that are tried for the best start, in transitions.
   std::array<double, 5> theta_transitions{3.0, 30.0, 300.0, 3e3, 3e5};
   std::ptrdiff_t one_motion_iterations = 20;  ///< iterations with one theta, which give the target of shrinking
@@ -79,6 +84,7 @@ struct RefineTuning {
   std::array<double, 5> drift_rates{1e-5, 1e-4, 1e-3, 1e-2, 1e-1};       ///< variance added per step
   std::array<double, 6> drift_starts{0.0, 0.01, 0.1, 1.0, 10.0, 100.0};  ///< variance at a run's start
   std::array<double, 3> drift_leaks{1.0, 0.97, 0.9};                     ///< factor per step on the deviation
+
   /// With drifting coefficients the noise scale can use few samples (DART: 0.9; banks without drift: 0.98).
   std::array<double, 8> drift_forgettings{0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0};
   std::array<double, 5> drift_noise_prior_samples{1e-3, 1e-2, 0.1, 1.0,
@@ -87,6 +93,7 @@ struct RefineTuning {
   // Measurement noise.
   double least_R_share = 1e-9;  ///< share of the global residual variance: the smallest R in refinement, which is
                                 ///< negligible
+
   /// Starts of the searches for R, as shares of the mean Q. They are below a half, because R counts twice in Q. With 5
   /// % alone, an R of 1 % of Q or of many times Q could be missed.
   std::array<double, 4> R_start_shares{0.05, 0.005, 0.2, 0.45};

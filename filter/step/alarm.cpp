@@ -14,7 +14,7 @@ constexpr double alarm_tail = 0.0005;  // per side; one in 1000 samples of a cor
 
 LiveJudge::LiveJudge(const Bank& bank)
     : C_(bank.C),
-      interval_quantile_(normal_quantile(0.975)),  // for 95 % intervals
+      interval_quantile_(normal_quantile(0.975)),  // normal quantile for 95 % intervals
       verdict_{Eigen::VectorXd(C_.rows()), Eigen::VectorXd(C_.rows()), Eigen::VectorXd(C_.rows())} {}
 
 const LiveVerdict& LiveJudge::judge(const FilterEstimate& estimate) {

@@ -41,10 +41,12 @@ struct Mode {
   Eigen::MatrixXd parameter_covariance;  ///< p x p, covariance of theta over the mode's windows
   Eigen::VectorXd standard_error;        ///< p, standard errors of theta
   double weight = 1.0;                   ///< share of the windows
+
   /// Parameters of a motion model and their standard errors. The fields above are then those of its linearisation.
   Eigen::VectorXd motion_theta = {};
   Eigen::VectorXd motion_standard_error = {};
   Eigen::MatrixXd Q_standard_error = {};  ///< n x n, standard errors of Q; only for refined banks, else empty
+
   /// Coefficients of the terms, measured states x T; empty without terms. Their product with the terms is added to
   /// x[k+1].
   Eigen::MatrixXd bend = {};
@@ -65,6 +67,7 @@ struct Bank {
   std::vector<Mode> modes;  ///< K >= 1
   Eigen::MatrixXd C;        ///< n_y x n
   Eigen::MatrixXd R;        ///< n_y x n_y
+
   /// n_y, spacing of measured values [state unit]. A value determines only the interval that contains C x + v
   /// (equations/interval.hpp). 0 marks a continuous signal; an empty vector means that all are continuous.
   Eigen::VectorXd quantum = {};

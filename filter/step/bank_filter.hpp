@@ -15,13 +15,13 @@ namespace modebank {
 struct FilterEstimate {
   Eigen::VectorXd prediction;             ///< n, combined prediction of the state before the measurement
   Eigen::VectorXd innovation;             ///< n_y, measurement minus combined prediction
-  Eigen::MatrixXd innovation_covariance;  ///< n_y x n_y, of the combined prediction
+  Eigen::MatrixXd innovation_covariance;  ///< n_y x n_y, covariance of the combined prediction
   Eigen::VectorXd state;                  ///< n, state after the measurement
-  Eigen::MatrixXd covariance;             ///< n x n, after the measurement
+  Eigen::MatrixXd covariance;             ///< n x n, covariance of the state after the measurement
   Eigen::VectorXd pit;        ///< n_y, Rosenblatt's transform; if it is an interval, the middle of that interval
   Eigen::VectorXd pit_width;  ///< n_y, width of the interval of pit; 0 for a continuous signal
-  Eigen::VectorXd mode_probability_predicted;  ///< K, before the measurement
-  Eigen::VectorXd mode_probability;            ///< K, after the measurement
+  Eigen::VectorXd mode_probability_predicted;  ///< K, mode probabilities before the measurement
+  Eigen::VectorXd mode_probability;            ///< K, mode probabilities after the measurement
   double nis = 0.0;                            ///< normalised innovation squared of the available signals
   double log_density = 0.0;                    ///< nats
   double spread_share = 0.0;                   ///< share of the modes' differences in the trace of
@@ -36,7 +36,7 @@ struct FilterMemory {
   Eigen::VectorXd mode_probability;  ///< K
   double noise_scale = 1.0;
   double noise_samples = 0.0;  ///< number of samples in the noise scale
-  DriftState drift = {};       ///< for modes that drift; empty otherwise
+  DriftState drift = {};       ///< drift state of modes that drift; empty for other modes
 };
 
 /// The complete state of a BankFilter, for continuing later.

@@ -21,6 +21,7 @@ struct DriftRates {
 struct GridTuning {
   double log_score = 0.0;    ///< log score of the training runs [nats/sample]
   Eigen::Index samples = 0;  ///< scored training samples
+
   /// Settings whose best value lies at the end of the grid, so that the optimum may lie beyond. From "q", "p0", "leak",
   /// "lam", "nu", "floor", "horizon_factor".
   std::vector<std::string> at_grid_end;
@@ -31,7 +32,7 @@ struct BankDrift {
   DriftRates rates = {};
   Eigen::VectorXd scale = {};            ///< r, root mean square of each regressor, positive; empty without drift
   Wandering wandering = Wandering::all;  ///< coefficients that drift; a value other than `all` requires running noise
-  GridTuning tuning = {};                ///< for the competitor `drifting`
+  GridTuning tuning = {};                ///< tuning of the competitor `drifting`
 
   bool empty() const { return scale.size() == 0; }
 };

@@ -36,7 +36,7 @@ class DriftingForecast {
   LinearStructure structure_;
   DriftRates rates_;
   Eigen::VectorXd scale_, inverse_scale_;
-  Eigen::MatrixXd theta0_, stable_theta0_;  ///< r x n, scaled
+  Eigen::MatrixXd theta0_, stable_theta0_;  ///< r x n, coefficients of scaled regressors
   DriftState origin_;
   Eigen::VectorXd z_, h_, prediction_;
   Eigen::MatrixXd towards_, deviation_, theta_;      ///< r x n: target of the leak, and the difference from it
@@ -45,8 +45,8 @@ class DriftingForecast {
   Eigen::MatrixXd Z_, next_Z_;                       ///< covariance of the lagged errors
   std::vector<Eigen::MatrixXd> cross_, next_cross_;  ///< per output r x dimension: covariance of d with the lagged
                                                      ///< errors
-  Eigen::MatrixXd covariance_, with_lagged_, through_;  ///< n x n, n x dimension, n x dimension
-  Eigen::MatrixXd of_lagged_;                           ///< n x dimension, phi
+  Eigen::MatrixXd covariance_, with_lagged_, through_;  ///< sizes: n x n, n x dimension, n x dimension
+  Eigen::MatrixXd of_lagged_;                           ///< n x dimension, phi of each output
   int steps_ = 0;
 
   void pass_time();

@@ -40,9 +40,9 @@ class DriftingRecursion {
   const Eigen::VectorXd& variance() const { return variance_; }      ///< n, variance of the prediction's error
   const Eigen::VectorXd& innovation() const {
     return innovation_;
-  }                                                ///< n, innovation of the last update; NaN where
-                                                   ///< missing
+  }                                                ///< n, innovation of the last update; NaN for missing signals
   const Eigen::VectorXd& z() const { return z_; }  ///< n * state_lags, newest sample first
+
   /// 1 + h'Ph, the variance of an output's prediction divided by v.
   double growth(Eigen::Index output) const { return growth_(of(output)); }
 
@@ -56,15 +56,15 @@ class DriftingRecursion {
   double keep_;                             ///< lam
   Eigen::VectorXd start_variance_, floor_;  ///< n
   Eigen::VectorXd inverse_scale_;           ///< r
-  Eigen::MatrixXd theta0_, direction_;      ///< r x n, of scaled regressors
+  Eigen::MatrixXd theta0_, direction_;      ///< r x n, for scaled regressors
   Eigen::MatrixXd theta_;                   ///< r x n
   std::vector<Eigen::MatrixXd> P_;          ///< n of r x r, lower triangles; the first P_count_ are in use
   std::vector<Eigen::Index> P_of_;          ///< n, position of each output's P
   Eigen::Index P_count_ = 1;                ///< one P serves all outputs until a signal is missing
   Eigen::VectorXd z_, v_;
   Eigen::VectorXd h_, prediction_, variance_, innovation_, sample_;
-  Eigen::MatrixXd Ph_;      ///< r x n, one column per P in use
-  Eigen::VectorXd growth_;  ///< n, one per P in use
+  Eigen::MatrixXd Ph_;      ///< r x n; each P in use has one column
+  Eigen::VectorXd growth_;  ///< n; each P in use has one entry
 
   Eigen::Index of(Eigen::Index output) const { return P_of_[static_cast<std::size_t>(output)]; }
   void own_P();

@@ -15,6 +15,7 @@ struct RunningNoise {
   double lam = 0.9;            ///< forgetting factor of the running variance, in [0, 1]
   double nu = 0.0;             ///< degrees of freedom, above 2; 0 for a normal distribution
   Eigen::VectorXd floor = {};  ///< n, smallest value of v; if empty, the noise is the constant Q
+
   /// Horizons in samples, ascending from 2, and the factor on the first-order variance at each horizon. One sample
   /// ahead the factor is 1, because the prediction is that of the filter.
   std::vector<std::pair<Eigen::Index, double>> horizon_factor = {};

@@ -11,7 +11,7 @@ namespace modebank {
 ///   + 1. Without weights the probabilities are T. A constant added to a column of the weights has no effect.
 struct TransitionLogit {
   Eigen::MatrixXd weights = {};    ///< K x d, d = n + acting inputs [1 / unit of z]; if empty, T holds for every z
-  Eigen::VectorXd reference = {};  ///< d, the z for which T holds
+  Eigen::VectorXd reference = {};  ///< d, the value of z for which T holds
 
   bool empty() const { return weights.size() == 0; }
 };
@@ -25,7 +25,7 @@ struct TransitionWorkspace {
     factor.resize(modes);
   }
 
-  Eigen::MatrixXd T;       ///< K x K, rows sum to one
+  Eigen::MatrixXd T;       ///< K x K; each row sums to one
   Eigen::VectorXd factor;  ///< K
   Eigen::VectorXd offset;  ///< K, weights times reference
 };

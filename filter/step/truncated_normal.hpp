@@ -9,7 +9,7 @@ namespace modebank {
 struct TruncatedNormal {
   double log_mass = 0.0;  ///< log of the interval's probability
   double mean = 0.0;
-  double variance = 0.0;             ///< in (0, 1]
+  double variance = 0.0;             ///< variance, in (0, 1]
   double third = 0.0, fourth = 0.0;  ///< moments about the mean
 };
 

@@ -76,6 +76,7 @@ class Grid {
 
  private:
   static constexpr double rounding = 1e-6;  // share of a period; keeps an end that k / rate_hz narrowly misses
+
   // periods; filters restart after 50 periods of the model
   static constexpr double longest_gap = 1000.0, margin = 100.0;
   /// Limits of a grid in relation to its streams. Beyond these limits the times are not in seconds, or the rate is

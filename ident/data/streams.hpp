@@ -9,7 +9,7 @@ namespace modebank {
 
 /// Signals with common sample times, one sample per column.
 struct Stream {
-  Eigen::VectorXd time_s;  ///< N, strictly increasing
+  Eigen::VectorXd time_s;  ///< N sample times, strictly increasing
   Eigen::MatrixXd values;  ///< channels x N
 };
 
@@ -26,6 +26,7 @@ Eigen::MatrixXd average_ending(const Stream& stream, const Eigen::VectorXd& time
 /// log. All other columns take single samples: states are interpolated and inputs held.
 struct AveragedColumns {
   std::vector<Eigen::Index> states = {}, inputs = {};  ///< positions
+
   /// Added to the lag of averaged inputs. Held inputs keep their lag. With an estimated lag, averaged inputs are taken
   /// in the middle of each transition (hold_mid_transition).
   double further_lag_s = 0.0;

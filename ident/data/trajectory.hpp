@@ -36,13 +36,14 @@ struct EnumNames<Role> {
 struct Trajectory {
   std::string run;  ///< name of the run
   Role role = Role::train;
-  Eigen::VectorXd time_s;           ///< N, strictly increasing
-  Eigen::MatrixXd state;            ///< n x N, as measured
+  Eigen::VectorXd time_s;           ///< N sample times, strictly increasing
+  Eigen::MatrixXd state;            ///< n x N, measured state
   Eigen::MatrixXd input;            ///< m x N
-  Eigen::MatrixXd truth;            ///< n x N, true state; may be empty
+  Eigen::MatrixXd truth;            ///< n x N, true state; empty if unknown
   double lag_s = 0.0;               ///< lag applied to the inputs
   std::int64_t time_origin_ns = 0;  ///< ns since 1970 at time_s = 0, if the log has stamps
   std::string file = {};            ///< file of its inputs; empty if there was none
+
   /// Sample weights, N or empty (all one). weight(k) multiplies the loss of the error of the transition that ends in
   /// sample k; weight(0) is unused. Weights are finite and at least 0; a weight of 0 excludes the transition. Only
   /// ratios of weights matter, because every fit divides by the mean over its transitions.

@@ -9,6 +9,7 @@ inline constexpr double huber_tuning = 1.345;  ///< in units of sigma: 95 % effi
 inline constexpr double mad_to_sd = 1.4826;    ///< converts the median absolute deviation of a Gaussian to its standard
                                                ///< deviation
 inline constexpr double inlier_weight = 0.5;   ///< an inlier keeps at least this share of its least-squares weight
+
 /// Lower bound of 1 - leverage. If one sample alone determines a direction, its residual and 1 - leverage are both
 /// zero.
 inline constexpr double least_one_minus_leverage = 1e-6;

@@ -9,7 +9,7 @@ namespace modebank {
 /// Inputs of a covariance of theta.
 struct CovarianceInput {
   const WhitenedProblem& problem;
-  const RobustTerms& terms;  ///< at the optimum
+  const RobustTerms& terms;  ///< residuals and derivatives at the optimum
   Index regressors = 0;      ///< q
   Eigen::VectorXd floor;     ///< n, lower bounds of the residual variances in units of sigma^2
 };

@@ -11,7 +11,7 @@ namespace modebank {
 struct SolvedWindow {
   const WhitenedProblem& problem;
   const RobustTerms& terms;
-  const Transitions& transitions;  ///< only its increments are used
+  const Transitions& transitions;  ///< transitions of the window; only the increments are used
   const RobustLoss& loss;
   double consistency = 1.0;  ///< gaussian_consistency of the loss
   CovarianceKind covariance = CovarianceKind::model;

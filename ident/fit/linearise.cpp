@@ -11,6 +11,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 constexpr double difference_share = 1e-6;  // share of a parameter's size
+
 // assumed size of a parameter near zero; the rounding error of a derivative is then 2e-8
 constexpr double least_size = 1e-2;
 

@@ -20,6 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double normal_third_quartile = 0.674489750196081743;  // Phi^-1(3/4)
+
 // relative to the scale; rounding is some decades smaller
 constexpr double fit_tolerance = 1e-12;
 constexpr int max_iterations = 1000;

@@ -8,7 +8,7 @@ namespace modebank {
 
 /// Huber's M-estimate of n linear regressions on the same q regressors, and its status.
 struct RobustRegression {
-  Eigen::MatrixXd coefficients;    ///< q x n, column i explains response i
+  Eigen::MatrixXd coefficients;    ///< q x n; column i holds the coefficients of response i
   Eigen::MatrixXd standard_error;  ///< q x n; NaN for coefficients that the regressors do not determine
   Eigen::VectorXd scale;           ///< n, residual standard deviation: median |r| / 0.6745, about zero
   bool converged = false;

@@ -28,7 +28,7 @@ class WindowFitter {
   const Recording& recording() const { return recording_; }
   const FitOptions& options() const { return options_; }
   const GlobalModel& global() const { return global_; }
-  const Eigen::VectorXd& floor() const { return floor_; }  ///< n, smallest sigma
+  const Eigen::VectorXd& floor() const { return floor_; }  ///< n, smallest sigma per state
   const Trajectory& run_of(const Window& window) const { return recording_.runs[static_cast<std::size_t>(window.run)]; }
   /// sigma of a whole run. If the run is too short for an estimate, the global sigma.
   const Eigen::VectorXd& run_scale(Index run) const;

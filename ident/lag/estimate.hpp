@@ -36,7 +36,7 @@ struct LagFit {
 
 struct LagEstimate {
   LagFit constant;  ///< drift held at 0
-  LagFit drifting;  ///< with linear drift
+  LagFit drifting;  ///< fit with linear drift
 };
 
 /// Dead time from inputs to states, lag(t) = lag + drift (t - middle), by output error. Every state is regressed on a

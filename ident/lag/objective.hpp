@@ -40,10 +40,10 @@ class LagObjective {
 
   struct Fit {
     Eigen::Index first = 0, samples = 0;  ///< the samples with known delayed inputs
-    Eigen::MatrixXd inputs;               ///< m x samples, delayed and filtered
+    Eigen::MatrixXd inputs;               ///< m x samples, delayed and filtered inputs
     Eigen::MatrixXd coefficients;         ///< n x m
     Eigen::MatrixXd residuals;            ///< n x samples
-    Eigen::VectorXd unexplained;          ///< n, 1 - R^2
+    Eigen::VectorXd unexplained;          ///< n, unexplained share 1 - R^2 of each state
     Eigen::VectorXd weights;              ///< samples
   };
   std::optional<Fit> fit(const LagPoint& point) const;

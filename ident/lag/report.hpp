@@ -60,7 +60,7 @@ struct LagReport {
   PooledEstimate start_lag;  ///< [s] dead time at a run's start, with drift
   PooledEstimate drift;      ///< [s/s]
   std::vector<LagScore> scores;
-  std::vector<RunLag> runs;  ///< in run order
+  std::vector<RunLag> runs;  ///< lags of the runs, in run order
 };
 
 }  // namespace modebank

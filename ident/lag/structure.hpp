@@ -39,6 +39,7 @@ struct StructureScore {
                                      ///< terms
   bool one_motion = false;           ///< chosen for one motion whose noise switches
   bool drifting = false;             ///< chosen for one motion whose coefficients drift
+
   /// Causal log score of the training runs with drifting coefficients [nats/sample]; NaN if it was not computed.
   double drifting_score = std::numeric_limits<double>::quiet_NaN();
   /// Log score of a few modes and of one motion with switching noise, on training runs that were left out
@@ -57,6 +58,7 @@ struct FoundStructure {
   std::ptrdiff_t parts = 0;       ///< number of runs or stretches over which standard errors are computed
   bool by_runs = false;           ///< whether parts are whole runs
   std::ptrdiff_t structures = 0;  ///< number of structures compared by least squares
+
   /// Largest |t| of past innovations in a regression of the inputs on their own lags. It is large if the inputs react
   /// to the states. NaN without inputs or with too few samples.
   double feedback_t = 0.0;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double least_gain_without_delay = 0.02;  // [nats/sample]
 constexpr double negligible_loss = 1e-3;           // [nats/sample]
+
 /// Expected gain by chance of the best of about a hundred structures [nats over all samples].
 constexpr double chance_gain = 6.0;
 

@@ -41,6 +41,7 @@ double loss_by_chance(double samples);
 struct StructureLoss {
   double mean = 0.0, standard_error = 0.0;
   double weight = 1.0;  ///< number of samples
+
   /// Whether the mean is at most its standard error or loss_by_chance.
   bool negligible() const;
 };

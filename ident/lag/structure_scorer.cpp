@@ -17,6 +17,7 @@ using Eigen::VectorXd;
 /// effect of collinear columns between these columns. Other coefficients do not change.
 constexpr double collinear_ridge = 1e-11;
 constexpr double exact_share = 1e-9;  // share of the increments; a smaller error counts as an exact prediction
+
 // share of the errors' root mean square, because more than half of the errors may be zero
 constexpr double least_share_of_rms = 1e-3;
 constexpr double least_normal_scale = 1e-150;  // its square is still a normal floating-point number

@@ -65,7 +65,7 @@ void propagate(const MatrixA& A, const MatrixB& B, const VectorC& c, const X& x,
 struct LinearModel {
   Eigen::MatrixXd A;  ///< n x n, increment form; the full form is I + A
   Eigen::MatrixXd B;  ///< n x m
-  Eigen::VectorXd c;  ///< n, zero without intercept
+  Eigen::VectorXd c;  ///< n, the constant; zero without an intercept
 
   /// Noise-free x[k+1].
   template <class X, class U>

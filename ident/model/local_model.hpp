@@ -22,9 +22,10 @@ struct LocalModel {
   Eigen::VectorXd information;   ///< p, 1 - posterior variance / prior variance; NaN without a prior
   double inlier_fraction = 0.0;  ///< share of samples that keep at least half of their least-squares weight
   FitStatus status = FitStatus::failed;
-  Eigen::VectorXd r_squared;  ///< n, see ident/fit/describe.hpp; empty if it was not computed
+  Eigen::VectorXd r_squared;  ///< n; defined in ident/fit/describe.hpp; empty if it was not computed
   double aic = 0.0;           ///< nat, see ident/fit/describe.hpp
   Index transitions = 0;      ///< L, transitions that entered the fit: finite and of positive weight
+
   /// n, information of the data against the prior (curvature of the loss over sigma^2), in units of the information in
   /// `covariance`. With this number the prior can be removed from the estimate. NaN without a prior and for a sandwich
   /// covariance.
@@ -37,7 +38,7 @@ struct LocalModel {
 struct GlobalModel {
   Eigen::VectorXd theta;                ///< p
   Eigen::MatrixXd covariance;           ///< p x p, residual covariance / (N - q) (x) (X'X)^-1
-  Eigen::MatrixXd residual_covariance;  ///< n x n, divided by N
+  Eigen::MatrixXd residual_covariance;  ///< n x n, residual covariance with divisor N
   Index transitions = 0;                ///< N
   Eigen::VectorXd noise_variance() const { return residual_covariance.diagonal(); }
 };
@@ -45,6 +46,7 @@ struct GlobalModel {
 /// All windows' fits, one window per column (M columns). Even a million windows are only a few arrays.
 struct WindowFits {
   std::string model = "linear";  ///< linear, varx, or the name of a motion model
+
   /// Structure of the linear model. For a motion model, the structure of its linearisations x[k+1] = x + A x + B u + c.
   LinearStructure structure;
   std::vector<ModelParameter> model_parameters;  ///< parameters of a motion model; empty for linear models
@@ -53,7 +55,7 @@ struct WindowFits {
   Loss loss = Loss::huber;
   std::vector<Window> windows;          ///< M
   Eigen::MatrixXd parameters;           ///< p x M
-  Eigen::MatrixXd covariance;           ///< p*p x M, each column a p x p matrix
+  Eigen::MatrixXd covariance;           ///< p*p x M; each column is a p x p matrix
   Eigen::MatrixXd noise_variance;       ///< n x M
   Eigen::VectorXd condition;            ///< M
   Eigen::VectorXi rank;                 ///< M
@@ -63,8 +65,8 @@ struct WindowFits {
   Eigen::MatrixXd r_squared;            ///< n x M
   Eigen::VectorXd aic;                  ///< M
   Eigen::VectorXi transitions;          ///< M
-  Eigen::MatrixXd weighed_information;  ///< n x M, see LocalModel; empty if unknown (older archives)
-  Eigen::VectorXd prior_sd;             ///< p, the prior's standard deviations; empty without a prior
+  Eigen::MatrixXd weighed_information;  ///< n x M; defined in LocalModel; empty if unknown (older archives)
+  Eigen::VectorXd prior_sd;             ///< p, standard deviations of the prior; empty without a prior
   GlobalModel global;
   WindowAudit audit;
   std::vector<char> by_batch;  ///< M, 1 if the batch solver solved the window, else 0; not archived

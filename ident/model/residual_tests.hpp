@@ -16,7 +16,7 @@ struct ResidualTestOptions {
 /// Tests whether a model's residuals are white, and uncorrelated with the inputs. Both hold if the model explains
 /// everything. T = lags + 1; column tau holds lag tau.
 struct ResidualTests {
-  Index samples = 0;                  ///< N, samples with finite residuals
+  Index samples = 0;                  ///< N, number of samples with finite residuals
   Eigen::MatrixXd autocorrelation;    ///< n x T, correlation of each state's residual with itself tau samples earlier;
                                       ///< 1 at lag 0
   Eigen::MatrixXd cross_correlation;  ///< n*m x T, row i m + j: residual i with input j tau samples earlier

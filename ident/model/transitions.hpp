@@ -12,8 +12,8 @@ namespace modebank {
 /// N transitions as a linear regression, increments = regressors [A B c]' + noise. finite_rows applies sample weights:
 /// it multiplies each row by the square root of its weight. Least squares on the rows is then weighted least squares.
 struct Transitions {
-  Eigen::MatrixXd regressors;   ///< N x q, row k is phi_k' = [z[k]' v[k]' (1)]
-  Eigen::MatrixXd increments;   ///< N x n, row k is (x[k+1] - x[k])'
+  Eigen::MatrixXd regressors;   ///< N x q; row k is phi_k' = [z[k]' v[k]' (1)]
+  Eigen::MatrixXd increments;   ///< N x n; row k is (x[k+1] - x[k])'
   Eigen::VectorXd weight = {};  ///< N sample weights; empty if all are one
 
   Index count() const { return regressors.rows(); }
@@ -47,7 +47,7 @@ inline constexpr double excitation_tolerance = 1e-6;
 /// X = U basis^+. The rank follows from the singular values of X with columns scaled to unit norm. U spans only the
 /// excited directions. Of all coefficients with X beta = U z, beta = basis z has the smallest norm.
 struct Decomposition {
-  Eigen::MatrixXd U;       ///< N x r, orthonormal columns
+  Eigen::MatrixXd U;       ///< N x r; columns are orthonormal
   Eigen::MatrixXd basis;   ///< q x r, X basis = U
   double condition = 0.0;  ///< largest over smallest singular value of the scaled matrix; infinite if the smallest is
                            ///< zero

@@ -29,7 +29,7 @@ struct VehicleSimulationOptions {
   std::vector<double> resistance{0.02};     ///< motion resistance of each kind, or one value for all
   double patch_m = 4.0;  ///< side of a tile; with 0, run i stays on kind (i / 2) mod K, so that training and held-out
                          ///< runs contain every kind
-  double forward_speed_m_s = 0.2;  ///< added to every command except standstill
+  double forward_speed_m_s = 0.2;  ///< speed [m/s] that is added to every command except standstill
   double turn_scale = 1.0;         ///< factor on the turning part (difference of the wheels) of the commands
   double step_s = 0.0;             ///< integration step; 0 means Vehicle::default_step_s
   SensorOptions sensors;
@@ -51,7 +51,7 @@ struct VehicleRun {
   Eigen::VectorXd inputs_time_s;  ///< N, stamps of the wheels' clock, with errors by lag and drift
   Eigen::MatrixXd wheel_speed;    ///< 2 x N, left and right as measured [m/s]
   Eigen::MatrixXd command;        ///< 2 x N, set-points that act from this sample on [m/s]
-  Eigen::VectorXd time_s;         ///< M, true time
+  Eigen::VectorXd time_s;         ///< M times on the true clock
   Eigen::MatrixXd measured;       ///< `measured` x M: yaw rate [rad/s], forward and sideways speed [m/s]
   Eigen::MatrixXd truth;          ///< 3 x M: the same signals, true values
   Eigen::MatrixXd true_wheel;     ///< 2 x M [m/s]

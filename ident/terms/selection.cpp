@@ -22,6 +22,7 @@ using Eigen::VectorXd;
 constexpr Index folds = 4;
 constexpr Index most_terms = 16;
 constexpr double clipped_errors = 6.0;  // limit in robust standard deviations
+
 // share of the errors' standard deviation, because more than half of the errors may be zero
 constexpr double least_share = 0.02;
 constexpr double ridge = 1e-6;        // share of the number of rows; columns have unit root mean square

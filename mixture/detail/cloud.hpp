@@ -66,7 +66,7 @@ class PointBlocks {
   PointBlocks(const PointSet& set, const FeatureScale& scale, std::ptrdiff_t most_copied = std::ptrdiff_t{32} << 20);
 
   Eigen::Index features() const { return features_; }
-  Eigen::Index count() const { return count_; }  ///< N, without padding
+  Eigen::Index count() const { return count_; }  ///< N, number of points without padding
   Eigen::Index blocks() const { return (count_ + block_size - 1) / block_size; }
   double total_weight() const { return total_weight_; }
   bool has_errors() const { return has_errors_; }
@@ -82,7 +82,8 @@ class PointBlocks {
   /// copy has no reference to the original points. So calling this function on a copy throws std::logic_error.
   PointBlocks for_starts(Eigen::Index most, std::mt19937_64& generator) const;
 
-  // For copied clouds only.
+  // Only valid for copied clouds.
+
   /// block_size x F.
   Eigen::Map<const BlockColumns> points(Eigen::Index block) const { return {data(block), block_size, features_}; }
   Eigen::Map<const BlockColumn> weights(Eigen::Index block) const {
@@ -110,7 +111,7 @@ class PointBlocks {
 struct ScaledCloud {
   FeatureScale scale;
   PointBlocks points;
-  UniformNoise noise;  ///< in physical units; absent unless requested
+  UniformNoise noise;  ///< noise component in physical units; absent unless requested
 
   ScaledCloud(const PointSet& set, const EmOptions& options)
       : scale(FeatureScale::of(set, options.covariance_floor)), points(set, scale) {

@@ -21,6 +21,7 @@ class FactoredMixture {
   const em::Kernels& kernels() const { return kernels_; }
   bool has_noise() const { return noise_; }
   double log_noise() const { return log_noise_; }  ///< log of weight times density of the noise component
+
   /// Converts a component's sums in place into sums of r, r d and r d d' (em::Kernels). Kernels with errors sum in
   /// units of W. For central components, other kernels sum about the origin.
   void to_plain_sums(Eigen::Index component, Eigen::Ref<Eigen::VectorXd> sums) const;

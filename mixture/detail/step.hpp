@@ -11,6 +11,7 @@ namespace modebank {
 struct MixtureMoments {
   double log_likelihood = 0.0;  ///< sum of w_i log p(x_i) under the mixture of the pass
   double noise = 0.0;           ///< sum of r for the noise component
+
   /// One column per component. Its rows are: sum of r, sum of r d (F), sum of r d d' (lower triangle by rows, or its
   /// diagonal). r is w_i times the responsibility. d is the point's offset from the component's *old* mean, so that no
   /// second moment is a difference of large numbers.

@@ -176,6 +176,7 @@ TEST(Em, FindsSeparatedClustersAndOrdersThemByWeight) {
   EXPECT_TRUE(fit.converged);
   EXPECT_FALSE(fit.floor_active);
   EXPECT_GE(fit.agreeing_restarts, 2);  // well-separated clusters (twelve standard deviations) are found repeatedly
+
   // Six standard errors: 0.0091 for a weight, 0.045 for a mean (600 points), 0.07 for a variance.
   EXPECT_TRUE(near(fit.mixture.weights, truth.weights, 6 * 0.0091));
   EXPECT_TRUE(near(fit.mixture.means, truth.means, 6 * 0.045));

@@ -27,6 +27,7 @@ struct DiagnosticsRow {
   double entropy = 0.0;      ///< mean entropy of the probabilities after the measurement, over log K; 0 for K = 1
   double dwell = 0.0;  ///< mean stay in a mode along viterbi_mode (without it, along the most probable modes) [samples]
   double dwell_model = 0.0;  ///< 1 / (1 - T_jj), the stay by the transition matrix; NaN for the whole filter
+
   // Share of the signals inside the central bands, with intervals that allow for autocorrelation.
   double coverage_50 = 0.0, coverage_50_lower = 0.0, coverage_50_upper = 0.0;
   double coverage_90 = 0.0, coverage_90_lower = 0.0, coverage_90_upper = 0.0;

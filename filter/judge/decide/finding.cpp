@@ -22,6 +22,7 @@ constexpr double coarse_share = 0.25;  // share of the innovation's standard dev
 constexpr Index free_run_horizon = 0;
 constexpr double noticeable_rmse = 1e-3;  // relative difference; visible in a table with three digits
 constexpr double rounding_rmse = 1e-8;    // share of a state's standard deviation; half of a double's digits
+
 // samples; the smallest stay of 60 systems with modes was 8.4, that of systems without modes 1.6
 constexpr double fewest_stay = 5.0;
 

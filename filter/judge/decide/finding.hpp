@@ -123,6 +123,7 @@ struct Finding {
   Description description = Description::none;
   std::string better_description;  ///< competitor that describes the runs instead of modes; empty if no competitor does
   double description_loss = 0.0;   ///< loss of that competitor against the best competitor [nats/sample]
+
   /// Competitor that is worse than one nonlinear motion and than several modes: the better of baseline and noise_only.
   /// Set if one of these two descriptions holds, because modes that switch by state and input are also a nonlinear
   /// motion. Else empty.

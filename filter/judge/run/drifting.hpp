@@ -15,7 +15,8 @@ namespace modebank {
 
 /// Predictions some samples ahead (DriftingForecast), without the factor of their horizon.
 struct DriftingForecasts {
-  HorizonEvaluation predictions;  ///< its log densities have factor 1
+  HorizonEvaluation predictions;  ///< predictions, whose log densities have factor 1
+
   /// Per horizon n x N: errors whitened to unit variance and no correlation, L^-1 error with L L' = cov(error).
   std::vector<Eigen::MatrixXd> whitened;
 };

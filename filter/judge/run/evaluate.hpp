@@ -16,18 +16,19 @@ namespace modebank {
 struct RunEvaluation {
   Eigen::MatrixXd prediction;             ///< n x N, combined one-step prediction of the state
   Eigen::MatrixXd innovation;             ///< n_y x N, measurement minus combined prediction
-  Eigen::MatrixXd innovation_covariance;  ///< n_y*n_y x N, of the combined prediction
-  Eigen::MatrixXd state;                  ///< n x N, after the measurement
-  Eigen::MatrixXd covariance;             ///< n*n x N, after the measurement
+  Eigen::MatrixXd innovation_covariance;  ///< n_y*n_y x N, covariance of the combined prediction
+  Eigen::MatrixXd state;                  ///< n x N, state after the measurement
+  Eigen::MatrixXd covariance;             ///< n*n x N, covariance of the state after the measurement
   Eigen::VectorXd nis;                    ///< N
   Eigen::MatrixXd pit;                    ///< n_y x N, Rosenblatt's transform; drawn by draw_pit for quantised signals
   Eigen::MatrixXd pit_width;              ///< n_y x N, width of the interval of pit; empty if no signal is quantised
   Eigen::VectorXd log_density;            ///< N, nats
-  Eigen::MatrixXd mode_probability_predicted;  ///< K x N, before the measurement
-  Eigen::MatrixXd mode_probability;            ///< K x N, after the measurement
+  Eigen::MatrixXd mode_probability_predicted;  ///< K x N, mode probabilities before the measurement
+  Eigen::MatrixXd mode_probability;            ///< K x N, mode probabilities after the measurement
   Eigen::VectorXd spread_share;  ///< N, share of the modes' differences in the trace of innovation_covariance
+
   // Filled by smooth_run; otherwise empty.
-  Eigen::MatrixXd smoothed_state;       ///< n x N, given the whole run
+  Eigen::MatrixXd smoothed_state;       ///< n x N, state given the whole run
   Eigen::MatrixXd smoothed_covariance;  ///< n*n x N
   Eigen::VectorXi viterbi_mode;         ///< N, most probable sequence of modes; -1 before the start
 };

@@ -21,6 +21,7 @@ class Forecast {
 
   virtual Eigen::VectorXd mean() const = 0;                ///< n_y
   virtual Eigen::VectorXd standard_deviation() const = 0;  ///< n_y
+
   /// P(y_i <= y), and its inverse: the y with that probability.
   virtual double probability(Eigen::Index i, double y) const = 0;
   virtual double quantile(Eigen::Index i, double probability) const = 0;

@@ -78,7 +78,8 @@ struct FreeRunRow {
   Eigen::VectorXd nrmse;     ///< n_y, RMSE over the standard deviation of the measurements (about their mean, divisor
                              ///< N)
   Eigen::VectorXd fit;       ///< n_y [%], 100 (1 - ||y - mean|| / ||y - average of y||)
-  Eigen::VectorXd coverage_50, coverage_90, coverage_95, coverage_99;  ///< n_y, share inside the central bands
+  Eigen::VectorXd coverage_50, coverage_90, coverage_95, coverage_99;  ///< n_y, share of the samples inside the central
+                                                                       ///< bands
   Eigen::Index lost_paths = 0;
 };
 

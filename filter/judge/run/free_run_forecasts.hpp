@@ -69,7 +69,7 @@ class MomentForecast final : public Forecast {
 
  private:
   BankForecast<N, NY> bank_;
-  std::vector<NormalMixture> signals_;  ///< n_y, of the present sample
+  std::vector<NormalMixture> signals_;  ///< n_y, mixtures for the present sample
 
   /// Variance of the rounding of a recorded value.
   double rounding(Eigen::Index i) const { return bank_.model().quantum(i) * bank_.model().quantum(i) / 12.0; }

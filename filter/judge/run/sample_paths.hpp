@@ -36,6 +36,7 @@ class SamplePaths {
   const Eigen::MatrixXd& states() const { return states_; }          ///< n x count
   const Eigen::MatrixXd& predicted() const { return predicted_; }    ///< n x count, before the last step's noise
   const std::vector<Eigen::Index>& modes() const { return modes_; }  ///< count, modes of the last step
+
   /// Q of a mode in the last step: the mean over the paths `in_mode`.
   Eigen::MatrixXd step_noise(Eigen::Index mode, const std::vector<Eigen::Index>& in_mode) const;
   /// Adds a draw from N(0, scale^2 root root').
@@ -46,7 +47,7 @@ class SamplePaths {
   Eigen::Index paths_, lost_ = 0;
   TransitionRow row_;
   std::mt19937_64 generator_;
-  std::vector<Eigen::MatrixXd> noise_, noise_root_;  ///< K, scaled as at the origin
+  std::vector<Eigen::MatrixXd> noise_, noise_root_;  ///< K, noise in the scale of the origin
   Eigen::MatrixXd states_, predicted_;
   Eigen::VectorXd noise_factor_;  ///< noise factor of every path in the last step
   std::vector<Eigen::Index> modes_;

@@ -68,7 +68,7 @@ class ScoreSums {
   SquaredDistances nis_;
   Eigen::ArrayXd squared_error_, errors_;
   std::vector<double> pit_, whiteness_;
-  std::vector<ChiSquareRegion> nis_regions_;            ///< for one signal, two, ...
+  std::vector<ChiSquareRegion> nis_regions_;            ///< regions of the NIS for one signal, two signals, ...
   std::array<Index, coverage_levels.size()> inside_{};  ///< signals inside each central band
   ScoreBands bands_;
 

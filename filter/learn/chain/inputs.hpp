@@ -12,7 +12,7 @@
 namespace modebank {
 
 struct WindowInputs {
-  FitOptions window;  ///< with the chain's seed
+  FitOptions window;  ///< window options with the chain's seed
 };
 
 struct MixtureInputs {
@@ -33,6 +33,7 @@ struct CompetitorInputs {
   RefineOptions em = {};              ///< how `nonlinear` is learned
   std::optional<Lags> linear = {};    ///< lags of baseline, noise_only and nonlinear; if empty, those of the windows
   std::optional<Lags> drifting = {};  ///< lags of `drifting`; if empty, those of the windows
+
   /// For all competitors but baseline and drifting, and for the bank.
   NoiseByInput noise_by_input = NoiseByInput::none;
   bool all = true;  ///< false: only the baseline and the decision on the noise factor
@@ -49,7 +50,7 @@ struct OneMotionInputs {
 
 struct BankInputs {
   FitOptions window;
-  BankOptions bank;        ///< with the chain's seed
+  BankOptions bank;        ///< bank options with the chain's seed
   bool one_model = false;  ///< whether the bank is the baseline, because a single Kalman filter was requested
   std::optional<FilterOptions> filter;  ///< set if learning runs the filter: in refinement, and for the cost of merged
                                         ///< modes

@@ -20,7 +20,7 @@ constexpr double smallest_r_share = 1e-8;  // share of the residual variance: ef
 constexpr double bound_tolerance = 1e-5;   // nats per sample; acceptable loss with R at its bound
 constexpr double least_gain = 1e-9;        // nats per sample; a better start must exceed rounding
 constexpr AscentLimits limits{200, 1e-12};
-constexpr AscentLimits rough_limits{200, 1e-6};  // for comparing starts and bounds
+constexpr AscentLimits rough_limits{200, 1e-6};  // limits of the search while starts and bounds are compared
 constexpr std::array<std::pair<double, double>, 2> noise_starts{{{1.0, 0.1}, {0.01, 0.5}}};  // shares of Q and R
 
 /// Lower bound of R's diagonal. An output's noise enters the innovations of every state: through the measurement, and

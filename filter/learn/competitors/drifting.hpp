@@ -32,6 +32,7 @@ struct DriftingGrid {
 struct DriftingScores {
   Eigen::VectorXd log_score;
   Eigen::Index samples = 0;  ///< scored samples, all of equal weight
+
   /// n x (q, p0, leak): mean of e^2 / (1 + h'Ph), over v0.
   Eigen::MatrixXd error_ratio = {};
   /// The grid point with the highest score, the first on a tie.

@@ -25,6 +25,7 @@ struct TrainingTransitions {
   Transitions data;           ///< N rows
   Eigen::VectorXd usable;     ///< N, 0 or the sample weight (1 without weights; mean 1 over usable rows)
   std::vector<RunRows> runs;  ///< training runs, in the order of the recording
+
   /// N, logarithm of the noise factor. Each row was divided by the square root of its factor, so that all rows have
   /// equal noise. Empty: no factor.
   Eigen::VectorXd log_noise_factor = {};
@@ -51,9 +52,9 @@ Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::
 /// Sums over weighted transitions that a regression needs. r is the residual (increment minus prediction) for the
 /// coefficients about which the sums are taken; g is the weight of a transition.
 struct RegressionSums {
-  Eigen::MatrixXd G;    ///< q x q, sum g phi phi'
-  Eigen::MatrixXd H;    ///< q x n, sum g phi r'
-  Eigen::MatrixXd S;    ///< n x n, sum g r r'
+  Eigen::MatrixXd G;    ///< q x q, the sum of g phi phi'
+  Eigen::MatrixXd H;    ///< q x n, the sum of g phi r'
+  Eigen::MatrixXd S;    ///< n x n, the sum of g r r'
   double weight = 0.0;  ///< sum g, effective transitions
 
   RegressionSums operator+(const RegressionSums& other) const;

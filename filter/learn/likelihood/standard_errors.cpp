@@ -18,6 +18,7 @@ namespace modebank {
 namespace {
 
 constexpr double weight_unit_share = 0.1;  // share of the prior's standard deviation
+
 // Standard errors need an accuracy of a few per cent. Their relative error falls with the square root of the number of
 // samples.
 constexpr double most_numbers = 4e6;  // samples times coordinates: 32 MB

@@ -31,7 +31,8 @@ struct Fit {
   std::vector<Bank> of_splits = {};  ///< the fit without the left-out runs of each split; empty if no run is left out
   BankDrift drift = {};              ///< drift of the modes; empty without drift
   NoiseAdaptation adaptation = {};   ///< noise adaptation of the filter with drifting modes
-  // Set after expectation-maximisation on all training runs:
+
+  // The fields below are set after expectation-maximisation on all training runs:
   Bank bank = {};
   SwitchingPrior prior = {};
   bool R_estimated = false;

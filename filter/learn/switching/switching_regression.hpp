@@ -15,7 +15,7 @@ namespace modebank {
 struct SwitchingRegression {
   Eigen::MatrixXd theta;           ///< p x K
   std::vector<Eigen::MatrixXd> Q;  ///< K of n x n, covariances of the measured states' noise
-  Eigen::MatrixXd transition;      ///< K x K, row = from
+  Eigen::MatrixXd transition;      ///< K x K; a row belongs to the mode before the switch
   Eigen::VectorXd initial;         ///< K, probabilities before the first transition of a run, as in the filter
   TransitionLogit logit = {};      ///< dependence of T on x[k] and the acting inputs; empty if T is constant
 
@@ -37,6 +37,7 @@ struct SwitchingPrior {
   double counts = 0.0;             ///< >= 0, added to every expected count of switches and first modes
   Eigen::VectorXd weight_sd = {};  ///< d, standard deviations of the logit's weights, normal about zero; empty if T is
                                    ///< constant
+
   /// Standard deviation of the logit's memory, normal about zero. The memory (memory_of) is the part of log T beyond
   /// its row and column means. If it is small, the previous mode hardly matters. The mode is then a function of state
   /// and input, as in a piecewise affine system.
@@ -45,7 +46,7 @@ struct SwitchingPrior {
 
 /// Smoothed mode probabilities given all transitions of the runs.
 struct ModePosterior {
-  Eigen::MatrixXd probability;  ///< N x K, also for unusable transitions
+  Eigen::MatrixXd probability;  ///< N x K; also has rows for unusable transitions
   Eigen::MatrixXd switches;     ///< K x K expected counts of (i, then j)
   Eigen::VectorXd first;        ///< K, expected counts of each run's first mode
   double log_likelihood = 0.0;  ///< log-likelihood of all runs [nats]

@@ -11,6 +11,7 @@ namespace modebank {
 namespace {
 
 constexpr double negligible_share = 1e-12;  // smallest weight of a transition that starts from a mode
+
 // share of the largest curvature; adding a constant to a row of log T has no effect
 constexpr double curvature_ridge = 1e-10;
 constexpr int most_halvings = 30;
@@ -104,7 +105,7 @@ class SwitchObjective {
   const SwitchingPrior& prior_;
   Index K_, d_;
   double memory_information_;
-  Eigen::MatrixXd z_;  ///< d x N, relative to the reference
+  Eigen::MatrixXd z_;  ///< d x N, regressors relative to the reference
 
   Index weights_at(Index regressor) const { return K_ * K_ + regressor * K_; }
 

@@ -20,7 +20,7 @@ struct DriftState {
   std::vector<Eigen::MatrixXd> P = {};      ///< K of p x p
   std::vector<Eigen::MatrixXd> cross = {};  ///< K of p x n: covariance of theta with the state's error; 0 if the state
                                             ///< is known exactly
-  Eigen::VectorXd variance = {};            ///< n, running noise variance; empty otherwise
+  Eigen::VectorXd variance = {};            ///< n, running noise variance; empty without running noise
 };
 
 /// The bank's drift in the layout for stepping.
@@ -87,7 +87,7 @@ struct DriftWorkspace {
   std::vector<typename FilterModel<N, NY>::Mode> modes;  ///< K modes with their present coefficients
   std::vector<Eigen::MatrixXd> cross;                    ///< K of p x n, covariance of theta with the predicted state's
                                                          ///< error
-  Eigen::VectorXd regressor, move, together;             ///< r, p, p
+  Eigen::VectorXd regressor, move, together;             ///< sizes: r, p, p
   Eigen::MatrixXd mixed;              ///< p x n, covariance of theta with the state at which a prediction starts
   Eigen::MatrixXd through;            ///< states x n, (I (x) phi') cross
   Eigen::MatrixXd PG, G, gain, seen;  ///< p x states, p x n_y, p x n_y, n x n_y

@@ -47,7 +47,7 @@ struct MixingWeights {
 /// Intermediate results of one step, sized once.
 template <int N, int NY>
 struct FilterStep {
-  Eigen::VectorXd predicted_probability;  ///< K, c, before the measurement
+  Eigen::VectorXd predicted_probability;  ///< K mode probabilities before the measurement (c)
   std::vector<KalmanStep<N, NY>> kalman;  ///< K
   std::vector<Gaussian<N>> mixed;         ///< K, start of each mode's prediction
   MixingWeights mixing;
@@ -58,7 +58,7 @@ struct FilterStep {
   double noise_factor = 1.0;               ///< NoiseFactor of the last prediction
   Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
 
-  DriftWorkspace<N, NY> drift;  ///< for modes that drift; empty otherwise
+  DriftWorkspace<N, NY> drift;  ///< workspace for modes that drift; empty for other modes
 
   explicit FilterStep(const FilterModel<N, NY>& model)
       : predicted_probability(model.mode_count()),

@@ -39,7 +39,8 @@ struct KalmanStep {
   Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S = C P C' + R
   small::Ldl<NY> cholesky;                              ///< factor of S; a singular S is regularised
   double log_density = 0.0;                             ///< log N(e; 0, S)
-  // For quantised measurements only (interval.hpp).
+
+  // The numbers below are for quantised measurements only (interval.hpp).
   Eigen::Matrix<double, NY, 1> signal_log_density;  ///< log density of each signal given the previous signals
   Eigen::Matrix<double, NY, 1> second_moment;       ///< E[e^2 / s | interval] of each signal given the previous signals
   Eigen::Matrix<double, N, 1> column;               ///< workspace

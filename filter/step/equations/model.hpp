@@ -41,6 +41,7 @@ struct FilterModel {
   DriftModel drift;                                     ///< drift of the modes' coefficients
   MotionTerms terms;                                    ///< nonlinear terms; empty if there are none
   NoiseFactor noise_factor;                             ///< factor on every mode's Q; empty if it is one
+
   /// Rows of every F that are not shifts of older samples by one. These are the measured states if there are lags, else
   /// all n rows.
   Eigen::Index full_rows;

@@ -14,7 +14,7 @@ namespace modebank {
 struct TimedSample {
   double time_s = 0.0;
   Eigen::VectorXd input;        ///< m
-  Eigen::VectorXd measurement;  ///< n_y, NaN where missing
+  Eigen::VectorXd measurement;  ///< n_y; missing signals are NaN
   double rest_s = 0.0;          ///< added to time_s; the part of a time since 1970 that a double cannot hold
 };
 
@@ -54,7 +54,7 @@ class AlignedSamples {
 
  private:
   struct Kept {
-    double at_s;  ///< relative to origin_s_, as all times below
+    double at_s;  ///< time relative to origin_s_, like all times below
     TimedSample sample;
   };
 
@@ -64,7 +64,7 @@ class AlignedSamples {
   std::size_t next_ = 0;      ///< index of the next output sample, if samples keep their times
   std::size_t pushed_ = 0;
   bool resamples_ = false, averages_ = false;
-  double before_s_ = not_a_number;  ///< on the user's clock
+  double before_s_ = not_a_number;  ///< time of an earlier sample, on the user's clock
   double first_s_ = 0.0, spacing_s_ = 0.0;
   std::deque<double> recent_s_;  ///< time steps; used until samples prove faster than the rate
   double steps_ = 0.0;           ///< number of steps at the rate from first_s_ to the next output sample

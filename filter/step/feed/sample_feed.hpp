@@ -44,8 +44,8 @@ class SampleFeed {
 
   /// State between samples, for checkpoints.
   struct Memory {
-    Eigen::MatrixXd inputs;        ///< m x depth, newest first
-    Eigen::MatrixXd measurements;  ///< n_y x state lags, newest first
+    Eigen::MatrixXd inputs;        ///< m x depth, the newest column first
+    Eigen::MatrixXd measurements;  ///< n_y x state lags, the newest column first
     Eigen::Index samples = 0, whole = 0;
     double time_s = 0.0;
   };

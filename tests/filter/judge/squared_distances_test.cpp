@@ -107,7 +107,8 @@ TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
     const DiagnosticsRow row = diagnose("bank", bank, {}, runs, evaluations, scores).front();
     const double signals = 2.0 * 6000.0 * 3.0 * (1.0 - missing);
     EXPECT_NEAR(row.nis_mean, 3.0, 4.0 * 3.0 * std::sqrt(2.0 / signals)) << missing;
-    EXPECT_DOUBLE_EQ(row.nis_mean, summary.back().nis_mean) << missing;  // both tables use one definition
+    EXPECT_DOUBLE_EQ(row.nis_mean, summary.back().nis_mean) << missing;  // both tables use one definition of the mean
+                                                                         // NIS
     EXPECT_LT(row.nis_lower, 3.0);
     EXPECT_GT(row.nis_upper, 3.0);
     EXPECT_NEAR(row.nis_upper - row.nis_lower, 2.0 * 1.96 * 3.0 * std::sqrt(2.0 / signals), 0.02) << missing;

@@ -130,7 +130,7 @@ TEST(WeightedMode, UnexcitedDirectionsStayAtTheGlobalModel) {
 TEST(WeightedMode, NoiseIsFlooredWhereAModeFitsExactly) {
   const WeightedGolden data;
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(data.transitions.count());
-  weights.head(3).setOnes();  // as many transitions as regressors
+  weights.head(3).setOnes();  // the number of transitions equals that of regressors
   const ModeEstimate mode = fit_weighted_mode(data.transitions, weights, data.global, nullptr);
   const Eigen::MatrixXd floor = process_noise_floor * data.global.noise_variance().asDiagonal().toDenseMatrix();
   EXPECT_TRUE(near(mode.Q, floor, 1e-6 * floor.maxCoeff()));

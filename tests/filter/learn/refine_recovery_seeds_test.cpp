@@ -46,6 +46,7 @@ TEST_P(RefineRecoverySeeds, ErrorsAreAsLargeAsStated) {
   RecordProperty("in_a_true_filters_interval", std::to_string(as_true));
   EXPECT_NEAR(std::sqrt(squares / count), 1.0, 0.15);
   EXPECT_LT(beyond / count, 0.02);  // 0.27 % by the normal law; variances are skewed
+
   // 95 % of 20 are 19; fewer than 17 have a probability of 1.6 %. The interval for a correct model contains fewer (11
   // to 18), because parameters from so few training samples have errors.
   EXPECT_GE(as_known, 17.0);

@@ -255,7 +255,7 @@ TEST(Snapshot, GoesOnToTheBit) {
       SCOPED_TRACE(name + " after " + std::to_string(stop));
       filter::BankFilter first(installed(bank), options), second(installed(bank), options);
       for (Index k = 0; k < stop; ++k) take(first, bank, k);
-      take(second, bank, 3);  // this filter has another history
+      take(second, bank, 3);  // this filter has processed other samples
       second.restore(first.snapshot());
       EXPECT_EQ(second.started(), first.started());
       for (Index k = stop; k < 25; ++k) expect_same_bits(take(second, bank, k), take(first, bank, k));

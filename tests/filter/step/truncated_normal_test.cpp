@@ -96,6 +96,7 @@ TEST(SignalLikelihood, ItsMomentsAreItsDerivatives) {
         const auto up_s = moments(signal_likelihood(e, s * (1.0 + h), quantum), s * (1.0 + h));
         const auto down_s = moments(signal_likelihood(e, s * (1.0 - h), quantum), s * (1.0 - h));
         const std::array unit{1.0, root, s};  // units of the derivatives
+
         // Differences contain the rounding of the bounds.
         const double rounding = share > 0.0 ? 1e-15 * (1.0 + std::abs(z)) / (share * h) : 0.0;
         for (std::size_t i = 0; i < 3; ++i) {

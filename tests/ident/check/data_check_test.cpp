@@ -110,7 +110,7 @@ TEST(Saturation, IsNotSeenInSignalsOfFewLevels) {
     }
     return signal;
   };
-  for (const double sd : {0.0, 0.02}) {  // as commanded; as measured
+  for (const double sd : {0.0, 0.02}) {  // levels as commanded, then as measured
     const VectorXd binary = held({-1.0, 1.0}, sd);
     EXPECT_TRUE(has_two_levels(binary));
     EXPECT_FALSE(std::isfinite(saturation_limits({binary}).high));

@@ -64,7 +64,7 @@ struct ReferenceTerms {
 struct ReferenceProblem {
   Loss loss;
   Real c, sigma;
-  RealVector mean, precision;  ///< of the prior; empty without a prior
+  RealVector mean, precision;  ///< mean and precision of the prior; empty without a prior
 
   ReferenceTerms terms(const Regression& w, const RealVector& theta) const {
     const Index q = w.X.cols();

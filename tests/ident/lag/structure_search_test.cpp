@@ -94,7 +94,7 @@ TEST(StructureSearch, FindsTheLagsThatColouredNoiseNeeds) {
   EXPECT_GE(seeds_with(coloured, {2, 2, 1}, 20), 18);
 }
 
-/// With few runs, stretches are left out.
+/// With few runs, stretches of runs are left out.
 TEST(StructureSearch, FindsTheStructureInOneRun) {
   System second;
   second.a = {1.5, -0.7};
@@ -264,6 +264,7 @@ TEST(LaggedRows, HaveTheirFullHistory) {
   const StructureRanges ranges{{1, 4}, {1, 3}, {0, 5}};
   const LaggedRows rows = make_lagged_rows(recording, ranges, true);
   const Index first = 5 + 3 - 2;  // transitions 0 .. 5 reach before the run
+
   // the missing sample is in the increments of two transitions, and in a lag of three more
   const Index lost_behind_gap = 5;
   EXPECT_EQ(rows.count(), 6 * (399 - first) - lost_behind_gap);

@@ -29,7 +29,7 @@ struct Mode {
 /// holds the state and the acting inputs at the start of a step. If empty, the transition matrix holds for every z.
 struct StateDependentTransition {
   Matrix weights;                 ///< K x d, row j is w_j; d = n + acting inputs
-  std::vector<double> reference;  ///< d, the z for which the transition matrix holds
+  std::vector<double> reference;  ///< d, the value of z for which the transition matrix holds
 };
 
 /// Process noise that depends on state and input. A step from z has Q times exp(sum_i weights_i log(|directions_i z| +

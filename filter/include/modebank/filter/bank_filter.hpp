@@ -17,12 +17,12 @@ struct Estimate {
   std::vector<double> innovation;  ///< n_y, measurement minus prediction
   Matrix innovation_covariance;    ///< n_y x n_y, covariance of the combined prediction
   std::vector<double> state;       ///< n, state after the measurement
-  Matrix covariance;               ///< n x n, after the measurement
+  Matrix covariance;               ///< n x n, covariance of the state after the measurement
   std::vector<double> pit;  ///< n_y, probability integral transform (Rosenblatt 1952), uniform if the model is correct.
                             ///< For a quantised signal it is drawn uniformly within its interval; the draw depends on
                             ///< the number of samples since construction
-  std::vector<double> mode_probability_predicted;  ///< K, before the measurement
-  std::vector<double> mode_probability;            ///< K, after the measurement
+  std::vector<double> mode_probability_predicted;  ///< K, mode probabilities before the measurement
+  std::vector<double> mode_probability;            ///< K, mode probabilities after the measurement
   double nis = 0.0;                                ///< normalised innovation squared of the available signals
   double log_density = 0.0;                        ///< log density of the measurement under the prediction [nats]
   double spread_share = 0.0;                       ///< share of the modes' differences in the trace of the innovation

@@ -16,13 +16,13 @@ struct Evaluation {
   Matrix prediction;             ///< n x N, state before the measurement, all modes combined
   Matrix innovation;             ///< n_y x N, measurement minus prediction
   Matrix innovation_covariance;  ///< n_y*n_y x N
-  Matrix state;                  ///< n x N, after the measurement
-  Matrix covariance;             ///< n*n x N, after the measurement
+  Matrix state;                  ///< n x N, state after the measurement
+  Matrix covariance;             ///< n*n x N, covariance of the state after the measurement
   std::vector<double> nis;       ///< N, normalised innovation squared
   Matrix pit;  ///< n_y x N, probability integral transform (Rosenblatt 1952), uniform if the model is correct. For a
                ///< quantised signal it is drawn uniformly within its interval
   std::vector<double> log_density;  ///< N [nats]
-  Matrix mode_probability;          ///< K x N, after the measurement
+  Matrix mode_probability;          ///< K x N, mode probabilities after the measurement
 };
 
 /// Filters a run from its first complete measurement. Throws std::invalid_argument if sizes disagree, and DataError for

@@ -12,19 +12,23 @@ struct ModeRows {
   // The bank.
   const double *F = nullptr, *B = nullptr, *c = nullptr, *Q = nullptr;  ///< n*n (row-major), n*inputs, n, packed n
   const double* transition = nullptr;                                   ///< one row per previous mode
+
   // The filter's state.
-  double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< n, packed n, 1
+  double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< number of rows: n, packed n, 1
+
   // Derived from the state for the next step's mixing.
   double share = 0.0;        ///< 1 / modes
   double* center = nullptr;  ///< n numbers, the mean of the modes' means; mixing computes moments about it
   double* parts = nullptr;   ///< n + packed n: summands of the mixtures
+
   // Results of a step.
   double* predicted_probability = nullptr;                            ///< 1
-  double *predicted_mean = nullptr, *predicted_covariance = nullptr;  ///< n, packed n
+  double *predicted_mean = nullptr, *predicted_covariance = nullptr;  ///< number of rows: n, packed n
   double *expected = nullptr, *innovation_covariance = nullptr;       ///< n_y: C x; packed n_y: S
   double *L = nullptr, *D = nullptr, *D_inverse = nullptr;            ///< packed n_y; n_y: S = L D L'
   double* decorrelated = nullptr;                                     ///< n_y: L^-1 (y - C x)
   double *exponent = nullptr, *weight = nullptr;  ///< 1: -e' S^-1 e / (2 log 2); unnormalised posterior
+
   /// For quantised measurements only. Holds the numbers of SignalLikelihood for every signal given the previous
   /// signals, n_y rows for each number. decorrelated and D then hold the innovation and its variance given the previous
   /// signals.
@@ -48,11 +52,11 @@ struct UpdateResult {
 };
 
 struct CombinedMoments {
-  double *mean, *covariance;  ///< n, packed n
+  double *mean, *covariance;  ///< number of entries: n, packed n
 };
 
 struct CombinedExpectation {
-  double *state, *innovation_covariance;  ///< n, packed n_y
+  double *state, *innovation_covariance;  ///< number of entries: n, packed n_y
   double differences = 0.0;               ///< sum_j c_j |C x_j - C x|^2
 };
 

@@ -164,7 +164,7 @@ struct Uncorrection {
  private:
   HWY_INLINE void add_by_R(const V (&gain)[N][NY], const V (&by_S)[packed_size(NY)], const Moments<N>& by,
                            double* by_R) const {
-    V Pgain[N][NY], x[NY];  // by.P K, K' by.x
+    V Pgain[N][NY], x[NY];  // by.P times K, and K' times by.x
     for (std::size_t i = 0; i < NY; ++i) {
       x[i] = zero();
       for (std::size_t a = 0; a < N; ++a) {
@@ -272,7 +272,8 @@ HWY_INLINE void back_to_state(const ModeRows& p, const ReverseRows& d, std::size
   }
   const V middle = splat(sum_of(mean)), by_prior = splat(d.by_prior[j]);
   for (std::size_t r = 0; r < stride; r += hn::Lanes(D())) {
-    const V by_product = hn::MulAdd(hn::Sub(load(d.pair + r), middle), inverse, by_prior);  // with respect to T_ij mu_i
+    // Derivative with respect to T_ij mu_i
+    const V by_product = hn::MulAdd(hn::Sub(load(d.pair + r), middle), inverse, by_prior);
     add_to(d.probability + r, hn::Mul(load(T + r), by_product));
     add_to(d.by_transition_to + j * stride + r, hn::Mul(load(p.probability + r), by_product));
   }

@@ -10,16 +10,20 @@ namespace modebank::vector_imm {
 /// derivative with respect to each of the entries (a, b) and (b, a).
 struct ReverseRows {
   const double* transition_to = nullptr;  ///< T, one row per next mode
+
   // Derivatives with respect to the filter's state. On entry the state is that after the step, on return that before
   // it.
-  double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< n, packed n, 1
+  double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< number of rows: n, packed n, 1
+
   // Derivatives with respect to the bank, summed over the steps.
-  double *F = nullptr, *B = nullptr, *c = nullptr, *Q = nullptr;  ///< n*n, n*inputs, n, packed n
+  double *F = nullptr, *B = nullptr, *c = nullptr, *Q = nullptr;  ///< number of rows: n*n, n*inputs, n, packed n
   double* by_transition_to = nullptr;                             ///< one row per next mode
   double* R = nullptr;                                            ///< packed n_y numbers, not rows
+
   // Workspace.
-  double *mixed_mean = nullptr, *by_mixed_mean = nullptr, *by_mixed_covariance = nullptr;  ///< n, n, packed n
-  double *by_prior = nullptr, *pair = nullptr;                                             ///< 1, 1
+  /// Number of rows: n, n, packed n
+  double *mixed_mean = nullptr, *by_mixed_mean = nullptr, *by_mixed_covariance = nullptr;
+  double *by_prior = nullptr, *pair = nullptr;  ///< 1, 1
 };
 
 /// The step to differentiate. ModeRows holds the state before this step and the results of `predict`.

@@ -42,7 +42,7 @@ class VectorGradient {
   Eigen::Index n_, n_y_, m_, K_, packed_, stride_, state_numbers_;
   std::vector<Moment> moments_;
   std::vector<double> states_, inputs_, measured_;  ///< state_numbers_, m_ and n_y_ numbers per moment
-  Eigen::VectorXd memory_;                          ///< for rows_ and probability_after_
+  Eigen::VectorXd memory_;                          ///< memory for rows_ and probability_after_
   vector_imm::ReverseRows rows_;
   double* probability_after_ = nullptr;  ///< a row in memory_
   Eigen::VectorXd by_R_;

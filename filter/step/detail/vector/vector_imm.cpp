@@ -130,7 +130,7 @@ void VectorImm::fill(const Bank& bank) {
     }
     for_each_packed(n_, [&](Index place, Index a, Index b) { put(rows_.Q, place, j, mode.Q(a, b)); });
     for (Index i = 0; i < K_; ++i) put(rows_.transition, i, j, bank.transition.matrix()(i, j));
-    rows_.probability[j] = initial_probability_(j);  // used until the start
+    rows_.probability[j] = initial_probability_(j);  // initial probabilities, used until the start
   }
 }
 

@@ -54,7 +54,7 @@ class VectorImm final : public Stepper {
   NoiseAdaptation adaptation_;
   NoiseFactor factor_;                              // empty if the factor is one
   double applied_scale_ = 1.0;                      // scale of the last prediction: noise_scale_ times the factor
-  double noise_scale_ = 1.0, noise_samples_ = 0.0;  // as in FilterMemory
+  double noise_scale_ = 1.0, noise_samples_ = 0.0;  // noise scale and its samples, as in FilterMemory
   vector_imm::UpdateResult last_;                   // results of the last update
   vector_imm::Kernels kernels_;
   std::unique_ptr<double[], Free> memory_;

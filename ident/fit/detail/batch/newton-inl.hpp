@@ -47,7 +47,7 @@ struct Surroundings {
 template <int Q>
 struct Search {
   V theta[Q];
-  V gradient;  // relative to |psi|, before the last step
+  V gradient;  // gradient relative to |psi|, before the last step
 };
 
 /// The prior's cost sum_j P_j (theta_j - mean_j)^2. Adds its gradient, too.

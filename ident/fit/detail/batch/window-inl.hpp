@@ -23,7 +23,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 struct View {
   const double* regressors[max_regressors];
   const double* increments;
-  const double* present;  // may be null
+  const double* present;  // null if all transitions are present
   Index stride;
   Index length;
 };

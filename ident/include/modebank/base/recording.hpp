@@ -11,15 +11,15 @@ namespace modebank {
 struct RecordedRun {
   std::string name;            ///< name of the run
   bool held_out = false;       ///< true: used for scores, not for learning
-  std::vector<double> time_s;  ///< N, strictly increasing
-  Matrix state;                ///< n x N, as measured; NaN where missing
+  std::vector<double> time_s;  ///< N sample times, strictly increasing
+  Matrix state;                ///< n x N, measured state; missing values are NaN
   Matrix input;                ///< m x N
   std::vector<double> weight;  ///< N or empty (all one): weight of the transition that ends in sample k, >= 0
 };
 
 /// All runs of one study object: the same n states and m inputs in each.
 struct RecordedRuns {
-  std::vector<RecordedRun> runs;         ///< at least one
+  std::vector<RecordedRun> runs;         ///< the runs; at least one
   std::vector<std::string> state_names;  ///< n; if empty, the names are "x1", "x2", ...
   std::vector<std::string> input_names;  ///< m; if empty, the names are "u1", "u2", ...
 };

@@ -10,7 +10,7 @@ namespace modebank {
 /// One parameter of a motion model: name, unit, start and bounds of a search.
 struct ModelParameter {
   std::string name;                                         ///< name in results
-  std::string unit;                                         ///< may be empty
+  std::string unit;                                         ///< unit of the parameter; may be empty
   double start = 0.0;                                       ///< start of a search
   double lower = -std::numeric_limits<double>::infinity();  ///< lower bound
   double upper = std::numeric_limits<double>::infinity();   ///< upper bound
@@ -42,7 +42,7 @@ class MotionModel {
   struct Transition {
     const double* x;     ///< n numbers
     const double* u;     ///< m numbers
-    const double* next;  ///< n numbers, the next state
+    const double* next;  ///< n numbers: the next state
     double dt_s;         ///< duration of the transition [s]
   };
   /// Residuals next - f(theta, x, u, dt) of `count` transitions one after the other. Also, if not null, the derivatives

@@ -23,8 +23,8 @@ struct Windows {
   std::vector<int> rank;             ///< M, rank of theta: number of directions that the window's data determine
   std::vector<FitStatus> status;     ///< M, how the fit ended
   std::vector<WindowSolver> solver;  ///< M, solver of the window: ceres or batch
-  std::vector<double> prior_sd;      ///< p, the prior's standard deviations; empty without a prior
-  std::vector<double> global_theta;  ///< p, least squares over all training runs; the prior's mean
+  std::vector<double> prior_sd;      ///< p, standard deviations of the prior; empty without a prior
+  std::vector<double> global_theta;  ///< p, least squares over all training runs; also the prior's mean
   WindowAudit audit;                 ///< number of windows per solver, and its tolerance
 };
 

@@ -37,6 +37,7 @@ struct Candidate {
   int restarts = 0;                                             ///< number of independent starts
   bool floor_active = false;  ///< whether the covariance floor acts on any component: a cluster without extent
   CandidateStatus status = CandidateStatus::fitted;  ///< whether it could be fitted
+
   /// Standard error of the difference between this `heldout` and that of the selected candidate; NaN if it is unknown.
   double heldout_error = std::numeric_limits<double>::quiet_NaN();
   std::string failed;  ///< reason why it could not be fitted or has no held-out score; empty without a failure

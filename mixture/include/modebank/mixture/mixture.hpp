@@ -23,7 +23,7 @@ struct Points {
 
 /// Weighted sum of K Gaussians over F features, in the points' units, with an optional uniform component.
 struct Mixture {
-  std::vector<double> weights;      ///< K, decreasing; they sum to 1 - noise_weight
+  std::vector<double> weights;      ///< K weights, decreasing; the sum is 1 - noise_weight
   Matrix means;                     ///< F x K
   std::vector<Matrix> covariances;  ///< K of F x F
   double noise_weight = 0.0;        ///< weight of the uniform component

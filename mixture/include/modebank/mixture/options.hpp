@@ -20,12 +20,14 @@ struct EnumNames<CovarianceType> {
 struct EmOptions {
   CovarianceType covariance = CovarianceType::full;  ///< shape of all components
   int restarts = 5;                                  ///< number of independent random starts, >= 1
+
   /// Number of split-and-merge moves that each restart tries from its optimum (Ueda et al. 2000). With 0 there are no
   /// moves, and restarts are not crossed.
   int split_merge = 5;
   double tolerance = 1e-7;    ///< stopping tolerance: gain of the mean log-likelihood per unit weight; a negative value
                               ///< never stops
   int max_iterations = 1000;  ///< largest number of M steps, >= 0
+
   /// Smallest variance of a component in any feature, as a share of the error variance of the median window. If errors
   /// are unknown, it is a share of the data's variance without far outliers. >= 1e-10
   double covariance_floor = 1e-6;
