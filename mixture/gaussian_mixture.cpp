@@ -22,7 +22,7 @@ namespace {
 /// part of another one.
 void check_numbers(const GaussianMixture& mixture) {
   if (!mixture.means.allFinite() || !mixture.weights.allFinite() || mixture.weights.minCoeff() < 0.0)
-    throw std::invalid_argument("mixture with a mean or weight that is not finite, or a negative weight");
+    throw std::invalid_argument("the mixture has a mean or weight that is not finite, or a negative weight");
   if (mixture.noise.present() && !(mixture.noise.weight >= 0.0 && std::isfinite(mixture.noise.weight)))
     throw std::invalid_argument(
         fmt::format("noise component has the weight {}; expected a probability", mixture.noise.weight));
@@ -92,8 +92,9 @@ Index GaussianMixture::parameter_count() const {
 void check_sizes(const GaussianMixture& mixture) {
   const Index K = mixture.components(), F = mixture.features();
   if (K < 1 || F < 1 || mixture.means.cols() != K || static_cast<Index>(mixture.covariances.size()) != K)
-    throw std::invalid_argument(fmt::format("mixture of {} weights, {} x {} means and {} covariances", K, F,
-                                            mixture.means.cols(), mixture.covariances.size()));
+    throw std::invalid_argument(
+        fmt::format("the mixture has {} weights, {} x {} means and {} covariances, which do not fit together", K, F,
+                    mixture.means.cols(), mixture.covariances.size()));
   for (const Eigen::MatrixXd& covariance : mixture.covariances)
     if (covariance.rows() != F || covariance.cols() != F)
       throw std::invalid_argument(

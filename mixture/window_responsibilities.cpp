@@ -14,7 +14,7 @@ namespace {
 void check_order(const FeatureCloud& cloud, Index windows) {
   const bool increasing = std::is_sorted(cloud.windows.begin(), cloud.windows.end(), std::less_equal<>());
   if (!increasing || (!cloud.windows.empty() && (cloud.windows.front() < 0 || cloud.windows.back() >= windows)))
-    throw std::invalid_argument("the windows of a cloud must be in increasing order, each once");
+    throw std::invalid_argument("the windows of a cloud must be strictly increasing");
 }
 
 /// Fills the columns of the cloud's windows first to first + count - 1 in `result`.

@@ -30,7 +30,7 @@ ForecastWeights::ForecastWeights(std::size_t forecasters, std::ptrdiff_t horizon
 ForecastWeights::ForecastWeights(const std::vector<double>& start, std::ptrdiff_t horizon)
     : share_of_a_sample_(1.0 / static_cast<double>(horizon)), weights_(start.size()) {
   if (start.empty() || horizon < 1)
-    throw std::invalid_argument("weights need a forecaster, and a horizon of at least one sample");
+    throw std::invalid_argument("weights need at least one forecaster and a horizon of at least one sample");
   for (const double weight : start) {
     if (!(weight >= 0.0) || std::isinf(weight))
       throw std::invalid_argument("a starting weight is negative or not finite");

@@ -88,9 +88,9 @@ class Grid {
 
   [[noreturn]] void refuse(double time) const {
     std::ostringstream what;
-    what << "a rate of " << rate_hz_ << " Hz gives more than " << most_per_sample << " times of every sample, of which "
-         << samples_ << " lie from " << first_ << " s to " << end_ << " s (" << time
-         << " s is the last that was made): is the unit of the times right?";
+    what << "a rate of " << rate_hz_ << " Hz gives more than " << most_per_sample
+         << " output times per sample: " << samples_ << " samples lie from " << first_ << " s to " << end_ << " s ("
+         << time << " s is the last output time). Check the unit of the times";
     throw DataError(what.str());
   }
 };

@@ -37,7 +37,7 @@ void check_terms(const MotionTerms& terms, Index regressors) {
   require(terms.direction.rows() == regressors, "directions have " + std::to_string(terms.direction.rows()) +
                                                     " entries for " + std::to_string(regressors) + " regressors");
   require(terms.low.size() == V && terms.high.size() == V && terms.unit.size() == V,
-          "ranges and units are not one per variable");
+          "each variable needs one range and one unit");
   require(terms.direction.allFinite() && terms.low.allFinite() && terms.high.allFinite() && terms.unit.allFinite(),
           "variables are not finite");
   require((terms.low.array() <= terms.high.array()).all() && (terms.unit.array() > 0.0).all(),

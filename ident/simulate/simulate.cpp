@@ -48,7 +48,7 @@ void check(const SimulationOptions& o) {
   check_modes(o);
   if (o.transition.size() > 0) check_transition(o.transition, static_cast<Index>(o.modes.size()));
   require_setting(o.dwell_samples == 0.0 || (o.dwell_samples >= 1.0 && std::isfinite(o.dwell_samples)),
-                  "dwell_samples = " + std::to_string(o.dwell_samples) + " is neither 0 nor at least 1");
+                  "dwell_samples = " + std::to_string(o.dwell_samples) + "; expected 0, or at least 1");
   check_runs(o.runs, o.dt_s);
   check_commands(o);
   require_nonnegative_setting(o.measurement_sd, "measurement_sd");

@@ -87,7 +87,7 @@ std::string gain_words(const FoundTerms& found) {
   if (found.terms_asked > 0)
     return fmt::format("{} terms gain {:.4f} +- {:.4f} nats/sample on halves that did not choose them",
                        found.terms_asked, found.gain, found.gain_standard_error);
-  return found.terms.empty() ? "no terms gain" : fmt::format("{} terms as stated", found.terms.count());
+  return found.terms.empty() ? "no terms gain" : fmt::format("{} terms as configured", found.terms.count());
 }
 
 std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure& structure,

@@ -22,8 +22,8 @@ BankInputs bank_inputs(const LearningOptions& options, const FitOptions& window)
 }
 
 /// Whether to look for noise that follows the input. Everything learned from this noise must support it. The conditions
-/// are: no logit, no drift, no look-ahead, no R that is given or estimated beside rounding, and an IMM without adaptive
-/// noise.
+/// are: no logit, no drift, no look-ahead, no R that is given, or estimated in addition to rounding, and an IMM without
+/// adaptive noise.
 NoiseByInput noise_by_input(const LearningOptions& options, const FitOptions& window) {
   const BankOptions& bank = options.bank;
   const bool can = refinement_asked(bank, is_linear(window)) == Refine::em &&

@@ -10,8 +10,8 @@
 
 namespace modebank {
 
-/// Step of central differences for coordinates in units of about their standard error, or logarithms. Its relative
-/// error is about 1e-4.
+/// Step of central differences. Coordinates are in units of about their standard error, or are logarithms. The relative
+/// error of a difference is about 1e-4.
 inline constexpr double difference_step = 1e-2;
 
 /// Derivatives of the log predictive densities of single training samples with respect to a bank's coordinates, at the

@@ -84,7 +84,8 @@ class Neighbourhood {
   }
 };
 
-/// Minus the target relative to its value at the origin, for minimisation by Ceres; coordinates in standard errors.
+/// Minus the target, relative to its value at the origin, for minimisation by Ceres. Coordinates are in standard
+/// errors.
 class WhitenedTarget final : public ceres::FirstOrderFunction {
  public:
   WhitenedTarget(const Neighbourhood& around, Eigen::MatrixXd by_standard_errors, double origin_value)

@@ -36,7 +36,7 @@ class ConditionalMaximiser {
   Eigen::MatrixXd& noise(Index j) { return model_.Q[static_cast<std::size_t>(j)]; }
   const RegressionSums& at(Index j) const { return sums_.modes[static_cast<std::size_t>(j)]; }
 
-  /// The best theta for modes first to end - 1 together with the prior; empty if a Q is not definite.
+  /// The best theta for modes first to end - 1, given the data and the prior; empty if a Q is not definite.
   std::optional<Eigen::VectorXd> best_theta(Index first, Index end) {
     Eigen::MatrixXd information = prior_.information;
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(prior_.mean.size());

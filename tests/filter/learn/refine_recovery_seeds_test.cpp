@@ -54,7 +54,7 @@ TEST_P(RefineRecoverySeeds, ErrorsAreAsLargeAsStated) {
   EXPECT_NEAR(nees, states, 0.04 * states);
 }
 
-/// Out of 100 seeds, how often mean NEES and mean NIS of a filter lie in their intervals, and how often both do.
+/// Number of seeds (out of 100) for which the mean NEES of a filter, the mean NIS, and both lie in their intervals.
 struct Inside {
   double nees = 0.0, nis = 0.0, both = 0.0;
 };

@@ -78,8 +78,7 @@ struct RefineOptions {
   std::ptrdiff_t look_ahead = 1;  ///< largest number of samples ahead: predictions 1 to this many samples ahead are
                                   ///< scored
   LookAheadScore look_ahead_score = LookAheadScore::density;  ///< `density` also scores starts, modes and iterations
-  std::ptrdiff_t folds = 6;       ///< parts of the cross-validation; with 1 there is none, and every start runs to
-                                  ///< convergence
+  std::ptrdiff_t folds = 6;  ///< parts of the cross-validation; 1 turns it off, and every start runs to convergence
   bool measurement_noise = true;  ///< true: R by maximum likelihood of the filter on the training runs; false: R of the
                                   ///< start
   bool screen = true;             ///< whether unstable, starved and duplicate modes are removed

@@ -24,7 +24,7 @@ std::unique_ptr<BatchWindows> BatchWindows::make(const LinearWindows& windows, I
   if (options.solver == WindowSolver::batch && !possible)
     throw ConfigurationError("solver = batch fits linear models of one state with at most " +
                              std::to_string(batch::max_regressors) +
-                             " regressors, fewer than the window's length, without sample weights; take auto or ceres");
+                             " regressors, fewer than the window's length, without sample weights; use auto or ceres");
   const bool wanted = options.solver == WindowSolver::batch ||
                       (options.solver == WindowSolver::automatic && count > most_ceres_windows);
   return possible && wanted ? std::unique_ptr<BatchWindows>(new BatchWindows(windows, prior)) : nullptr;
