@@ -104,6 +104,6 @@ struct RefineTuning {
   double least_gain = 1e-3;
 };
 
-inline constexpr RefineTuning refine_tuning{};  ///< the values in use
+inline constexpr RefineTuning refine_tuning{};  ///< the values of the constants in use
 
 }  // namespace modebank

@@ -87,7 +87,7 @@ class DenseGradient {
   void back_over(Index t, const FilterState<any>& before) {
     const Instant& instant = instants_.instants[static_cast<std::size_t>(t)];
     const Index n = sum_.start_covariance.rows(), K = model_.mode_count();
-    if (instant.starts) {  // the mean is measured there
+    if (instant.starts) {  // at the start the mean is measured
       for (const ByGaussian& mode : by_.modes) sum_.start_covariance += mode.covariance;
       by_ = ByState(n, K);
       return;

@@ -77,7 +77,7 @@ double price_of_a_parameter(const WhitenedProblem& problem, const RobustTerms& t
 
 Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem& problem, const RobustTerms& terms,
                           const Eigen::VectorXd& sigma) {
-  const Eigen::ArrayXd root = sample_weights(problem).cwiseSqrt();  // the rows already contain it
+  const Eigen::ArrayXd root = sample_weights(problem).cwiseSqrt();  // the rows already contain this root
   const Eigen::ArrayXd omega = terms.weight;
   Eigen::VectorXd result(problem.states);
   for (Index i = 0; i < problem.states; ++i) {

@@ -51,7 +51,7 @@ class ModelResiduals {
   void take_run_weights(const std::vector<double>& weights);
 
   const MotionModel& model_;
-  std::vector<MotionModel::Transition> transitions_;  ///< the finite transitions
+  std::vector<MotionModel::Transition> transitions_;  ///< the finite transitions of the stretches
   Eigen::VectorXd weights_;                           ///< one weight per finite transition; empty without weights
 };
 

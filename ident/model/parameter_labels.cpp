@@ -8,7 +8,8 @@ namespace {
 
 /// The name without the suffix of a bank's lagged names, "[k-1]" or "[k+1]".
 std::string channel_name(const std::string& name) {
-  const std::size_t sample = std::max(name.rfind("[k-") + 1, name.rfind("[k+") + 1);  // 0: no suffix
+  // Position of the suffix; 0 without a suffix
+  const std::size_t sample = std::max(name.rfind("[k-") + 1, name.rfind("[k+") + 1);
   return sample > 0 && name.back() == ']' ? name.substr(0, sample - 1) : name;
 }
 

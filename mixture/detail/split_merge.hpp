@@ -12,7 +12,7 @@ namespace modebank {
 /// A move: merges two components and splits a third.
 struct SplitMergeMove {
   Eigen::Index merged = 0, absorbed = 0, split = 0;
-  GaussianMixture parts;  ///< the two parts of the third, weights summing to one
+  GaussianMixture parts;  ///< the two parts of the split component; their weights sum to one
   double gain = 0.0;      ///< expected change of the mean log-likelihood [nats per unit weight]
 };
 

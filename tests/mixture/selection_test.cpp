@@ -96,7 +96,7 @@ TEST(Selection, StartsFromAGivenMixture) {
   SelectionOptions options = from_one_to(3);
   options.em.restarts = 1;
   options.em.split_merge = 0;
-  options.em.max_iterations = 0;  // the result is the start
+  options.em.max_iterations = 0;  // without iterations the result is the start
   const GaussianMixture start = three_clusters(12.0);
   const Selection result = select(points, {}, options, 1, &start);
   EXPECT_NEAR(result.candidates[2].log_likelihood, log_density(three_clusters(12.0), points).sum(), 1e-8);

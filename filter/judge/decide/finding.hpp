@@ -87,7 +87,7 @@ struct Resolution {
   double quantum = 0.0;        ///< spacing of the values; 0 if none was found
   double repeated = 0.0;       ///< share of samples in motion equal to the previous one
   double innovation_sd = 0.0;  ///< median standard deviation of the bank's predictions in motion [state unit]
-  double sd = 0.0;             ///< standard deviation of the samples [state unit]; 0: unknown
+  double sd = 0.0;             ///< standard deviation of the samples [state unit]; 0 if unknown
 };
 
 /// Share of repeated samples above which densities are not compared. In noisy measurements two samples are hardly ever
@@ -111,7 +111,7 @@ struct Finding {
   bool errors_known = true;    ///< errors_known of the bank; if false, modes may differ although modes_differ is false
   double step_scatter = 0.0;   ///< standard deviation of the time steps over their median
   ErrorPattern pattern;        ///< pattern in the errors of the bank
-  double stay = not_a_number;  ///< stay in a mode, harmonic mean over the judged samples [samples]; NaN: unknown
+  double stay = not_a_number;  ///< stay in a mode, harmonic mean over the judged samples [samples]; NaN if unknown
   double stay_asked = 0.0;     ///< stay required for evidence [samples]
   std::vector<Resolution> coarse;  ///< states for which densities are not comparable
   bool without_noise = false;      ///< whether one linear model explains the runs up to rounding
@@ -119,7 +119,7 @@ struct Finding {
   bool terms_asked = false;        ///< whether terms of one nonlinear motion were searched on the training runs
   std::vector<PairedGain> gains;   ///< gains of the bank over each competitor
   std::string best_competitor;     ///< competitor with the highest log score; empty without competitors
-  double gain = 0.0, standard_error = 0.0;  ///< gain over best_competitor [nats/sample]; NaN: unknown
+  double gain = 0.0, standard_error = 0.0;  ///< gain over best_competitor [nats/sample]; NaN if unknown
   Description description = Description::none;
   std::string better_description;  ///< competitor that describes the runs instead of modes; empty if no competitor does
   double description_loss = 0.0;   ///< loss of that competitor against the best competitor [nats/sample]

@@ -36,7 +36,7 @@ struct CompetitorInputs {
 
   /// For all competitors but baseline and drifting, and for the bank.
   NoiseByInput noise_by_input = NoiseByInput::none;
-  bool all = true;  ///< false: only the baseline and the decision on the noise factor
+  bool all = true;  ///< if false, only the baseline and the decision on the noise factor
 };
 
 /// Inputs of the competitor one_motion, which is learned like the bank.

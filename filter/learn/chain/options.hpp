@@ -42,7 +42,7 @@ struct LearningOptions {
                                             ///< read_terms
   NoiseByInput noise_by_input = NoiseByInput::automatic;  ///< whether noise may depend on state and input
   OtherLags other_lags = {};
-  bool competitors = true;  ///< false: only the baseline, from which the bank starts
+  bool competitors = true;  ///< if false, only the baseline, from which the bank starts
 };
 
 }  // namespace modebank

@@ -27,7 +27,7 @@ struct TrainingTransitions {
   std::vector<RunRows> runs;  ///< training runs, in the order of the recording
 
   /// N, logarithm of the noise factor. Each row was divided by the square root of its factor, so that all rows have
-  /// equal noise. Empty: no factor.
+  /// equal noise. Empty without a factor.
   Eigen::VectorXd log_noise_factor = {};
 
   Index count() const { return data.count(); }

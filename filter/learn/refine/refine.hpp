@@ -35,7 +35,7 @@ struct Refinement {
   /// unseen runs. Empty if no run was left out.
   std::vector<Bank> of_splits = {};
   Eigen::Index learned_transitions = 0;  ///< number of transitions in the part of the training runs that was used
-                                         ///< (learning_part.hpp); 0: all
+                                         ///< (learning_part.hpp); 0 means all
 };
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp), starting from banks of mixtures.

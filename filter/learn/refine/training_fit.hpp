@@ -19,7 +19,7 @@ namespace modebank {
 struct RefineInput {
   const Recording& recording;
   const WindowFits& fits;
-  const Bank& frame;  ///< the parts that are not refined
+  const Bank& frame;  ///< the parts of the bank that are not refined
   const TrainingTransitions& transitions;
   const RefineOptions& options;
   const FilterOptions& filter;

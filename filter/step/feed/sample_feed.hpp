@@ -26,7 +26,7 @@ class SampleFeed {
   void push(double time_s, const double* input, const double* measurement);
   /// Model steps between two times, at most longest_gap_steps + 1; 1 without times.
   static Eigen::Index steps_between(double from_s, double to_s, double dt_s) {
-    const bool near = !(dt_s > 0.0 && to_s - from_s >= 1.25 * dt_s);  // the usual case, decided without a division
+    const bool near = !(dt_s > 0.0 && to_s - from_s >= 1.25 * dt_s);  // the usual case is decided without a division
     return near ? 1 : whole_steps((to_s - from_s) / dt_s);
   }
   /// Forgets all samples.

@@ -21,9 +21,9 @@ inline constexpr Index most_lanes = 8;
 struct Block {
   const double* points = nullptr;   ///< F columns
   const double* weights = nullptr;  ///< one column
-  const double* errors = nullptr;   ///< F (F + 1) / 2 columns, lower triangles by rows; null: no errors
-  const double* noise = nullptr;    ///< one column, log of weight times density of the noise component; null: no noise
-                                    ///< component
+  const double* errors = nullptr;   ///< F (F + 1) / 2 columns, lower triangles by rows; null without errors
+  const double* noise = nullptr;    ///< one column, log of weight times density of the noise component; null without a
+                                    ///< noise component
 };
 
 /// A mixture in the layout of the kernels: log w_k N(x; mu_k, Sigma_k) = log_constant_k - |W_k (x - mu_k)|^2 / 2. W_k

@@ -62,10 +62,10 @@ TEST(Calibration, VerdictsAreRightSeedBySeed) {
 /// with many samples.
 TEST(Calibration, AdaptiveNoiseIsJudgedByTailsAlone) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
-  for (const double factor : {1.0, 4.0})  // the adaptive scale compensates for the factor
+  for (const double factor : {1.0, 4.0})  // the adaptive scale compensates for the factor on Q
     EXPECT_EQ(verdicts(bank, factor, 1, 10000, 2, FilterNoise::adaptive)[Calibration::calibrated], 2) << factor;
-  const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // but it does not compensate for a factor on
-                                                                           // measurement noise
+  const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // the adaptive scale does not compensate for
+                                                                           // a factor on measurement noise
   EXPECT_EQ(verdicts(noisy, 1, 4, 1500, 10, FilterNoise::adaptive)[Calibration::underconfident], 10);
 }
 
@@ -216,7 +216,7 @@ TEST(Calibration, TimeOfATailIsItsHits) {
     std::vector<double> hits;
     for (const double score : scores) hits.push_back(score > normal_score(0.975) ? 1.0 : 0.0);
     const double time = autocorrelation_time({hits});
-    // the estimate itself varies by this much
+    // the estimated time itself varies by this much
     EXPECT_NEAR(autocorrelation_time_of_tail({scores}), time, 0.12 * time) << rho;
   }
   EXPECT_TRUE(std::isnan(autocorrelation_time_of_tail({{}})));

@@ -92,7 +92,7 @@ TEST(Combination, LosesLittleAgainstTheBestOfARun) {
   ForecastTables tables({"bank", "drifting"}, runs);
   tables.add(0, {bad, good});
   const std::vector<HorizonRow> rows = tables.horizons();
-  ASSERT_EQ(rows.size(), 6);  // three filters, for the run and for all runs
+  ASSERT_EQ(rows.size(), 6);  // rows: three filters, for the run and for all runs
   const HorizonRow &best = rows[3], &combined = rows[5];
   EXPECT_EQ(best.filter, "drifting");
   EXPECT_EQ(combined.filter, "combined");
@@ -145,7 +145,7 @@ TEST(Combination, ShortRunsKeepWhatTrainingFound) {
 TEST(Combination, LeftOutRowsChooseWeightsAndScoreAllTogether) {
   const HorizonEvaluation a = forecasts(60, {1, 5}, 10, 1.0), b = forecasts(60, {1, 5}, 11, 2.0);
   const std::vector<LeftOutRow> rows = left_out_rows({"bank", "baseline"}, {{a, b}, {b, a}});
-  ASSERT_EQ(rows.size(), 6);  // three filters, two horizons
+  ASSERT_EQ(rows.size(), 6);  // rows: three filters, two horizons
   EXPECT_EQ(rows[5].filter, "combined");
   EXPECT_EQ(rows[5].horizon, 5);
   EXPECT_EQ(rows[0].samples, 2 * 59);

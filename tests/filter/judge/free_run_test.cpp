@@ -111,7 +111,7 @@ TEST(FreeRun, PredictsThroughGapsAndMissingSamples) {
   Bank bank = single_mode(example_bank(1, 1, 1), 0);
   bank.dt_s = 1.0;
   Trajectory run = simulate_bank(bank, 20, 8);
-  run.time_s.tail(10).array() += 3.0;  // three more model steps with the input held
+  run.time_s.tail(10).array() += 3.0;  // adds three model steps with the input held
   run.state(0, 15) = std::nan("");
   const FreeRun found = free_run(bank, run, {}, after(4));
   double x = found.mean(0, 9);

@@ -169,7 +169,7 @@ TEST(LearnBank, TransitionsComeFromLabelsOrStay) {
 }
 
 TEST(Screening, UnstableAndStarvedModesAreListedAndLeftOut) {
-  Case data({-0.2, 0.1, -0.8});  // the second grows by a tenth per step
+  Case data({-0.2, 0.1, -0.8});  // the second mode grows by a tenth per step
   Eigen::MatrixXd gamma = Eigen::MatrixXd::Zero(4, data.fits.count());
   gamma.topRows(3) = memberships_by_run(data.fits, 3);
   gamma.col(0) << 0.9, 0.0, 0.0, 0.1;  // a tenth of one transition, and shares of nine others

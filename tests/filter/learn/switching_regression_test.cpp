@@ -69,7 +69,7 @@ ModePosterior enumerate(const TrainingTransitions& t, const SwitchingRegression&
     double total = 0.0;
     ModePosterior of_run{Eigen::MatrixXd::Zero(rows.count, K), Eigen::MatrixXd::Zero(K, K), Eigen::VectorXd::Zero(K)};
     for (Index code = 0; code < Index{1} << (rows.count + 1); ++code) {
-      const auto mode = [&](Index k) { return (code >> k) & 1; };  // k = 0: before the first transition
+      const auto mode = [&](Index k) { return (code >> k) & 1; };  // k = 0 is the mode before the first transition
       double p = model.initial(mode(0));
       for (Index k = 0; k < rows.count; ++k) {
         const Index j = mode(k + 1);

@@ -32,7 +32,7 @@ inline Trajectory with_holes(Trajectory run) {
 /// A bank with one drifting mode and known variance, and its results on a run.
 struct OneMode {
   Bank model;  ///< model with constant running noise
-  Bank bank;   ///< the same model by the general equations
+  Bank bank;   ///< bank with the same model, by the general equations
   Trajectory run;
 };
 

@@ -259,7 +259,7 @@ TEST(MotionModel, TheExampleOfThePagesIsAWholeModel) {
   boost::random::uniform_real_distribution<double> command(-1.0, 1.0);
   Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, 60), u(1, 60);
   for (double& value : u.reshaped()) value = command(generator);
-  for (Index k = 0; k + 1 < 60; ++k)  // the closed form
+  for (Index k = 0; k + 1 < 60; ++k)  // the closed form of the motion
     x(0, k + 1) = 1.3 * u(0, k) + (x(0, k) - 1.3 * u(0, k)) * std::exp(-1.0 / 0.7);
   FitOptions options;
   options.model = "decay";

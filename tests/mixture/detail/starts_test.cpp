@@ -48,7 +48,7 @@ TEST(Starts, ClustersMomentsAreDrawnTowardsThePooledOnes) {
   std::mt19937_64 generator(1);
   GaussianMixture start;
   do start = random_start(blocks, 2, EmOptions{}, generator);
-  while (std::abs(start.means(0) - start.means(1)) < 90.0);  // until both centres are drawn in one cluster
+  while (std::abs(start.means(0) - start.means(1)) < 90.0);  // repeats until both centres are drawn in one cluster
   const Index low = start.means(0) < 50.0 ? 0 : 1;
   EXPECT_NEAR(start.means(low), 1.0, 1e-14);
   EXPECT_NEAR(start.means(1 - low), 103.0, 1e-14);

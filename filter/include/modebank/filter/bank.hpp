@@ -56,7 +56,7 @@ struct CoefficientDrift {
 struct RunningNoise {
   std::vector<double> floor;         ///< n_y, smallest value of v [state unit^2]
   double forgetting = 0.9;           ///< forgetting factor, in [0, 1]
-  double degrees_of_freedom = 0.0;   ///< degrees of freedom of Student's t, above 2; 0: Gaussian
+  double degrees_of_freedom = 0.0;   ///< degrees of freedom of Student's t, above 2; 0 for a normal distribution
   std::vector<double> horizon = {};  ///< horizons in samples, ascending, at least 2
   std::vector<double> factor = {};   ///< factors on the variance of forecasts, each from its horizon up to the next one
 };
@@ -80,7 +80,7 @@ struct BankDescription {
   std::vector<double> initial_probability;              ///< K; if empty, all are equal
   std::vector<std::string> state_names;                 ///< names of the measured states; may be empty
   std::vector<std::string> input_names;                 ///< names of the inputs; may be empty
-  double dt_s = 0.0;                                    ///< sample period of one step [s]; 0: not fixed
+  double dt_s = 0.0;                                    ///< sample period of one step [s]; 0 if it is not fixed
   std::ptrdiff_t inputs = 0;                            ///< number of input channels
   std::ptrdiff_t state_lags = 1;                        ///< number of state samples that predict the next one
   std::ptrdiff_t input_lags = 1;                        ///< input samples that act on one transition

@@ -73,14 +73,14 @@ struct RefineOptions {
   std::ptrdiff_t restarts = 2;    ///< random starts from stretches of the runs, in addition to the mixture's start, for
                                   ///< each number of modes
   std::ptrdiff_t most_modes = 0;  ///< largest number of modes of the random starts. The search tries this number, three
-                                  ///< quarters of it and so on, down to the mixture's number. 0: the mixture's number
-                                  ///< only
+                                  ///< quarters of it and so on, down to the mixture's number. With 0, it tries only the
+                                  ///< mixture's number
   std::ptrdiff_t look_ahead = 1;  ///< largest number of samples ahead: predictions 1 to this many samples ahead are
                                   ///< scored
   LookAheadScore look_ahead_score = LookAheadScore::density;  ///< `density` also scores starts, modes and iterations
   std::ptrdiff_t folds = 6;  ///< parts of the cross-validation; 1 turns it off, and every start runs to convergence
-  bool measurement_noise = true;  ///< true: R by maximum likelihood of the filter on the training runs; false: R of the
-                                  ///< start
+  bool measurement_noise = true;  ///< if true, R by maximum likelihood of the filter on the training runs; if false, R
+                                  ///< of the start
   bool screen = true;             ///< whether unstable, starved and duplicate modes are removed
   bool state_dependent_transition = false;  ///< whether transition probabilities may depend on state and input
                                             ///< (TransitionSource::logit)
@@ -105,10 +105,10 @@ struct BankOptions {
   double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
   std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; if empty, that of the baseline
   bool screen = true;                          ///< whether unstable and starved modes are removed
-  std::ptrdiff_t modes = 0;                    ///< largest number of modes; the closest components are merged; 0: no
-                                               ///< limit
-  Refine refine = Refine::automatic;           ///< whether the bank is refined by expectation-maximisation
-  RefineOptions em;                            ///< options of the refinement
+  std::ptrdiff_t modes = 0;  ///< largest number of modes; 0 for no limit. Above the limit, the closest components are
+                             ///< merged
+  Refine refine = Refine::automatic;  ///< whether the bank is refined by expectation-maximisation
+  RefineOptions em;                   ///< options of the refinement
 };
 
 /// All options of learning from runs. `modebank run` finds lags, delay and windows from the data unless they are given.

@@ -52,8 +52,8 @@ struct MeasurementStage {
 
 /// Whether transition probabilities depend on state and input, by cross-validation inside the training runs.
 struct SwitchingStage {
-  double width = 0.0;  ///< prior standard deviation of the weights, in units of the regressors' standard deviation; 0:
-                       ///< no dependence
+  double width = 0.0;  ///< prior standard deviation of the weights, in units of the regressors' standard deviation; 0
+                       ///< means no dependence
   double memory_sd = std::numeric_limits<double>::infinity();      ///< prior standard deviation of the previous mode's
                                                                    ///< effect on the log odds
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs with

@@ -70,7 +70,8 @@ HWY_INLINE void write_verdicts(const Settings& settings, const Fit<Q>& fit, Inde
   const M rated = settings.prior ? fit.reached : hn::AndNot(fit.deficient, fit.reached);
   const M solved = hn::And(hn::And(fit.enough, fit.clear), rated);
   const bool plain = hn::CountTrue(D(), hn::AndNot(fit.deficient, solved)) == hn::Lanes(D());
-  if (plain && count == static_cast<Index>(hn::Lanes(D())) && !out.transitions) {  // the usual case
+  // The usual case: all lanes are solved
+  if (plain && count == static_cast<Index>(hn::Lanes(D())) && !out.transitions) {
     std::fill_n(out.verdict + first, count, Verdict::solved);
     if (out.rank) std::fill_n(out.rank + first, count, Q);
     if (out.status) std::fill_n(out.status + first, count, static_cast<int>(FitStatus::converged));

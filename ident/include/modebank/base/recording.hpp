@@ -10,7 +10,7 @@ namespace modebank {
 /// One recorded run of N samples; column k of a signal is sample k.
 struct RecordedRun {
   std::string name;            ///< name of the run
-  bool held_out = false;       ///< true: used for scores, not for learning
+  bool held_out = false;       ///< if true, the run is used for scores and excluded from learning
   std::vector<double> time_s;  ///< N sample times, strictly increasing
   Matrix state;                ///< n x N, measured state; missing values are NaN
   Matrix input;                ///< m x N
