@@ -52,7 +52,7 @@ struct Chunk {
   const double* increments = nullptr;
   const double* present = nullptr;  ///< 1 per transition, or 0 for an excluded transition (its regressors and increment
                                     ///< are then 0); may be null
-  double sigma = 1.0;  ///< sigma of windows without their own scale
+  double sigma = 1.0;               ///< sigma of windows without their own scale
 };
 
 /// How the solver ended for a window. All but `solved` are passed on to Ceres.
