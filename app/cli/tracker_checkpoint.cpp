@@ -15,8 +15,8 @@ void Tracker::go_on() {
   reader_.remember(resumed.input);
   samples_.go_on_after(resumed.time_s);
   messages_.say(fmt::format(
-      "goes on after the sample at {} s ({}); send what follows {}, and drop what was written of later "
-      "samples: they are estimated again",
+      "goes on after the sample at {} s ({}); send the samples after {}, and drop the lines of later "
+      "samples: these are estimated again",
       resumed.time_s, config_.track.resume, *last_s_ < resumed.time_s ? fmt::format("{} s", *last_s_) : "it"));
 }
 

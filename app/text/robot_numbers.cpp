@@ -124,7 +124,7 @@ MatrixXd stationary_covariance(MatrixXd F, MatrixXd P) {
   return P;
 }
 
-/// Variances of the measured states about their steady values, P = A P A' + Q; NaN where the mode is not stable.
+/// Variances of the measured states about their stationary values, P = A P A' + Q; NaN where the mode is not stable.
 VectorXd stationary_variances(const RobotBank& robot, const LinearModel& model, const MatrixXd& Q) {
   const MatrixXd& C = robot.bank.C;
   const MatrixXd P = stationary_covariance(model.full_form(), Q);

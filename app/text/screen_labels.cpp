@@ -10,8 +10,8 @@ namespace modebank::app {
 const std::vector<ScreenLabel>& screen_labels() {
   static const std::vector<ScreenLabel> labels{
       {"read",
-       "what the data are: training runs, held-out runs and their steps, the states that the models predict, "
-       "the inputs that they predict them from, and by how much stamps are late."},
+       "the data: training runs, held-out runs and their steps, the states that the models predict, "
+       "the inputs, and by how much stamps are late."},
       {"structure",
        "how many past samples of the states (state lags) and of the inputs (input lags) the models predict "
        "from, and how many samples an input waits before it acts (delay)."},
@@ -64,8 +64,8 @@ const std::vector<ScreenLabel>& screen_labels() {
       {"bank", "the modes, the number of components that became modes, and the measurement noise R."},
       {"learned", "how many of the training steps the bank was learned from."},
       {"residuals",
-       "how many autocorrelations and input correlations of the errors lie outside their bands: 5 % of a "
-       "true model's do."},
+       "how many autocorrelations and input correlations of the errors lie outside their bands: 5 % if the "
+       "model is right."},
       {"modebank", "the version that wrote the archive, and when."},
       {"command", "the command line that made the archive."},
       {"config", "the hash of the configuration; the archive contains all of it."},

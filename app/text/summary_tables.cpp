@@ -68,7 +68,8 @@ std::string scores_text(const Archive& archive, int width) {
                  share(row.too_close), tails(row.nis_above, row.nis_below), fixed_or_short(row.nis_mean, 3),
                  fmt::format("{:.2g}", row.whiteness_p)});
   return table.text(width) +
-         "A true filter has 95 % of the samples in its 95 % band, 2.5 % too far from its prediction and 2.5 % too "
+         "If a filter is right, 95 % of the samples lie in its 95 % band, 2.5 % too far from its prediction and 2.5 % "
+         "too "
          "close\n"
          "(z^2 beyond the outer quantiles of chi-square); log score in nats per sample, higher is better.\n";
 }
@@ -184,8 +185,8 @@ std::string switches_text(const Bank& bank, const std::vector<std::string>& name
                           : fmt::format("{:.4f}", logit.weights(k, a)));
     table.add(std::move(cells));
   }
-  return "\nswitches to each mode: log odds per unit of state and input (no error: data say that they are large, no "
-         "more)\n" +
+  return "\nswitches to each mode: log odds per unit of state and input (no error: the data show only that they are "
+         "large)\n" +
          table.text(width);
 }
 

@@ -24,7 +24,7 @@ class CliTest : public ::testing::Test {
   void write(const std::string& name, const std::string& content) const { write_file(file(name), content); }
   std::string archive() const { return file("out.h5").string(); }
   std::string config() const { return file("test.ini").string(); }
-  /// Everything in the folder that is not from the fixture.
+  /// Everything in the folder that the fixture did not make.
   std::vector<std::string> left_behind() const;
 
   static std::string csv_run(int samples, unsigned seed);

@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// p standard errors of theta: roots of the covariance's diagonal, NaN where it is.
+/// p standard errors of theta: roots of the covariance's diagonal; NaN if the entry is NaN.
 Eigen::VectorXd standard_error(const LocalModel& fit);
 
 /// theta / standard error: distance from zero.
@@ -36,7 +36,7 @@ struct ConfidenceRegion {
 /// Throws std::invalid_argument unless 0 < level < 1.
 ConfidenceRegion confidence_region(const LocalModel& fit, double level = 0.95);
 
-/// Half width of the interval of each parameter by itself: standard error times the quantile of Student's t with
+/// Half width of each parameter's own interval: standard error times the quantile of Student's t with
 /// region_degrees_of_freedom.
 Eigen::VectorXd interval_half_width(const LocalModel& fit, double level = 0.95);
 

@@ -136,7 +136,7 @@ std::string text_at(unsigned pid, std::uint64_t address) {
   return text.c_str();
 }
 
-/// The file that the call writes to; empty if it is outside of the folder.
+/// The file to which the call writes; empty if it is outside the folder.
 class Counted {
  public:
   explicit Counted(std::string folder) : folder_(std::move(folder)) {}

@@ -9,9 +9,9 @@
 
 namespace modebank::test {
 
-/// A real Slurm on this machine during the object's lifetime (slurm_up.sh), in its own folder: munged, slurmctld and
-/// one slurmd per node n1, n2, .... SLURM_CONF points to it meanwhile. Throws std::runtime_error, with the daemons'
-/// logs, if it does not start.
+/// A real Slurm on this machine during the object's lifetime (slurm_up.sh), in its own folder. It has munged, slurmctld
+/// and one slurmd per node n1, n2, .... During this time SLURM_CONF points to it. Throws std::runtime_error with the
+/// daemons' logs if it does not start.
 class SlurmCluster {
  public:
   SlurmCluster(int nodes, int cpus_per_node);

@@ -24,7 +24,8 @@ struct Drawn {
   Archive archive;
   FilterEvaluation bank{"bank", {}};
 
-  /// `error(k, z, u, w)`: the next error, from the earlier ones, the inputs up to its own sample, and white noise.
+  /// `error(k, z, u, w)` returns the next error from earlier errors, from the inputs up to its own sample, and from
+  /// white noise.
   Drawn(int runs, Index samples, const std::function<double(Index, const VectorXd&, const VectorXd&, double)>& error) {
     std::mt19937_64 generator(7);
     boost::random::normal_distribution<double> normal;

@@ -1,4 +1,4 @@
-// If another value of a configuration key changes a stage's output, the stage's key must change, too. Otherwise trials
+// If another value of a configuration key changes a stage's output, the stage's key must also change. Otherwise trials
 // of a study that share stages by key would differ from `run`. This test tries other values of every key of the option
 // table. The first stage that changes must be the one in the key's row.
 #include "app/chain/stage_key.hpp"
@@ -84,7 +84,7 @@ class StageKey : public ::testing::Test {
 
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
   Config configured(const KeyValues& keys) const { return load_config(file("base.ini"), keys); }
-  /// Reduces work that takes long and has no key to the amount of `base`, for any key.
+  /// Reduces slow work that has no key to the amount of `base`, for any key.
   static ChainOptions quick(const Config& config, const Config& base) {
     ChainOptions options = chain_options(config);
     options.bank.em.folds = 2;

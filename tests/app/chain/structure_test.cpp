@@ -173,7 +173,7 @@ TEST(StageStructures, ModesAreAskedForTheUsualDelayToo) {
   EXPECT_EQ(kept->input_delay, 2);
 }
 
-/// Stated lags may need more samples than a free run has. They stay, and no other lags are tried beside them.
+/// Stated lags may need more samples than a free run has. These lags stay, and no other lags are tried.
 TEST(StageStructures, StatedLagsBeyondAFreeRunStay) {
   Recording recording = empty_recording(1, 1);
   for (Index r = 0; r < 4; ++r) add_run(recording, Eigen::MatrixXd::Random(1, 100), Eigen::MatrixXd::Random(1, 100));

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The grid around a pause equals that without one, except deep inside the pause.
+/// The grid around a pause equals the grid without a pause, except deep inside the pause.
 TEST(ClocksAndNumbersGrid, LeavesOutOnlyWhatLiesDeepInAPause) {
   VectorXd time_s(200);
   for (Index k = 0; k < 200; ++k) time_s(k) = 0.1 * static_cast<double>(k) + (k < 100 ? 0.0 : 5000.0);
@@ -37,7 +37,7 @@ TEST(ClocksAndNumbersGrid, LeavesOutOnlyWhatLiesDeepInAPause) {
   EXPECT_EQ(joint_times(time_s, time_s, {10.0, 0.0, 0.0, 0.0}).size(), 1100) << "a gap of 90 s at 10 Hz is short";
 }
 
-/// A pause of 1e9 s has 4e8 windows. They must cost nothing and leave the matches on either side unchanged.
+/// A pause of 1e9 s has 4e8 windows. These must cost no time and leave the matches on either side unchanged.
 TEST(ClocksAndNumbersLag, PassesOverAPause) {
   Stream inputs{VectorXd(2000), Eigen::MatrixXd(1, 2000)};
   for (Index k = 0; k < 2000; ++k) {

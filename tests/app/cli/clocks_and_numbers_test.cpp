@@ -128,7 +128,7 @@ TEST_F(ClocksAndNumbers, Finding_D9_AZeroInputLeavesTheOthersTheirErrors) {
   EXPECT_GT(variance(0), 0.0);
   EXPECT_TRUE(std::isnan(variance(1)));
   EXPECT_GT(variance(2), 0.0);
-  // An unidentifiable parameter comes from its prior, and texts must not present it as a result.
+  // The value of an unidentifiable parameter comes from its prior, and texts must not present this value as a result.
   for (const std::optional<Bank>& bank :
        {archive.bank, archive.unrefined, archive.baseline, archive.noise_only, archive.one_motion})
     for (const Mode& mode : bank.value().modes) {
@@ -162,7 +162,7 @@ TEST_F(ClocksAndNumbers, Finding_D9_CollinearInputsLeaveTheStateItsErrors) {
   EXPECT_THAT(check().out, Not(HasSubstr("nan")));
 }
 
-/// With an input equal to the state, the decay and every gain are unidentifiable.
+/// If an input equals the state, the decay and every gain are unidentifiable.
 TEST_F(ClocksAndNumbers, Finding_D9_AnOpenStateLeavesNoTimeConstantAndNoGain) {
   change_both([](int, Row& row) { row[3] = row[1]; });
   const ProgramResult result = run();
@@ -241,7 +241,8 @@ TEST_F(ClocksAndNumbers, Finding_D16_OneOutlierThatOwnsTheGlobalModelIsNamed) {
   const char* said = "run_00.csv:42: run \"00\": wz = 100000 holds 100 % of the variance of wz in the training runs";
   EXPECT_THAT(run().err, HasSubstr(said));
   EXPECT_THAT(check().out, HasSubstr("run_00.csv:42: run \"00\": wz = 100000"));
-  // Held out, the column does not affect a model, but scores. Where data.where is false it does not belong to the data.
+  // In a held-out run the column affects scores, but no model. Samples for which data.where is false do not belong to
+  // the data.
   change("run_00.csv", [](int, Row&) {});
   EXPECT_THAT(run().err, Not(HasSubstr("% of the variance of")));
   change("run_01.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e5" : row[1]; });

@@ -55,7 +55,7 @@ TEST_F(Commands, ResidualTestsAreInTheArchiveAndInTheSummary) {
   EXPECT_NE(shown.out.find("R^2 of the increments"), std::string::npos) << shown.out;
 }
 
-/// The loss is the difference of the summary's scores, even if lags leave samples unscored.
+/// The loss is the difference of the summary's scores, even if some samples have no score because of lags.
 TEST_F(Commands, MergingModesSaysWhatItCostsInTheSummarysScores) {
   std::vector<std::string> options{"--window.model", "varx", "--window.state_lags", "3", "--mixture.components", "3"};
   const auto pooled = [&](Role role) {
@@ -107,7 +107,7 @@ TEST_F(Commands, HugeNumbersStayInTheirColumns) {
   EXPECT_EQ(result.out.find("00000000000"), std::string::npos) << result.out;
 }
 
-/// A column of zeros and ones has the same effect as leaving out transitions. The column must have valid weights.
+/// A column of zeros and ones has the same effect as leaving out transitions. An invalid weight is refused.
 TEST_F(Commands, SampleWeightsComeFromAColumn) {
   std::string text = csv_run(80, 1), weighted = "time,wz,left,right,w\n";
   std::istringstream lines(text);
@@ -184,7 +184,7 @@ TEST_F(Commands, StepsThatScatterEndInOneModelAndItsTimeConstant) {
   EXPECT_NEAR(-archived.recording->median_period_s() / std::log1p(archived.bank->theta(0)(0)), 1.0, 0.1);
 }
 
-/// Import refuses values without a square in a double, so this test makes them itself.
+/// Import refuses values without a square in a double, so this test makes such values itself.
 TEST(WindowWarnings, NameWindowsWithoutAFiniteFit) {
   app::WindowCounts counts;
   counts.status[static_cast<std::size_t>(FitStatus::converged)] = 5;
@@ -275,7 +275,7 @@ TEST_F(Commands, HelpOfACommandShowsItsUse) {
   }
 }
 
-/// A command on the screen must run where the user is.
+/// A command on the screen must work in the user's folder.
 TEST_F(Commands, NextCommandsNameTheProgramAsItWasCalled) {
   const std::string path = std::getenv("PATH"), program = MODEBANK_PROGRAM;
   const std::string log = file("run_00.csv").string();
@@ -287,7 +287,7 @@ TEST_F(Commands, NextCommandsNameTheProgramAsItWasCalled) {
   EXPECT_NE(by_name.find("next: modebank run "), std::string::npos) << by_name;
 }
 
-/// A term has one definition, found by any of its names; a key has its own.
+/// Each term has one definition, which all of its names find. A key has its own definition.
 TEST_F(Commands, HelpSaysWhatATermOrAKeyMeans) {
   const std::string definition = modebank({"help", "NIS"}).out;
   EXPECT_NE(definition.find("Normalised innovation squared"), std::string::npos) << definition;

@@ -1,5 +1,5 @@
-// `modebank demo`: what it finds beside the truth; the commands that it names, on configurations that the program
-// contains, in a folder of its own.
+// `modebank demo`: its modes beside the truth, the commands that it prints, the configurations inside the program, and
+// its own folder.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using ::testing::Not;
 class Demo : public CliTest {
  protected:
   std::string folder() const { return file("demo").string(); }
-  /// The demo of tyres, small enough to take seconds.
+  /// The demo of tyres with few runs, so that it takes only seconds.
   ProgramResult tyres(std::vector<std::string> options = {}) const {
     options.insert(options.begin(), "tyres");
     return small_demo(options);

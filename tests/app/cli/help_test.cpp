@@ -50,7 +50,7 @@ TEST_F(Help, ExplainsEveryLabelOfTheScreen) {
     EXPECT_NE(app::help_on(label.name).find(label.means), std::string::npos) << label.name;
 }
 
-/// Every name of a term leads to it, and so does every word that is not used for it.
+/// All names of a term find it, and so do the words that are not used for it.
 TEST_F(Help, AnswersEveryWordOfTheGlossary) {
   for (const nlohmann::json& term : nlohmann::json::parse(app::assets::terms_json())) {
     std::vector<std::string> names{term.at("term")};
@@ -117,7 +117,7 @@ TEST_F(Help, WordsAfterACommandAreCounted) {
   }
 }
 
-/// An option that a command would not read is an error of the user, for any value.
+/// An option that a command does not read is a user error, for any value.
 TEST_F(Help, OptionsThatACommandDoesNotReadAreRefused) {
   const std::vector<std::vector<std::string>> lines{{"show", archive(), "-o", "x"},
                                                     {"run", config(), "-o", "x"},

@@ -67,7 +67,7 @@ TEST_F(RunLog, EndsInThreeFilesWhoseConfigurationGivesTheSameBits) {
 }
 
 TEST_F(RunLog, RefusesFilesThatExistBeforeAnythingIsComputed) {
-  write("log.csv", "time,wz,left\n");  // refused, too, since it has no rows
+  write("log.csv", "time,wz,left\n");  // also refused, because it has no rows
   write("drive.html", "<!DOCTYPE html>a page");
   write("drive.ini", "[data]\nstate = x\n");
   const ProgramResult result = run_log({file("log.csv").string()});
@@ -93,7 +93,7 @@ TEST_F(RunLog, LogsOfOneKindAreRunsAndOtherColumnsAreRefused) {
   EXPECT_THAT(other.err, HasSubstr("tank.csv have different columns"));
 }
 
-/// A tank's pump and a gyro suit as input and state, but the one was recorded after the other.
+/// A tank's pump and a gyro look like input and state, but they were recorded at different times.
 TEST_F(RunLog, TwoFilesOfOtherTimesAreNoInstrumentsOfOneRun) {
   std::string pump = "time,pump\n", gyro = "time,wz\n";
   for (int k = 0; k < 300; ++k) {

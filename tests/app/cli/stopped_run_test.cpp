@@ -57,7 +57,7 @@ class StoppedRun : public CliTest {
       raise(told > 0 ? SIGINT : SIGKILL);
       _exit(0);
     }
-    // So that the reads below end, even without a message from the child.
+    // So that the reads below end even if the child writes no message.
     close(ends[1]);
     close(counts[1]);
     int status = 0;
@@ -72,7 +72,8 @@ class StoppedRun : public CliTest {
   fs::path output() const { return file("robot.h5"); }
 };
 
-/// The next process takes the stages that a stopped one has stored, if keys agree. A completed run removes them.
+/// If keys agree, the next process uses the stages that a stopped process has stored. A completed run removes these
+/// stages.
 TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   int computed = -1;
   EXPECT_NE(stopped_after(3, computed).find("are kept in"), std::string::npos);
@@ -94,7 +95,7 @@ TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   EXPECT_TRUE(left_behind().empty());
 }
 
-/// As under nohup. Afterwards signals have their previous handlers.
+/// As under nohup. Afterwards the signals have their earlier handlers.
 TEST_F(StoppedRun, ASignalThatIsIgnoredStaysIgnored) {
   const auto before = signal(SIGINT, SIG_IGN);
   {

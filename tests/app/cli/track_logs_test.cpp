@@ -1,5 +1,5 @@
 // The live filter on logs in the forms that `run` reads: stamps, dialects, derived channels, rates and lags. Expected
-// values are those of evaluate on the same run, or of the same numbers in the simplest form.
+// values come from `evaluate` on the same run, or from the same numbers in the simplest form.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -67,7 +67,7 @@ class TrackLogs : public Track {
     while (std::getline(text, line)) rows.push_back(numbers(line));
     return rows;
   }
-  /// The estimates of run 01 equal those of evaluate, at its times after `origin_s`.
+  /// The estimates of run 01 equal those of `evaluate` at its times after `origin_s`.
   void expect_evaluated(const ProgramResult& result, double origin_s = 0.0, double within = 1e-12) const {
     const Archive stored = read_archive(archive());
     const Trajectory& run = stored.recording->runs[1];
@@ -244,7 +244,7 @@ TEST_F(TrackLogs, ForecastsToTheNewestSample) {
   for (std::size_t k = 0; k < plain.size(); ++k)
     for (std::size_t i = 0; i < plain[k].size(); ++i)
       EXPECT_TRUE(plain[k][i] == said[k][i] || std::isnan(plain[k][i])) << "the forecast leaves the filter as it was";
-  // The same computed here: the aligned run, its last state and input, then a sample without measurement.
+  // The same, computed in this test: the aligned run, its last state and input, then a sample without measurement.
   const Trajectory run = read_archive(archive()).recording->runs[1];
   std::string text = "time,wz,left,right\n";
   for (Index k = 0; k < run.samples(); ++k)

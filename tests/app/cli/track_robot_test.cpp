@@ -39,7 +39,7 @@ TEST_F(TrackRobot, Finding_D5_GoesOnWhereStandardErrorIsFullOrClosed) {
 TEST_F(TrackRobot, Finding_D5_NoCommandIsAbortedByItsOwnMessage) {
   for (const char* errors : {"2>/dev/full", "2>&-", "<&- >&- 2>&-"})
     EXPECT_EQ(shell(std::string("$M run nofile.ini ") + errors).status, 2) << errors;
-  // A file must not get the number of a standard stream, or messages would go into it.
+  // A file must not get the number of a standard stream; otherwise messages would go into the file.
   EXPECT_EQ(shell("$M run test.ini --archive.output closed.h5 2>&-").status, 0);
   EXPECT_EQ(shell("$M verify closed.h5").status, 0);
   EXPECT_EQ(shell("$M show out.h5 >&-").status, 1) << "nobody got the text";
@@ -105,9 +105,9 @@ TEST_F(TrackRobot, Finding_D7_TellsOfAMeasurementThatCountsAsMissing) {
   EXPECT_EQ(result.err, "modebank: line 5: wz = 1e+50 is beyond 1e+30, and counts as missing\n");
 }
 
-/// Each kill is at another distance from the last checkpoint, and some inputs are missing. The output of the processes,
-/// each cut where the next one continues, must equal that of a single process. A missing input repeats the last finite
-/// one.
+/// Each kill is at another distance from the last checkpoint, and some inputs are missing. The output of the processes
+/// must equal the output of a single process. Each output is cut at the sample from which the next process continues. A
+/// missing input repeats the last finite one.
 TEST_F(TrackRobot, TellsOfAnInputThatIsNoNumberToReckonWith) {
   const char* const header = "time,wz,left,right\\n0,0.1,0.1,0.2\\n0.1,0.2,0.1,0.2\\n";
   const std::string before = header;

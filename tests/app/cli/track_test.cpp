@@ -77,7 +77,7 @@ TEST_F(Track, SpeaksNdjson) {
   }
 }
 
-/// filter.variant = kf is the global model, not the bank's first mode.
+/// filter.variant = kf uses the global model, not the bank's first mode.
 TEST_F(Track, AKalmanFilterIsTheGlobalModel) {
   PipedProgram kf(command({"--filter.variant", "kf"})), baseline(command({"--track.filter", "baseline"}));
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -112,7 +112,7 @@ TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
   EXPECT_EQ(modebank({"track", archive(), "--track.filter", "combined", "--track.checkpoint", "c.json"}).status, 2);
 }
 
-/// Combined filters predict live as evaluate has scored them one sample ahead.
+/// The one-step predictions of the combined filters in `track` equal those that `evaluate` scored.
 TEST_F(Track, CombinedFiltersAreThoseThatWereScored) {
   const Archive stored = read_archive(archive());
   const std::vector<std::string> samples = lines("run_01.csv");

@@ -1,4 +1,4 @@
-// The exported C compared with the filter itself, on banks and runs that reach every part of it.
+// The exported C compared with the filter, on banks and runs that reach every part of the C code.
 #include <gmock/gmock.h>
 
 #include "app/export/forms.hpp"
@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 constexpr Index samples = 400;
 constexpr double dt_s = 0.1;
 
-/// A run for any bank. Its numbers do not matter, because both filters get the same.
+/// A run for any bank. The numbers do not matter, because both filters get the same run.
 Trajectory run_for(const Bank& bank, std::uint64_t seed) {
   Bank source = example_bank(bank.C.rows(), bank.structure.inputs, 2, 1e-3);
   return disturbed(modebank::test::simulate_bank(source, samples, seed), dt_s);

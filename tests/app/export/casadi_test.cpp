@@ -68,7 +68,7 @@ void expect_same(const Bank& bank) {
   const MatrixXd A = matrix_of(said["linearised"][0], n), B = matrix_of(said["linearised"][1], m),
                  c = matrix_of(said["linearised"][2], 1);
   EXPECT_LE((A * at.x + B * at.u + c - next).cwiseAbs().maxCoeff(), 1e-9);
-  // Exact without a logit; with one, central differences have this error.
+  // Exact for a constant T; with state-dependent transitions, central differences have this error.
   const double step = 1e-5, tolerance = bank.transition_logit.empty() ? 1e-9 : 1e-7;
   for (Index j = 0; j < n + m; ++j) {
     Point up = at, down = at;

@@ -65,7 +65,7 @@ TEST_F(Export, JsonIsTheArchivesBank) {
   EXPECT_EQ(page.at("filter").at("noise"), "gaussian");
 }
 
-/// A value below its standard error, an unidentifiable parameter and R at its bound are never exported without a
+/// Values below their standard errors, unidentifiable parameters and an R at its bound are never exported without a
 /// remark.
 TEST_F(Export, DoubtfulNumbersAreRemarkedInEveryForm) {
   judge(Calibration::calibrated);
@@ -110,7 +110,7 @@ TEST_F(Export, ModesHaveTheirNames) {
   for (std::size_t k = 1; k < modes.size(); ++k) EXPECT_EQ(modes.at(k).at("name"), "mode " + std::to_string(k));
 }
 
-/// Every mode is in the family that it names, families stand by use, and both pages have the same.
+/// Every mode is in the family that it names, families are ordered by use, and both pages have the same families.
 TEST_F(Export, ModesHaveTheirFamily) {
   judge(Calibration::calibrated);
   Archive stored = read_archive(archive());

@@ -172,7 +172,8 @@ TEST(ExportedRos2, StatesErrorsByTheDeltaMethod) {
   EXPECT_THAT(text, HasSubstr(fmt::format("# +- {:.2g} of wheel_separation = 1 m", expected)));
 }
 
-/// Two widths of one family, used for 60 and 20 % of the time, and a third mode that is too vague to count.
+/// Two modes of one family with different widths, used for 60 and 20 % of the time, and a third mode that is too vague
+/// to count.
 ExportedBank family_of_three() {
   Robot wide;
   wide.separation_m = 0.65;
@@ -216,8 +217,8 @@ TEST(ExportedRos2, AFamilyIsOneFileOfMeansByUse) {
   EXPECT_THAT(text, HasSubstr(", its modes 0.008 to 0.016"));  // Q / dt_s
 }
 
-/// Both modes are sure of their width; how far they are apart is the error. Of 1 / width it is
-/// (1 / 0.55 - 1 / 0.65) sqrt(0.75 0.25) per metre, of the width 0.5722^2 times that.
+/// Both modes have precise widths, so the standard error is the difference between these. For 1 / width it is (1 / 0.55
+/// - 1 / 0.65) sqrt(0.75 0.25) per metre; for the width it is 0.5722^2 times that.
 TEST(ExportedRos2, TheErrorOfAFamilyHoldsHowFarItsModesAreApart) {
   ExportedBank exported = family_of_three();
   for (Mode& mode : exported.bank.modes) mode.standard_error.setConstant(1e-9);

@@ -1,6 +1,6 @@
-// Every command on a disk that becomes full: each call that writes to a file fails. Existing files must stay, new files
-// must be complete or absent, and the message must name the file and the reason. By default a seeded sample of the
-// calls fails; with MODEBANK_FAULTS=all (`make faults`) each of them.
+// Runs every command on a disk that becomes full: each call that writes to a file fails. Existing files must stay, and
+// new files must be complete or absent. The message must name the file and the reason. By default a seeded sample of
+// the calls fails; with MODEBANK_FAULTS=all (`make faults`) each call fails once.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -160,8 +160,8 @@ class DiskFull : public CliTest {
     return bytes == expected->second || (lines(bytes) == lines(expected->second) && bytes.back() == '\n');
   }
 
-  /// Success is right if all files are complete anyway (a file closed after its sync, a probe), or if a warning names
-  /// what is missing.
+  /// Success is right if all files are complete in spite of the failure (a file closed after its sync, a probe), or if
+  /// a warning names the missing file.
   bool may_pass(const Report& report, const ProgramResult& result, const Content& now) const {
     if (result.err.find("No space left on device") != std::string::npos) return names_a_file(report, result.err);
     return std::all_of(after_.begin(), after_.end(), [&](const auto& entry) {

@@ -1,5 +1,5 @@
-// Logs with the state and the inputs that a person would choose: those of ../shared/data, of the cases, of the
-// documentation and of users' kinds. If init writes a configuration, its data can be imported and cut.
+// Logs with the state and the inputs that a person would choose: logs of ../shared/data, of the cases, of the
+// documentation and of typical users. If init writes a configuration, its data can be imported and cut into windows.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>

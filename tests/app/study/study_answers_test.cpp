@@ -73,7 +73,7 @@ TEST(StudyAnswers, InfluenceIsTheShareOfVarianceExplained) {
 TEST(StudyAnswers, BestIsJudgedByTheMeanOverRepeats) {
   StudyTable table = grid();
   table.rows[0].scores[1] = 100.0;   // one very good seed of K = 2 full ...
-  table.rows[1].scores[1] = -100.0;  // ... and its other seed is as bad
+  table.rows[1].scores[1] = -100.0;  // ... and a very bad second seed
   const Answers answers = answer(table);
   const auto best = std::find_if(answers.best.begin(), answers.best.end(),
                                  [](const BestSetting& b) { return b.score == "bank_test_log_score"; });

@@ -159,8 +159,8 @@ int rounds() {
   return asked ? std::atoi(asked) : 1;
 }
 
-/// A machine is lost at a random moment. Its claims are taken over when they were not renewed for ten minutes, which
-/// this test simulates. Its unfinished files stay.
+/// A machine is lost at a random moment. When its claims were not renewed for ten minutes, which this test simulates,
+/// other machines take them over. Its unfinished files stay.
 TEST_F(SharedFileSystem, AMachineThatIsLostChangesNoNumber) {
   const std::string numbers_expected = expected();
   std::mt19937_64 generator(20261123);

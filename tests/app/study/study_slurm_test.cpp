@@ -130,8 +130,8 @@ ProgramResult typed_in(const std::filesystem::path& folder, const std::string& c
                       std::filesystem::path(MODEBANK_PROGRAM).parent_path().string(), command});
 }
 
-/// The printed commands of the how-to, on a study with the name in them. Paths contain characters that shells, Slurm's
-/// lines and Slurm's patterns interpret differently.
+/// The commands that the how-to prints, run on a study whose name is in them. Paths contain characters that shells,
+/// Slurm's lines and Slurm's patterns interpret differently.
 class StudySlurmPaths : public StudySlurm {
  protected:
   std::filesystem::path odd_folder(const std::string& name) const {

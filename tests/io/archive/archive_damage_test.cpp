@@ -102,7 +102,7 @@ TEST_F(ArchiveDamage, ForeignHdf5AndOtherSchemasAreNamed) {
   expect_unreadable("not a modebank archive");
 }
 
-// An archive of the first release; since then the table of candidates has more columns at its end.
+// An archive of the first release. Later releases have more columns at the end of the table of candidates.
 TEST_F(ArchiveDamage, AnArchiveOfAnEarlierMinorVersionOpens) {
   const Archive whole = test::full_archive(2, 1);
   write_archive(path, whole);
@@ -173,7 +173,7 @@ TEST(StoredSwitches, OfOtherSizesOrNoNumbersAreRefused) {
       "weights of the transition");
   refuses([](StoredBank& s) { s.transition_weights(0, 1) += 1.0; }, "depend on the previous mode");
   refuses([](StoredBank& s) { s.transition_weights.resize(0, 0); }, "no transition weights");
-  StoredBank huge = store_bank(bank);  // valid because finite: log odds are bounded elsewhere
+  StoredBank huge = store_bank(bank);  // accepted because it is finite: log odds are bounded elsewhere
   huge.transition_weights.setConstant(1e300);
   EXPECT_NO_THROW(restore_bank(huge, Bank()));
 }
@@ -185,7 +185,7 @@ TEST_F(ArchiveDamage, ContentElsewhereIsRefused) {
 
 /// Reads, inspects and verifies the archive, with one part of its metadata damaged after the other.
 void use_with_damaged_metadata(const fs::path& path) {
-  constexpr int stride = test::in_release(4, 15);  // not every part, since each needs a whole verification
+  constexpr int stride = test::in_release(4, 15);  // only some parts, because each needs a whole verification
   int piece = 0;
   const std::string bytes = read_file(path);
   for (const char* signature : {"OHDR", "OCHK", "FRHP", "FHDB", "BTHD", "BTLF"})

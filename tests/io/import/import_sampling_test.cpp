@@ -137,7 +137,7 @@ TEST_F(ImportSampling, EvenStepsKeepTheirTimes) {
   EXPECT_THAT(data.notes, IsEmpty());
 }
 
-/// Uneven steps stay uneven at any rate near the log's; only many of them together make an even step.
+/// Uneven steps stay uneven at any rate near the log's. Only the sum of many steps is an even step.
 TEST_F(ImportSampling, StepsThatScatterAreKeptAndSaid) {
   const auto uneven = alternating(0.2);  // alternately 0.24 and 0.16 s; the median is one of them
   for (const double rate_hz : {0.0, 5.0, 1.25}) {

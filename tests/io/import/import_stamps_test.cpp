@@ -98,8 +98,8 @@ TEST_F(ImportStamps, SerialDaysOfSpreadsheetsAndMatlab) {
       "Time", 60.0, [](int k) { return fmt::format("{:.6f}", 45764.5 + k / 1440.0); }, 0.1);
   expect_even(
       "Timestamp", 10.0, [](int k) { return fmt::format("{:.9f}", 45764.25 + k / 8640.0); }, 1e-3);
-  // As seconds these would be 1,440 Hz and not at full seconds of days, or 288 Hz, which is doubtful because as days
-  // they are 5 minutes apart.
+  // Read as seconds, the first would be at 1,440 Hz and not at full seconds of days. The second would be at 288 Hz,
+  // which is doubtful, because read as days its steps are 5 minutes.
   expect_even(
       "Time", 1.0 / 1440.0, [](int k) { return fmt::format("{:.9f}", 45764.51234 + k / 1440.0); }, 1e-8);
   expect_even(
@@ -204,7 +204,7 @@ TEST_F(ImportStamps, OneFileDecidesForTheOthers) {
                                         HasSubstr("data.time_format = PATTERN")));
 }
 
-/// A date that both readings take for the same day does not determine those of other files.
+/// A date that both readings take for the same day does not decide how dates of other files are read.
 TEST_F(ImportStamps, AFileOfOneReadingAloneDoesNotDecide) {
   options.inputs = "run_*.csv";
   const auto dated = [&](const std::string& name, const std::string& date) {

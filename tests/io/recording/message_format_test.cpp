@@ -70,7 +70,7 @@ TEST(MessageFormat, Ros1PutsValuesSideBySide) {
   const std::string payload = bytes(
       {0xff, 0, 0, 0, 0xf0, 1, 0, 0, 0, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 2, 0, 0, 0, 'h', 'i', 200});
   EXPECT_EQ(value_of(definition, payload, "a", Dialect::ros1).number, -1.0);
-  // Seconds are unsigned in a time, and both parts signed in a duration.
+  // The seconds of a time are unsigned; both parts of a duration are signed.
   EXPECT_EQ(value_of(definition, payload, "t", Dialect::ros1).exact, 0xf0000000LL * 1'000'000'000 + 1);
   EXPECT_EQ(value_of(definition, payload, "d", Dialect::ros1).exact, -1'000'000'001);
   EXPECT_EQ(value_of(definition, payload, "s", Dialect::ros1).text, "hi");
@@ -120,7 +120,7 @@ TEST(MessageFormat, WideStringsAreFourOrTwoBytesPerCharacter) {
   const std::string two = little + bytes({3, 0, 0, 0, 'a', 0, 0xac, 0x20, 'b', 0});
   EXPECT_EQ(value_of("wstring s\n", four, "s").text, "a\u20ac");
   EXPECT_EQ(value_of("wstring s\n", two, "s", Dialect::ros2, 2).text, "a\u20acb");
-  // Messages determine which of them is meant.
+  // The messages determine which definition is right.
   Connection connection{"/t", "p/msg/T", Connection::Encoding::cdr, "cdr", "wstring s\n", "ros2msg", 1};
   EXPECT_EQ(choose_decoder(connection, KnownDefinitions(), {four}).wide_bytes, 4u);
   EXPECT_EQ(choose_decoder(connection, KnownDefinitions(), {two}).wide_bytes, 2u);
@@ -176,7 +176,7 @@ TEST(MessageFormat, DefinitionsThatCannotBeAreRefused) {
   EXPECT_THAT(error(deep), HasSubstr("nested more than 32 deep"));
 }
 
-/// Sixteen levels of 4,000 empty values each would take for ever to visit.
+/// Sixteen levels of 4,000 empty values each would take too long to visit.
 TEST(MessageFormat, NothingIsWalkedThroughThatHasNoBytes) {
   std::string definition = "A0[4000] x\nuint8 a\n";
   for (int i = 0; i < 16; ++i)

@@ -84,7 +84,7 @@ TEST_F(SameDrive, HasTheSameHashHoweverItIsStored) {
   EXPECT_NE(hash("drive_none.bag", used), hash("drive_none.bag", {"/imu/data"}));
 }
 
-/// A truncated recording gives the first part of the whole.
+/// A truncated recording gives the first part of the whole recording.
 TEST_F(SameDrive, CutOffGivesTheMessagesBefore) {
   MODEBANK_NEEDS_DRIVE();
   const TemporaryFolder cut;

@@ -7,7 +7,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-/// Read before the fixture hides the user's data folder from the program.
+/// Must be read before the fixture hides the user's data folder from the program.
 const std::filesystem::path shared_data = shared_data_dir();
 
 #define NEEDS_SHARED_DATA() MODEBANK_NEEDS_DATA(!shared_data.empty())

@@ -41,7 +41,7 @@ class Suggest : public Check {
     }
   }
   /// A Kalman filter with the known noise of runs with gross errors, whose mean square is 0.05. The true theta predicts
-  /// best. The filter's theta is the windows' mean, which the errors change as far as the loss allows.
+  /// best. The filter's theta is the windows' mean, and the loss determines how far the errors change this mean.
   void write_config(const std::string& more) const {
     write("test.ini",
           "[data]\n# the robot's\ninputs = run_*.csv\nstate = wz\ninput = left, right  # wheels\n[mixture]\ncomponents "
@@ -56,7 +56,7 @@ class Suggest : public Check {
   }
 };
 
-/// Without times the configuration states the rate, so other rates are not tried.
+/// Without a column of times the rate is stated, so other rates are not tried.
 TEST_F(Suggest, WithoutTimesTheRateIsNoChoice) {
   write_config("[data]\ntime =\nrate_hz = 10\n");
   const json said = check_json(config()).at("suggestions");
