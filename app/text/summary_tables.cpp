@@ -68,8 +68,7 @@ std::string scores_text(const Archive& archive, int width) {
                  share(row.too_close), tails(row.nis_above, row.nis_below), fixed_or_short(row.nis_mean, 3),
                  fmt::format("{:.2g}", row.whiteness_p)});
   return table.text(width) +
-         "If a filter is right, 95 % of the samples lie in its 95 % band, 2.5 % too far from its prediction and 2.5 % "
-         "too "
+         "A correct filter has 95 % of samples in its 95 % band, 2.5 % too far from its prediction and 2.5 % too "
          "close\n"
          "(z^2 beyond the outer quantiles of chi-square); log score in nats per sample, higher is better.\n";
 }
