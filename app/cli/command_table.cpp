@@ -319,7 +319,7 @@ const std::vector<CommandOption>& common_options() {
 void refuse_gone_command(const std::string& name) {
   if (name == "view")
     throw ConfigurationError(
-        "view went; instead: `modebank report FOLDER -o SITE` writes an index and pages that open from disk");
+        "view was removed; instead: `modebank report FOLDER -o SITE` writes an index and pages that open from disk");
 }
 
 const Command* find_command(const std::string& name) {

@@ -112,7 +112,7 @@ int run_predict(const CommandLine& line) {
   for (const std::string& note : data.notes) spdlog::warn("{}", note);
   const std::vector<FreeRun> predicted = predict_all(archive, config, data.recording);
   for (const std::string& remark : remarks("bank", data.recording.runs, predicted)) spdlog::warn("{}", remark);
-  if (predicted_samples(predicted) == 0) throw DataError("nothing could be predicted");
+  if (predicted_samples(predicted) == 0) throw DataError("no sample could be predicted");
   nlohmann::json result;
   if (!line.output.empty()) {
     replace_file(final_target(line.output), {predicted_csv(data.recording, predicted)});

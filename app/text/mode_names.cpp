@@ -38,9 +38,10 @@ std::vector<std::string> mode_names_of(const Archive& archive, const std::vector
   if (!archive.bank) return {};
   const auto modes = static_cast<std::size_t>(archive.bank->mode_count());
   if (!given.empty() && given.size() != modes)
-    progress.warning(fmt::format("bank.mode_names has {} name{}, but the bank has {} mode{}: {}", given.size(),
-                                 given.size() == 1 ? "" : "s", modes, modes == 1 ? "" : "s",
-                                 given.size() < modes ? "the first ones are named by it" : "the last ones name none"));
+    progress.warning(
+        fmt::format("bank.mode_names has {} name{}, but the bank has {} mode{}: {}", given.size(),
+                    given.size() == 1 ? "" : "s", modes, modes == 1 ? "" : "s",
+                    given.size() < modes ? "it names only the first modes" : "its last names are not used"));
   std::vector<std::string> names(modes);
   for (std::size_t k = 0; k < modes; ++k)
     names[k] =

@@ -137,9 +137,9 @@ FilterSnapshot load_checkpoint(const std::filesystem::path& path, const std::str
     snapshot.samples.time_s = stored.at("time_s").is_null() ? not_a_number : stored.at("time_s").get<double>();
     return snapshot;
   } catch (const json::exception&) {
-    throw DataError(path.string() + ": is not a whole checkpoint of track");
+    throw DataError(path.string() + ": is not a complete checkpoint of track");
   } catch (const std::invalid_argument&) {
-    throw DataError(path.string() + ": is not a whole checkpoint of track");
+    throw DataError(path.string() + ": is not a complete checkpoint of track");
   }
 }
 

@@ -25,7 +25,8 @@ StoredChannels store_channels(const std::vector<Channel>& channels) {
 }
 
 std::vector<Channel> restore_channels(const StoredChannels& stored) {
-  if (stored.names.size() != stored.units.size()) throw DataError("as many channel names as units are needed");
+  if (stored.names.size() != stored.units.size())
+    throw DataError("the numbers of channel names and units must be equal");
   std::vector<Channel> channels;
   for (std::size_t i = 0; i < stored.names.size(); ++i) channels.push_back({stored.names[i], stored.units[i]});
   for (const std::string& name : stored.averaged) {

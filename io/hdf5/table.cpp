@@ -107,7 +107,7 @@ template <class T>
 void read_values(const TableRows& rows, const std::string& name, Vector<T>& values) {
   StoredColumn stored = stored_column(rows, name, std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER);
   // With a narrower number, a small file could require much memory.
-  if (stored.cell_bytes != sizeof(T)) throw DataError("column '" + name + "' holds numbers of another width");
+  if (stored.cell_bytes != sizeof(T)) throw DataError("column '" + name + "' has numbers of another width");
   values.resize(static_cast<std::size_t>(rows.rows.count));
   const std::string& cells = converted(stored, stored.type.id(), memory_type<T>(), values.size());
   std::copy_n(cells.data(), cells.size(), reinterpret_cast<char*>(values.data()));
@@ -129,7 +129,7 @@ void read_values(const TableRows& rows, const std::string& name, Eigen::MatrixXd
     throw DataError("column '" + name + "' does not have arrays of numbers");
   check(H5Tget_array_dims2(stored.type.id(), &length), "read an array type");
   if (H5Tget_size(element.id()) != sizeof(double) || length != stored.cell_bytes / sizeof(double))
-    throw DataError("column '" + name + "' holds numbers of another width");
+    throw DataError("column '" + name + "' has numbers of another width");
   values.resize(static_cast<Eigen::Index>(length), static_cast<Eigen::Index>(rows.rows.count));
   const std::string& cells =
       converted(stored, element.id(), H5T_NATIVE_DOUBLE, static_cast<std::size_t>(values.size()));

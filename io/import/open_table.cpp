@@ -131,7 +131,7 @@ void refuse_octave_text(const Path& path, std::string_view first) {
                           content.find("\n# type: matrix\n") != std::string::npos;
   if (one_matrix && path.extension() != ".mat") return;
   throw ConfigurationError(
-      fmt::format("{0} is in Octave's text format, which is not read here; octave --eval \"s = load('{0}'); "
+      fmt::format("{0} is in Octave's text format, which modebank does not read; octave --eval \"s = load('{0}'); "
                   "save('-v7', '{1}', '-struct', 's')\"",
                   path.string(), (path.parent_path() / (path.stem().string() + "_v7.mat")).string()));
 }
@@ -175,7 +175,7 @@ std::shared_ptr<const TableReader> open_table(const Path& path, const FormatOpti
   const std::string first = first_bytes(path);
   for (const Foreign& other : foreign)
     if (other.magic.empty() ? is_telemetry(path, first) : first.starts_with(other.magic))
-      throw ConfigurationError(fmt::format("{} is {}, which is not read here; {}", path.string(), other.name,
+      throw ConfigurationError(fmt::format("{} is {}, which modebank does not read; {}", path.string(), other.name,
                                            advice_of(other, path.string())));
   refuse_octave_text(path, first);
   for (const Format& format : formats)

@@ -117,10 +117,10 @@ void RowCollector::append(LogColumn& column, const LogWant& want, const Value& v
     case Form::text:
       return column.text.push_back(written_out(value));
     case Form::number:
-      if (value.form == Value::Form::text) fail("text, where a number is wanted");
+      if (value.form == Value::Form::text) fail("text in place of a number");
       return column.numbers.push_back(missing ? std::numeric_limits<double>::quiet_NaN() : value.number);
     case Form::exact:
-      if (value.form == Value::Form::text) fail("text, where a number is wanted");
+      if (value.form == Value::Form::text) fail("text in place of a number");
       if (value.form == Value::Form::real) return column.numbers.push_back(value.number);
       if (value.form == Value::Form::natural && value.exact < 0) fail("a number beyond 2^63 - 1");
       return column.exact.push_back(missing ? no_exact_value : value.exact);

@@ -64,7 +64,7 @@ class Mcap : public PieceFile {
     Footer footer;
     footer.at = file_.size() - magic.size() - footer_bytes;
     if (file_.view(footer.at + footer_bytes, magic.size()) != magic)
-      throw Damage(footer.at, "it does not end as MCAP does");
+      throw Damage(footer.at, "it does not end with MCAP's magic bytes");
     const Record record = read_record(file_, footer.at, footer.at + footer_bytes);
     if (record.op != Op::footer || record.content_bytes != 20) throw Damage(footer.at, "there is no footer");
     FieldReader fields(file_.view(record.content_at, 20), record.content_at);

@@ -62,9 +62,9 @@ void bind_archive(py::module_& module) {
         const py::gil_scoped_release unlocked;
         return OpenArchive(path).digest();
       },
-      py::arg("path"), "SHA-256 of an archive, which is right; throws DataError for a file that is none.");
+      py::arg("path"), "SHA-256 of an archive after a check; throws DataError for a file that is not an archive.");
   module.def("families", &families, py::arg("path"),
-             "Families of the modes of an archive's bank, the most used first: a dictionary each.");
+             "Families of the modes of an archive's bank, most used first: one dictionary per family.");
   module.def("screen", &screen, py::arg("path"), py::arg("width"));
   module.def("summary", &summary, py::arg("path"), py::arg("width"));
 }

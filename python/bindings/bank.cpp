@@ -129,10 +129,10 @@ void bind_bank(py::module_& module) {
       .def_property_readonly("state_names", [](const filter::Bank& b) { return b.description().state_names; })
       .def_property_readonly("input_names", [](const filter::Bank& b) { return b.description().input_names; })
       .def_property_readonly("modes", &filter::Bank::modes, "K")
-      .def_property_readonly("states", &filter::Bank::states, "n, with lags the stacked samples")
-      .def_property_readonly("measurements", &filter::Bank::measurements, "n_y, what a step takes as its measurement")
-      .def_property_readonly("inputs", &filter::Bank::inputs, "what a step takes as its input")
-      .def_property_readonly("dt", &filter::Bank::dt_s, "sample period that one step stands for [s]");
+      .def_property_readonly("states", &filter::Bank::states, "n, including lagged states")
+      .def_property_readonly("measurements", &filter::Bank::measurements, "n_y, number of measurements in a step")
+      .def_property_readonly("inputs", &filter::Bank::inputs, "number of inputs in a step")
+      .def_property_readonly("dt", &filter::Bank::dt_s, "sample period of one step [s]");
 }
 
 }  // namespace modebank::python

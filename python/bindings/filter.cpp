@@ -72,7 +72,7 @@ class Filter {
   }
   py::array_t<double> snapshot() const { return copied(filter_.snapshot()); }
   void restore(const Samples& snapshot) {
-    if (snapshot.ndim() != 1) throw std::invalid_argument("snapshot must be what Filter.snapshot() gave");
+    if (snapshot.ndim() != 1) throw std::invalid_argument("snapshot must be an array from Filter.snapshot()");
     filter_.restore({snapshot.data(), snapshot.data() + snapshot.size()});
   }
   filter::Estimate estimate() const { return filter_.estimate(); }
@@ -150,13 +150,14 @@ void bind_filter(py::module_& module) {
                               MODEBANK_ESTIMATE_VECTOR(mode_probability_predicted, "(K,) before the measurement")
                                   MODEBANK_ESTIMATE_VECTOR(mode_probability, "(K,) after the measurement")
                                       .def_readonly("nis", &Estimate::nis,
-                                                    "normalised innovation squared of the signals that are there")
+                                                    "normalised innovation squared of the measured signals")
                                       .def_readonly("log_density", &Estimate::log_density,
-                                                    "of the measurement as predicted [nats]")
-                                      .def_readonly("spread_share", &Estimate::spread_share,
-                                                    "of the modes' differences in the innovation covariance's trace")
+                                                    "log density of the measurement under its prediction [nats]")
+                                      .def_readonly(
+                                          "spread_share", &Estimate::spread_share,
+                                          "share of the modes' differences in the innovation covariance's trace")
                                       .def_readonly("steps", &Estimate::steps,
-                                                    "model steps since the sample before; 0: (re)started here");
+                                                    "model steps since the sample before; 0: the filter started here");
   py::class_<ForecastArrays>(
       module, "Forecast", "Predictions of the samples ahead, all modes combined; NaN before the start of the filter.")
       .def_readonly("state", &ForecastArrays::state, "(steps, n) [state unit]")
@@ -185,9 +186,9 @@ void bind_filter(py::module_& module) {
       .def("snapshot", &Filter::snapshot, "The filter's state as an array, to store it.")
       .def("restore", &Filter::restore, py::arg("snapshot"),
            "Continues from a snapshot of a filter of the same bank and options, with bit-identical steps.")
-      .def_property_readonly("estimate", &Filter::estimate, "what the last step said")
+      .def_property_readonly("estimate", &Filter::estimate, "the last step's estimate")
       .def("restart", &Filter::restart, "Resets the filter; it starts anew at the next complete measurement.")
-      .def_property_readonly("started", &Filter::started, "whether it has had a start");
+      .def_property_readonly("started", &Filter::started, "whether the filter has started");
 }
 
 }  // namespace modebank::python

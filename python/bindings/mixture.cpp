@@ -76,8 +76,7 @@ void bind_mixture(py::module_& module) {
       .def_property_readonly(
           "covariances", [](const Selection& selection) { return covariances(selection.mixture); },
           "(K, F, F) [feature unit^2]")
-      .def_property_readonly("candidates", &candidates,
-                             "a pandas table: every number of components and what speaks for it")
+      .def_property_readonly("candidates", &candidates, "a pandas table: every number of components with its criteria")
       .def("responsibilities", &responsibilities_of, py::arg("points"),
            "(N, K) posterior probability of each component at points (N, F).")
       .def("log_density", &log_densities, py::arg("points"), "(N,) log density at points (N, F) [nats].");

@@ -54,7 +54,7 @@ Windows identify(const std::vector<Samples>& states, const std::vector<Samples>&
                  const std::vector<std::string>& state_names, const std::vector<std::string>& input_names,
                  const py::dict& keys) {
   if (states.empty() || states.size() != inputs.size())
-    throw std::invalid_argument("as many states as inputs are needed");
+    throw std::invalid_argument("states and inputs must have equally many runs");
   if (!(dt_s > 0.0) || !std::isfinite(dt_s)) throw std::invalid_argument("dt must be a positive number of seconds");
   app::Config config = config_of(keys, "window.");
   if (!keys.contains("model")) config.structure.automatic_model = false;  // Windows alone use the lags in the options.
@@ -120,7 +120,8 @@ void bind_windows(py::module_& module) {
                   MODEBANK_WINDOWS_ARRAY("run", run, "(M,) index of the window's run, from 0")
                       MODEBANK_WINDOWS_ARRAY("start", start, "(M,) first sample of the window") MODEBANK_WINDOWS_ARRAY(
                           "rank", fits.rank, "(M,) number of directions of theta that the window's data determine")
-                          MODEBANK_WINDOWS_ARRAY("condition", fits.condition, "(M,) of the scaled regressors")
+                          MODEBANK_WINDOWS_ARRAY("condition", fits.condition,
+                                                 "(M,) condition number of the scaled regressors")
                               MODEBANK_WINDOWS_ARRAY("information", fits.information,
                                                      "(M, p) 1 - posterior over prior variance; NaN without a prior")
                                   MODEBANK_WINDOWS_ARRAY("r_squared", fits.r_squared,

@@ -73,13 +73,13 @@ constexpr std::array gone{
 std::string instead_of_gone(const std::string& key, const std::string& value) {
   const auto* const found =
       std::find_if(gone.begin(), gone.end(), [&](const Gone& g) { return g.key == key && g.value == value; });
-  if (found != gone.end()) return fmt::format(", which went; instead: {}", found->instead);
+  if (found != gone.end()) return fmt::format(", which was removed; instead: {}", found->instead);
   constexpr std::string_view simulate = "simulate.";
   const bool of_a_system =
       value.empty() && key.starts_with(simulate) &&
       std::any_of(system_parameters().begin(), system_parameters().end(),
                   [&](const Option& option) { return option.name() == key.substr(simulate.size()); });
-  return of_a_system ? fmt::format(", which went; instead: a line of the file that simulate.system names") : "";
+  return of_a_system ? fmt::format(", which was removed; instead: a line of the file that simulate.system names") : "";
 }
 
 }  // namespace modebank::app

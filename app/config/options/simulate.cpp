@@ -20,7 +20,7 @@ std::vector<Option> common_parameters() {
             MODEBANK_FIELD(simulate.kind))
           .touch("always"),
       text("system.ground_names", "words",
-           "names in the column ground of the states file; empty: no such column (the column mode has the ground's "
+           "names in the column ground of the simulated files; empty: no such column (the column mode has the ground's "
            "number)",
            MODEBANK_FIELD(simulate.ground_names))
           .touch("when modes shall be named after the grounds"),

@@ -23,7 +23,8 @@ StoredChannels store_model_parameters(const std::vector<ModelParameter>& paramet
 }
 
 std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored) {
-  if (stored.names.size() != stored.units.size()) throw DataError("as many parameter names as units are needed");
+  if (stored.names.size() != stored.units.size())
+    throw DataError("the numbers of parameter names and units must be equal");
   std::vector<ModelParameter> parameters;
   for (std::size_t i = 0; i < stored.names.size(); ++i) parameters.push_back({stored.names[i], stored.units[i]});
   return parameters;

@@ -371,12 +371,14 @@ TEST_F(Robustness, P8WhatOneFormOfACommandDoesNotReadIsRefused) {
     EXPECT_THAT(result.err, HasSubstr(why));
   };
   refuses({"verify", archive(), "--repair"}, "--repair works only with folders of studies");
-  refuses({"export", archive(), "--to", "c", "--float"}, "--float, which went; instead: export --to c writes double");
+  refuses({"export", archive(), "--to", "c", "--float"},
+          "--float, which was removed; instead: export --to c writes double");
   refuses({"export", archive(), "--to", "c", "--table", "/bank"}, "--table belongs to export --to csv");
   refuses({"export", archive(), "--to", "mat", "--wheel_radius_m", "1"},
           "--wheel_radius_m belongs to export --to ros2");
-  refuses({"view", "results", "--open", "--port", "8000"}, "view went; instead: `modebank report FOLDER -o SITE`");
-  refuses({"help", "view"}, "view went; instead: `modebank report FOLDER -o SITE`");
+  refuses({"view", "results", "--open", "--port", "8000"},
+          "view was removed; instead: `modebank report FOLDER -o SITE`");
+  refuses({"help", "view"}, "view was removed; instead: `modebank report FOLDER -o SITE`");
   refuses({"evaluate", config(), "--archive.bank", archive(), "--archive.output", file("o.h5").string(),
            "--bank.refine", "none"},
           "--bank.refine: with archive.bank nothing is learned");

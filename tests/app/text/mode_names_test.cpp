@@ -47,9 +47,9 @@ TEST(ModeNames, AreTheLabelsOfSixtyPercentOfTheSamples) {
 TEST(ModeNames, AWrongCountIsSaidAndCostsNoRun) {
   const Warnings fewer, more;
   EXPECT_THAT(mode_names_of(labelled(), {"wet"}, fewer), ElementsAre("wet", "", "grip"));
-  EXPECT_EQ(fewer.said, "bank.mode_names has 1 name, but the bank has 3 modes: the first ones are named by it\n");
+  EXPECT_EQ(fewer.said, "bank.mode_names has 1 name, but the bank has 3 modes: it names only the first modes\n");
   EXPECT_THAT(mode_names_of(labelled(), {"a", "b", "c", "d"}, more), ElementsAre("a", "b", "c"));
-  EXPECT_EQ(more.said, "bank.mode_names has 4 names, but the bank has 3 modes: the last ones name none\n");
+  EXPECT_EQ(more.said, "bank.mode_names has 4 names, but the bank has 3 modes: its last names are not used\n");
 }
 
 TEST(ModeNames, StandBesideNumbersOnOneLine) {
