@@ -15,7 +15,7 @@ void Tracker::follow_lines() {
         "inputs come {:.3g} s after the states that they act on: each estimate waits for its input, and its time is "
         "that of its sample. {}",
         -lag_s,
-        config_.track.forecast ? "The columns now_... forecast to the newest sample"
+        config_.track.forecast ? "The columns now and ..._now forecast to the newest sample"
                                : "--track.forecast true adds the forecast to the newest sample"));
   if (lag_s > 0.0)
     messages_.say(fmt::format("inputs come {:.3g} s before the states that they act on: they are held back", lag_s));
