@@ -46,7 +46,7 @@ std::string period_remark(const std::string& file, const Bank& bank, const Recor
   constexpr double tolerated = 0.1;  // time per step, and so increments, may differ by a tenth
   const double dt_s = recording.median_period_s();
   if (std::abs(dt_s - bank.dt_s) <= tolerated * bank.dt_s) return "";
-  return fmt::format("{}: one step of its bank is {:.4g} s, of the data {:.4g} s", file, bank.dt_s, dt_s);
+  return fmt::format("{}: a step of its bank is {:.4g} s, but a step of the data is {:.4g} s", file, bank.dt_s, dt_s);
 }
 
 StoredBanks read_banks(const std::filesystem::path& path, const Recording& recording, bool one_model,

@@ -12,8 +12,8 @@ void Tracker::follow_lines() {
   const double lag_s = alignment_.lag_s;
   if (lag_s < 0.0)
     messages_.say(fmt::format(
-        "inputs come {:.3g} s after the states that they act on: each estimate waits for its input, and its time is "
-        "that of its sample. {}",
+        "inputs come {:.3g} s after the states that they act on. Each estimate waits for its input, but carries the "
+        "time stamp of its sample. {}",
         -lag_s,
         config_.track.forecast ? "The columns now and ..._now forecast to the newest sample"
                                : "--track.forecast true adds the forecast to the newest sample"));

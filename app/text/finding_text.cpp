@@ -98,13 +98,14 @@ std::string gain_words(const PairedGain& gain) {
   return fmt::format("the gain over `{}`, {},", gain.competitor, gain_words(gain.gain, gain.standard_error));
 }
 
-/// "the gain over `one_motion`, +0.849 +- 0.388 nats per sample, may be chance (with 5 runs more than
-/// 0.911 passes)"
+/// "the gain over `one_motion`, +0.849 +- 0.388 nats per sample, may be chance: with 5 runs, only a gain
+/// above 0.911 passes"
 std::string within_chance_words(const PairedGain& gain, Eigen::Index runs) {
   const std::string clusters =
       gain.by_blocks ? counted(static_cast<Eigen::Index>(gain.degrees_of_freedom) + 1, "block") : counted(runs, "run");
   if (!gain.exceeds())
-    return fmt::format("{} may be chance (with {} more than {:.3f} passes)", gain_words(gain), clusters, gain.margin);
+    return fmt::format("{} may be chance: with {}, only a gain above {:.3f} passes", gain_words(gain), clusters,
+                       gain.margin);
   return fmt::format(
       "{} rests on few of the {}: chance gives ranks as high in {:.0f} % of cases (signed-rank test, "
       "at most 5 % passes)",

@@ -142,8 +142,8 @@ std::string all_families(const Archive& archive, const GainNames& gains, int wid
   const std::vector<ModeFamily> families = mode_families(archive);
   if (!some_have_several(families)) return "";
   std::string text =
-      "\nfamilies of modes: means by use; their errors hold those of the modes and how far the modes "
-      "are apart\n";
+      "\nfamilies of modes: means over the modes, weighted by use. The errors include the modes' own errors and the "
+      "differences between the modes\n";
   const std::vector<std::string> tracks = track_cells(archive, families);
   text = wrapped(text, width) + text_of(family_headings(gains, true, !tracks.empty()),
                                         family_rows(archive, families, true, tracks), true, width);

@@ -21,8 +21,7 @@ std::vector<Warning> window_warnings(const WindowFits& fits, const WindowCounts&
     warnings.push_back(
         {WarningKind::replaced_windows,
          fmt::format("the batch solver's cost was above Ceres' by more than {:.0e} relative, or its gradient above "
-                     "{:.0e}, in {} of {} "
-                     "audited windows, which have been solved by {}",
+                     "{:.0e}, in {} of {} audited windows. These windows were solved again by {}",
                      WindowAudit::tolerance, WindowAudit::gradient_tolerance, fits.audit.replaced, fits.audit.checked,
                      fits.audit.ceres_method)});
   if (const Index failed = counts.of(FitStatus::failed); failed > 0)

@@ -170,8 +170,8 @@ std::vector<RunFiles::File> RunFiles::partners(const RunFiles& theirs, const std
   }
   if (entries_.size() != theirs.entries_.size() || own.has_star() || other.has_star())
     throw ConfigurationError(
-        fmt::format("{} names {} files and {} {}; name as many in the same order, or use a * in both", theirs.key_,
-                    theirs.entries_.size(), key_, entries_.size()));
+        fmt::format("{} lists {} files, but {} lists {}; list the same number in the same order, or use a * in both",
+                    theirs.key_, theirs.entries_.size(), key_, entries_.size()));
   const std::vector<File> all = theirs.listed(), here = listed();
   for (const std::string& run : runs)
     for (std::size_t i = 0; i < all.size(); ++i)

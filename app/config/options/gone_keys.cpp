@@ -79,7 +79,8 @@ std::string instead_of_gone(const std::string& key, const std::string& value) {
       value.empty() && key.starts_with(simulate) &&
       std::any_of(system_parameters().begin(), system_parameters().end(),
                   [&](const Option& option) { return option.name() == key.substr(simulate.size()); });
-  return of_a_system ? fmt::format(", which was removed; instead: a line of the file that simulate.system names") : "";
+  return of_a_system ? fmt::format(", which was removed; set it in the system file, whose path is in simulate.system")
+                     : "";
 }
 
 }  // namespace modebank::app

@@ -49,7 +49,7 @@ std::vector<Option> common_parameters() {
           .touch("as in your logs; a large share leaves windows rank deficient"),
       numeric("system.equal_fraction", between(0, 1), "", "share of commands with all inputs equal (drive)",
               MODEBANK_FIELD(simulate.system.equal_fraction))
-          .touch("as in your logs; straight driving excites turning little"),
+          .touch("as in your logs; much straight driving leaves the turning motion little excited"),
   };
 }
 

@@ -189,7 +189,7 @@ TEST_F(ConfigFile, KeysThatWentAreAnsweredWithWhatTakesTheirPlace) {
         Case{"[bank]\nlook_ahead_score = error\n", "bank.look_ahead = 10 error"},
         Case{"[bank]\nscreen = false\n", "bank.theta = mean"}, Case{"[study]\nretry = false\n", "tried again"},
         Case{"[track]\nlevel = 0.9\n", "intervals hold 95 %"},
-        Case{"[simulate]\nfriction = 0.1\n", "the file that simulate.system names"},
+        Case{"[simulate]\nfriction = 0.1\n", "the system file, whose path is in simulate.system"},
         Case{"[mixture]\nstart_runs = 2\n", "mixture.restarts"}, Case{"[mixture]\ncriterion = aic\n", "instead: bic"},
         Case{"[mixture]\nheldout = never\n", "mixture.criterion = heldout"},
         Case{"[mixture]\nbootstrap = 200\n", "standard errors of their coefficients"},

@@ -90,8 +90,8 @@ TEST(FindingText, WhatCannotBeToldSaysWhy) {
   finding.runs = 5;
   EXPECT_THAT(finding_text(finding),
               AllOf(StartsWith("Cannot tell whether the 5 held-out runs have modes of motion: the gain over "
-                               "`one_motion`, +0.849 +- 0.388 nats per sample, may be chance (with 5 runs more than "
-                               "1.077 passes)."),
+                               "`one_motion`, +0.849 +- 0.388 nats per sample, may be chance: with 5 runs, only a gain "
+                               "above 1.077 passes."),
                     HasSubstr("`drifting`: one linear model whose parameters wander): each sample is 2.0 times as "
                               "likely (+0.717 +- 0.094")));
   finding.gains.front() = {"one_motion", 700, 0.849, 0.388, 4.0, 0.8, false, 0.16};

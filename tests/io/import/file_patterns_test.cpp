@@ -155,7 +155,7 @@ TEST_F(ListedFiles, HavePartnersInTheSamePlace) {
   EXPECT_THAT(message_of<ConfigurationError>([&] {
                 listed("y_a.csv", "data.states").partners(inputs, {"u1", "u2"});
               }),
-              HasSubstr("data.inputs names 2 files and data.states 1"));
+              HasSubstr("data.inputs lists 2 files, but data.states lists 1"));
 }
 
 TEST_F(ListedFiles, SayWhatIsWrongWithAList) {
