@@ -52,7 +52,8 @@ export function drawVerdict(verdict) {
   const of = (wanted) => verdict.cards.filter((row) => (row.key === 'coverage') === wanted);
   const said =
       h('div', {id: 'said', class: `verdict ${sort}`}, h('p', {class: 'answer'}, capital(verdict.headline), '.'),
-        h('p', {}, withCode(verdict.text, withTips)), (verdict.equations || []).map((line) => h('p', {}, h('code', {}, line))));
+        h('p', {}, withCode(verdict.text, withTips)),
+        (verdict.equations || []).map((line) => h('p', {}, h('code', {}, line))));
   const next =
       verdict.next ? h('p', {id: 'next', class: 'note'}, h('strong', {}, 'Next: '), withCode(verdict.next)) : null;
   const use =
