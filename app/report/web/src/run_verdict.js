@@ -30,7 +30,8 @@ const cardList = (id, rows) => (rows.length ? h('ul', {class: 'numbers', id}, ro
 
 function modesTable(modes) {
   const unit = modes.gain_unit ? `; gains in ${modes.gain_unit}` : '';
-  const families = modes.families < modes.count ? ` in ${modes.families} famil${modes.families === 1 ? 'y' : 'ies'}` : '';
+  const noun = modes.families === 1 ? 'family' : 'families';
+  const families = modes.families < modes.count ? ` in ${modes.families} ${noun}` : '';
   const title = `${modes.count} mode${modes.count === 1 ? '' : 's'}${families}${unit}`;
   const columns = modes.headings.map((name, i) => ({
                              name,
