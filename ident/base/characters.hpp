@@ -13,7 +13,7 @@ constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 /// Whether a terminal would interpret the character as a control character.
 constexpr bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
 
-/// The letters and digits of a text; each run of other characters becomes one '_'.
+/// The letters and digits of a text, with '_' in place of each run of other characters.
 std::string letters_and_digits(std::string_view text);
 
 }  // namespace modebank

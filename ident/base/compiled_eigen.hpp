@@ -2,9 +2,10 @@
 
 #include <Eigen/Dense>
 
-/// Eigen's inner loops for dense matrices of doubles, compiled once in compiled_eigen.cpp. Otherwise they take a third
-/// of the compile time of a file that multiplies and solves. The precompiled headers begin with this header, so no file
-/// includes it itself. A file without this header, or with another version of Eigen, compiles the loops itself.
+/// Eigen's inner loops for dense matrices of doubles. They are compiled once, in compiled_eigen.cpp; otherwise they
+/// take a third of the compile time of a file that multiplies and solves. The precompiled headers begin with this
+/// header, so no source file includes it. A file that is compiled without this header, or with another version of
+/// Eigen, compiles the loops itself.
 #if EIGEN_WORLD_VERSION == 3 && EIGEN_MAJOR_VERSION == 4 && EIGEN_MINOR_VERSION == 0
 #ifndef MODEBANK_EIGEN_TEMPLATE
 #define MODEBANK_EIGEN_TEMPLATE extern template
@@ -95,7 +96,7 @@ MODEBANK_EIGEN_SOLUTION(OnTheRight, Upper, RowMajor);
 
 }  // namespace internal
 
-// Factorisations that ident/base/linalg.hpp does not instantiate alone; constructors that take a matrix use these.
+// Factorisations that ident/base/linalg.hpp does not instantiate itself. Constructors that take a matrix use these.
 MODEBANK_EIGEN_TEMPLATE LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);
 MODEBANK_EIGEN_TEMPLATE LLT<Ref<MatrixXd>>& LLT<Ref<MatrixXd>>::compute(const EigenBase<MatrixXd>&);
 MODEBANK_EIGEN_TEMPLATE LDLT<MatrixXd>& LDLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);

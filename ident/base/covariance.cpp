@@ -7,7 +7,7 @@ namespace modebank {
 bool is_covariance(const Eigen::MatrixXd& M) {
   constexpr double rounding = 1e-9;
   if (M.rows() != M.cols() || !M.allFinite() || (M.diagonal().array() < 0.0).any()) return false;
-  // Scaled to unit standard deviations. A row without variance must be zero.
+  // The matrix in units in which every standard deviation is 1. A row without variance must be zero.
   const Eigen::VectorXd sd = M.diagonal().cwiseSqrt();
   const Eigen::VectorXd scale = (sd.array() > 0.0).select(sd.cwiseInverse(), 0.0);
   for (Eigen::Index i = 0; i < M.rows(); ++i)

@@ -4,7 +4,7 @@
 
 namespace modebank {
 
-/// Whether a matrix is finite, symmetric and positive semidefinite up to rounding, in any units of its rows.
+/// Whether a matrix is finite, symmetric and positive semidefinite up to rounding. The units of its rows do not matter.
 bool is_covariance(const Eigen::MatrixXd& M);
 
 }  // namespace modebank

@@ -16,8 +16,8 @@ namespace math = boost::math;
 
 namespace {
 
-/// The result is NaN instead of an exception outside a distribution's domain, and if a series does not converge. Such
-/// arguments come from files and from diverged filters; the messages of Boost would not help users.
+/// Outside a distribution's domain, and if a series does not converge, the result is NaN instead of an exception. Such
+/// arguments come from files and from diverged filters; Boost's messages would not help users.
 using Quiet = math::policies::policy<math::policies::domain_error<math::policies::ignore_error>,
                                      math::policies::pole_error<math::policies::ignore_error>,
                                      math::policies::overflow_error<math::policies::ignore_error>,
@@ -45,7 +45,7 @@ double chi_square_quantile(double probability, double degrees) {
 double chi_square_density(double value, double degrees) { return math::pdf(ChiSquared(degrees), value); }
 
 double chi_square_upper_tail(double value, double degrees) {
-  // far below the smallest double, and outside the range in which the series converges
+  // this probability is far below the smallest double, and the series does not converge here
   if (value > 1e8 + 1e3 * degrees) return 0.0;
   return math::cdf(math::complement(ChiSquared(degrees), value));
 }

@@ -4,7 +4,7 @@
 
 namespace modebank {
 
-// Quantiles, tail probabilities and densities for regions and tests, from Boost.Math, compiled once.
+// Quantiles, tail probabilities and densities from Boost.Math, for regions and tests. Compiled once.
 
 /// Phi^-1 of a probability in (0, 1).
 double normal_quantile(double probability);
@@ -13,13 +13,13 @@ double normal_score(double pit);
 
 double chi_square_quantile(double probability, double degrees);
 double chi_square_density(double value, double degrees);
-/// P(X > value), and the value with a given upper tail probability.
+/// The tail probability P(X > value), and the value that has a given tail probability.
 double chi_square_upper_tail(double value, double degrees);
 double chi_square_upper_quantile(double tail, double degrees);
 
 /// Quantile of Fisher's F.
 double fisher_quantile(double probability, double numerator, double denominator);
-/// Quantile of Student's t; for infinite degrees, of the normal distribution.
+/// Quantile of Student's t. With infinite degrees of freedom it is the quantile of the normal distribution.
 double student_quantile(double probability, double degrees);
 /// P(X <= value) for Student's t.
 double student_probability(double value, double degrees);

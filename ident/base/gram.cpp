@@ -52,8 +52,8 @@ namespace gram {
 
 HWY_EXPORT(add_block);
 
-/// Calls `add_block` for this processor. If a function is built for one processor only, Highway requires an unqualified
-/// name.
+/// Calls `add_block` for this processor. Highway requires the unqualified name if a function is built for one processor
+/// only.
 void dispatch(const double* block, std::ptrdiff_t stride, std::ptrdiff_t count, std::ptrdiff_t side, double* sums) {
   HWY_DYNAMIC_DISPATCH(add_block)(block, stride, count, side, sums);
 }
@@ -63,7 +63,7 @@ void dispatch(const double* block, std::ptrdiff_t stride, std::ptrdiff_t count, 
 Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
                               const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& root) {
   using Eigen::Index;
-  // 20 columns of a block fit into the first-level cache
+  // 20 columns of a block of this size fit into the first-level cache
   constexpr Index block_rows = 256, tile = gram::HWY_NAMESPACE::tile;
   const Index q = left.cols(), columns = q + right.cols();
   const Index side = (columns + tile - 1) / tile * tile;

@@ -5,9 +5,9 @@
 
 namespace modebank {
 
-/// Z' Z with Z = diag(root) [left right](rows), symmetric to the bit. `root` has one entry per listed row. `left` and
-/// `right` must have the same number of rows. The order of summation depends on the instruction set, but not on the
-/// number of threads.
+/// Z' Z with Z = diag(root) [left right](rows), symmetric to the bit. `root` has one entry per listed row.  `left` and
+/// `right` have equal numbers of rows. The order of summation depends on the instruction set, but not on the number of
+/// threads.
 Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
                               const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& root);
 

@@ -4,9 +4,9 @@
 
 namespace modebank {
 
-/// During its lifetime, long computations called by this thread call `hook` from time to time. An exception from `hook`
-/// ends them. Worker threads do not call the hook. An exception in this thread also ends their work, because oneTBB
-/// cancels the rest of a loop.
+/// During its lifetime, long computations of this thread call `hook` from time to time. An exception from `hook` ends
+/// the computation. Worker threads do not call `hook`, but the exception ends their work too: oneTBB cancels the rest
+/// of a loop.
 class Interruptible {
  public:
   explicit Interruptible(std::function<void()> hook);
@@ -19,7 +19,7 @@ class Interruptible {
   const std::function<void()>* outer_;
 };
 
-/// Calls this thread's hook, if it has one. For loops that may take seconds.
+/// Calls this thread's hook, if it has one. Loops that may take seconds call this function.
 void interruption_point();
 
 }  // namespace modebank

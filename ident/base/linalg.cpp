@@ -22,9 +22,9 @@ VectorXd solve_least_squares(const MatrixXd& A, const VectorXd& b) {
 }
 
 VectorXd singular_values(const MatrixXd& square) {
-  constexpr Eigen::Index large = 24;  // with 60 columns Jacobi rotations take eight times as long
+  constexpr Eigen::Index large = 24;  // Jacobi rotations take eight times as long with 60 columns
   if (square.cols() >= large) return Eigen::BDCSVD<MatrixXd>(square).singularValues();
-  // square: no QR preconditioner is needed
+  // a square matrix needs no QR preconditioner
   return Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner>(square).singularValues();
 }
 
@@ -121,7 +121,7 @@ MatrixXd Cholesky::whiten(const MatrixXd& B) const { return factor_.matrixL().so
 
 std::optional<MatrixXd> definite_inverse(const MatrixXd& M) {
   const Cholesky factor(M);
-  // The factorisation stops at the first failing pivot. Solving with it would give a wrong result.
+  // The factorisation stops at the first failing pivot, so solving with it would give a wrong result.
   if (!factor.definite()) return std::nullopt;
   return factor.inverse();
 }

@@ -6,8 +6,8 @@
 #include <functional>
 #include <optional>
 
-/// Dense matrix decompositions by Eigen. Each is one of Eigen's heaviest templates, so they are compiled once to
-/// shorten compile times. Matrices must be finite.
+/// Dense matrix decompositions by Eigen. Eigen's templates for them are slow to compile, so they are compiled once.
+/// Matrices must be finite.
 namespace modebank {
 
 /// X = U diag(sigma) V' with min(rows, columns) singular values in decreasing order.
@@ -17,7 +17,7 @@ struct ThinSvd {
   Eigen::MatrixXd V;
 };
 ThinSvd thin_svd(const Eigen::MatrixXd& X);
-/// The minimum-norm solution among all x that minimise |A x - b|.
+/// The x of minimum norm among all x that minimise |A x - b|.
 Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 /// Singular values of a square matrix, in decreasing order.
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& square);
@@ -28,7 +28,7 @@ struct ThinQr {
   Eigen::MatrixXd R;
 };
 ThinQr thin_qr(const Eigen::MatrixXd& X);
-/// R of X = Q R.
+/// The factor R of X = Q R.
 Eigen::MatrixXd qr_triangle(const Eigen::MatrixXd& X);
 /// A R^-1 for an upper triangular R.
 Eigen::MatrixXd divide_by_triangle(Eigen::MatrixXd A, const Eigen::MatrixXd& R);
@@ -45,9 +45,9 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& M);
 
 /// Eigenvalues of any square matrix, unordered.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& square);
-/// The largest real part of the eigenvalues of a linear map on R^n, given by its products M x. `start` (n): a guess of
-/// the eigenvector. Uses restarted Arnoldi iteration (Spectra) to a relative tolerance of 1e-11. Small maps, and maps
-/// for which the iteration does not converge, use a dense decomposition.
+/// The largest real part of the eigenvalues of a linear map on R^n. The map is given by its products M x. `start` (n)
+/// is a guess of the eigenvector. Uses restarted Arnoldi iteration (Spectra) to a relative tolerance of 1e-11. A dense
+/// decomposition is used for small maps, and if the iteration does not converge.
 double largest_real_eigenvalue(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& product,
                                const Eigen::VectorXd& start);
 
@@ -58,13 +58,13 @@ class Cholesky {
   explicit Cholesky(const Eigen::MatrixXd& M) { factorise(M); }
   void factorise(const Eigen::MatrixXd& M);
 
-  /// Whether M is positive definite. All other members are valid only then.
+  /// Whether M is positive definite. If it is not, the other members are invalid.
   bool definite() const { return factor_.info() == Eigen::Success; }
   /// An estimate of the reciprocal condition number of M.
   double rcond() const;
   Eigen::MatrixXd L() const;
   Eigen::MatrixXd inverse() const;
-  /// L'^-1. Its product with its transpose is the inverse of M.
+  /// L'^-1. This matrix times its transpose is the inverse of M.
   Eigen::MatrixXd inverse_root() const;
   /// M^-1 b.
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
@@ -85,7 +85,7 @@ double log_determinant(const Eigen::MatrixXd& M);
 /// factorisation M = L D L' with pivoting.
 Eigen::VectorXd solve_semidefinite(const Eigen::MatrixXd& M, const Eigen::VectorXd& b);
 Eigen::MatrixXd solve_semidefinite(const Eigen::MatrixXd& M, const Eigen::MatrixXd& B);
-/// The diagonal of D in the factorisation of solve_semidefinite.
+/// The diagonal of D in the factorisation that solve_semidefinite uses.
 Eigen::VectorXd semidefinite_pivots(const Eigen::MatrixXd& M);
 
 /// LU decomposition with full pivoting, for square matrices that may be singular.
@@ -93,7 +93,7 @@ class PivotedLu {
  public:
   explicit PivotedLu(const Eigen::MatrixXd& M);
   bool invertible() const;
-  /// An estimate of the reciprocal condition number.
+  /// An estimate of the reciprocal condition number of the matrix.
   double rcond() const;
   Eigen::MatrixXd inverse() const;
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;

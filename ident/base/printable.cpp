@@ -32,7 +32,7 @@ std::string shown(std::string_view text, bool lines, Bytes bytes) {
   };
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    // U+0080 .. U+009F are two bytes of UTF-8; terminals interpret them as control characters, too.
+    // U+0080 .. U+009F are two bytes of UTF-8. Terminals interpret these characters as control characters.
     const bool second_set =
         c == '\xc2' && i + 1 < text.size() && (static_cast<unsigned char>(text[i + 1]) & 0xe0) == 0x80;
     if (const char* const escaped = misleading(text.substr(i))) {

@@ -7,15 +7,15 @@
 
 namespace modebank {
 
-/// Returns the text in a form that is safe for a terminal, in UTF-8. Control characters (except line ends and tabs) and
-/// bytes that are not UTF-8 become escapes such as \x1b.
+/// The text in UTF-8, safe for a terminal. Control characters (except line ends and tabs) and bytes that are not UTF-8
+/// become escapes such as \x1b.
 std::string printable(std::string_view text);
 
-/// Returns a name in a form that is safe for one line of a log, a table or a job script: `printable`, with line ends
-/// and tabs also escaped (\x0a).
+/// The name, safe for one line of a log, a table or a job script: `printable` with line ends and tabs also escaped
+/// (\x0a).
 std::string printable_name(std::string_view text);
 
-/// Whether `printable` or printable_name would escape a character of the text. Bytes that are not UTF-8 do not count.
+/// Whether `printable` or `printable_name` would escape a character of the text. Bytes that are not UTF-8 do not count.
 bool holds_controls(std::string_view text);
 bool name_holds_controls(std::string_view text);
 

@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// Quantile by linear interpolation between order statistics at position (N - 1) p, like in numpy and R's type 7.
-/// `sorted` must have N >= 1 increasing values, and p must lie in [0, 1].
+/// Quantile by linear interpolation between order statistics at position (N - 1) p, as in numpy and R's type 7.
+/// `sorted` holds N >= 1 values in increasing order; p lies in [0, 1].
 inline double sample_quantile(std::span<const double> sorted, double p) {
   const double position = static_cast<double>(sorted.size() - 1) * p;
   const auto below = static_cast<std::size_t>(position);

@@ -4,8 +4,9 @@
 
 namespace modebank {
 
-/// R factor of [above; below], or the stacked matrix itself if it has at most as many rows as columns. With a call per
-/// block of rows, least squares over any number of rows needs the memory of one block.
+/// R factor of [above; below]. If the stacked matrix has at most as many rows as columns, returns that matrix itself.
+/// Called for one block of rows after the other, this solves least squares over any number of rows in the memory of one
+/// block.
 inline Eigen::MatrixXd stacked_triangle(const Eigen::MatrixXd& above, const Eigen::MatrixXd& below) {
   Eigen::MatrixXd rows(above.rows() + below.rows(), below.cols());
   rows << above, below;

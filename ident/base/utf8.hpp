@@ -6,23 +6,22 @@
 
 namespace modebank {
 
-/// Length in bytes of the UTF-8 character at the start of a non-empty text; 0 if no character starts with the first
-/// byte.
+/// Length in bytes of the UTF-8 character at the start of a non-empty text; 0 if its first byte starts no character.
 std::size_t character_bytes(std::string_view text);
 
 /// Whether the bytes are valid UTF-8 (RFC 3629: no surrogates, no overlong forms, at most U+10FFFF).
 bool is_utf8(std::string_view bytes);
 
-/// The text in UTF-16 without surrogates. A byte that does not start a character, and a character beyond U+FFFF,
-/// becomes U+FFFD.
+/// The text in UTF-16 without surrogates. U+FFFD replaces a byte that starts no character, and a character beyond
+/// U+FFFF.
 std::u16string basic_utf16(std::string_view text);
 
 /// Appends a code point; only its lowest 21 bits are used.
 void append_utf8(std::string& text, std::uint32_t code);
 
 /// Decodes every line that is not UTF-8 as Windows-1252, the encoding of Excel and many loggers. The five bytes that
-/// Windows-1252 leaves undefined become Latin-1 control characters. Valid UTF-8 is returned without a copy; `storage`
-/// holds any other text. Each line is tested separately, because two programs may have written one file.
+/// Windows-1252 leaves undefined become Latin-1 control characters. Each line is tested separately, because two
+/// programs may have written one file. Returns valid UTF-8 without a copy; any other text is stored in `storage`.
 std::string_view utf8_or_windows_1252(std::string_view text, std::string& storage);
 
 /// Message for users about lines that were decoded as Windows-1252.

@@ -9,7 +9,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The counter that is displayed.
+/// The counter whose progress is displayed.
 struct Seen {
   std::mutex mutex;
   const WorkCounter* counter = nullptr;

@@ -9,13 +9,13 @@ namespace modebank {
 
 /// Progress of a loop.
 struct WorkDone {
-  std::string what;  ///< unit of the count: "windows"
+  std::string what;  ///< unit of the count, such as "windows"
   std::size_t done = 0, all = 0;
   double seconds = 0.0;  ///< seconds since the loop began
 };
 
-/// Counts the progress of a loop that may take seconds, for display. If several counters exist, only the first is
-/// displayed. Nested loops and parallel computations count without display. Thread-safe.
+/// Counts the progress of a loop that may take seconds, for display. If several counters exist, only the first one is
+/// displayed: nested loops and parallel computations count without display. Thread-safe.
 class WorkCounter {
  public:
   WorkCounter(std::string what, std::size_t all);

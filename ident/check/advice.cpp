@@ -12,10 +12,10 @@ namespace modebank {
 
 namespace {
 
-/// Rounds to four digits. The ratio of two such rates is then a whole number within a thousandth.
+/// Rounds to four digits. The ratio of two rounded rates is then within a thousandth of a whole number.
 double rounded(double value) {
   const double per_unit = std::pow(10.0, 3.0 - std::floor(std::log10(value)));
-  return std::round(value * per_unit) / per_unit;  // this prints as 0.4588; 4588 * 0.0001 does not
+  return std::round(value * per_unit) / per_unit;  // this quotient prints as 0.4588; the product 4588 * 0.0001 does not
 }
 
 /// The rate nearest to `wanted_hz` among rate_hz / 2, rate_hz / 3, ...
@@ -58,7 +58,7 @@ LengthAdvice advise_length(const std::vector<Trajectory>& runs, const LinearStru
     DeficientWindows sum;
     for (const Trajectory& run : runs) {
       const DeficientWindows one = count_deficient_windows(run, length, structure, windows_per_run);
-      // Each run has the weight of its length, even if only few of its windows were examined.
+      // Each run is weighted by its length, even if only few of its windows were examined.
       const double scale = one.windows > 0
                                ? static_cast<double>(run.transitions() - length + 1) / static_cast<double>(one.windows)
                                : 0.0;

@@ -9,29 +9,30 @@
 
 namespace modebank {
 
-/// Share of its largest value up to which an input counts as zero (still).
+/// An input counts as zero (still) up to this share of its largest value.
 inline constexpr double still_share = 0.005;
 
-/// Flags the samples of `states` at rest. Then, all inputs are within `still_level` (per input, m) of zero at the
-/// sample and one sample earlier, and every state repeats its value. Without inputs no sample is flagged, because a
-/// coarse measurement would also repeat its values.
+/// Flags the samples of `states` at rest. At rest all inputs are within `still_level` (m, one per input) of zero, at
+/// the sample and one sample earlier, and every state repeats its previous value. Without inputs no sample is flagged,
+/// because a coarse measurement would also repeat its values.
 std::vector<bool> resting_samples(const Stream& states, const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Flags the samples of `inputs` at which all inputs are within `still_level` of zero, at the sample and one sample
-/// earlier.
+/// Flags the samples of `inputs` at which all inputs are within `still_level` of zero, both at the sample and one
+/// sample earlier.
 std::vector<bool> still_samples(const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Share of known samples equal to the previous one, ignoring samples flagged in `at_rest`; 0 if no samples remain.
+/// Share of known samples that equal the previous sample. Samples flagged in `at_rest` are ignored; 0 if no samples
+/// remain.
 double repeats_in_motion(const Eigen::VectorXd& values, const std::vector<bool>& at_rest);
 
-/// Figures of the commands of one run: share of still samples, and of constant values.
+/// Figures of the inputs of one run: the share of still samples, and how often values change.
 struct CommandCheck {
   double still = 0.0;               ///< share of input samples with every input within `still_level` of zero
   double longest_constant_s = 0.0;  ///< longest time without a change of any input while at least one input is not
                                     ///< still
   double changes = 0.0;             ///< share of input samples that differ from the previous one
 };
-/// Checks the inputs of one run. `still_level`: per input (m).
+/// Checks the inputs of one run. `still_level` has one entry per input (m).
 CommandCheck check_commands(const Stream& inputs, const Eigen::VectorXd& still_level);
 
 /// Mean and standard deviation of each state at rest. A rest lasts at least 1 s and begins after all inputs have been
@@ -42,14 +43,14 @@ struct RestCheck {
 };
 RestCheck check_rest(const Stream& states, const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Order of persistent excitation (Ljung 1999, def. 13.2). Consider the second-moment matrix of the inputs and their
-/// first d - 1 delays. The order is the largest d <= most for which all of its eigenvalues are above 1e-4. Each input
-/// is in units of its root mean square.
+/// Order of persistent excitation (Ljung 1999, def. 13.2). It is the largest d, up to `most`, for which all eigenvalues
+/// of a matrix are above 1e-4. This is the second-moment matrix of the inputs and their first d - 1 delays. Each input
+/// is divided by its root mean square.
 inline constexpr Eigen::Index most_excitation_order = 10;
 Eigen::Index excitation_order(const Eigen::MatrixXd& inputs, Eigen::Index most = most_excitation_order);
 
-/// Share of windows of `length` transitions with rank-deficient regressors. At most `most_windows` evenly spread
-/// windows are examined. NaN without windows.
+/// Share of the windows of `length` transitions whose regressors are rank deficient. At most `most_windows` evenly
+/// spread windows are examined. NaN without windows.
 struct DeficientWindows {
   Eigen::Index windows = 0, deficient = 0;
   double share() const;

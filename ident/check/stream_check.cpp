@@ -55,7 +55,7 @@ bool on_lattice(const std::vector<double>& levels, double& spacing) {
   return static_cast<double>(misses) <= allowed_misses * static_cast<double>(levels.size()) && squares > 0.0;
 }
 
-/// Largest spacing of a lattice that contains all levels (in increasing order); 0 if none is visible.
+/// Largest spacing of a lattice that contains all levels (in increasing order); 0 if no lattice contains them.
 double quantum_of(const std::vector<double>& levels) {
   constexpr double visible = 1e-3;  // share of the range
   constexpr int most_divisions = 6;
@@ -70,9 +70,9 @@ double quantum_of(const std::vector<double>& levels) {
   return 0.0;
 }
 
-/// Distinct values in increasing order. Values that differ only by rounding in the file count as one.
+/// Distinct values in increasing order. Values that differ only by rounding in the file count as one value.
 std::vector<double> levels_of(std::vector<double> values) {
-  // rounding: share of the range; ulps: relative to the values, because the values may be far from zero (stamps)
+  // rounding: a share of the range; ulps: a share of the values, which may be far from zero (stamps)
   constexpr double rounding = 1e-9, ulps = 4.0;
   std::sort(values.begin(), values.end());
   const double largest = std::max(std::abs(values.front()), std::abs(values.back()));
@@ -85,7 +85,7 @@ std::vector<double> levels_of(std::vector<double> values) {
 }
 
 /// Whether a signal takes few levels, and takes the ends of its range as often as the levels inside. An operator chose
-/// such values; a limiter did not cause them.
+/// such values; they are no sign of a limiter.
 bool is_of_few_levels(const std::vector<double>& known) {
   constexpr std::size_t most_levels = 10;
   constexpr double pressed = 3.0;
@@ -155,7 +155,7 @@ ChannelCheck check_channel(const VectorXd& values) {
     if (known_values(k) == known_values(k - 1)) ++repeats;
   if (known.size() > 1) check.repeated = static_cast<double>(repeats) / static_cast<double>(known.size() - 1);
   check.two_level = has_two_levels(known_values);
-  // A two-level signal may be on for one sample; such a sample is not an outlier.
+  // A two-level signal may be on for a single sample, which is not an outlier.
   check.outliers = check.two_level ? 0 : spikes(known_values, check.quantum);
   return check;
 }
@@ -164,7 +164,7 @@ bool has_two_levels(const VectorXd& values) {
   constexpr double near = 0.1, least_near = 0.99, least_share = 0.02;
   std::vector<double> known = finite_values(values);
   if (known.empty()) return false;
-  // Uses quantiles, so that a glitch does not count as a level.
+  // Quantiles are used so that a glitch does not count as a level.
   const auto quantile = [&known](double share) {
     const auto at = known.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(known.size() - 1));
     std::nth_element(known.begin(), at, known.end());
@@ -207,14 +207,14 @@ Index spikes(const VectorXd& values, double quantum) {
 
 namespace {
 
-/// Thresholds for a pile-up of values at an end of the range.
+/// Thresholds for an accumulation of values at an end of the range.
 struct PileUp {
-  double least_share;  ///< smallest share of all values
+  double least_share;  ///< smallest share of all values that may count as an accumulation
   double ratio;        ///< smallest ratio to the number of neighbouring values
-  double errors;       ///< standard errors by which the ratio must be exceeded
+  double errors;       ///< number of standard errors by which the ratio must be exceeded
 };
 
-/// Values that are repeated for `held` samples on average. A group of `held` samples counts as one independent value.
+/// Values that are repeated for `held` samples on average. The `held` repetitions count as one independent value.
 struct Held {
   std::vector<double> values;
   double held = 1.0;
@@ -232,7 +232,7 @@ bool piles_up(const Held& of, double sign, double end, double outer, double next
          top - least.ratio * below > least.errors * std::sqrt(of.held * (top + least.ratio * least.ratio * below));
 }
 
-/// Appends all values of a run to `all`, and those that differ from the previous one to `fresh`.
+/// Appends all values of a run to `all`, and the values that differ from their predecessor to `fresh`.
 void gather(const VectorXd& run, std::vector<double>& all, std::vector<double>& fresh) {
   const std::vector<double> known = finite_values(run);
   all.insert(all.end(), known.begin(), known.end());

@@ -12,7 +12,7 @@ struct SamplingCheck {
   Eigen::Index samples = 0;
   double duration_s = 0.0;  ///< largest minus smallest time
   double rate_hz = 0.0;     ///< 1 / median interval; 0 if unknown
-  double jitter = 0.0;      ///< standard deviation of the intervals without gaps, as a share of the median interval
+  double jitter = 0.0;      ///< standard deviation of the intervals (without gaps), as a share of the median interval
   Eigen::Index gaps = 0;    ///< intervals longer than gap_periods median intervals
   double longest_gap_s = 0.0;
   Eigen::Index repeated_times = 0;
@@ -24,7 +24,8 @@ struct SamplingCheck {
 
 SamplingCheck check_sampling(const Stream& recorded);
 
-/// The usable part of a recorded stream: sorted by time, one sample per time, without samples that lack a time.
+/// The usable part of a recorded stream: samples without a time are removed, the rest is sorted, with one sample per
+/// time.
 Stream in_order(const Stream& recorded);
 
 /// Figures of one signal of a stream. Missing values are ignored.
@@ -35,14 +36,14 @@ struct ChannelCheck {
                          ///< the range
   Eigen::Index levels = 0;    ///< distinct values
   bool two_level = false;     ///< see has_two_levels()
-  double repeated = 0.0;      ///< share of samples equal to the previous one
+  double repeated = 0.0;      ///< share of samples that equal the previous sample
   Eigen::Index outliers = 0;  ///< isolated samples, see spikes()
 };
 
 ChannelCheck check_channel(const Eigen::VectorXd& values);
 
-/// Whether a signal is a switch or a binary test signal. At least 99 % of its known values must lie near one of two
-/// levels, within a tenth of the levels' distance. A level is the mean of its values and must have at least 2 % of all
+/// Whether a signal is a switch or a binary test signal. At least 99 % of its known values must lie within a tenth of
+/// the levels' distance from one of two levels. A level is the mean of its values and must have at least 2 % of all
 /// values.
 bool has_two_levels(const Eigen::VectorXd& values);
 

@@ -33,7 +33,7 @@ AveragedStream AveragedStream::held(const Stream& stream, double time_constant_s
     const auto u = stream.values.col(k - 1);
     if (time_constant_s > 0.0)
       series.filtered_.col(k) = u + std::exp(-dt_s / time_constant_s) * (series.filtered_.col(k - 1) - u);
-    // The integral of f is that of u minus the time constant times the change of f.
+    // The integral of f is the integral of u minus the time constant times the change of f.
     series.integral_.col(k) = series.integral_.col(k - 1) + dt_s * u;
     if (time_constant_s > 0.0)
       series.integral_.col(k) -= time_constant_s * (series.filtered_.col(k) - series.filtered_.col(k - 1));
@@ -41,7 +41,7 @@ AveragedStream AveragedStream::held(const Stream& stream, double time_constant_s
   return series;
 }
 
-/// Integral from the first sample to `time_s`. Advances `sample` to the last one at or before `time_s`.
+/// Integral from the first sample to `time_s`. Advances `sample` to the last sample at or before `time_s`.
 void AveragedStream::integral(double time_s, Index& sample, VectorXd& result) const {
   while (sample + 1 < time_s_.size() && time_s_(sample + 1) <= time_s) ++sample;
   const double dt_s = time_s - time_s_(sample);

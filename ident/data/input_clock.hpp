@@ -2,8 +2,9 @@
 
 namespace modebank {
 
-/// Delay of the inputs on the states' clock. The input that acts at time t is u(t - at(t)). A positive delay means that
-/// inputs act later than their stamps. A negative delay means that they act earlier, because their stamps are late.
+/// Delay of the inputs on the states' clock. The input that acts at time t is u(t - at(t)). With a positive delay,
+/// inputs act later than their stamps. With a negative delay, they act earlier than their stamps, because the stamps
+/// are late.
 struct InputClock {
   double lag_s = 0.0;        ///< lag at reference_s
   double drift = 0.0;        ///< rate of change of the lag [s/s]

@@ -21,8 +21,8 @@ using Eigen::VectorXd;
 
 double last(const VectorXd& time_s) { return time_s(time_s.size() - 1); }
 
-/// Time differences below this come from rounding: of decimal stamps, of k / rate or of t - lag. The limit is a
-/// millionth of the mean period, but at least the resolution of a double at these times (epoch seconds: 2.4e-7).
+/// Smaller time differences are rounding errors of decimal stamps, of k / rate or of t - lag. The limit is a millionth
+/// of the mean period, but at least the resolution of a double at these times (epoch seconds: 2.4e-7).
 double time_tolerance(const VectorXd& time_s) {
   constexpr double share_of_period = 1e-6, units_in_last_place = 4.0;
   const double largest = std::max(std::abs(time_s(0)), std::abs(last(time_s)));
@@ -31,15 +31,15 @@ double time_tolerance(const VectorXd& time_s) {
   return std::max(resolution, share_of_period * (last(time_s) - time_s(0)) / static_cast<double>(time_s.size() - 1));
 }
 
-/// Advances `sample` to the last sample at or before `time`; -1 if all samples are later. On entry, `sample` belongs to
-/// an earlier time.
+/// Advances `sample` to the last sample at or before `time`; -1 if all samples are later. On entry `sample` holds the
+/// result for an earlier time.
 Index advance(const VectorXd& samples, Index sample, double time) {
   while (sample + 1 < samples.size() && samples(sample + 1) <= time) ++sample;
   return sample;
 }
 
-/// The times of a grid, without times deep inside a gap of a stream, where no data exist. So the cost of a pause is
-/// bounded, however long the pause. Shorter gaps stay complete.
+/// The times of a grid, except times deep inside a gap of a stream, where no data exist. So the cost of a pause is
+/// bounded, whatever its duration. Shorter gaps keep all their grid times.
 class Grid {
  public:
   Grid(double first, double end, double rate_hz) : first_(first), end_(end), rate_hz_(rate_hz) {}
@@ -75,15 +75,15 @@ class Grid {
   }
 
  private:
-  static constexpr double rounding = 1e-6;  // share of a period; keeps an end that k / rate_hz narrowly misses
+  static constexpr double rounding = 1e-6;  // share of a period; keeps the last time if k / rate_hz misses it only by
+                                            // rounding
 
-  // periods; filters restart after 50 periods of the model
+  // in periods of the model; a filter restarts after a gap of 50 periods
   static constexpr double longest_gap = 1000.0, margin = 100.0;
-  /// Limits of a grid in relation to its streams. Beyond these limits the times are not in seconds, or the rate is
-  /// wrong.
+  /// Limits of a grid relative to its streams. Beyond them, the times are not in seconds or the rate is wrong.
   static constexpr Index most_times = 1'000'000, most_per_sample = 1000;
   double first_, end_, rate_hz_;
-  Index samples_ = 0;  ///< samples of the longest stream
+  Index samples_ = 0;  ///< multiple of the number of samples of the longest stream
   std::vector<std::pair<double, double>> gaps_;
 
   [[noreturn]] void refuse(double time) const {
@@ -217,7 +217,7 @@ VectorXd joint_times(const VectorXd& states_time_s, const VectorXd& inputs_time_
     return grid.times();
   }
   if (options.lag_s == 0.0 && options.drift == 0.0) return times_within(inputs_time_s, first, end);
-  const double rounding = time_tolerance(inputs_time_s);  // rounding of t - lag_s must not lose a sample
+  const double rounding = time_tolerance(inputs_time_s);  // the rounding of t - lag_s must not exclude a sample
   return times_within(inputs_time_s, std::max(states_time_s(0), first - rounding),
                       std::min(last(states_time_s), end + rounding));
 }

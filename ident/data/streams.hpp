@@ -13,8 +13,8 @@ struct Stream {
   Eigen::MatrixXd values;  ///< channels x N
 };
 
-/// Linear interpolation at `time_s` (increasing). Outside the stream's span it returns the value of the nearest end,
-/// like numpy.interp. Requires N >= 1.
+/// Linear interpolation at `time_s` (increasing). Outside the stream's span it returns the value at the nearest end, as
+/// numpy.interp does. Requires N >= 1.
 Eigen::MatrixXd interpolate(const Stream& stream, const Eigen::VectorXd& time_s);
 
 /// Mean of the stream's linear interpolation over a step, for each of `time_s`. The step has length `step_s` and ends
@@ -23,52 +23,51 @@ Eigen::MatrixXd interpolate(const Stream& stream, const Eigen::VectorXd& time_s)
 Eigen::MatrixXd average_ending(const Stream& stream, const Eigen::VectorXd& time_s, double step_s);
 
 /// Columns that are averaged when a log is reduced to a lower rate, because their values change at each sample of the
-/// log. All other columns take single samples: states are interpolated and inputs held.
+/// log. Other columns are not averaged: their states are interpolated and their inputs held.
 struct AveragedColumns {
   std::vector<Eigen::Index> states = {}, inputs = {};  ///< positions
 
-  /// Added to the lag of averaged inputs. Held inputs keep their lag. With an estimated lag, averaged inputs are taken
-  /// in the middle of each transition (hold_mid_transition).
+  /// Lag that is added for averaged inputs; held inputs keep their lag. If a lag is estimated, averaged inputs are
+  /// taken at the middle of each transition (hold_mid_transition).
   double further_lag_s = 0.0;
 
   bool any() const { return !states.empty() || !inputs.empty(); }
 };
 
-/// Whether samples that are `period_s` apart are fast enough to average columns at `rate_hz`.
+/// Whether samples with the period `period_s` are fast enough for averages at `rate_hz`.
 inline bool is_averaged_at(double rate_hz, double period_s) {
   constexpr double faster = 1.5;
   return period_s > 0.0 && rate_hz > 0.0 && rate_hz * period_s * faster <= 1.0;
 }
 
-/// Replaces the given rows of `values` by average_ending. `values` has one column for each of `time_s`.
+/// Replaces the given rows of `values` by the result of average_ending. `values` has one column for each of `time_s`.
 void average_rows(const Stream& stream, const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& time_s,
                   double step_s, Eigen::MatrixXd& values);
 
 /// Zero-order hold: the value of the last sample at or before each of `time_s` (increasing). Before the first sample,
-/// it is the value of the first sample. A sample that a time misses only by rounding counts as reached. Requires N >=
-/// 1.
+/// the first value is used. A sample that is later than a time only by rounding is also used. Requires N >= 1.
 Eigen::MatrixXd hold(const Stream& stream, const Eigen::VectorXd& time_s);
 
 /// Weights of interpolated samples. They are the interpolated weights, or zero if a contributing sample has weight
 /// zero. `weights` is 1 x N.
 Eigen::VectorXd interpolate_weights(const Stream& weights, const Eigen::VectorXd& time_s);
 
-/// Two samples have a gap between them if they are more than this many median periods of their stream apart.
+/// A gap lies between two samples if they are more than this many median periods of their stream apart.
 inline constexpr double gap_periods = 5.0;
 
 /// Standard deviation of the steps about their median, divided by the median, over all series. Gaps do not count as
 /// steps. 0 without steps.
 double step_scatter(const std::vector<const Eigen::VectorXd*>& times_s);
 
-/// Largest scatter of the steps at which modes are searched. A model holds for one step length. With mixed step
-/// lengths, one motion looks like several motions.
+/// Modes are searched only if the scatter of the steps is at most this value. A model holds for one step length. With
+/// mixed step lengths, a single motion looks like several motions.
 inline constexpr double most_step_scatter = 0.1;
 
 /// Replaces by NaN the values that were interpolated across a gap of their stream (`stream_time_s`, increasing).
 void blank_gaps(const Eigen::VectorXd& stream_time_s, const Eigen::VectorXd& time_s, Eigen::MatrixXd& values);
 
 struct JoinTimes {
-  double rate_hz = 0.0;  ///< 0 keeps the inputs' own times; else times are the first common time + k / rate_hz
+  double rate_hz = 0.0;  ///< 0 keeps the inputs' own times; otherwise the times are the first common time + k / rate_hz
   double lag_s = 0.0;    ///< the input that acts at time t is u(t - lag(t)), lag = lag_s + drift (t - reference_s)
   double drift = 0.0;
   double reference_s = 0.0;
@@ -79,10 +78,10 @@ struct JoinTimes {
 Eigen::VectorXd joint_times(const Eigen::VectorXd& states_time_s, const Eigen::VectorXd& inputs_time_s,
                             const JoinTimes& options);
 
-/// The inputs that act in the middle of each transition from time_s(k) to time_s(k + 1), after the delay by `clock`.
-/// The last column assumes one more transition of the median period. If the inputs come at these times and clock is 0,
-/// the result is the input of time_s(k). Otherwise the delay is rounded to the nearest whole number of samples.
-/// (Holding at time_s(k) would round the delay up.)
+/// The inputs, delayed by `clock`, that act in the middle of each transition from time_s(k) to time_s(k + 1). For the
+/// last column a further transition of the median period is assumed. If the inputs have these times and `clock` is 0,
+/// the result is the input of time_s(k). Otherwise the delay is rounded to the nearest whole number of samples. (Inputs
+/// held at time_s(k) would have a delay that is rounded up.)
 Eigen::MatrixXd hold_mid_transition(const Stream& inputs, const Eigen::VectorXd& time_s, const InputClock& clock);
 
 }  // namespace modebank

@@ -15,8 +15,8 @@ using Eigen::Index;
 struct Channel {
   std::string name;
   std::string unit;       ///< empty if unknown
-  bool averaged = false;  ///< whether the column is reduced to a lower rate by means over its steps (AveragedColumns);
-                          ///< else by taking single samples
+  bool averaged = false;  ///< true: the column is reduced to a lower rate by means over the steps (AveragedColumns);
+                          ///< false: by single samples
 };
 
 std::vector<std::string> names_of(const std::vector<Channel>& channels);
@@ -41,16 +41,16 @@ struct Trajectory {
   Eigen::MatrixXd input;            ///< m x N
   Eigen::MatrixXd truth;            ///< n x N, true state; empty if unknown
   double lag_s = 0.0;               ///< lag applied to the inputs
-  std::int64_t time_origin_ns = 0;  ///< ns since 1970 at time_s = 0, if the log has stamps
-  std::string file = {};            ///< file of its inputs; empty if there was none
+  std::int64_t time_origin_ns = 0;  ///< ns since 1970 at time_s = 0, if the log has absolute times
+  std::string file = {};            ///< file of the run's inputs; empty if there was none
 
   /// Sample weights, N or empty (all one). weight(k) multiplies the loss of the error of the transition that ends in
   /// sample k; weight(0) is unused. Weights are finite and at least 0; a weight of 0 excludes the transition. Only
   /// ratios of weights matter, because every fit divides by the mean over its transitions.
   Eigen::VectorXd weight;
-  /// Signals stored by the calling program: n and m rows of N columns. They replace `state` and `input`, which are then
-  /// empty. Windows of linear models with one-step residuals read them through states() and inputs(). No other function
-  /// accepts such a run.
+  /// Signals in memory of the calling program: n and m rows of N columns. They replace `state` and `input`, which are
+  /// then empty. Windows of linear models with one-step residuals read them through states() and inputs(). No other
+  /// function accepts such a run.
   struct Kept {
     const double *state = nullptr, *input = nullptr;
     Index states = 0, inputs = 0, samples = 0;
@@ -76,8 +76,8 @@ struct Recording {
   std::vector<Channel> states;  ///< n
   std::vector<Channel> inputs;  ///< m
   std::vector<Trajectory> runs;
-  Eigen::VectorXd quantum = {};  ///< n, spacing of the possible values of each state [state unit]; 0 marks a continuous
-                                 ///< state; empty if all are continuous
+  Eigen::VectorXd quantum = {};  ///< n, spacing of the possible values of each state [state unit]; 0 for a continuous
+                                 ///< state. Empty if all states are continuous
 
   Index state_count() const { return static_cast<Index>(states.size()); }
   Index input_count() const { return static_cast<Index>(inputs.size()); }

@@ -6,15 +6,15 @@
 
 namespace modebank {
 
-/// `length` consecutive transitions (length + 1 samples) of one run; all windows have the same length.
+/// `length` consecutive transitions (length + 1 samples) of one run. All windows have the same length.
 struct Window {
   Index run = 0;    ///< position in Recording::runs
   Index start = 0;  ///< first sample
 };
 
-/// All windows of the training runs by index, without storing a list. Windows start at transition `first` of each run
+/// All windows of the training runs by index, without a stored list. Windows start at transition `first` of each run
 /// and advance by `step`. No window crosses the border of a run. Runs with fewer than `first + length` transitions have
-/// no window. The positions of windows are defined only in this class.
+/// no window. Only this class defines the positions of windows.
 class WindowPlan {
  public:
   /// Throws std::invalid_argument unless length >= 1 and step >= 1.
@@ -27,9 +27,9 @@ class WindowPlan {
   struct Range {
     Index first = 0;  ///< index of the first window
     Index count = 0;
-    Window window;  ///< the first window of these
+    Window window;  ///< the first of these windows
   };
-  /// Windows first .. first + count - 1 as ranges of at most `longest` windows.
+  /// Windows first .. first + count - 1, divided into ranges of at most `longest` windows.
   std::vector<Range> ranges(Index first, Index count, Index longest) const;
 
  private:

@@ -22,7 +22,7 @@ struct Objective {
   const RobustLoss& loss;
   const ParameterPrior* prior;
 
-  /// Residuals come from the transitions instead of the whitened problem, so that the audit does not depend on the
+  /// Residuals are computed from the transitions, not from the whitened problem. So the audit does not depend on the
   /// basis.
   RobustTerms terms(const Eigen::VectorXd& theta) const {
     const Transitions& t = data.transitions;
@@ -86,7 +86,7 @@ bool add_to_audit(const AuditedWindow& window, WindowAudit& audit) {
   const bool rejected =
       !(window.cost <= WindowAudit::tolerance) || !(window.gradient <= WindowAudit::gradient_tolerance);
   audit.replaced += rejected ? 1 : 0;
-  // A loss with several minima may have a lower one. Such a result does not count as a failed minimisation.
+  // If a loss has several minima, the other solver may have found a lower one. The minimisation then did not fail.
   audit.lower += window.cost < -WindowAudit::tolerance ? 1 : 0;
   return rejected;
 }

@@ -4,11 +4,12 @@ namespace modebank {
 
 /// Constants that the scalar fit and the batch kernels share.
 
-inline constexpr double huber_tuning = 1.345;  ///< in units of sigma: 95 % efficiency at the normal distribution
+inline constexpr double huber_tuning = 1.345;  ///< in units of sigma; has 95 % efficiency at the normal distribution
                                                ///< (Holland & Welsch 1977)
-inline constexpr double mad_to_sd = 1.4826;    ///< converts the median absolute deviation of a Gaussian to its standard
-                                               ///< deviation
-inline constexpr double inlier_weight = 0.5;   ///< an inlier keeps at least this share of its least-squares weight
+inline constexpr double mad_to_sd = 1.4826;    ///< factor from the median absolute deviation of a Gaussian to its
+                                               ///< standard deviation
+inline constexpr double inlier_weight = 0.5;   ///< a sample counts as an inlier if it keeps at least this share of its
+                                               ///< least-squares weight
 
 /// Lower bound of 1 - leverage. If one sample alone determines a direction, its residual and 1 - leverage are both
 /// zero.

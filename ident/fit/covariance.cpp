@@ -26,7 +26,8 @@ auto sample_rows(const WhitenedProblem& problem, Index k) {
   return problem.J.middleRows(k * problem.states, problem.states);
 }
 
-/// f of the header: sum of the samples' leverages per state (a state's columns are zero in the rows of other states).
+/// f in covariance.hpp: the sum of the samples' leverages, per state. (The columns of a state are zero in the rows of
+/// other states.)
 Eigen::ArrayXd determined_by_data(const WhitenedProblem& problem) {
   Eigen::ArrayXd f = Eigen::ArrayXd::Zero(problem.states);
   for (Index k = 0; k < problem.samples; ++k)
@@ -44,7 +45,7 @@ Eigen::VectorXd weights_of_samples(const WhitenedProblem& problem) {
   return problem.weight.size() > 0 ? problem.weight : Eigen::VectorXd::Ones(problem.samples);
 }
 
-/// G^-1 of the header; zero (no information) if the mean slope of psi is not positive.
+/// G^-1 in covariance.hpp. Zero (no information) if the mean slope of psi is not positive.
 Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
   const Index L = in.problem.samples, n = in.problem.states;
   const auto r = in.terms.samples(n);
@@ -84,7 +85,7 @@ Eigen::MatrixXd from_information(const WhitenedProblem& problem, const Eigen::Ma
       .value_or(Eigen::MatrixXd::Constant(information.rows(), information.cols(), not_a_number));
 }
 
-/// Influence of sample k from a fit without this sample: (I - h_k)^-1 psi_k.
+/// Influence of sample k on a fit without this sample: (I - h_k)^-1 psi_k.
 Eigen::VectorXd left_out_influence(const CovarianceInput& in, Index k, const Eigen::MatrixXd& H_inverse,
                                    const Eigen::MatrixXd& slope) {
   const Index n = in.problem.states;

@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// Inputs of a covariance of theta.
+/// Inputs of the covariance of theta.
 struct CovarianceInput {
   const WhitenedProblem& problem;
   const RobustTerms& terms;  ///< residuals and derivatives at the optimum
@@ -17,7 +17,7 @@ struct CovarianceInput {
 /// The p x p covariance of theta at the optimum. J, r and psi are those of the whitened problem, P is the prior's
 /// information (zero without a prior). Data and prior together must determine theta; otherwise every entry is NaN.
 ///
-/// For L <= q, either kind: (sum J_k' J_k + P)^-1, which is (X'X / sigma^2 + prior information)^-1.
+/// For L <= q, both kinds are (sum J_k' J_k + P)^-1, which is (X'X / sigma^2 + prior information)^-1.
 ///
 /// `model`: (sum J_k' G^-1 J_k + P)^-1 with G_ij = K_i K_j [sum psi_i psi_j / (L - f)] / (mean psi'_i mean psi'_j).
 /// psi'_i is the derivative of psi_i by r_i. K_i = 1 + (f / L) var(psi'_i) / (mean psi'_i)^2. f is the sum of a state's
@@ -37,9 +37,9 @@ struct CovarianceInput {
 /// reweighted form without rho''.
 Eigen::MatrixXd theta_covariance(const CovarianceInput& input, CovarianceKind kind);
 
-/// n: information of the data that the estimate weighed against the prior, in units of the information in the `model`
-/// covariance: mean psi'_i / (G^-1)_ii. It comes from the second derivative sum J_k' psi'_k J_k, with the mean of psi'
-/// for all samples. Exact for a trivial loss. NaN for `sandwich`, which has no information matrix.
+/// n: information of the data that entered the estimate together with the prior, in units of the information in the
+/// `model` covariance: mean psi'_i / (G^-1)_ii. It comes from the second derivative sum J_k' psi'_k J_k, with the mean
+/// of psi' used for all samples. Exact for a trivial loss. NaN for `sandwich`, which has no information matrix.
 Eigen::VectorXd weighed_information(const CovarianceInput& input, CovarianceKind kind);
 
 }  // namespace modebank

@@ -12,7 +12,7 @@ namespace modebank {
 
 namespace {
 
-/// Noise variance of each state in the definition of fit_window.
+/// Noise variance of each state, as defined at fit_window.
 Eigen::VectorXd noise_variance(const SolvedWindow& s) {
   const auto L = static_cast<double>(s.problem.samples);
   const bool short_window = L <= s.unknowns_per_state;
@@ -77,7 +77,8 @@ double price_of_a_parameter(const WhitenedProblem& problem, const RobustTerms& t
 
 Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem& problem, const RobustTerms& terms,
                           const Eigen::VectorXd& sigma) {
-  const Eigen::ArrayXd root = sample_weights(problem).cwiseSqrt();  // the rows already contain this root
+  const Eigen::ArrayXd root = sample_weights(problem).cwiseSqrt();  // the rows already contain the square root of the
+                                                                    // weight
   const Eigen::ArrayXd omega = terms.weight;
   Eigen::VectorXd result(problem.states);
   for (Index i = 0; i < problem.states; ++i) {
@@ -93,7 +94,8 @@ Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem&
 double akaike_criterion(const WhitenedProblem& problem, const RobustTerms& terms, const RobustLoss& loss,
                         const NoiseScale& scale) {
   const double n = static_cast<double>(problem.states);
-  const double parameters = problem.J.topRows(problem.sample_rows()).squaredNorm();  // J'J = I: sum of leverages
+  const double parameters = problem.J.topRows(problem.sample_rows()).squaredNorm();  // J'J = I, so this is the sum of
+                                                                                     // the leverages
   const double weights = problem.weight.size() > 0 ? n * problem.weight.array().log().sum() : 0.0;
   if (loss.kind() == Loss::trivial) return gaussian_deviance(problem, terms, scale) - weights + 2.0 * (parameters + n);
   const double price = price_of_a_parameter(problem, terms);
@@ -110,7 +112,7 @@ LocalModel describe_fit(const SolvedWindow& s, const Eigen::VectorXd& theta) {
   fit.covariance = theta_covariance(input, s.covariance).topLeftCorner(p, p);
   if (s.prior) fit.weighed_information = weighed_information(input, s.covariance);
   fit.noise_variance = noise_variance(s);
-  // overflow in the fit
+  // the fit overflowed
   if (!fit.theta.allFinite() || !fit.noise_variance.allFinite()) return failed_fit(p, s.problem.states);
   fit.information = information(fit.covariance, s.prior);
   fit.inlier_fraction = (s.terms.weight.array() >= inlier_weight).cast<double>().mean();

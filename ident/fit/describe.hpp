@@ -7,11 +7,11 @@
 
 namespace modebank {
 
-/// A window's problem at its optimum, for a linear or a motion model, with the inputs of its description.
+/// A window's problem at its optimum, for a linear model or a motion model, with the inputs of its description.
 struct SolvedWindow {
   const WhitenedProblem& problem;
   const RobustTerms& terms;
-  const Transitions& transitions;  ///< transitions of the window; only the increments are used
+  const Transitions& transitions;  ///< transitions of the window; only their increments are used
   const RobustLoss& loss;
   double consistency = 1.0;  ///< gaussian_consistency of the loss
   CovarianceKind covariance = CovarianceKind::model;
@@ -21,8 +21,8 @@ struct SolvedWindow {
   double rank_per_state = 0.0;
 };
 
-/// All fields of LocalModel except condition, rank and status, as defined at fit_window. `theta` is the optimum of
-/// `terms`. The first entries of the problem are those of `theta`.
+/// All fields of LocalModel except `condition`, `rank` and `status`, as defined at fit_window. `theta` is the optimum
+/// at which `terms` were computed. The first entries of the problem are those of `theta`.
 LocalModel describe_fit(const SolvedWindow& solved, const Eigen::VectorXd& theta);
 
 /// Measures that show how well a fit explains a window, from its problem and the terms at the optimum. For sample k:

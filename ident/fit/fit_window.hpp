@@ -15,7 +15,7 @@ namespace modebank {
 /// loss per sample on |r_k|^2 over its n states. Residuals other than outliers are assumed independent, with standard
 /// deviation `sigma` (n entries, the state's unit). `prior` may be null. Transitions with a NaN or infinity are
 /// ignored; L is the number of the other transitions. Rank deficiency is a status instead of an exception, and takes
-/// precedence over iteration_limit. Status failed (theta NaN): no transition remains, or numbers overflow.
+/// precedence over iteration_limit. The status is `failed` (theta NaN) if no transition remains or numbers overflow.
 ///
 /// Sample weights w_k (Trajectory::weight) multiply the losses: the fit minimises sum w_k rho(|r_k|^2). Weights are
 /// divided by their mean over the window. So a common factor has no effect, even with a prior. With least squares, the
@@ -42,11 +42,11 @@ struct Estimator {
 
 Estimator make_estimator(const LinearStructure& structure, const FitOptions& options);
 
-/// The fit behind fit_window, for transitions already stacked and decomposed (at excitation_tolerance).
+/// The fit behind fit_window, for transitions that are already stacked and decomposed (with excitation_tolerance).
 LocalModel fit_transitions(const Transitions& transitions, const Decomposition& decomposition,
                            const Estimator& estimator, const NoiseScale& scale, const ParameterPrior* prior);
 
-/// theta of fit_transitions without its uncertainty; NaN if the fit failed.
+/// Theta of fit_transitions, without its uncertainty; NaN if the fit failed.
 Eigen::VectorXd fit_theta(const Transitions& transitions, const Decomposition& decomposition,
                           const Estimator& estimator, const NoiseScale& scale, const ParameterPrior* prior);
 

@@ -47,7 +47,7 @@ void check_options(const FitOptions& options, Index parameters) {
     require(value > 0.0 && std::isfinite(value), "prior_sd", std::to_string(value), "positive");
 }
 
-/// Number of windows per call of the sink of stream_windows.
+/// Number of windows that stream_windows passes to `sink` per call.
 constexpr Index streamed_windows = 65536;
 /// Largest number of windows for the default prior. The windows are drawn in blocks.
 constexpr Index prior_windows = 200000;
@@ -69,10 +69,10 @@ std::vector<WindowPlan::Range> prior_ranges(const WindowPlan& plan, Index longes
   return ranges;
 }
 
-/// Windows solved by Ceres are separate jobs.
+/// Each window that Ceres solves is a separate job.
 Index longest_range(const BatchWindows* batch) { return batch ? BatchWindows::longest_range : 1; }
 
-/// The linear structure of a model, and the motion model if the fit is not a linear regression.
+/// The linear structure of a model. Also the motion model, if the fit is not a linear regression.
 struct ModelChoice {
   LinearStructure structure;
   std::shared_ptr<const MotionModel> motion;  ///< null: linear
@@ -89,8 +89,8 @@ ModelChoice choose_model(const Recording& recording, const FitOptions& options) 
 /// Fits all windows of a recording, range by range.
 class Fitting {
  public:
-  /// `motion`: null for linear models. `motion`, the recording and the options must outlive this object. `first`:
-  /// earliest transition at which a window may begin. Windows also begin no earlier than their regressors allow.
+  /// `motion` is null for linear models. `motion`, the recording and the options must outlive this object. `first` is
+  /// the earliest transition at which a window may begin. Windows begin no earlier than their regressors allow.
   Fitting(const Recording& recording, const FitOptions& options, const LinearStructure& structure,
           const MotionModel* motion, Index first = 0)
       : plan_(recording, options.length, options.step, std::max(first, structure.first_transition())) {
@@ -113,7 +113,7 @@ class Fitting {
     common_.audit.ceres_method = fitter_->method();
     if (batch_) common_.audit.batch_method = BatchWindows::method();
   }
-  Fitting(const Fitting&) = delete;  // not copied, because the fitter refers to the global model
+  Fitting(const Fitting&) = delete;  // must not be copied, because `fitter` refers to the global model
   Fitting& operator=(const Fitting&) = delete;
 
   Index count() const { return plan_.count(); }
@@ -146,7 +146,7 @@ class Fitting {
     common_.loss = options.loss;
   }
 
-  /// theta of windows fitted without prior, one per column; NaN for rank-deficient windows.
+  /// theta of windows fitted without a prior, one column per window; NaN for rank-deficient windows.
   Eigen::MatrixXd unregularised_fits() {
     const auto batch = linear_ ? BatchWindows::make(*linear_, plan_.count(), nullptr) : nullptr;
     const auto ranges = prior_ranges(plan_, longest_range(batch.get()), fitter_->options().seed);
@@ -218,7 +218,7 @@ class Fitting {
   std::unique_ptr<BatchWindows> batch_;
   std::vector<Index> audited_;
   std::atomic<Index> by_ceres_ = 0;
-  std::optional<WorkCounter> counter_;  ///< counts from the first window on
+  std::optional<WorkCounter> counter_;  ///< counts of all windows so far
 };
 
 WindowFits collect(Fitting&& fitting) {

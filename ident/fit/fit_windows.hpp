@@ -20,16 +20,16 @@ namespace modebank {
 /// option out of range or a solver that does not support the model.
 WindowFits fit_windows(const Recording& recording, const FitOptions& options);
 
-/// Fits the windows of `fits`, a model with lags, with one lag each and otherwise the same options. Window i covers the
-/// same transitions. Prior standard deviations that are given per parameter are ignored.
+/// Fits the windows of `fits` with a one-lag model instead of their model with several lags; the other options are the
+/// same. Window i covers the same transitions. Prior standard deviations that are given per parameter are ignored.
 WindowFits fit_one_lag(const Recording& recording, const WindowFits& fits, FitOptions options);
 
 /// Number of windows that fit_windows will return.
 Index count_windows(const Recording& recording, const FitOptions& options);
 
-/// fit_windows in bounded memory. `sink` gets the windows in order, some ten thousand per call, starting at index
-/// `first`. All other fields are filled on each call. The audit covers the windows up to that call. Returns the common
-/// fields without windows.
+/// fit_windows in bounded memory. Passes the windows to `sink` in order, some ten thousand per call, from index `first`
+/// on. Each call fills all other fields; its audit covers the windows up to that call. Returns the common fields
+/// without windows.
 using WindowSink = std::function<void(const WindowFits& fits, Index first)>;
 WindowFits stream_windows(const Recording& recording, const FitOptions& options, const WindowSink& sink);
 
@@ -37,22 +37,22 @@ WindowFits stream_windows(const Recording& recording, const FitOptions& options,
 /// excitation stay there. The global model always uses one-step residuals. Throws the errors of fit_windows.
 WindowFits fit_windows(const Recording& recording, const FitOptions& options, const MotionModel& model);
 
-/// The options with the name of the given model. Throws std::invalid_argument for the name of a linear model, and if
-/// states or inputs differ from those of the recording.
+/// The options with the name of the given model. Throws std::invalid_argument for the name of a linear model. Also
+/// throws it if the states or inputs differ from those of the recording.
 FitOptions options_for(const MotionModel& model, const Recording& recording, FitOptions options);
 
-/// Throws ConfigurationError unless FitOptions name one model that fits n states and m inputs. Examples of errors are
-/// lags for a model without lags, residuals that the model lacks, and an unknown model. Also throws the errors of
-/// make_motion_model.
+/// Throws ConfigurationError unless the options name one model that fits n states and m inputs. It is also thrown for
+/// an unknown model, for lags of a model without lags, and for residuals that the model lacks. Also throws the errors
+/// of make_motion_model.
 void check_model(const FitOptions& options, Index states, Index inputs);
 
-/// All model names that options accept: linear, varx and the motion models.
+/// All model names that the options accept: linear, varx and the motion models.
 std::vector<std::string> model_names();
 
 /// The motion model that the options name; null for linear models.
 std::shared_ptr<const MotionModel> motion_model(const FitOptions& options, Index states, Index inputs);
 
-/// Number of parameters p of the model in the options.
+/// Number of parameters p of the model that the options name.
 Index parameter_count(const FitOptions& options, Index states, Index inputs);
 
 }  // namespace modebank

@@ -14,7 +14,7 @@
 namespace modebank {
 
 std::vector<Index> unidentifiable_columns(const Eigen::MatrixXd& X, const Decomposition& d) {
-  constexpr double rounding = 1e-6;  // share of a squared length; far below any real dependence
+  constexpr double rounding = 1e-6;  // share of a squared length; far below the share of any true dependence
   const Index q = d.basis.rows();
   std::vector<Index> unidentifiable;
   if (d.rank() == q) return unidentifiable;
@@ -47,8 +47,8 @@ Eigen::MatrixXd least_squares_covariance(const Eigen::MatrixXd& X, const Decompo
   return covariance;
 }
 
-/// Reduces all training transitions to a few rows of the same least-squares problem, and counts them. A QR
-/// decomposition takes block after block, so a long recording is not copied.
+/// Reduces all training transitions to a few rows of the same least-squares problem, and counts the transitions. A QR
+/// decomposition takes one block of rows after the other, so a long recording is not copied.
 std::pair<Transitions, Index> reduce(const Recording& recording, const LinearStructure& structure) {
   const Index q = structure.regressors(), n = structure.states;
   Eigen::MatrixXd triangle(0, q + n);
@@ -63,7 +63,8 @@ std::pair<Transitions, Index> reduce(const Recording& recording, const LinearStr
 }
 
 constexpr int motion_iterations = 1000;
-// number of fits of the motion model; each weights the states by the residuals' standard deviations of the previous fit
+// number of fits of the motion model; each fit weights the states by the residual standard deviations of the previous
+// fit
 constexpr int scale_passes = 3;
 
 /// Root mean square per state.

@@ -73,8 +73,8 @@ double gaussian_consistency(const RobustLoss& loss, Eigen::Index states) {
     const double s = r * r;
     return loss(s).weight * s * chi_square_density(s, static_cast<double>(states)) * 2.0 * r;
   };
-  // Split at the kink of Huber's and Tukey's weights. Beyond `end` the chi distribution has less than 1e-20 of its
-  // mass.
+  // The integral is split at the kink of Huber's and Tukey's weights. Less than 1e-20 of the mass of the chi
+  // distribution lies beyond `end`.
   const double kink = loss.scale(), end = std::sqrt(static_cast<double>(states)) + 10.0;
   const double tail = kink < end ? integrate(integrand, kink, end) : 0.0;
   return (integrate(integrand, 0.0, std::min(kink, end)) + tail) / static_cast<double>(states);

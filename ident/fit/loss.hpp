@@ -11,8 +11,8 @@ class LossFunction;
 
 namespace modebank {
 
-/// Tuning constant in units of sigma for 95 % efficiency under Gaussian noise in one state (Holland & Welsch 1977).
-/// softlone and arctan satisfy the same condition; trivial has 1.
+/// Tuning constant in units of sigma that gives 95 % efficiency under Gaussian noise in one state (Holland & Welsch
+/// 1977). softlone and arctan meet the same condition. The constant of trivial is 1.
 double default_loss_scale(Loss loss);
 
 /// rho and its derivatives at s = |r|^2, with r in units of sigma.
@@ -26,7 +26,7 @@ struct LossValue {
 /// rho(s) = c^2 atan(s / c^2). (Ceres' own argument is c^2.) So c is a residual for every loss.
 class RobustLoss {
  public:
-  /// `scale`: 0 means default_loss_scale. Throws std::invalid_argument for a negative or non-finite scale.
+  /// `scale`: 0 selects default_loss_scale. Throws std::invalid_argument for a negative or non-finite scale.
   RobustLoss(Loss loss, double scale);
   ~RobustLoss();
   RobustLoss(RobustLoss&&) noexcept;
@@ -36,7 +36,7 @@ class RobustLoss {
   Loss kind() const { return kind_; }
   double scale() const { return scale_; }
   bool convex() const { return kind_ == Loss::trivial || kind_ == Loss::huber || kind_ == Loss::softlone; }
-  /// For ceres::Problem::AddResidualBlock, whose parameter is not const. Ceres does not change it.
+  /// For ceres::Problem::AddResidualBlock, whose parameter is not const. Ceres does not change the loss.
   ceres::LossFunction* ceres_function() const { return function_.get(); }
 
  private:

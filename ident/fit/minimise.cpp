@@ -16,17 +16,17 @@ namespace modebank {
 
 namespace {
 
-/// Larger whitened residuals are numerical accidents; their squares would overflow.
+/// Whitened residuals above this value are numerical accidents; their squares would overflow.
 constexpr double largest_residual = 1e100;
-/// Relative cost changes at which Ceres stops. The first tolerance leads near enough for Newton steps. If these fail,
-/// the second goes to the precision of the cost.
+/// Relative cost changes at which Ceres stops. The first tolerance brings the search near enough for Newton steps. If
+/// the Newton steps fail, Ceres continues with the second tolerance, down to the precision of the cost.
 constexpr double near_tolerance = 1e-4;
 constexpr double far_tolerance = 1e-14;
-/// If |psi| is below this share of |b|, it is no longer a scale for a gradient: even stationary_gradient times |psi| is
-/// rounding error.
+/// If |psi| is below this share of |b|, it cannot serve as a reference for the gradient: even stationary_gradient times
+/// |psi| is a rounding error.
 constexpr double least_influence = 1e-5;
-/// Near the optimum the expected gain of a step is rounding error, and Ceres calls the step invalid. The trust region
-/// then shrinks. The search should end in the same way as after any small step, without a failure.
+/// Near the optimum the expected gain of a step is a rounding error. Ceres then calls the step invalid and shrinks the
+/// trust region. The search should end as it does after any small step, without a failure.
 constexpr int most_invalid_steps = 50;
 constexpr double cost_rounding = 1e-13;
 constexpr int max_newton_steps = 60;
@@ -53,8 +53,8 @@ ceres::Solver::Options solver_options(const Tolerances& tolerances, int max_iter
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
   options.jacobi_scaling = false;             // the columns already have unit norm
-  options.initial_trust_region_radius = 1e8;  // begin with full steps, because the problem is convex or starts near its
-                                              // optimum
+  options.initial_trust_region_radius = 1e8;  // begins with full steps, because the problem is convex or the start is
+                                              // near the optimum
   options.function_tolerance = tolerances.function;
   options.gradient_tolerance = tolerances.gradient;
   options.max_num_consecutive_invalid_steps = most_invalid_steps;
@@ -66,7 +66,7 @@ FitStatus search(const WhitenedProblem& problem, const RobustLoss& loss, const T
                  int max_iterations, Eigen::VectorXd& z) {
   ceres::Problem ceres_problem(problem_options());
   const auto add = [&](Index first, Index count, ceres::LossFunction* function) {
-    // Ceres owns the block
+    // Ceres owns this block
     ceres_problem.AddResidualBlock(new LinearResidual(problem, first, count), function, z.data());
   };
   std::vector<WeightedLoss> weighted;
@@ -85,16 +85,16 @@ bool stationary(const WhitenedProblem& problem, const RobustTerms& terms) {
   return scaled_gradient(problem, terms) <= stationary_gradient;
 }
 
-/// -H^-1 g; without rho'' if the second derivative is not positive definite. Empty if that matrix is not positive
-/// definite, either.
+/// The step -H^-1 g. If the second derivative is not positive definite, H omits rho''. Empty if this H is not positive
+/// definite either.
 Eigen::VectorXd newton_step(const WhitenedProblem& problem, const RobustTerms& terms, const Eigen::VectorXd& g) {
   Cholesky factor(hessian(problem, terms));
   if (!factor.definite()) factor.factorise(weighted_information(problem, terms));
   return factor.definite() ? Eigen::VectorXd(-factor.solve(g)) : Eigen::VectorXd();
 }
 
-/// Newton steps, halved until the objective does not increase. Returns true once z is stationary, false if no step
-/// gains.
+/// Newton steps, halved until the objective does not increase. Returns true if z is stationary at the end, and false if
+/// no step reduces the cost.
 bool polish(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd& z) {
   RobustTerms terms = evaluate(problem, loss, z);
   for (int i = 0; i < max_newton_steps; ++i) {
@@ -201,7 +201,7 @@ Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max
     minimum.status = search(problem, loss, {tolerance}, max_iterations, minimum.z);
     if (minimum.status != FitStatus::converged || polish(problem, loss, minimum.z)) return finite_or_failed(minimum);
   }
-  minimum.status = FitStatus::iteration_limit;  // Ceres gains no more, but the point is not stationary
+  minimum.status = FitStatus::iteration_limit;  // Ceres cannot reduce the cost further, but the point is not stationary
   return finite_or_failed(minimum);
 }
 

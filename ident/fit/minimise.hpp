@@ -38,9 +38,9 @@ Eigen::MatrixXd hessian(const WhitenedProblem& problem, const RobustTerms& terms
 /// The second derivative without rho'', as in iteratively reweighted least squares; never indefinite.
 Eigen::MatrixXd weighted_information(const WhitenedProblem& problem, const RobustTerms& terms);
 
-/// Distance from a minimum, without units. It is the norm of the gradient relative to that of psi and the prior's rows.
-/// (The gradient is a projection of these.) If psi is below 1e-5 |b|, the gradient is rounding error, and the reference
-/// is 1e-5 |b|. (Karush-Kuhn-Tucker condition without bounds.)
+/// Distance from a minimum, without units: the norm of the gradient divided by the norm of psi and the prior's rows.
+/// (The gradient is a projection of psi and these rows.) If |psi| is below 1e-5 |b|, the gradient is a rounding error
+/// and is divided by 1e-5 |b| instead. (Karush-Kuhn-Tucker condition without bounds.)
 double scaled_gradient(const WhitenedProblem& problem, const RobustTerms& terms);
 
 /// The minimiser and the status of the search: converged, iteration_limit or failed.
@@ -49,11 +49,11 @@ struct Minimum {
   FitStatus status = FitStatus::failed;
 };
 
-/// Defines the fit of a linear window, and solves it unless the batch solver does. The search starts from the
-/// least-squares solution (non-convex losses: from the Huber optimum). First comes Ceres' trust region search with one
-/// residual block and loss per sample. It ends when the relative cost change is below 1e-4. Newton steps with the exact
-/// second derivative follow, to a scaled gradient of stationary_gradient. These steps are needed because Ceres drops a
-/// negative rho'' and then converges only linearly. Deterministic, without output.
+/// Defines the fit of a linear window. Also solves it if the batch solver does not. The search starts from the
+/// least-squares solution; for non-convex losses it starts from the Huber optimum. Ceres' trust region search comes
+/// first, with one residual block and loss per sample. It ends when the relative cost change is below 1e-4. Newton
+/// steps with the exact second derivative follow, to a scaled gradient of stationary_gradient. They are needed because
+/// Ceres drops a negative rho'' and then converges only linearly. Deterministic, without output.
 Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max_iterations);
 
 /// Ceres alone from the same start, at tolerances of 1e-16. Audits use it as reference.

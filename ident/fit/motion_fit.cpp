@@ -72,13 +72,13 @@ class PriorResidual final : public ceres::CostFunction {
   const ParameterPrior& prior_;
 };
 
-/// Near the optimum the expected gain of a step is rounding error, and Ceres calls such steps invalid. The trust region
-/// then shrinks until the step is small. The search should then end as converged.
+/// Near the optimum the expected gain of a step is a rounding error. Ceres then calls the step invalid and shrinks the
+/// trust region until the step is small. The search should then end as converged.
 constexpr int most_invalid_model_steps = 50;
 
 ceres::Solver::Options model_solver_options(int iterations) {
   ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;  // does not square the condition number
+  options.linear_solver_type = ceres::DENSE_QR;  // this solver does not square the condition number
   options.max_num_iterations = iterations;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
@@ -98,12 +98,13 @@ void set_bounds(const MotionModel& model, ceres::Problem& problem, Eigen::Vector
   }
 }
 
-/// Minimises by Ceres. Ceres applies the loss to one residual block, so each sample is a block. Plain least squares use
-/// one block for all samples.
+/// Minimises by Ceres. Ceres applies the loss to a whole residual block, so each sample is one block. Plain least
+/// squares use one block for all samples.
 FitStatus ceres_search(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, const RobustLoss& loss,
                        const ParameterPrior* prior, int iterations, Eigen::VectorXd& theta) {
   ceres::Problem::Options problem_options;
-  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // shared by samples, windows and threads
+  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // one object for all samples, windows and
+                                                                           // threads
   problem_options.disable_all_safety_checks = true;
   std::vector<WeightedLoss> weighted;
   for (const double weight : residuals.weights()) weighted.emplace_back(*loss.ceres_function(), weight);
@@ -155,7 +156,7 @@ LinearisedFit linearise(const ModelResiduals& residuals, const Eigen::VectorXd& 
   return fit;
 }
 
-/// The whitened problem whose solution, the fit, is at z = 0.
+/// The whitened problem whose solution z = 0 is the fit.
 WhitenedProblem whiten_at(const LinearisedFit& fit, const ModelResiduals& residuals, const Eigen::VectorXd& at,
                           const Decomposition& excitation, const ParameterPrior* prior) {
   const Index rows = fit.r.size(), u = at.size(), p = prior ? prior->mean.size() : 0;

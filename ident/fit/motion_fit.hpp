@@ -29,14 +29,14 @@ struct ModelMinimum {
 inline constexpr char minimise_model_method[] = "Ceres to a relative change of the cost of 1e-16";
 
 /// Minimises 1/2 sum w_k rho(|r_k / sigma|^2) + 1/2 |(theta - m) / sd|^2 by Ceres. The search begins at `start` and
-/// stays within the bounds of the parameters. w_k are the sample weights of `residuals`. Non-convex losses start from
-/// the Huber optimum. `sigma`: n positive entries; `prior` may be null.
+/// stays within the bounds of the parameters. w_k are the sample weights of `residuals`. For non-convex losses the
+/// search starts from the Huber optimum. `sigma` has n positive entries; `prior` may be null.
 ModelMinimum minimise_model(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, const RobustLoss& loss,
                             const ParameterPrior* prior, int max_iterations, const Eigen::VectorXd& start);
 
-/// fit_window for any model. The fields of LocalModel have the same meaning. The derivatives of the predictions with
-/// respect to theta at the solution replace the regressors. Rank and condition are those of all unknowns. With p
-/// parameters for n states the residuals lose p / n degrees of freedom per state.
+/// fit_window for any model; the fields of LocalModel have the same meaning. In place of regressors, this function uses
+/// the derivatives of the predictions with respect to theta at the solution. Rank and condition are those of all
+/// unknowns. With p parameters for n states, the residuals of each state lose p / n degrees of freedom.
 LocalModel fit_model(const ModelResiduals& residuals, const ModelEstimator& estimator, const Eigen::VectorXd& sigma,
                      const Eigen::VectorXd& sigma_floor, const ParameterPrior* prior, const Eigen::VectorXd& start);
 

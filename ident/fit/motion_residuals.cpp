@@ -9,7 +9,7 @@ namespace {
 
 double period_s(const Trajectory& run, Index k) { return run.time_s(k + 1) - run.time_s(k); }
 
-/// Whether column k of the signals is finite. A loop, because a column has few entries.
+/// Whether column k of the signals is finite. A plain loop is used, because a column has few entries.
 bool finite_sample(const Eigen::MatrixXd& signals, Index k) {
   const double* const sample = signals.data() + k * signals.rows();
   return std::all_of(sample, sample + signals.rows(), [](double value) { return std::isfinite(value); });

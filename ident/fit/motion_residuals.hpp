@@ -25,8 +25,9 @@ using RowMajorJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, E
 /// to model and runs, which must outlive it.
 class ModelResiduals {
  public:
-  /// `weights`: factors of each transition's loss, in the order of the stretches. If empty, they are the runs' sample
-  /// weights divided by their mean, or one for all. Samples of weight zero are skipped.
+  /// `weights` are factors of each transition's loss, in the order of the stretches. If `weights` is empty, the runs'
+  /// sample weights divided by their mean are used, or 1 if the runs have no weights. Samples of weight zero are
+  /// skipped.
   ModelResiduals(const MotionModel& model, const std::vector<TransitionRange>& stretches,
                  const Eigen::VectorXd& weights = {});
 
@@ -41,10 +42,11 @@ class ModelResiduals {
   /// Increments that the model should explain, one row per sample, times the square root of its weight.
   Eigen::MatrixXd responses() const;
 
-  /// r (rows) and, if not null, the derivatives of the predictions with respect to theta (rows x unknowns): dr = -J
-  /// d(theta).
+  /// Computes r (rows). If the second pointer is not null, also computes the derivatives of the predictions with
+  /// respect to theta (rows x unknowns): dr = -J d(theta).
   void evaluate(const double* theta, Eigen::VectorXd& r, RowMajorJacobian* J) const;
-  /// `evaluate` for samples first .. first + count - 1, into count n numbers and, if not null, count n rows of J.
+  /// `evaluate` for samples first .. first + count - 1: count n numbers and, if the pointer is not null, count n rows
+  /// of J.
   void evaluate(const double* theta, Index first, Index count, double* r, double* J) const;
 
  private:

@@ -10,8 +10,8 @@ inline bool has_lags(const FitOptions& o) { return o.state_lags != 1 || o.input_
 
 inline bool is_linear(const FitOptions& options) { return options.model == "linear" || options.model == "varx"; }
 
-/// The linear model of the options for n states and m inputs. For a motion model: the structure of its linearisations,
-/// with an intercept.
+/// The linear model that the options describe, for n states and m inputs. For a motion model it is the structure of its
+/// linearisations, with an intercept.
 inline LinearStructure linear_structure(Index states, Index inputs, const FitOptions& o) {
   if (o.model == "varx") return {states, inputs, o.intercept, o.state_lags, o.input_lags, o.input_delay};
   return {states, inputs, is_linear(o) ? o.intercept : true};

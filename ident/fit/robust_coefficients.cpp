@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::VectorXd;
 
-// share of the errors' root mean square, because more than half of the errors may be zero
+// as a share of the errors' root mean square; needed because more than half of the errors may be zero
 constexpr double least_share_of_rms = 1e-3;
-constexpr double least_normal_scale = 1e-150;  // its square is still a normal floating-point number
+constexpr double least_normal_scale = 1e-150;  // the square of this value is still a normal floating-point number
 
 }  // namespace
 

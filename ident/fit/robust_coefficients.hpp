@@ -10,7 +10,7 @@ namespace modebank {
 /// Coefficients of a regression of one response, with the loss and scale of a window fit. Empty if the fit fails. If
 /// the regressors are rank deficient, the solution has minimum norm.
 Eigen::VectorXd robust_coefficients(const Transitions& transitions, const FitOptions& options);
-/// robust_coefficients, or least squares if robust_coefficients fails.
+/// The result of robust_coefficients; if that fails, the least-squares coefficients.
 Eigen::VectorXd robust_or_least_squares(const Transitions& transitions, const FitOptions& options);
 
 }  // namespace modebank

@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 constexpr double normal_third_quartile = 0.674489750196081743;  // Phi^-1(3/4)
 
-// relative to the scale; rounding is some decades smaller
+// relative to the scale; rounding errors are some decades smaller
 constexpr double fit_tolerance = 1e-12;
 constexpr int max_iterations = 1000;
 
@@ -41,8 +41,8 @@ struct ResponseFit {
   bool converged = false;
 };
 
-/// Standard errors for a problem of scale 1. If the problem is rank deficient, they are those of the determined
-/// directions.
+/// Standard errors for a problem of scale 1. If the problem is rank deficient, only the directions that data determine
+/// are included.
 VectorXd standard_errors(const WhitenedProblem& problem, const RobustLoss& loss, const VectorXd& residuals,
                          double scale) {
   const Index q = problem.basis.rows(), rank = problem.unknowns();
@@ -58,7 +58,7 @@ VectorXd standard_errors(const WhitenedProblem& problem, const RobustLoss& loss,
   return scale * (problem.basis * covariance(determined) * problem.basis.transpose()).diagonal().cwiseSqrt();
 }
 
-/// Reweighted least squares on one problem. The scale is updated in every step.
+/// Reweighted least squares on one problem. Every step updates the scale.
 ResponseFit fit_response(const Transitions& transitions, const Decomposition& design) {
   const WhitenedProblem problem = whiten(transitions, design, VectorXd::Ones(1), nullptr);
   const RobustLoss loss(Loss::huber, default_loss_scale(Loss::huber));

@@ -13,7 +13,7 @@ namespace modebank {
 
 namespace {
 constexpr double floor_share = 1e-3;
-constexpr double least_scale = 1e-150;  // its square is still a normal floating-point number
+constexpr double least_scale = 1e-150;  // the square of this value is still a normal floating-point number
 }  // namespace
 
 double median(Eigen::VectorXd values) {
@@ -30,8 +30,8 @@ double normalised_mad(const Eigen::VectorXd& values) {
 
 namespace {
 
-/// Smallest value at which the cumulative weight reaches half. If it is exactly half, the mean of this value and the
-/// next one.
+/// Smallest value at which the cumulative weight reaches half of the total. If it is exactly half, the mean of this
+/// value and the next larger value.
 double weighted_median(const Eigen::VectorXd& values, const Eigen::VectorXd& weights) {
   std::vector<Index> order(static_cast<std::size_t>(values.size()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -73,7 +73,7 @@ Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition
 Eigen::VectorXd scale_floor(const Recording& recording, const LinearStructure& structure,
                             const Eigen::VectorXd& global_noise_variance) {
   Eigen::VectorXd floor = floor_share * global_noise_variance.cwiseSqrt();
-  Eigen::VectorXd norm = Eigen::VectorXd::Zero(floor.size());  // norm of each state
+  Eigen::VectorXd norm = Eigen::VectorXd::Zero(floor.size());  // norm of the values of each state
   Index count = 0;
   for_each_training_block(recording, structure, [&](const Transitions& block) {
     count += block.count();

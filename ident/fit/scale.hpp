@@ -6,12 +6,12 @@
 
 namespace modebank {
 
-double median(Eigen::VectorXd values);  ///< mean of the two middle values for an even count; NaN if empty
+double median(Eigen::VectorXd values);  ///< Median: the mean of the two middle values for an even count; NaN if empty.
 
 /// 1.4826 times the median absolute deviation from the median; consistent for a Gaussian's standard deviation.
 double normalised_mad(const Eigen::VectorXd& values);
 
-/// normalised_mad of a sample in which value i counts weights(i) > 0 times.
+/// normalised_mad of a sample in which value i has the weight weights(i) > 0.
 double normalised_mad(const Eigen::VectorXd& values, const Eigen::VectorXd& weights);
 
 /// Residual standard deviations and their lower bounds, n each.
@@ -21,8 +21,8 @@ struct NoiseScale {
 };
 
 /// Residual standard deviation per state: normalised_mad times sqrt(N / (N - lost)). r are least-squares residuals (N x
-/// n, without weights applied). The least-squares fit costs each state `lost` degrees of freedom. Sample weights (N, or
-/// empty) enter the medians. NaN if N <= lost.
+/// n), not multiplied by weights. The least-squares fit costs each state `lost` degrees of freedom. The medians are
+/// weighted by the sample weights (N, or empty). NaN if N <= lost.
 Eigen::VectorXd robust_scale(const Eigen::Ref<const Eigen::MatrixXd>& r, const Eigen::VectorXd& weights, double lost);
 
 /// robust_scale of a linear regression.

@@ -6,7 +6,7 @@ namespace modebank {
 
 namespace {
 
-/// The block of state i: the rows of U for its samples, then for its prior, and its part of the basis.
+/// The block of state i: the rows of U for its samples, the rows for its prior, and its part of the basis.
 struct StateBlock {
   Eigen::MatrixXd U_samples;
   Eigen::MatrixXd U_prior;
@@ -26,8 +26,7 @@ StateBlock block_with_prior(const Transitions& t, double sigma, const Eigen::Vec
   return {d.U.topRows(L), d.U.bottomRows(q), d.basis};
 }
 
-/// Moves the origin to the least-squares solution. A second pass removes the rounding errors of b that the first one
-/// leaves.
+/// Moves the origin to the least-squares solution. A second pass removes the rounding errors that remain in b.
 void centre(WhitenedProblem& problem) {
   for (int pass = 0; pass < 2; ++pass) {
     const Eigen::VectorXd z = problem.J.transpose() * problem.b;

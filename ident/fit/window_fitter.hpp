@@ -30,17 +30,18 @@ class WindowFitter {
   const GlobalModel& global() const { return global_; }
   const Eigen::VectorXd& floor() const { return floor_; }  ///< n, smallest sigma per state
   const Trajectory& run_of(const Window& window) const { return recording_.runs[static_cast<std::size_t>(window.run)]; }
-  /// sigma of a whole run. If the run is too short for an estimate, the global sigma.
+  /// Sigma of a whole run. If the run is too short for an estimate, the global sigma.
   const Eigen::VectorXd& run_scale(Index run) const;
 
  protected:
-  /// `floor`: from scale_floor.
+  /// `floor` is the result of scale_floor.
   WindowFitter(const Recording& recording, const FitOptions& options, const GlobalModel& global, Eigen::VectorXd floor);
 
   /// robust_scale of a run's least-squares residuals; NaN if the run is too short.
   virtual Eigen::VectorXd scale_of(const Trajectory& run) const = 0;
-  /// sigma as the options require. It is `own` (scale of the window's residuals) if the options ask for it, the window
-  /// has at least `enough` samples and the scale is finite. Otherwise it is the sigma of the run.
+  /// sigma as the options require. It is `own`, the scale of the window's residuals, under three conditions: the
+  /// options ask for it, the window has at least `enough` samples, and `own` is finite. Otherwise it is the sigma of
+  /// the run.
   Eigen::VectorXd window_sigma(const Window& window, bool enough, const std::function<Eigen::VectorXd()>& own) const;
 
  private:
@@ -71,7 +72,7 @@ class LinearWindows final : public WindowFitter {
     Decomposition decomposition;
     NoiseScale scale;
   };
-  /// The window's transitions without those that hold a NaN or infinity; empty if no transition remains.
+  /// The window's transitions without those that contain a NaN or infinity; empty if no transition remains.
   std::optional<WindowData> load(const Window& window) const;
 
   LocalModel fit(const Window& window, const ParameterPrior* prior) const override;
@@ -95,7 +96,7 @@ class MotionWindows final : public WindowFitter {
 
  private:
   Eigen::VectorXd scale_of(const Trajectory& run) const override;
-  /// robust_scale of least-squares residuals, with states weighted by `sigma`; NaN for too few samples.
+  /// robust_scale of least-squares residuals, with states weighted by `sigma`; NaN if there are too few samples.
   Eigen::VectorXd least_squares_scale(const ModelResiduals& residuals, const Eigen::VectorXd& sigma) const;
 
   const MotionModel& model_;

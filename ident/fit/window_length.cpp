@@ -12,7 +12,7 @@ namespace modebank {
 namespace {
 
 constexpr double significance = 0.99;       // level of each of the two tests
-constexpr double most_changed = 1.0 / 6.0;  // largest share of windows with a change
+constexpr double most_changed = 1.0 / 6.0;  // largest share of windows with a change at which windows keep their length
 constexpr Index enough_windows = 1000;
 
 /// Least squares of some transitions: sums of squared residuals per state, and their degrees of freedom.
@@ -75,8 +75,8 @@ Index automatic_length(const Recording& recording, const LinearStructure& struct
     const Index length = length_of(per_regressor);
     if (length > shortest && changed_share(recording, structure.with_one_lag(), length) <= most_changed) return length;
   }
-  // Runs that are too short for such a window may still hold one of the smallest length. If they do not, the function
-  // that forms windows reports it.
+  // Runs that are too short for such a window may still hold a window of the smallest length. If they do not, the
+  // function that forms windows throws an error.
   return WindowPlan(recording, shortest, 1, structure.first_transition()).count() > 0 ? shortest
                                                                                       : shortest_automatic_length;
 }

@@ -6,11 +6,12 @@
 
 namespace modebank {
 
-/// Summary of all windows of one fit: medians over the windows with a defined value. NaN if no window has one.
+/// Summary of all windows of one fit. Each figure is a median over the windows in which it is defined; NaN if there is
+/// no such window.
 struct WindowSummary {
   Eigen::VectorXd parameter;       ///< p, median theta
   Eigen::VectorXd standard_error;  ///< p, median
-  Eigen::VectorXd significant;     ///< p, share of the windows with |t value| > 2
+  Eigen::VectorXd significant;     ///< p, share of the windows in which |t value| > 2
   Eigen::VectorXd r_squared;       ///< n, median
   double aic = 0.0;                ///< median
 };

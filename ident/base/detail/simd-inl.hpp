@@ -56,18 +56,18 @@ struct Symmetric {
   V a[Q * (Q + 1) / 2];
 };
 
-/// L D L' of a symmetric matrix, with D inverted.
+/// Factorisation L D L' of a symmetric matrix; stores the inverse of D.
 template <int Q>
 struct Ldl {
   V l[Q * (Q + 1) / 2];
   V inverse_d[Q];
-  M ok;  ///< whether every pivot exceeds `least` times the diagonal of `reference`
+  M ok;  ///< whether every pivot is above `least` times the diagonal element of `reference`
 };
 
 template <int Q>
 HWY_INLINE Ldl<Q> factor(const Symmetric<Q>& A, const Symmetric<Q>& reference, double least) {
   Ldl<Q> f;
-  V scaled[Q];  // l_jk d_k of the present row
+  V scaled[Q];  // l_jk d_k of row j
   f.ok = hn::Eq(zero(), zero());
   for (int j = 0; j < Q; ++j) {
     for (int k = 0; k < j; ++k) {
@@ -137,8 +137,8 @@ HWY_INLINE V dot(const V (&a)[Q], const V (&b)[Q]) {
   return sum;
 }
 
-/// Singular values of Q columns of Q entries by one-sided Jacobi rotations (Hestenes 1958). The accuracy of small
-/// singular values is that of the entries. A lane that needs no rotation keeps its bits.
+/// Singular values of a Q x Q matrix by one-sided Jacobi rotations (Hestenes 1958). Small singular values are as
+/// accurate as the matrix entries. A lane that needs no rotation is not changed.
 template <int Q>
 HWY_NOINLINE void singular_values(V (&column)[Q][Q], V (&sigma)[Q]) {
   constexpr double orthogonal = 1e-15;

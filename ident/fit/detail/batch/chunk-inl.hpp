@@ -26,8 +26,8 @@ HWY_INLINE View contiguous_view(const Settings& settings, const Chunk& chunk, In
   return view;
 }
 
-/// Copies windows that do not start one sample apart, so that there is one window per lane. Lanes beyond the last
-/// window repeat that window.
+/// Copies windows that do not start one sample apart, one window per lane. Lanes beyond the last window repeat that
+/// window.
 HWY_INLINE View transposed_view(const Settings& settings, const Chunk& chunk, Index first, double* memory) {
   const Index lanes = static_cast<Index>(hn::Lanes(D()));
   const auto transpose = [&](const double* column) {
@@ -63,14 +63,14 @@ HWY_INLINE void scatter_flags(M mask, Index count, bool (&flag)[widest]) {
   for (Index i = 0; i < count; ++i) flag[i] = lane[i] != 0.0;
 }
 
-/// Stores verdict, rank and status, the integer results.
+/// Stores the integer results: verdict, rank and status.
 template <int Q>
 HWY_INLINE void write_verdicts(const Settings& settings, const Fit<Q>& fit, Index first, Index count,
                                const Output& out) {
   const M rated = settings.prior ? fit.reached : hn::AndNot(fit.deficient, fit.reached);
   const M solved = hn::And(hn::And(fit.enough, fit.clear), rated);
   const bool plain = hn::CountTrue(D(), hn::AndNot(fit.deficient, solved)) == hn::Lanes(D());
-  // The usual case: all lanes are solved
+  // the usual case: all lanes are solved
   if (plain && count == static_cast<Index>(hn::Lanes(D())) && !out.transitions) {
     std::fill_n(out.verdict + first, count, Verdict::solved);
     if (out.rank) std::fill_n(out.rank + first, count, Q);
@@ -104,7 +104,7 @@ HWY_INLINE void write_verdicts(const Settings& settings, const Fit<Q>& fit, Inde
   }
 }
 
-/// akaike_criterion of ident/fit/describe.hpp for one state, from the sums; logarithms are computed by the host.
+/// akaike_criterion of ident/fit/describe.hpp for one state, from sums. The host computes the logarithms.
 template <int Q>
 HWY_NOINLINE void write_criterion(const Settings& settings, const Fit<Q>& fit, Index count, double* out) {
   if (!out) return;

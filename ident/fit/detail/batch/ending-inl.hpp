@@ -14,14 +14,15 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Sums over the residuals at the optimum. omega = rho' is a sample's robust weight, y its increment.
+/// Sums over the residuals at the optimum. omega = rho' is the robust weight of a sample, y its increment.
 struct Ending {
   V psi_square, slope, slope_square, weighted_square, inliers;
   V omega, omega_y, omega_y_square;  // y is taken relative to the window's first increment
   V cost;                            // sum rho, zero for zero residuals
 };
 
-/// An absent transition must not count. Its residual is set to zero; then rho = 0, and slope and omega are 1.
+/// An absent transition must not change the sums. Its residual is set to zero: then rho is 0, and slope and omega are
+/// 1.
 template <int Q, class LossT>
 HWY_NOINLINE Ending residual_sums(const View& view, const LossT& loss, const V (&theta)[Q]) {
   Ending e{zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero()};
@@ -46,7 +47,7 @@ HWY_NOINLINE Ending residual_sums(const View& view, const LossT& loss, const V (
   return e;
 }
 
-/// Number of parameters that the data determine: the sum of the samples' leverages at sigma.
+/// Number of parameters that the data determine: the sum of the samples' leverages, computed with sigma.
 template <int Q>
 HWY_INLINE V data_parameters(const Settings& settings, const Surroundings<Q>& around) {
   V f = splat(Q);
@@ -56,7 +57,8 @@ HWY_INLINE V data_parameters(const Settings& settings, const Surroundings<Q>& ar
   return f;
 }
 
-/// The `model` covariance of ident/fit/covariance.hpp with Huber's correction K. `weighed` is its weighed_information.
+/// The `model` covariance of ident/fit/covariance.hpp with Huber's correction K. `weighed` is the weighed_information
+/// of that file.
 template <int Q>
 HWY_NOINLINE Symmetric<Q> model_covariance(const Settings& settings, const Start<Q>& start, const Ending& e, V f,
                                            V& weighed) {

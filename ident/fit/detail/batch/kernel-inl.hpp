@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One vector per number of a LocalModel.
+/// The numbers of a LocalModel, one vector per number.
 template <int Q>
 struct Fit {
   Search<Q> search;
@@ -27,7 +27,7 @@ struct Fit {
   M clear, enough, reached, deficient;
 };
 
-/// R^2 and the parts of AIC in the definition of ident/fit/describe.hpp.
+/// R^2 and the parts of Akaike's criterion, as defined in ident/fit/describe.hpp.
 template <int Q>
 HWY_INLINE void describe_quality(const Settings& settings, const Ending& e, V f, V sigma, Fit<Q>& fit) {
   const V nan = splat(std::numeric_limits<double>::quiet_NaN());
@@ -62,7 +62,7 @@ HWY_INLINE void describe(const Settings& settings, const View& view, const LossT
     const V sd = splat(settings.prior ? settings.prior_sd[j] : std::numeric_limits<double>::quiet_NaN());
     fit.information[j] = hn::Sub(splat(1.0), hn::Div(fit.covariance.a[at(j, j)], hn::Mul(sd, sd)));
   }
-  // otherwise the data contain no information about theta
+  // if the slope is not positive, the data contain no information about theta
   if (!settings.prior) fit.reached = hn::And(fit.reached, hn::Gt(e.slope, zero()));
 }
 

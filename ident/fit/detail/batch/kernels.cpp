@@ -11,8 +11,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 
-/// Common shapes and losses have their own kernels. All other shapes share one kernel per shape. One-lane kernels,
-/// which only processors without AVX2 run, share it, too.
+/// Common shapes and losses have their own kernels. For all other shapes, one kernel per shape serves all losses.
+/// Kernels with one lane, which only processors without AVX2 run, also serve all losses.
 template <int Q>
 Kernel kernel_of(Loss loss) {
   if constexpr (Q >= 2 && Q <= 4 && HWY_TARGET != HWY_SCALAR) {

@@ -162,7 +162,7 @@ HWY_INLINE V rho_of(const LossT& loss, V r, const LossTerms& at_r) {
   return cost.value(loss);
 }
 
-/// A loss chosen at run time, for shapes without a kernel per loss.
+/// A loss that is chosen at run time, for shapes without a kernel per loss.
 struct AnyLoss {
   static constexpr bool quadratic = false;
   Loss kind;
@@ -212,7 +212,7 @@ struct AnyLoss {
   };
 };
 
-/// rho without the offset of the loss's Cost.
+/// rho without the constant offset that Cost leaves out.
 template <class LossT>
 HWY_INLINE V cost_above_zero(const LossT& loss, V r, const LossTerms& at_r) {
   return hn::Sub(rho_of(loss, r, at_r), rho_of(loss, zero(), loss.terms(zero())));

@@ -19,14 +19,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// The search ends if the expected gain of a Newton step, g' H^-1 g, is at most this share of sum psi^2. H is at most
 /// X'X + P, so the gradient in orthonormal coordinates is then at most sqrt(share) |psi|.
 inline constexpr double stationary_square = stationary_gradient * stationary_gradient;
-/// Gains below this share of sum y^2 are rounding error.
+/// Gains below this share of sum y^2 are rounding errors.
 inline constexpr double rounding_square = 1e-30;
 /// Newton steps need a second derivative whose pivots exceed this share of those of the regressors.
 inline constexpr double least_curvature = 1e-8;
 /// Reweighted steps need a Gram matrix whose pivots exceed this share.
 inline constexpr double least_weight = 1e-12;
-/// If a second derivative is too weak, this share of the regressors' own second derivative is added. If all samples of
-/// a direction are outliers, its steps are long. Steps that are too long are halved.
+/// If a second derivative is too weak, this share of the regressors' own second derivative is added. Steps are then
+/// long in directions in which all samples are outliers. Steps that are too long are halved.
 inline constexpr double curvature_share = 0.01;
 /// Largest relative increase of the objective that counts as rounding.
 inline constexpr double cost_rounding = 1e-12;
@@ -72,8 +72,8 @@ HWY_INLINE V magnitude(const Symmetric<Q>& gram, V square_sum, const V (&theta)[
   return sum;
 }
 
-/// A step for the lanes in `weak`, whose second derivative is not safely positive. First adds a share of the
-/// regressors' own second derivative. If the sum is still not positive, takes the step of reweighted least squares,
+/// A step for the lanes in `weak`, whose second derivative is not safely positive. A share of the regressors' own
+/// second derivative is added first. If the sum is still not positive, the step is that of reweighted least squares,
 /// which cannot increase these losses. Returns the lanes that have a step.
 template <int Q, class LossT>
 HWY_NOINLINE M cautious_step(const View& view, const LossT& loss, const Surroundings<Q>& around, const V (&theta)[Q],

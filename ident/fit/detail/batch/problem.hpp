@@ -8,8 +8,8 @@
 #include "ident/model/local_model.hpp"
 #include "ident/model/transitions.hpp"
 
-/// Plain numbers and pointers that the batch solver's host code passes to its vector kernels. A kernel is compiled once
-/// per instruction set, so no class with inline code may cross this border.
+/// Plain numbers and pointers that the batch solver's host code passes to its vector kernels. Kernels are compiled once
+/// per instruction set, so this file must not use classes with inline code.
 namespace modebank::batch {
 
 /// Largest number of regressors q of one state with a compiled kernel: three state lags, two inputs and an intercept.
@@ -17,7 +17,7 @@ inline constexpr int max_regressors = 6;
 /// Rows beyond the last window that a kernel may read: one vector of the widest instruction set.
 inline constexpr Index padding = 8;
 
-/// A comparator of a sorting network: the smaller of two rows of a residual column goes to `low`.
+/// A comparator of a sorting network. Of two rows of a residual column, the smaller goes to `low`.
 struct Comparator {
   std::int32_t low = 0;
   std::int32_t high = 0;
@@ -26,7 +26,7 @@ struct Comparator {
 /// The settings shared by all windows of a fit. A window's objective, per unit of sigma^2, is sum_k rho(r_k^2 /
 /// sigma^2) + sum_j ((theta_j - mean_j) / sd_j)^2 with r_k = y_k - phi_k' theta.
 struct Settings {
-  int regressors = 1;  ///< q = p, one state
+  int regressors = 1;  ///< q; equal to p, because there is one state
   Index length = 1;    ///< L
   Index step = 1;      ///< samples between window starts
   Loss loss = Loss::huber;
@@ -41,7 +41,7 @@ struct Settings {
   CovarianceKind covariance = CovarianceKind::model;
   int max_iterations = 100;
   std::vector<Comparator> sort;    ///< comparators that sort L values
-  std::vector<Comparator> median;  ///< the subset of `sort` that determines the median
+  std::vector<Comparator> median;  ///< the comparators of `sort` that determine the median
 };
 
 /// Consecutive windows of one run. Window w covers rows w step .. w step + L - 1 of every column. Columns have
@@ -50,12 +50,12 @@ struct Chunk {
   Index windows = 0;
   const double* regressors[max_regressors] = {};
   const double* increments = nullptr;
-  const double* present = nullptr;  ///< 1 per transition, or 0 for an excluded transition (its regressors and increment
-                                    ///< are then 0); may be null
+  const double* present = nullptr;  ///< 1 per transition, or 0 for an excluded transition, whose regressors and
+                                    ///< increment are then 0; may be null
   double sigma = 1.0;               ///< sigma of windows without their own scale
 };
 
-/// How the solver ended for a window. All but `solved` are passed on to Ceres.
+/// How the solver ended for a window. Ceres solves all windows with other verdicts than `solved`.
 enum class Verdict : std::uint8_t { solved, ill_conditioned, rank_deficient, too_few_samples, not_converged, failed };
 
 /// Memory for results: one column per window of the chunk, with the layout of WindowFits. A null pointer means that the

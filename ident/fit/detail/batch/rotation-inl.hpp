@@ -14,11 +14,11 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Regressors are orthogonalised against the previous ones. A regressor counts as dependent if at most this share of
-/// its norm remains.
+/// Regressors are orthogonalised against the previous regressors. A regressor counts as dependent if at most this share
+/// of its norm remains.
 inline constexpr double dependent = 1e-9;
-/// Singular values between `dependent` and this share of the largest need the singular value decomposition of the slow
-/// path, because excitation_tolerance lies in that range.
+/// Singular values between `dependent` and this share of the largest one need the singular value decomposition of the
+/// slow path. The reason: excitation_tolerance lies in that range.
 inline constexpr double clearly_independent = 1e-5;
 
 /// Samples, least squares and scale of the windows, computed before any loss.
@@ -29,7 +29,7 @@ struct Start {
   V moment[Q];            // X'y
   V theta[Q];             // least squares; undefined if rank deficient
   V square_sum, count, rank, condition, sigma;
-  M clear;      // lanes whose rank is certain
+  M clear;      // lanes whose rank is known with certainty
   M deficient;  // lanes of `certain` that are rank deficient
 };
 
@@ -90,7 +90,7 @@ HWY_NOINLINE Orthogonal<Q> orthogonalise(const View& view, double* scratch) {
   return o;
 }
 
-/// Rank and condition from the triangle with columns scaled to the regressors' unit norm.
+/// Rank and condition, from the triangle. Its columns are scaled to unit norm of the regressors.
 template <int Q>
 HWY_INLINE void judge_rank(const Orthogonal<Q>& o, Start<Q>& start) {
   V column[Q][Q], sigma[Q];
@@ -123,7 +123,7 @@ HWY_INLINE void judge_rank(const Orthogonal<Q>& o, Start<Q>& start) {
 /// theta = R^-1 z, X'X = R'R and its inverse R^-1 R^-T.
 template <int Q>
 HWY_INLINE void solve_triangle(const Orthogonal<Q>& o, Start<Q>& start) {
-  V r[Q][Q];  // without the rows of dependent columns, which contain rounding errors
+  V r[Q][Q];  // rows of dependent columns are excluded, because they contain rounding errors
   for (int j = 0; j < Q; ++j)
     for (int k = 0; k <= j; ++k) r[j][k] = hn::IfThenElseZero(o.kept[k], o.r[j][k]);
   for (int i = 0; i < Q; ++i)
@@ -153,7 +153,7 @@ HWY_INLINE void solve_triangle(const Orthogonal<Q>& o, Start<Q>& start) {
   }
 }
 
-/// A start by orthogonalisation. Leaves the residuals in the last column of the scratch rows.
+/// A search start by orthogonalisation. Leaves the residuals in the last column of the scratch rows.
 template <int Q>
 HWY_NOINLINE void prepare_by_rotation(const View& view, double* scratch, Start<Q>& start) {
   const Orthogonal<Q> o = orthogonalise<Q>(view, scratch);

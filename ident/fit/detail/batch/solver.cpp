@@ -44,13 +44,13 @@ std::vector<batch::Comparator> median_network(const std::vector<batch::Comparato
 }
 
 batch::Kernel choose_kernel(const batch::Settings& settings) {
-  // Sets the target. Until then Highway's pointers go through a function that detects the processor on every call.
+  // Chooses the instruction set. Otherwise every call through Highway's pointers would first detect the processor.
   hwy::ChosenTarget& target = hwy::GetChosenTarget();
   if (!target.IsInitialized()) target.Update(hwy::SupportedTargets());
   return batch::find_kernel(settings.loss, settings.regressors);
 }
 
-/// Whether all rows are finite. Otherwise the sum of the values times zero is NaN.
+/// Whether all rows are finite: if one is not, the sum of the values times zero is NaN.
 bool finite(const Transitions& t, Index rows) {
   double sum = (t.increments.col(0).head(rows) * 0.0).sum();
   for (Index j = 0; j < t.regressors.cols(); ++j) sum += (t.regressors.col(j).head(rows) * 0.0).sum();

@@ -15,8 +15,8 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// If every pivot of the normal equations exceeds this share of its diagonal, the equations lose at most four of
-/// sixteen digits.
+/// If every pivot of the normal equations is above this share of its diagonal element, solving them loses at most four
+/// of sixteen digits.
 inline constexpr double safe_pivot = 1e-4;
 
 HWY_INLINE V sample_count(const View& view) {
@@ -51,7 +51,7 @@ HWY_INLINE Extremes correlation_extremes(const Symmetric<3>& C, V determinant) {
   return {hn::Div(hn::Add(rest, rest), hn::Add(sum, root)), largest};
 }
 
-/// A start from normal equations. Lanes that lose too many digits are not `safe`.
+/// A start from normal equations. `safe` excludes lanes that lose too many digits.
 template <int Q>
 HWY_INLINE M prepare_by_gram(const View& view, Start<Q>& start) {
   const NormalEquations<Q> n = normal_equations<Q>(view);
@@ -96,7 +96,7 @@ HWY_NOINLINE void take(M lanes, const Start<Q>& other, Start<Q>& start) {
   start.deficient = hn::Or(hn::And(lanes, other.deficient), hn::AndNot(lanes, start.deficient));
 }
 
-/// Least squares, rank and scale. Well-conditioned lanes (the usual case) use normal equations. The other lanes use
+/// Least squares, rank and scale. Well-conditioned lanes (the usual case) use normal equations; the other lanes use
 /// orthogonalisation.
 template <int Q>
 HWY_NOINLINE Start<Q> prepare(const Settings& settings, const View& view, M wanted, double sigma, double* scratch) {

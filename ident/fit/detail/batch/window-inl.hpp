@@ -61,7 +61,7 @@ HWY_INLINE Symmetric<Q> zero_matrix() {
   return m;
 }
 
-/// The Hessian of a quadratic loss is constant. The caller computes it.
+/// The caller computes the Hessian of a quadratic loss, because it is constant.
 template <int Q, class LossT>
 HWY_INLINE Sums<Q> evaluate(const View& view, const LossT& loss, const V (&theta)[Q]) {
   Sums<Q> s{{}, zero_matrix<Q>(), zero(), zero()};

@@ -14,7 +14,7 @@ namespace modebank {
 /// The batch solver on ranges of a recording's windows. Thread-safe.
 class BatchWindows {
  public:
-  /// Largest range. It is long enough to pay for staging and short enough for a core's second-level cache.
+  /// Largest range of windows. It is long enough to repay the copying of samples, and fits a core's second-level cache.
   static constexpr Index longest_range = 1024;
 
   /// The solver for `count` windows; null if the windows are left to Ceres (WindowSolver). `prior` may be null. Throws
@@ -24,8 +24,8 @@ class BatchWindows {
   /// Method and tolerance in words, for reports.
   static std::string method();
 
-  /// Solves a range of at most longest_range windows and writes to `out`. The verdicts belong to the calling thread and
-  /// are valid until its next call.
+  /// Solves a range of at most longest_range windows and writes the fits to `out`. The verdicts belong to the calling
+  /// thread and are valid until its next call.
   const std::vector<batch::Verdict>& solve(const WindowPlan::Range& range, batch::Output out);
 
  private:

@@ -7,7 +7,7 @@
 
 namespace modebank {
 
-// Conversions are templates. So each program compiles them with its own version and alignment of Eigen.
+// Conversions are templates, so each program compiles them with its own version and alignment of Eigen.
 
 /// View of the matrix for Eigen, unaligned and without a copy; valid while `matrix` lives and keeps its size.
 template <int = 0>

@@ -4,7 +4,7 @@
 
 namespace modebank {
 
-/// An error of the program's user; the program exits with status 2. Functions of the C++ library throw
+/// An error in what the user typed or configured; the program exits with status 2. Functions of the C++ library throw
 /// std::invalid_argument instead.
 struct ConfigurationError : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -6,9 +6,9 @@
 
 namespace modebank {
 
-/// A column-major matrix of doubles, the type of the library's public API. It holds only a std::vector. So library and
-/// program may be compiled with different settings and free each other's matrices. modebank/base/eigen.hpp gives Eigen
-/// views without a copy.
+/// A column-major matrix of doubles, the type of the library's public API. It holds only a std::vector. So the library
+/// and a program can exchange matrices even if they are compiled with different settings. modebank/base/eigen.hpp gives
+/// Eigen views without a copy.
 struct Matrix {
   std::ptrdiff_t rows = 0;     ///< number of rows
   std::ptrdiff_t cols = 0;     ///< number of columns

@@ -14,13 +14,13 @@
 namespace modebank {
 
 /// A MotionModel of N states, M inputs and P parameters from one equation for any scalar type, like in Ceres'
-/// AutoDiffCostFunction. `Functor` has `template <class T> void operator()(const T* theta, const T* x, const T* u,
-/// double dt_s, T* next) const`, which fills `next` (N). It calls exp and other functions unqualified, after `using
+/// AutoDiffCostFunction. `Functor` has  `template <class T> void operator()(const T* theta, const T* x, const T* u,
+/// double dt_s, T* next) const`. It fills `next` (N). It calls exp and other functions unqualified, after `using
 /// std::exp`. Derivatives come from Dual numbers.
 template <class Functor, int N, int M, int P>
 class AutoDiffMotionModel final : public MotionModel {
  public:
-  /// `name`: model name in results. `parameters`: P entries; throws std::invalid_argument for another number.
+  /// `name`: model name in results. `parameters`: must have P entries; throws std::invalid_argument for another number.
   AutoDiffMotionModel(Functor functor, std::string name, std::vector<ModelParameter> parameters)
       : functor_(std::move(functor)), name_(std::move(name)), parameters_(std::move(parameters)) {
     if (parameters_.size() != P)
@@ -48,7 +48,8 @@ class AutoDiffMotionModel final : public MotionModel {
       functor_(theta, x, u, dt_s, next);
   }
 
-  /// Residuals of many transitions. Avoids one virtual call and one conversion of theta to dual numbers per transition.
+  /// Residuals of many transitions. Needs only one virtual call and one conversion of theta to dual numbers for all of
+  /// them.
   void residuals(const double* theta, const Transition* transitions, std::ptrdiff_t count, double* r,
                  double* by_theta) const override {
     if (by_theta) return residuals_with_derivatives(theta, transitions, count, r, by_theta);

@@ -45,8 +45,8 @@ class MotionModel {
     const double* next;  ///< n numbers: the next state
     double dt_s;         ///< duration of the transition [s]
   };
-  /// Residuals next - f(theta, x, u, dt) of `count` transitions one after the other. Also, if not null, the derivatives
-  /// of the predictions with respect to theta (count n x p, row-major).
+  /// Residuals next - f(theta, x, u, dt) of `count` consecutive transitions. If the pointer is not null, also writes
+  /// the derivatives of the predictions with respect to theta (count n x p, row-major).
   virtual void residuals(const double* theta, const Transition* transitions, std::ptrdiff_t count, double* r,
                          double* by_theta) const {
     const std::ptrdiff_t n = states(), p = parameter_count();

@@ -30,7 +30,7 @@ struct EnumNames<CovarianceKind> {
   static constexpr Names<2> values{"model", "sandwich"};
 };
 
-/// Source of a window's residual scale sigma: the residuals of the window, the residuals of its run, or a given number.
+/// Source of a window's residual scale sigma: the window's residuals, its run's residuals, or a given number.
 enum class ScaleSource { window, run, fixed };
 
 template <>
@@ -38,7 +38,7 @@ struct EnumNames<ScaleSource> {
   static constexpr Names<3> values{"window", "run", "fixed"};
 };
 
-/// Gaussian prior on a window's parameters: none, or one centred on the global model of all training runs.
+/// Gaussian prior on a window's parameters: no prior, or a prior centred on the global model of all training runs.
 enum class Prior { none, global };
 
 template <>
@@ -56,7 +56,7 @@ struct EnumNames<WindowSolver> {
   static constexpr Names<3> values{"ceres", "batch", "auto"};
 };
 
-/// Ceres solves this number of windows in about 1.4 s of one core, including the fits for the default prior. For more
+/// In about 1.4 s Ceres solves this number of windows on one core, including the fits for the default prior. For more
 /// windows the batch solver is ten times as fast.
 inline constexpr std::ptrdiff_t most_ceres_windows = 20000;
 
@@ -69,19 +69,19 @@ struct FitOptions {
   double wheel_radius_m = 1.0;     ///< motion models: converts wheel speeds from rad/s to m/s; 1 for inputs in m/s
   std::ptrdiff_t length = 25;      ///< transitions per window
   std::ptrdiff_t step = 1;         ///< transitions between window starts
-  Loss loss = Loss::huber;         ///< loss of a sample's residual
-  double loss_scale = 0.0;         ///< robust loss threshold in units of sigma; 0 gives 95 % efficiency at the normal
-                                   ///< distribution
+  Loss loss = Loss::huber;         ///< loss applied to each sample's residual
+  double loss_scale = 0.0;         ///< threshold of the robust loss in units of sigma; 0 gives 95 % efficiency at the
+                                   ///< normal distribution
   ScaleSource scale = ScaleSource::window;  ///< source of sigma
   double sigma = 0.0;                       ///< residual standard deviation for ScaleSource::fixed [state unit], > 0
   Prior prior = Prior::global;              ///< prior on a window's parameters
-  std::vector<double> prior_sd;  ///< p standard deviations; a single value holds for all; if empty, 3 x the standard
-                                 ///< deviation of full-rank fits
+  std::vector<double> prior_sd;  ///< p standard deviations; a single value holds for all parameters; if empty, 3 x the
+                                 ///< standard deviation over full-rank fits
   bool intercept = false;        ///< whether linear models have a constant term c
   CovarianceKind covariance = CovarianceKind::model;  ///< reported covariance of theta
   int max_iterations = 100;                           ///< iteration limit of the solver
   WindowSolver solver = WindowSolver::automatic;      ///< solver of the window fits
-  std::uint64_t seed = 1;  ///< seed for drawing the windows of the audit and of the default prior
+  std::uint64_t seed = 1;  ///< seed for the random choice of windows for the audit and the default prior
 };
 
 }  // namespace modebank
