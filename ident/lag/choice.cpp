@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The first or second half of a run in time.
+/// The first or the second half (in time) of a run.
 RunPair half(const RunPair& run, bool second) {
   const VectorXd& t = run.states.time_s;
   const double middle = 0.5 * (t(0) + t(t.size() - 1));
@@ -50,8 +50,8 @@ void apply(RunLag& run, const InputClock& clock) {
   run.applied_reference_s = clock.reference_s;
 }
 
-/// The simplest correction (in the order of LagCorrection) that satisfies two conditions. It gains more than its
-/// standard error, and it is within one standard error of the best (Breiman et al. 1984, sec. 3.4.3).
+/// The simplest correction (in the order of LagCorrection) that meets two conditions. Its gain is above its standard
+/// error. Its score is within one standard error of the best (Breiman et al. 1984, sec. 3.4.3).
 LagCorrection decide(const std::vector<LagScore>& scores) {
   const auto gains = [](const LagScore& score) { return score.gain > 0.0 && score.gain > score.gain_standard_error; };
   const LagScore* best = nullptr;
@@ -93,7 +93,7 @@ LagReport choose_lag(const std::vector<RunPair>& runs, const LagChoiceOptions& o
   LagReport report;
   report.scores = cross_validate_lags(subjects, options.rate_hz);
   report.correction = decide(report.scores);
-  // A single run is split only for the scores.
+  // If there is a single training run, its halves serve only for the scores; the estimates below use the whole run.
   const bool split =
       std::count_if(runs.begin(), runs.end(), [](const RunPair& r) { return r.role == Role::train; }) == 1;
   std::vector<LagSubject> whole = subjects;

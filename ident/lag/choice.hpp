@@ -17,7 +17,7 @@ struct RunPair {
   Stream states, inputs;
 };
 
-/// The first time that both streams cover.
+/// The first time that is covered by both streams.
 inline double common_start_s(const RunPair& run) { return std::max(run.states.time_s(0), run.inputs.time_s(0)); }
 
 struct LagChoiceOptions {
@@ -28,13 +28,13 @@ struct LagChoiceOptions {
 /// Estimates the lags of one run without applying them.
 RunLag estimate_run(const RunPair& run, double range_s);
 
-/// Estimates lag and drift of every training run, and chooses a correction by cross-validation over the training runs
-/// (at most ten folds; a single run is split in halves). The score is the log score of the global model's one-step
+/// Estimates lag and drift of every training run. Chooses a correction by cross-validation over the training runs (at
+/// most ten folds; a single run is split in halves). The score is the log score of the global model's one-step
 /// predictions (with intercept, Gaussian) on the transitions that all corrections share. The choice is the simplest
-/// correction that gains more than one standard error over none and is within one standard error of the best.
-/// A left-out run is shifted like a held-out run: by the pooled values of the other runs. Training runs use their own
-/// estimates, shrunk towards the pooled ones by their errors. Runs without a usable estimate use the pooled values.
-/// Parallel over runs, deterministic.
+/// correction whose gain over `none` is above one standard error and whose score is within one standard error of the
+/// best. A left-out run is shifted like a held-out run, by the pooled values of the other runs. Training runs use their
+/// own estimates, shrunk towards the pooled values by their errors. Runs without a usable estimate use the pooled
+/// values. Parallel over runs, deterministic.
 LagReport choose_lag(const std::vector<RunPair>& runs, const LagChoiceOptions& options);
 
 }  // namespace modebank

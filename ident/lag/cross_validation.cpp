@@ -27,7 +27,7 @@ struct RunScore {
   Index transitions = 0;
 };
 
-/// Scores one-step predictions of `run` between two times.
+/// Scores the one-step predictions of `run` between two times.
 RunScore score(const Trajectory& run, const GlobalModel& global, const LinearStructure& structure, double first_s,
                double last_s) {
   RunScore result;
@@ -49,7 +49,7 @@ RunScore score(const Trajectory& run, const GlobalModel& global, const LinearStr
   return result;
 }
 
-/// Scores of all runs of one fold for every correction, in order of runs, then of corrections.
+/// Scores of all runs of one fold for every correction, ordered by run, then by correction.
 std::vector<std::vector<RunScore>> score_fold(const std::vector<LagSubject>& subjects, std::size_t fold,
                                               std::size_t folds, double rate_hz) {
   std::vector<LagSubject> kept, out;
@@ -120,7 +120,8 @@ PooledLags pool_lags(const std::vector<LagSubject>& subjects) {
       lag_error.push_back(e.lag_standard_error_s);
     }
     if (e.drift_status != LagStatus::converged || !std::isfinite(e.clock_drift_standard_error)) continue;
-    // The lag in the middle of a run and the drift are nearly uncorrelated.
+    // The lag in the middle of a run and the drift are nearly uncorrelated, so their errors are combined as
+    // independent.
     const double before_s = e.applied_reference_s - common_start_s(s.run);
     start.push_back(e.drifting_lag_s - e.clock_drift * before_s);
     start_error.push_back(std::hypot(e.drifting_lag_standard_error_s, e.clock_drift_standard_error * before_s));

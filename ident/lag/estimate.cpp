@@ -15,16 +15,16 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index coarse_samples = 4000;  // number of averages that finds the minimum roughly
-constexpr Index most_samples = 20000;   // number of averages that finds the minimum exactly
+constexpr Index coarse_samples = 4000;  // number of averages for a rough search of the minimum
+constexpr Index most_samples = 20000;   // number of averages for an exact search of the minimum
 constexpr Index coarse_lags = 51;
 constexpr Index coarse_drifts = 21;
-constexpr double fastest_drift = 0.05;  // [s/s]; clocks drift more slowly
+constexpr double fastest_drift = 0.05;  // [s/s]; real clocks drift more slowly
 constexpr int halvings = 12;
 constexpr int most_moves = 400;
-constexpr double least_evidence_nats = 5.0;  // smallest gain of the best lag over the typical lag
-constexpr double least_r_squared = 0.5;      // below this the inputs do not explain the states
-constexpr double largest_error = 0.2;        // standard error as a share of the searched range
+constexpr double least_evidence_nats = 5.0;  // smallest gain of the best lag over the median of all lags
+constexpr double least_r_squared = 0.5;      // if R^2 is smaller, the inputs do not explain the states
+constexpr double largest_error = 0.2;        // largest standard error, as a share of the searched range
 
 struct Search {
   double range_s;          // width of the range of lags
@@ -54,7 +54,7 @@ std::vector<double> time_constants(const Search& search, double period_s) {
 
 struct GridResult {
   LagPoint best;
-  double typical_cost = 0.0;  // median over the lags, each with its best time constant
+  double typical_cost = 0.0;  // median over the lags, each lag with its best time constant
 };
 
 GridResult search_lags(const LagObjective& objective, const Search& search) {
@@ -98,8 +98,8 @@ LagPoint moved(LagPoint p, const std::array<double, 3>& direction, const LagPoin
   return p;
 }
 
-/// Pattern search (Hooke & Jeeves 1961) along the axes and along lag minus time constant. The sum of lag and time
-/// constant is determined better than either.
+/// Pattern search (Hooke & Jeeves 1961) along the axes, and along the direction in which lag plus time constant is
+/// constant. The data determine this sum better than the lag or the time constant.
 LagPoint refine(const LagObjective& objective, const Search& search, LagPoint point, bool with_drift) {
   static constexpr std::array<std::array<double, 3>, 8> directions{
       {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {0, 1, 0}, {0, -1, 0}}};

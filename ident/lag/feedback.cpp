@@ -14,9 +14,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index state_lags = 3, input_lags = 5;
-constexpr Index most_rows = 50000;  // more rows increase the t values without changing the decision
+constexpr Index most_rows = 50000;  // more rows would increase the t values without changing the decision
 
-/// Pairs of successive finite transitions, with the inputs of the later transition and the innovations of both.
+/// Pairs of successive finite transitions: the inputs of the later transition, and the innovations of both transitions.
 struct InputRows {
   MatrixXd older;       ///< N x (input lags before the newest, and a constant)
   MatrixXd newest;      ///< N x m
@@ -80,13 +80,13 @@ InputRows input_rows(const Recording& recording, const LinearStructure& structur
   return rows;
 }
 
-/// Largest |t| of columns from + 0 .. from + n - 1 in a regression of y on Z. Only the last `count` columns have t
+/// Largest |t| among columns from + 0 .. from + n - 1 in a regression of y on Z. Only the last `count` columns have t
 /// values.
 double largest_t(const MatrixXd& Z, const Decomposition& d, const VectorXd& y, Index from, Index n) {
   const MatrixXd coefficients = solve(d, y);
   const VectorXd r = residuals(d, y);
   const auto freedom = static_cast<double>(Z.rows() - d.rank());
-  const MatrixXd by_row = d.basis * d.U.transpose();  // q x N; the product with y gives the coefficients
+  const MatrixXd by_row = d.basis * d.U.transpose();  // q x N; this matrix times y gives the coefficients
   double largest = 0.0;
   for (Index j = from; j < from + n; ++j) {
     const double constant = by_row.row(j).squaredNorm() * r.squaredNorm() / freedom;

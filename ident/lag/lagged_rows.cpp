@@ -65,7 +65,7 @@ GatheredRows gather(const Recording& recording, const LinearStructure& widest) {
   return gathered;
 }
 
-/// Run of each gathered row, in order.
+/// Run of each row, in the order of the rows.
 std::vector<Index> runs_of(const GatheredRows& gathered) {
   std::vector<Index> runs;
   for (std::size_t b = 0; b < gathered.blocks.size(); ++b)
@@ -73,7 +73,8 @@ std::vector<Index> runs_of(const GatheredRows& gathered) {
   return runs;
 }
 
-/// Replaces older states by differences. Columns get zero mean (if there is a constant) and unit root mean square.
+/// Replaces the older states by differences. Scales the columns to unit root mean square, and to zero mean if there is
+/// a constant.
 void transform(LaggedRows& rows) {
   const Index n = rows.states;
   for (Index j = rows.ranges.state_lags.high * n - 1; j >= n; --j) rows.X.col(j) = rows.X.col(j - n) - rows.X.col(j);

@@ -8,13 +8,14 @@
 
 namespace modebank {
 
-/// A range of numbers of lags, inclusive.
+/// An inclusive range of numbers of lags.
 struct LagRange {
   Index low = 1, high = 1;
   bool holds(Index value) const { return value >= low && value <= high; }
 };
 
-/// The structures of a search: every combination that needs at most `memory` samples before its first prediction.
+/// The structures of a search: every combination of lags that needs at most `memory` samples before its first
+/// prediction.
 struct StructureRanges {
   LagRange state_lags, input_lags, input_delay;
   Index memory = 1000;
@@ -24,10 +25,10 @@ struct StructureRanges {
   }
 };
 
-/// The transitions of the training runs that all structures of some ranges have in common. Even with the largest lags,
+/// The transitions of the training runs that all structures in some ranges can predict: even with the largest lags,
 /// their regressors were measured in the same run. Rows are ordered by fold.
 ///
-/// The columns of X belong to the widest structure; leading parts of these columns belong to narrower structures. The
+/// The columns of X belong to the structure with the largest lags; other structures use leading parts of them. The
 /// columns are the newest state, differences between successive older states (accurate for smooth signals), inputs from
 /// the smallest delay on, and a constant. Columns have unit root mean square, and zero mean if there is a constant.
 struct LaggedRows {
@@ -40,19 +41,19 @@ struct LaggedRows {
   std::vector<Index> part;        ///< N, index of the row's run or stretch of a run
   std::vector<Index> fold_begin;  ///< folds + 1, first row of each fold
   Index parts = 0;
-  bool by_runs = false;  ///< whether parts are whole runs
-  double share = 0.0;    ///< share of the rows that a one-lag model could use
+  bool by_runs = false;  ///< true: the parts are whole runs; false: stretches of runs
+  double share = 0.0;    ///< number of these rows, as a share of the rows that a one-lag model could use
 
   Index count() const { return X.rows(); }
   Index folds() const { return static_cast<Index>(fold_begin.size()) - 1; }
   double weight_of(Index row) const { return weight.size() > 0 ? weight(row) : 1.0; }
-  /// Columns of X for one structure.
+  /// The columns of X that one structure uses.
   std::vector<Index> columns(const LinearStructure& structure) const;
 };
 
-/// Makes the rows and assigns their parts to five folds. With six or more runs, the parts are the runs. Fewer runs are
-/// cut into at least ten stretches. Long recordings are thinned to evenly spaced stretches, so that X has at most about
-/// four million entries.
+/// Makes the rows and distributes their parts over five folds. With six or more runs, the parts are the runs. If there
+/// are fewer runs, these are cut into at least ten stretches. Long recordings are thinned to evenly spaced stretches,
+/// so that X has at most about four million entries.
 LaggedRows make_lagged_rows(const Recording& recording, const StructureRanges& ranges, bool intercept);
 
 }  // namespace modebank

@@ -80,7 +80,7 @@ std::optional<LagObjective::Fit> LagObjective::fit(const LagPoint& point) const 
   const double half = 0.5 * period_s_, slack = 1e-9 * period_s_;
   const double* const begin = times.data();
   const double* const from = std::lower_bound(begin, begin + times.size(), input.first_s() + half - slack);
-  // A held input is valid for one more sample period after its last sample.
+  // The last sample of a held input is valid for one more sample period.
   const double* const to = std::upper_bound(from, begin + times.size(), input.last_s() + half + slack);
   Fit fit;
   fit.first = from - begin;

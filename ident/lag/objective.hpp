@@ -8,15 +8,15 @@
 
 namespace modebank {
 
-/// The searched values: lag at the middle, drift, time constant of the response.
+/// The values that are searched: lag at the middle of the run, drift, and time constant of the response.
 struct LagPoint {
   double lag_s = 0.0;
   double drift = 0.0;
   double time_constant_s = 0.0;
 };
 
-/// The stream without gaps. Samples of states with a missing value are removed; a missing value of an input is replaced
-/// by the last known value.
+/// The stream without missing values. Samples of states with a missing value are removed. A missing value of an input
+/// is replaced by the last known value.
 Stream without_missing(const Stream& stream);
 Stream with_last_known(const Stream& stream);
 
@@ -26,7 +26,7 @@ class LagObjective {
   /// Streams without missing values, with at least two samples each. At most `most_samples` averages are compared.
   LagObjective(const Stream& states, const Stream& inputs, Eigen::Index most_samples);
 
-  double period_s() const { return period_s_; }  ///< width and spacing of the averages
+  double period_s() const { return period_s_; }  ///< width and spacing of the averaging intervals
   double middle_s() const { return middle_s_; }
   double span_s() const { return centres_s_.size() > 0 ? centres_s_(centres_s_.size() - 1) - centres_s_(0) : 0.0; }
   Eigen::Index samples() const { return centres_s_.size(); }
@@ -35,7 +35,7 @@ class LagObjective {
   /// Mean over the states of log(1 - R^2). 0 if the inputs explain nothing, or if fewer than half of the samples have
   /// an input.
   double cost(const LagPoint& point) const;
-  /// Updates the weights by Huber's loss of the residuals at `point`.
+  /// Sets the weights by Huber's loss of the residuals at `point`.
   void reweight(const LagPoint& point);
 
   struct Fit {

@@ -4,15 +4,15 @@
 
 namespace modebank {
 
-/// One quantity that is estimated in several runs. Its true values in these runs may differ.
+/// One quantity that was estimated in several runs. Its true values may differ between the runs.
 struct PooledEstimate {
   double mean = 0.0;
   double standard_error = 0.0;  ///< standard error of the mean; NaN without estimates
   double between_sd = 0.0;      ///< standard deviation of the true values between runs
   Eigen::Index count = 0;       ///< number of pooled estimates
 
-  /// Empirical Bayes estimate of one run's true value: its estimate, shrunk towards the mean. The shrinkage grows with
-  /// the error of the estimate, relative to the standard deviation between runs.
+  /// Empirical Bayes estimate of one run's true value: the run's estimate, shrunk towards the mean. The larger the
+  /// error of the estimate, relative to the standard deviation between runs, the stronger the shrinkage.
   double shrunk(double estimate, double error) const;
 };
 

@@ -9,11 +9,11 @@ namespace modebank {
 struct StretchParts {
   std::vector<Eigen::Index> part;  ///< N, index of each row's part
   Eigen::Index count = 0;
-  bool by_runs = false;  ///< whether parts are whole runs
+  bool by_runs = false;  ///< true: the parts are whole runs; false: stretches of runs
 };
 
-/// Divides rows into parts. With six or more runs, the parts are the runs. Fewer runs are cut into at least ten
-/// stretches with about equal numbers of rows. `run`: N, index of each row's run, below `runs`.
+/// Divides rows into parts. With six or more runs, the parts are the runs. If there are fewer runs, these are cut into
+/// at least ten stretches with about equal numbers of rows. `run`: N, index of each row's run, below `runs`.
 StretchParts stretch_parts(std::vector<Eigen::Index> run, Eigen::Index runs);
 
 }  // namespace modebank

@@ -12,7 +12,8 @@ namespace {
 constexpr double least_gain_without_delay = 0.02;  // [nats/sample]
 constexpr double negligible_loss = 1e-3;           // [nats/sample]
 
-/// Expected gain by chance of the best of about a hundred structures [nats over all samples].
+/// About a hundred structures are compared; the best one is expected to gain this much by chance [nats over all
+/// samples].
 constexpr double chance_gain = 6.0;
 
 /// All structures by decreasing score; ties in the order of the map.
@@ -24,7 +25,7 @@ std::vector<Lags> by_score(const ScoredStructures& all) {
   return order;
 }
 
-/// The structures that are as good as the best, by increasing size, then decreasing score.
+/// The structures that are as good as the best one, ordered by increasing size, then by decreasing score.
 std::vector<Lags> as_good_by_size(const ScoredStructures& all, const StructureSize& size,
                                   const Eigen::VectorXd& weight) {
   std::vector<Lags> order = by_score(all);

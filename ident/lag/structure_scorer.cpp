@@ -13,16 +13,16 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Ridge on the diagonal of a Gram matrix of columns with unit root mean square, as a share of the rows. It divides the
-/// effect of collinear columns between these columns. Other coefficients do not change.
+/// Ridge on the diagonal of a Gram matrix of columns with unit root mean square, as a share of the number of rows. It
+/// spreads the effect of collinear columns over these columns. Other coefficients do not change.
 constexpr double collinear_ridge = 1e-11;
 constexpr double exact_share = 1e-9;  // share of the increments; a smaller error counts as an exact prediction
 
-// share of the errors' root mean square, because more than half of the errors may be zero
+// as a share of the errors' root mean square; needed because more than half of the errors may be zero
 constexpr double least_share_of_rms = 1e-3;
-constexpr double least_normal_scale = 1e-150;  // its square is still a normal floating-point number
+constexpr double least_normal_scale = 1e-150;  // the square of this value is still a normal floating-point number
 
-/// Rows of one response, without rows first .. first + count - 1.
+/// All rows of one response except rows first .. first + count - 1.
 Transitions rows_without(const LaggedRows& rows, const std::vector<Index>& columns, Index response, Index first,
                          Index count) {
   const Index N = rows.count(), after = N - first - count;

@@ -7,24 +7,24 @@
 
 namespace modebank {
 
-/// Forecasts of one structure, fitted without each fold in turn.
+/// Forecasts of one structure. Each fold is predicted by a fit without this fold.
 struct LeftOutForecast {
   Eigen::VectorXd of_part;  ///< sum of log densities over each part's rows [nats]
-  Eigen::VectorXd rmse;     ///< n [state unit]
+  Eigen::VectorXd rmse;     ///< n, RMSE of the one-step prediction [state unit]
   double log_score = 0.0;   ///< [nats/sample]
 };
 
-/// Cross-validation of structures on the same rows. Forecasts are scored under a Student t distribution. Its scale and
-/// degrees of freedom fit the structure's own errors, state by state.
+/// Cross-validation of structures on the same rows. Forecasts are scored under a Student t distribution, whose scale
+/// and degrees of freedom are fitted to the structure's own errors, separately for each state.
 class StructureScorer {
  public:
   /// Holds a reference to `rows`, which must outlive this object. `quantum`: as in Recording.
   StructureScorer(const LaggedRows& rows, const Eigen::VectorXd& quantum);
 
-  /// Scores least squares, from Gram matrices that all structures share. If regressors are rank deficient, the solution
-  /// has minimum norm.
+  /// Scores least squares, computed from Gram matrices that all structures share. If regressors are rank deficient, the
+  /// solution has minimum norm.
   LeftOutForecast least_squares(const LinearStructure& structure) const;
-  /// Scores fits with the loss and scale of the windows, each state separately. Least squares is used if such a fit
+  /// Scores fits with the loss and scale of the windows, separately for each state. Least squares is used if such a fit
   /// fails.
   LeftOutForecast robust(const LinearStructure& structure, const FitOptions& options) const;
 
@@ -37,8 +37,8 @@ class StructureScorer {
   const LaggedRows& rows_;
   Eigen::VectorXd least_scale_;         ///< n
   Eigen::VectorXd part_weight_;         ///< parts
-  std::vector<Eigen::MatrixXd> gram_;   ///< X'X without each fold
-  std::vector<Eigen::MatrixXd> cross_;  ///< X'Y without each fold
+  std::vector<Eigen::MatrixXd> gram_;   ///< X'X of the rows outside each fold
+  std::vector<Eigen::MatrixXd> cross_;  ///< X'Y of the rows outside each fold
 
   Eigen::MatrixXd robust_errors(const LinearStructure& structure, const FitOptions& options) const;
   LeftOutForecast forecast(const Eigen::MatrixXd& errors) const;

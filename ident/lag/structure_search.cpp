@@ -22,10 +22,10 @@ constexpr Index first_end = usual_lags, last_end = 30, end_step = 9;
 constexpr double least_share = 0.75;  // smallest share of the transitions that a range must keep
 constexpr Index rows_per_column = 2;
 constexpr Index fewest_rows = 20;
-constexpr int most_rounds = 4;  // largest number of rounds of a climb
+constexpr int most_rounds = 4;  // largest number of rounds of one climb
 constexpr std::size_t finalists = 10;
 
-/// The ranges of the searched numbers up to `most`.
+/// The ranges of the searched numbers, up to `most`.
 StructureRanges ranges_up_to(const Recording& recording, const FitOptions& window, const SearchedLags& searched,
                              const Lags& most) {
   const bool acted_on = recording.input_count() > 0;
@@ -37,7 +37,7 @@ StructureRanges ranges_up_to(const Recording& recording, const FitOptions& windo
       range(searched.input && acted_on, 1, most[1], searched.input || !acted_on ? 1 : window.input_lags),
       range(searched.delay && acted_on, 0, most[2], searched.delay || !acted_on ? 1 : window.input_delay)};
   if (searched.most_samples == 0) return ranges;
-  // The given lags may be too many for the start of a free run. Such a configuration is rejected elsewhere.
+  // The configured lags may be too many for the start of a free run; that configuration is rejected elsewhere.
   const Index stated = std::max(ranges.state_lags.low, ranges.input_lags.low + ranges.input_delay.low - 1);
   ranges.memory = std::max(searched.most_samples, stated);
   ranges.state_lags.high = std::min(ranges.state_lags.high, ranges.memory);
@@ -54,18 +54,18 @@ bool leaves_enough(const LaggedRows& rows) {
   return rows.share >= least_share && rows.count() >= rows_per_column * largest.regressors();
 }
 
-/// Least-squares scores of the structures on one set of rows, each computed once.
+/// Least-squares scores of the structures on one set of rows. Each score is computed once.
 class StructureClimb {
  public:
   StructureClimb(LaggedRows rows, const Eigen::VectorXd& quantum) : rows_(std::move(rows)), scorer_(rows_, quantum) {}
-  StructureClimb(const StructureClimb&) = delete;  // not copied: the scorer refers to the rows
+  StructureClimb(const StructureClimb&) = delete;  // must not be copied, because the scorer refers to the rows
   StructureClimb& operator=(const StructureClimb&) = delete;
 
   const LaggedRows& rows() const { return rows_; }
   const StructureScorer& scorer() const { return scorer_; }
   const ScoredStructures& seen() const { return seen_; }
 
-  /// Changes one number at a time while the score improves. Delays stay within least_delay and most_delay.
+  /// Changes one number of lags at a time while the score improves. Delays stay within least_delay and most_delay.
   void climb(Lags at, Index least_delay, Index most_delay) {
     const StructureRanges& ranges = rows_.ranges;
     const LagRange delays{std::max(least_delay, ranges.input_delay.low), std::min(most_delay, ranges.input_delay.high)};
@@ -88,9 +88,9 @@ class StructureClimb {
     }
   }
 
-  /// Starts from the best structure of one kind and removes lags one by one, each time the lag whose loss is smallest.
-  /// Candidates are the oldest state lag and the oldest and newest input lags. This is needed because a climb along one
-  /// number may miss the smallest structure that is as good.
+  /// Starts from the best structure of one kind and removes one lag at a time, always the one whose removal costs
+  /// least. Candidates are the oldest state lag, and the oldest and newest input lags. A climb that changes one number
+  /// at a time may miss the smallest structure that is equally good.
   void prune(bool (*wanted)(const Lags&)) {
     if (select(seen_, wanted).empty()) return;
     Lags at = best_of(seen_, wanted);
@@ -111,7 +111,7 @@ class StructureClimb {
 
   bool holds(const Lags& lags) const { return rows_.ranges.holds(lags[0], lags[1], lags[2]); }
 
-  /// The best of some structures, the first on a tie.
+  /// The structure with the highest score; on a tie, the first of these.
   Lags best(const std::vector<Lags>& line) {
     std::vector<Lags> fresh;
     std::copy_if(line.begin(), line.end(), std::back_inserter(fresh), [&](const Lags& l) { return !seen_.count(l); });
@@ -125,7 +125,7 @@ class StructureClimb {
   }
 };
 
-/// Climbs from starts of short, middle and long memory, and from `another` if it is given.
+/// Climbs from starts with few, some and many lags. Also climbs from `another`, if it is given.
 void explore(StructureClimb& search, const Lags* another) {
   std::vector<Lags> starts{{1, 1, 1}, {4, 4, 1}, {8, 8, 1}};
   if (another) starts.insert(starts.begin(), *another);
@@ -142,8 +142,8 @@ void explore(StructureClimb& search, const Lags* another) {
   search.prune(&acts_at_once);
 }
 
-/// The limits of a wider search. A limit moves up if the best structure lies at this limit and the limit may move. The
-/// other limits stay.
+/// The limits of a wider search. A limit is raised if the best structure lies at the limit and the limit may be raised.
+/// The other limits stay.
 Lags moved_ends(const StructureClimb& search, const SearchedLags& searched, const Lags& most) {
   const Lags at = best_with_delay_rule(search.seen(), search.scorer().part_weight());
   const bool acted_on = search.rows().inputs > 0;
@@ -154,7 +154,7 @@ Lags moved_ends(const StructureClimb& search, const SearchedLags& searched, cons
   return moved;
 }
 
-/// Fits the finalists of one kind of structure with the windows' loss.
+/// Fits the finalists of one kind of structure with the loss of the windows.
 ScoredStructures polish(const StructureClimb& search, const std::vector<Lags>& chosen, const FitOptions& window) {
   std::vector<LeftOutForecast> forecasts(chosen.size());
   tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t i) {

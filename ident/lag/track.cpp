@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 constexpr Index half_grid = 100;        // number of lags on either side of zero
 constexpr Index most_pairs = 20000;     // longer runs are thinned
 constexpr Index least_pairs = 20;       // smallest number of samples in a window
-constexpr double least_coverage = 0.8;  // smallest share of a window's inputs that have a state at the lag
+constexpr double least_coverage = 0.8;  // smallest share of a window's inputs for which a state is known at the lag
 
 /// Averaged states at the inputs' times plus each lag of the grid.
 class ShiftedStates {
@@ -34,7 +34,7 @@ class ShiftedStates {
   double lag(Index i) const { return static_cast<double>(i) * step_s_; }
   double step_s() const { return step_s_; }
 
-  /// The samples of [first, first + count) that have a state lag(i) later; empty if there are too few.
+  /// The samples of [first, first + count) for which a state is known lag(i) later; empty if there are too few.
   Eigen::Vector2<Index> covered(Index i, Index first, Index count) const {
     Index from = first, end = first + count;
     while (from < end && time_s_(from) + lag(i) < series_.first_s()) ++from;
@@ -52,7 +52,8 @@ class ShiftedStates {
   std::vector<MatrixXd> shifted_;
 };
 
-/// Predictions B u of the states at each input, n x N. B is fitted to the whole run at the lag of the best fit.
+/// Predictions B u of the states at the time of each input, n x N. B is fitted to the whole run at the lag of the best
+/// fit.
 MatrixXd predictions(const ShiftedStates& states, const MatrixXd& inputs) {
   MatrixXd coefficients = MatrixXd::Zero(states.at(0).rows(), inputs.rows());
   double least = 1.0;
@@ -73,7 +74,8 @@ MatrixXd predictions(const ShiftedStates& states, const MatrixXd& inputs) {
   return coefficients * inputs;
 }
 
-/// Mean over the states of the squared correlation (zero if negative) of predictions and states lag(i) later.
+/// Squared correlation of the predictions with the states lag(i) later (zero if the correlation is negative), mean over
+/// the states.
 double agreement(const ShiftedStates& states, const MatrixXd& predicted, Index i, Index first, Index count) {
   const Eigen::Vector2<Index> covered = states.covered(i, first, count);
   if (covered(1) == 0) return 0.0;
@@ -133,10 +135,10 @@ LagTrack track_lag(const Stream& states, const Stream& inputs, const LagTrackOpt
   Index first = 0;
   for (double start = u.time_s(0); start + window_s <= u.time_s(0) + span_s + 1.5 * period_s; start += 0.5 * window_s) {
     while (first < u.time_s.size() && u.time_s(first) < start) ++first;
-    // A window in a pause is empty, and a pause may hold many windows. Continue at the first window with samples.
+    // A pause may hold many windows, all of them empty. Continue at the first window with samples.
     if (first < u.time_s.size())
       start += 0.5 * window_s * std::max(0.0, std::floor((u.time_s(first) - window_s - start) / (0.5 * window_s)));
-    if (!(start + 0.5 * window_s > start)) break;  // times this far from zero do not resolve a step
+    if (!(start + 0.5 * window_s > start)) break;  // at times so far from zero, a double does not resolve a step
     Index end = first;
     while (end < u.time_s.size() && u.time_s(end) < start + window_s) ++end;
     if (end - first < least_pairs) continue;

@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// Delays of best match along a run, for each window in which states and inputs correlate well.
+/// Delays of best match along a run, one per window in which states and inputs correlate well.
 struct LagTrack {
   Eigen::VectorXd time_s;       ///< W, middle of the window
   Eigen::VectorXd lag_s;        ///< W, lag to add to the inputs' times
@@ -14,8 +14,8 @@ struct LagTrack {
 
   Eigen::Index windows() const { return time_s.size(); }
   double median_s() const;   ///< median lag; NaN without windows
-  double least_s() const;    ///< NaN without windows
-  double largest_s() const;  ///< NaN without windows
+  double least_s() const;    ///< smallest lag; NaN without windows
+  double largest_s() const;  ///< largest lag; NaN without windows
 };
 
 struct LagTrackOptions {
@@ -24,10 +24,10 @@ struct LagTrackOptions {
   double correlation = 0.9;  ///< smallest correlation of a usable window
 };
 
-/// Estimates the lag in each window. Added to the inputs' times, it gives the best correlation of the states (averaged
-/// over one input period) with B u. B comes from the whole run at its best lag. For n > 1 the score is the mean of
+/// Estimates the lag in each window. If this lag is added to the inputs' times, the states (averaged over one input
+/// period) correlate best with B u. B comes from the whole run at its best lag. For n > 1 the score is the mean of
 /// squared correlations. The grid has steps of range_s / 100, refined by a parabola. Windows whose best lag lies at the
-/// end of the range are dropped. The estimate has no model of the dynamics. So it includes the time constant of the
+/// end of the range are dropped. The estimate uses no model of the dynamics. So it includes the time constant of the
 /// motion, and half an input period for held inputs.
 ///
 /// This is the only estimate of a lag that varies inside a run. On BorealTC it finds the ranges that the description of

@@ -25,7 +25,7 @@ Index bandwidth(const MatrixXd& scores) {
     const double square_sum = before.squaredNorm();
     if (!(square_sum > 0.0)) continue;
     const double rho = std::clamp(now.dot(before) / square_sum, -0.97, 0.97);
-    // Each score is in units of its innovations, so that physical units do not matter.
+    // Each score is in units of its innovations' standard deviation, so that physical units do not matter.
     numerator += 4.0 * rho * rho / (std::pow(1.0 - rho, 6) * std::pow(1.0 + rho, 2));
     denominator += 1.0 / std::pow(1.0 - rho, 4);
   }
@@ -40,7 +40,7 @@ MatrixXd slope(const LagObjective& objective, const LagObjective::Fit& fit, LagP
   return fit.coefficients * (objective.inputs_at(high, fit) - objective.inputs_at(low, fit)) / distance;
 }
 
-/// The part of `row` that the inputs and a constant do not explain.
+/// The part of `row` that a regression on the inputs and a constant does not explain.
 RowVectorXd unexplained_part(const MatrixXd& inputs, const VectorXd& weights, const RowVectorXd& row) {
   MatrixXd X(inputs.rows() + 1, inputs.cols());
   X << inputs, RowVectorXd::Ones(inputs.cols());
@@ -49,7 +49,7 @@ RowVectorXd unexplained_part(const MatrixXd& inputs, const VectorXd& weights, co
   return row - beta.transpose() * X;
 }
 
-/// One state's part of the whitened nonlinear problem: slopes orthogonal to the linear part, residuals, weights.
+/// One state's part of the whitened nonlinear problem: slopes orthogonal to the linear part, residuals, and weights.
 struct StateTerms {
   MatrixXd J;            // q x samples
   RowVectorXd residual;  // weighted
@@ -71,8 +71,8 @@ std::vector<StateTerms> state_terms(const LagObjective::Fit& fit, const std::vec
   return terms;
 }
 
-/// H^-1 S H^-1 with residuals scaled up by their leverage (HC3). The scaling is needed because a single ramp of the
-/// inputs can contain all of the information. Empty if the information H is singular.
+/// H^-1 S H^-1, with residuals scaled up according to their leverage (HC3). The scaling is needed because a single ramp
+/// of the inputs can contain all of the information. Empty if the information H is singular.
 MatrixXd sandwich(const LagObjective::Fit& fit, const std::vector<MatrixXd>& slopes) {
   constexpr double largest_leverage = 0.99;
   const auto q = static_cast<Index>(slopes.size());

@@ -15,7 +15,7 @@ std::string number(double value) {
   return text;
 }
 
-/// "wz[k]" from "wz"; names of other samples already contain their sample.
+/// "wz[k]" from "wz". Other names of samples already contain their sample.
 std::string at_its_sample(const std::string& name) { return name.empty() || name.back() != ']' ? name + "[k]" : name; }
 
 /// A printed sum of products: "a x - b y".
@@ -44,7 +44,7 @@ std::vector<std::string> regressor_names(const LinearStructure& s, const std::ve
   return names;
 }
 
-/// Names of the variables in terms: a regressor's name, or p1, p2, ... for directions.
+/// Names of the variables in terms. A regressor has its own name; directions are called p1, p2, ...
 struct VariableNames {
   std::vector<std::string> names, definitions;
 
@@ -71,7 +71,7 @@ struct VariableNames {
   int definitions_of_directions_ = 0;
 };
 
-/// "max(0, p1 - 0.4)" and the factor of its coefficient in these units.
+/// The text "max(0, p1 - 0.4)", and the factor of its coefficient in these units.
 std::pair<std::string, double> in_units(const Term& term, const MotionTerms& terms,
                                         const std::vector<std::string>& names) {
   const auto name = [&](Index v) { return names[static_cast<std::size_t>(v)]; };

@@ -12,7 +12,7 @@ std::string lag_suffix(const LinearStructure& s, Eigen::Index lag) {
   return s.lagged() ? "_lag" + std::to_string(lag) : "";
 }
 
-/// Fills the rows of the lagged samples: block i copies the previous block i - 1.
+/// Fills the rows of the lagged samples: block i of the next step equals block i - 1 of this step.
 void fill_companion_rows(const LinearStructure& s, Eigen::MatrixXd& A) {
   const Eigen::Index lagged = s.dimension() - s.states;
   A.bottomRows(lagged).setZero();

@@ -27,11 +27,11 @@ struct LinearStructure {
   Eigen::Index regressors() const { return dimension() + acting_inputs() + (intercept ? 1 : 0); }  ///< q
   Eigen::Index parameters() const { return states * regressors(); }                                ///< p
   bool lagged() const { return state_lags != 1 || input_lags != 1 || input_delay != 1; }
-  /// Whether samples older than the newest one are used in predictions.
+  /// Whether predictions use samples older than the newest one.
   bool has_several_lags() const { return state_lags > 1 || input_lags > 1; }
   /// The same structure with one state lag and one input lag.
   LinearStructure with_one_lag() const { return {states, inputs, intercept, 1, 1, input_delay}; }
-  /// First transition of a run whose regressors lie inside the run.
+  /// First transition of a run whose regressors all lie inside the run.
   Eigen::Index first_transition() const {
     return std::max({Eigen::Index{0}, state_lags - 1, input_delay + input_lags - 2});
   }
@@ -50,7 +50,7 @@ void fill_regressor(const LinearStructure& s, const Z& z, const V& v, Phi&& phi)
 }
 
 /// next = x + A x + B u + c; `next` must not alias x. The order of summation is the same for fixed and dynamic sizes,
-/// so all callers get the same bits. No allocation.
+/// so all callers get the same result to the last bit. Does not allocate.
 template <class MatrixA, class MatrixB, class VectorC, class X, class U, class Next>
 void propagate(const MatrixA& A, const MatrixB& B, const VectorC& c, const X& x, const U& u, Next& next) {
   for (Eigen::Index i = 0; i < A.rows(); ++i) {

@@ -26,12 +26,10 @@ struct LocalModel {
   double aic = 0.0;           ///< nat, see ident/fit/describe.hpp
   Index transitions = 0;      ///< L, transitions that entered the fit: finite and of positive weight
 
-  /// n, information of the data against the prior (curvature of the loss over sigma^2), in units of the information in
-  /// `covariance`. With this number the prior can be removed from the estimate. NaN without a prior and for a sandwich
-  /// covariance.
+  /// n, information of the data (curvature of the loss over sigma^2), in units of the information in `covariance`. With
+  /// this number the prior can be removed from the estimate. NaN without a prior and for a sandwich covariance.
   Eigen::VectorXd weighed_information;
-  bool solved = false;  ///< whether the search reached its tolerance (if the rank is deficient, `status` shows that
-                        ///< instead of iteration_limit)
+  bool solved = false;  ///< whether the search reached its tolerance; set even if `status` is rank_deficient
 };
 
 /// The global model: ordinary least squares over all training transitions.
@@ -43,7 +41,7 @@ struct GlobalModel {
   Eigen::VectorXd noise_variance() const { return residual_covariance.diagonal(); }
 };
 
-/// All windows' fits, one window per column (M columns). Even a million windows are only a few arrays.
+/// The fits of all windows, one column per window (M columns). Even a million windows need only a few arrays.
 struct WindowFits {
   std::string model = "linear";  ///< linear, varx, or the name of a motion model
 

@@ -19,8 +19,8 @@ struct ModelSettings {
 /// The motion models of the folder ident/model/models, by name.
 std::vector<std::string> motion_model_names();
 
-/// Throws ConfigurationError for an unknown name; the message lists the names. Also throws it for states or inputs that
-/// the model does not have; the message lists those of the model.
+/// Throws ConfigurationError for an unknown name, with a list of the names. Also throws it for states or inputs that do
+/// not fit the model, with a list of those that fit.
 std::shared_ptr<const MotionModel> make_motion_model(const std::string& name, const ModelSettings& settings);
 
 }  // namespace modebank

@@ -6,7 +6,7 @@ namespace modebank {
 
 namespace {
 
-/// The name without the suffix of a bank's lagged names, "[k-1]" or "[k+1]".
+/// The name without the suffix "[k-1]" or "[k+1]" of a bank's lagged names.
 std::string channel_name(const std::string& name) {
   // Position of the suffix; 0 without a suffix
   const std::size_t sample = std::max(name.rfind("[k-") + 1, name.rfind("[k+") + 1);

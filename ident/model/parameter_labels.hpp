@@ -8,8 +8,8 @@
 
 namespace modebank {
 
-/// Label of each parameter in the data's names and theta's order. "wz <- velL" is the coefficient of velL in the
-/// increment of wz. With lags the label also has the number of samples between the two: "wz <- wz (lag 2)". The
+/// Label of each parameter, with the names of the data, in the order of theta. "wz <- velL" is the coefficient of velL
+/// in the increment of wz. With lags the label also has the number of samples between the two: "wz <- wz (lag 2)". The
 /// constant is "wz <- 1". If names list all lagged samples, as in a bank ("wz", "wz[k-1]"), the first names are used,
 /// without their suffix. Missing names become "x1", "x2", ... and "u1", "u2", ...
 std::vector<std::string> parameter_labels(const LinearStructure& structure, const std::vector<std::string>& states,

@@ -19,7 +19,7 @@ using Eigen::ArrayXd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A centred series, zero where it is not finite, and its sum of squares.
+/// A centred series, with zeros in place of values that are not finite, and its sum of squares.
 struct Centred {
   ArrayXd values;
   double square_sum = 0.0;
@@ -36,7 +36,7 @@ struct Centred {
   }
 };
 
-/// Correlation of a with b `lag` samples earlier, for lags 0 .. lags; NaN if a series is constant.
+/// Correlation of `a` with `b` lagged by `lag` samples, for lags 0 .. lags; NaN if a series is constant.
 VectorXd correlations(const Centred& a, const Centred& b, Index lags) {
   const double scale = std::sqrt(a.square_sum) * std::sqrt(b.square_sum);
   if (!(scale > 0.0)) return VectorXd::Constant(lags + 1, not_a_number);
@@ -45,7 +45,7 @@ VectorXd correlations(const Centred& a, const Centred& b, Index lags) {
   return result;
 }
 
-/// P of the header, from the autocorrelations of both series.
+/// P of residual_tests.hpp, from the autocorrelations of both series.
 double bartlett_variance(const VectorXd& a, const VectorXd& b) {
   double P = 1.0;
   for (Index k = 1; k < a.size(); ++k)

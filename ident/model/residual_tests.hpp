@@ -9,7 +9,7 @@
 namespace modebank {
 
 struct ResidualTestOptions {
-  Index lags = 25;      ///< lags 0 .. lags; shorter series use fewer lags
+  Index lags = 25;      ///< lags 0 .. lags are tested; for shorter series fewer lags
   double level = 0.99;  ///< level of the confidence bands, two-sided, for each lag separately
 };
 
@@ -19,16 +19,18 @@ struct ResidualTests {
   Index samples = 0;                  ///< N, number of samples with finite residuals
   Eigen::MatrixXd autocorrelation;    ///< n x T, correlation of each state's residual with itself tau samples earlier;
                                       ///< 1 at lag 0
-  Eigen::MatrixXd cross_correlation;  ///< n*m x T, row i m + j: residual i with input j tau samples earlier
+  Eigen::MatrixXd cross_correlation;  ///< n*m x T, row i m + j: correlation of residual i with input j tau samples
+                                      ///< earlier
   double level = 0.99;
-  double autocorrelation_band = 0.0;       ///< band of white residuals, +- this at lags 1, 2, ...
-  Eigen::MatrixXd cross_correlation_band;  ///< m x n, entry (j, i) for residual i and input j
-  Eigen::VectorXd ljung_box_p;             ///< n, p values of "no autocorrelation" over min(lags, N / 5) lags
+  double autocorrelation_band = 0.0;       ///< band of white residuals at lags 1, 2, ...: from minus to plus this value
+  Eigen::MatrixXd cross_correlation_band;  ///< m x n, entry (j, i): half width of the band for residual i and input j
+  Eigen::VectorXd ljung_box_p;             ///< n, p values of the hypothesis of no autocorrelation, over min(lags, N /
+                                           ///< 5) lags
 
   Index states() const { return autocorrelation.rows(); }
-  /// Shares of the lags outside their bands. For an adequate model they are 1 - level on average. The first share is
-  /// for autocorrelations at lags 1 .. lags, the second for cross-correlations at lags 0 .. lags. NaN if no correlation
-  /// is defined.
+  /// Shares of the lags whose correlations lie outside their bands. For an adequate model a share is 1 - level on
+  /// average. The first share is for autocorrelations at lags 1 .. lags, the second for cross-correlations at lags 0 ..
+  /// lags. NaN if no correlation is defined.
   double autocorrelation_outside() const;
   double cross_correlation_outside() const;
 };
@@ -38,9 +40,9 @@ struct ResidualTests {
 /// freedom. NaN without usable lags or for a constant series.
 double ljung_box_p(const Eigen::VectorXd& autocorrelation, Index N);
 
-/// Tests `residual` (n x N) against `input` (m x N). Column k of both is the same step. If the residual reacts to input
-/// j with an unmodelled delay of d steps, the correlation at lag d is large. Correlations are about the mean with
-/// divisor N (Box & Jenkins 1976). Samples that are not finite are ignored; a constant series gives NaN.
+/// Tests `residual` (n x N) against `input` (m x N). Column k of both belongs to the same step. If the residual reacts
+/// to input j with an unmodelled delay of d steps, the correlation at lag d is large. Correlations are about the mean,
+/// with divisor N (Box & Jenkins 1976). Samples that are not finite are ignored. A constant series gives NaN.
 ///
 /// Bands with z = Phi^-1((1 + level) / 2): z / sqrt(N) for autocorrelations of white residuals. (Near lag 0 the
 /// autocorrelations of a fitted model vary less: Box & Pierce 1970.) For cross-correlations of independent residuals
@@ -50,13 +52,12 @@ double ljung_box_p(const Eigen::VectorXd& autocorrelation, Index N);
 ResidualTests test_residuals(const Eigen::MatrixXd& residual, const Eigen::MatrixXd& input,
                              const ResidualTestOptions& options = {});
 
-/// test_residuals of a model's one-step residuals x[k+1] - x[k] - [A B c] phi_k over one run of any role, against the
-/// inputs u[k].
+/// test_residuals for the one-step residuals x[k+1] - x[k] - [A B c] phi_k of a model over one run, against the inputs
+/// u[k]. The run may be a training or a held-out run.
 ResidualTests test_residuals(const Trajectory& run, const LinearStructure& structure, const Eigen::VectorXd& theta,
                              const ResidualTestOptions& options = {});
 
-/// Mean shares outside the bands over the tests of several runs. Undefined shares are ignored; NaN if all are
-/// undefined.
+/// Mean over several runs of the shares outside the bands. Undefined shares are ignored; NaN if all are undefined.
 struct ResidualSummary {
   double autocorrelation_outside = 0.0;
   double cross_correlation_outside = 0.0;

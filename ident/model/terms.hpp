@@ -6,7 +6,7 @@
 #include "modebank/base/names.hpp"
 
 /// Terms make a motion nonlinear. They are functions of the regressors and are added to the linear part. Each term has
-/// one coefficient per state, so the model stays linear in its parameters.
+/// one coefficient per state, so the model remains linear in its parameters.
 namespace modebank {
 
 /// product: of up to three variables. magnitude: |z|. hinge: max(0, z - knot).
@@ -19,7 +19,8 @@ struct EnumNames<TermKind> {
 
 struct Term {
   TermKind kind = TermKind::product;
-  std::vector<Eigen::Index> variables;  ///< one to three variables for a product (repeats allowed); else one variable
+  std::vector<Eigen::Index> variables;  ///< one to three variables for a product (repeats allowed), one variable for
+                                        ///< other terms
   double knot = 0.0;                    ///< knot of a hinge, in units of its variable
 
   bool operator==(const Term&) const = default;
@@ -39,10 +40,11 @@ struct MotionTerms {
   Eigen::Index variables() const { return direction.cols(); }
 };
 
-/// Throws std::invalid_argument that names the first invalid part of the terms for q regressors.
+/// Throws std::invalid_argument if a part of the terms is invalid for q regressors; the message describes the first
+/// such part.
 void check_terms(const MotionTerms& terms, Eigen::Index regressors);
 
-/// The terms `used`, with only the variables that they use.
+/// The terms with the indices `used`, with only those variables that they use.
 MotionTerms used_part(const MotionTerms& terms, const std::vector<Term>& used);
 
 /// Evaluates terms at one point. The first use allocates; later ones do not.
@@ -62,7 +64,7 @@ class TermValues {
 /// Terms of many rows of regressors (N x q), N x T.
 Eigen::MatrixXd term_columns(const MotionTerms& terms, const Eigen::Ref<const Eigen::MatrixXd>& regressors);
 
-/// Share of the rows outside the range of some variable. Ignores rows that are not finite.
+/// Share of the rows in which some variable lies outside its range. Ignores rows that are not finite.
 double share_outside(const MotionTerms& terms, const Eigen::Ref<const Eigen::MatrixXd>& regressors);
 
 }  // namespace modebank

@@ -14,7 +14,7 @@ namespace modebank {
 
 namespace {
 
-/// Copies samples first .. first + count - 1 of one signal, one per row; NaN before the run.
+/// Copies samples first .. first + count - 1 of one signal, one sample per row. Samples before the run are NaN.
 void copy_signal(const Trajectory::Signals& signals, Index signal, Index first, Index count, double* out) {
   const double* const samples = signals.data() + signal;
   const Index stride = signals.rows(), outside = std::clamp(-first, Index{0}, count);
@@ -26,7 +26,7 @@ void copy_signal(const Trajectory::Signals& signals, Index signal, Index first, 
   }
 }
 
-/// Writes transitions start .. start + count - 1 of `run` to the rows from `first` on, column by column.
+/// Writes transitions start .. start + count - 1 of `run` into the rows from `first` on, column by column.
 void fill_rows(const Trajectory& run, Index start, Index count, const LinearStructure& s, Index first,
                Transitions& transitions) {
   const Trajectory::Signals state = run.states(), input = run.inputs();
@@ -75,7 +75,7 @@ double condition_of(const Eigen::VectorXd& sigma) {
   return q > 0 && sigma(q - 1) > 0.0 ? sigma(0) / sigma(q - 1) : std::numeric_limits<double>::infinity();
 }
 
-/// Handles the common case of full rank without singular vectors. Any orthonormal basis of all directions is valid, and
+/// A fast path for full rank, without singular vectors. Any orthonormal basis of all directions is valid, and
 /// Householder's is much cheaper. Empty if the rank is deficient.
 std::optional<Decomposition> decompose_full_rank(const Eigen::MatrixXd& scaled, const Eigen::VectorXd& scales,
                                                  double tolerance) {
@@ -161,7 +161,7 @@ Transitions stack_training(const Recording& recording, const LinearStructure& st
 void for_each_training_block(const Recording& recording, const LinearStructure& structure,
                              const std::function<void(const Transitions&)>& body) {
   constexpr Index block = 16384;
-  if (recording.weighted()) return body(stack_training(recording, structure));  // weights are normalised over all rows
+  if (recording.weighted()) return body(stack_training(recording, structure));  // weights have mean 1 over all rows
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train) continue;
     for (Index start = 0; start < run.transitions(); start += block) {

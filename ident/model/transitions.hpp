@@ -26,18 +26,19 @@ std::vector<Eigen::Index> usable_rows(const Transitions& transitions);
 /// Stacks transitions start .. start + count - 1 of a run, without applying weights. Regressors before the start of the
 /// run are NaN. Throws std::invalid_argument unless weights are one per sample, finite and nonnegative.
 Transitions stack_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure);
-/// Like stack_transitions, into the first `count` rows of an object that is large enough. Does not allocate.
+/// Like stack_transitions, but writes into the first `count` rows of an object that is large enough. Does not allocate.
 void fill_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure,
                       Transitions& transitions);
 /// finite_rows of all transitions of the training runs.
 Transitions stack_training(const Recording& recording, const LinearStructure& structure);
-/// The rows with finite entries and nonzero weight. Their weights are scaled to mean one, so that the sum of the
-/// weights is the number L of rows. Each row is then multiplied by the square root of its weight.
+/// The rows with finite entries and nonzero weight. Their L weights are scaled to mean one. Each row is then multiplied
+/// by the square root of its weight.
 Transitions finite_rows(const Transitions& transitions);
-/// Reverts the weighting of rows by finite_rows.
+/// Undoes the weighting by finite_rows.
 Transitions unweighted(const Transitions& transitions);
 
-/// Visits the same transitions in order, in blocks of bounded size. Weighted transitions come in one block.
+/// Visits the transitions of the training runs in order, in blocks of bounded size. Weighted transitions come in one
+/// block.
 void for_each_training_block(const Recording& recording, const LinearStructure& structure,
                              const std::function<void(const Transitions&)>& body);
 
@@ -45,7 +46,7 @@ void for_each_training_block(const Recording& recording, const LinearStructure& 
 inline constexpr double excitation_tolerance = 1e-6;
 
 /// X = U basis^+. The rank follows from the singular values of X with columns scaled to unit norm. U spans only the
-/// excited directions. Of all coefficients with X beta = U z, beta = basis z has the smallest norm.
+/// excited directions. Among all coefficients with X beta = U z, beta = basis z has the smallest norm.
 struct Decomposition {
   Eigen::MatrixXd U;       ///< N x r; columns are orthonormal
   Eigen::MatrixXd basis;   ///< q x r, X basis = U

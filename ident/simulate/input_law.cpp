@@ -9,7 +9,7 @@ namespace modebank {
 
 namespace {
 
-/// Share of driving commands (neither standstill nor equal inputs) that ramp to their target instead of jumping.
+/// Share of driving commands that ramp to their target instead of jumping. Standstill and equal inputs do not count.
 constexpr double ramp_share = 0.5;
 
 Eigen::VectorXd draw_levels(const CommandOptions& options, std::mt19937_64& generator) {
@@ -27,7 +27,7 @@ Eigen::MatrixXd held_inputs(const CommandOptions& options, Index hold, std::mt19
   return inputs;
 }
 
-/// A geometric length with the given mean, at least one sample.
+/// A length from a geometric distribution with the given mean, at least one sample.
 Index draw_length(Index mean, std::mt19937_64& generator) {
   if (mean <= 1) return 1;
   boost::random::geometric_distribution<Index> further(1.0 / static_cast<double>(mean));
@@ -46,7 +46,7 @@ Command draw_command(const CommandOptions& options, std::mt19937_64& generator) 
   Command command{draw_levels(options, generator), uniform(generator) < ramp_share};
   if (kind < options.standstill_fraction + options.equal_fraction) {
     command.target.setConstant(command.target.size() > 0 ? command.target(0) : 0.0);
-    command.ramp = false;  // during a ramp from unequal wheels the wheels would stay unequal
+    command.ramp = false;  // no ramp, because during a ramp from unequal wheels the wheels would stay unequal
   }
   return command;
 }

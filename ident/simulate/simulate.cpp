@@ -56,7 +56,7 @@ void check(const SimulationOptions& o) {
   require_fraction_setting(o.outlier_fraction, "outlier_fraction");
 }
 
-/// Matrix of the mode chain, with rows that sum to one. Unused if every run keeps its mode.
+/// Transition matrix of the modes, with rows that sum to one. Unused if no run changes its mode.
 Eigen::MatrixXd transition_of(const SimulationOptions& o) {
   if (o.transition.size() > 0) return o.transition;
   const Index K = static_cast<Index>(o.modes.size());
@@ -67,7 +67,7 @@ Eigen::MatrixXd transition_of(const SimulationOptions& o) {
   return T;
 }
 
-/// pi with pi' T = pi'. If there are several solutions, the one of least norm.
+/// The stationary distribution pi, with pi' T = pi'. If there are several solutions, the one of least norm.
 Eigen::VectorXd stationary_distribution(const Eigen::MatrixXd& T) {
   const Index K = T.rows();
   Eigen::MatrixXd equations(K + 1, K);
@@ -92,7 +92,7 @@ Eigen::VectorXi draw_modes(const SimulationOptions& o, Index run, std::mt19937_6
   return modes;
 }
 
-/// Simulates the states: they start at zero, and the mode of sample k drives the transition to k + 1.
+/// Simulates the states, which start at zero. The mode of sample k drives the transition to sample k + 1.
 Eigen::MatrixXd drive_states(const SimulationOptions& o, const Eigen::VectorXi& modes, const Eigen::MatrixXd& inputs,
                              std::mt19937_64& generator) {
   std::vector<LinearModel> models;
@@ -108,7 +108,7 @@ Eigen::MatrixXd drive_states(const SimulationOptions& o, const Eigen::VectorXi& 
 }
 
 SimulatedRun simulate_run(const SimulationOptions& o, std::uint64_t seed, Index i) {
-  // One generator per purpose, so that changing the noise or the outliers does not change modes and inputs.
+  // Each purpose has its own generator, so that changing the noise or the outliers does not change modes and inputs.
   const auto generator = [&](std::string_view use) { return make_generator(seed, use, static_cast<std::uint64_t>(i)); };
   auto mode_generator = generator("simulate.modes"), input_generator = generator("simulate.inputs"),
        process_generator = generator("simulate.process"), measurement_generator = generator("simulate.measurement");

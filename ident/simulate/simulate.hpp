@@ -19,10 +19,10 @@ struct EnumNames<InputLaw> {
   static constexpr Names<3> values{"white", "hold", "drive"};
 };
 
-/// Options of the driver's commands.
+/// Options for drawing the inputs.
 struct CommandOptions {
   InputLaw input_law = InputLaw::drive;
-  Index hold_samples = 10;           ///< length of a command (law `drive`: mean length)
+  Index hold_samples = 10;           ///< number of samples in a command (law `drive`: their mean)
   double input_amplitude = 0.5;      ///< commands are drawn from [-amplitude, amplitude] [input unit]
   double input_quantum = 0.0;        ///< applied inputs are rounded to multiples of this; 0 means no rounding
   double standstill_fraction = 0.1;  ///< share of commands with all inputs zero (law `drive`)
@@ -37,10 +37,10 @@ struct SimulationOptions : CommandOptions {
   std::vector<Eigen::VectorXd> modes;  ///< theta per mode, p entries each
   std::vector<double> process_sd;  ///< per mode, or one vector for all modes; sqrt of the diagonal of Q [state unit]
   double measurement_sd = 0.0;     ///< sqrt of the diagonal of R [state unit]
-  Eigen::MatrixXd transition;      ///< K x K, row = from; if empty, it is derived from dwell_samples, with equal
+  Eigen::MatrixXd transition;      ///< K x K, row = from; if empty, it follows from dwell_samples, with equal
                                    ///< probabilities off the diagonal
-  double dwell_samples = 0.0;     ///< mean number of samples in a mode, at least 1. With 0, run i stays in mode (i / 2)
-                                  ///< mod K, so that even (training) and odd (held-out) runs contain every mode
+  double dwell_samples = 0.0;     ///< mean number of samples in a mode, at least 1; with 0, run i stays in mode (i / 2)
+                                  ///< mod K. Even runs (training) and odd runs (held out) then both contain every mode
   double outlier_fraction = 0.0;  ///< share of measured samples with an outlier
   double outlier_sd = 0.0;        ///< standard deviation of an outlier [state unit]
   Index runs = 12;
@@ -55,7 +55,7 @@ struct SimulatedRun {
   Eigen::VectorXi mode;  ///< N, the mode that drives transition k -> k+1
 };
 
-/// Simulates runs "00", "01", ... Even ones are training runs, odd ones are held-out runs. A run starts at state zero,
+/// Simulates runs "00", "01", ... Even runs are training runs, odd runs are held-out runs. A run starts at state zero,
 /// in a mode drawn from the chain's stationary distribution. The quantised inputs drive the true system. Outliers are
 /// added to the measured sample. Run i depends on options, seed and i alone. Throws ConfigurationError if sizes
 /// disagree, a value is out of range, the rows of the matrix do not sum to one, or an unstable mode makes the state

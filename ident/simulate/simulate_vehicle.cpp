@@ -45,7 +45,7 @@ std::vector<GroundKind> kinds_of(const VehicleOptions& o) {
   return kinds;
 }
 
-/// Checks the step in advance. Friction bounds even an unstable integration, so the result would not show the
+/// Checks the step size in advance. Friction bounds even an unstable integration, so the result would not show the
 /// instability.
 void check_step(const VehicleOptions& o) {
   require_nonnegative_setting(o.step_s, "step");
@@ -93,8 +93,8 @@ void check(const VehicleOptions& o) {
   check_commands(o.commands);
 }
 
-/// Splits the drawn wheel speeds into a forward and a turning part. Recombines them with the forward part shifted and
-/// the turn scaled, in whole quanta. Both wheels are exactly zero only at standstill.
+/// Splits the drawn wheel speeds into a forward and a turning part. Then shifts the forward part, scales the turning
+/// part and adds both again, in whole quanta. Both wheels are exactly zero only at standstill.
 Eigen::MatrixXd draw_commands(const VehicleOptions& o, std::mt19937_64& generator) {
   CommandOptions exact = o.commands;
   exact.input_quantum = 0.0;
@@ -174,7 +174,7 @@ void measure(VehicleRun& run, const VehicleOptions& o, std::mt19937_64& noise, s
 }
 
 VehicleRun make_run(const VehicleOptions& o, std::uint64_t seed, Index i) {
-  // One generator per purpose, so that changing the sensors does not change the drive and the ground.
+  // Each purpose has its own generator, so that changing the sensors does not change the drive and the ground.
   const auto index = static_cast<std::uint64_t>(i);
   const auto generator = [&](std::string_view use) { return make_generator(seed, use, index); };
   auto inputs = generator("simulate.inputs"), noise = generator("simulate.measurement"),

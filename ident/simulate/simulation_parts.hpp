@@ -8,17 +8,18 @@
 
 namespace modebank {
 
-/// Parts shared by the simulated systems. The checks throw ConfigurationError with the name of the value.
+/// Parts that the simulated systems share. The checks throw ConfigurationError with the name of the value.
 void require_setting(bool ok, const std::string& message);
 void require_nonnegative_setting(double value, const std::string& name);
 void require_fraction_setting(double value, const std::string& name);
 void check_commands(const CommandOptions& options);
 void check_runs(Index runs, double dt_s);
 
-/// "00", "01", ... All have the number of digits of the last run, at least two, so that byte order is run order.
+/// Run names "00", "01", ... All have the number of digits of the last run, at least two, so that names in byte order
+/// are in run order.
 std::string simulated_run_name(Index run, Index runs);
 
-/// `size` values of N(0, sd^2).
+/// Draws `size` values of N(0, sd^2).
 Eigen::VectorXd draw_noise(Index size, double sd, std::mt19937_64& generator);
 
 struct Outliers {

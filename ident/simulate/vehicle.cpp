@@ -41,7 +41,7 @@ Kinds kinds_under(const VehicleParameters& p, const Ground& ground, const Vehicl
   return kinds;
 }
 
-/// Sums over the tyres: forces on the body, yaw moment, and each side's load on its motor.
+/// Sums over the tyres: the forces on the body, the yaw moment, and the load of each side's tyres on its motor.
 struct TyreSum {
   Eigen::Vector2d force = Eigen::Vector2d::Zero();
   double moment = 0.0, left_drive = 0.0, right_drive = 0.0;
@@ -103,7 +103,7 @@ void Vehicle::advance(VehicleState& state, const WheelCommand& command, double d
 }
 
 double Vehicle::default_step_s(const VehicleParameters& p, const std::vector<GroundKind>& kinds) {
-  double stiffest_N_s_m = 0.0;  // sum over the four tyres without slip, with wheels at rest
+  double stiffest_N_s_m = 0.0;  // sum over the four tyres, without slip and with wheels at rest
   for (const GroundKind& kind : kinds) {
     const double shear = kind.friction * 0.5 * p.contact_m / kind.shear_m, resistance = kind.resistance;
     stiffest_N_s_m = std::max(stiffest_N_s_m, p.mass_kg * gravity_m_s2 * (shear + resistance) / p.slip_speed_m_s);

@@ -8,15 +8,15 @@
 
 namespace modebank {
 
-/// A four-wheeled skid-steer robot. Geometry and mass default to those of a Clearpath Husky A200. The defaults of tyres
-/// and drive are plausible values without measurement.
+/// A four-wheeled skid-steer robot. The default geometry and mass are those of a Clearpath Husky A200. The defaults of
+/// tyres and drive are plausible values, not measurements.
 struct VehicleParameters {
   double mass_kg = 60.0;
-  double yaw_inertia_kg_m2 = 7.0;  ///< a uniform box of the robot's 0.99 m x 0.67 m has 7.1
+  double yaw_inertia_kg_m2 = 7.0;  ///< a uniform box of the robot's size, 0.99 m x 0.67 m, has 7.1
   double track_m = 0.55;           ///< distance between left and right wheels
   double wheelbase_m = 0.512;      ///< distance between front and rear axle
   double contact_m = 0.1;          ///< length of a tyre's contact patch
-  double slip_speed_m_s = 0.05;    ///< added to the wheel speed to which slip is relative; see tyre_force
+  double slip_speed_m_s = 0.05;    ///< added to the wheel speed by which slip is divided; see tyre_force
   double drive_mass_kg = 10.0;     ///< inertia of one side's wheels and gears, divided by the wheel radius squared
   double drive_time_s = 0.15;      ///< time constant of the wheel speed loop
   double drive_force_N = 300.0;    ///< largest force of one side's motor at the wheels' rim
@@ -33,7 +33,7 @@ struct VehicleParameters {
 Eigen::Vector2d tyre_force(const Eigen::Vector2d& patch_velocity, double wheel_speed, double load_N,
                            const GroundKind& ground, const VehicleParameters& vehicle);
 
-/// Position, heading, velocities in the body frame and surface speeds of the two sides' tyres [m, rad, s].
+/// Position, heading, velocities in the body frame, and the speed of the tyres' surface on each side [m, rad, s].
 struct VehicleState {
   enum Entry { x, y, heading, vx, vy, yaw_rate, wheel_left, wheel_right, entries };
   std::array<double, entries> values{};
@@ -55,14 +55,15 @@ class Vehicle {
  public:
   Vehicle(const VehicleParameters& parameters, const Ground& ground) : parameters_(parameters), ground_(ground) {}
 
-  /// Integrates over `duration_s` in equal steps of at most `step_s` by the classical Runge-Kutta method. The ground
-  /// under each wheel is that at the start of a step, so that the forces are smooth within it.
+  /// Integrates over `duration_s` in equal steps of at most `step_s` by the classical Runge-Kutta method. Within a
+  /// step, each wheel stays on the ground on which it is at the start of the step, so that the forces are smooth.
   void advance(VehicleState& state, const WheelCommand& command, double duration_s, double step_s) const;
 
-  /// A step for stable and accurate integration on the stiffest ground, for tyres without slip on a standing vehicle.
-  /// It is one over the sum of the rates of the linearised lateral, yaw and wheel motion.
+  /// A step for stable and accurate integration on the stiffest ground. It is computed for tyres without slip on a
+  /// standing vehicle: one over the sum of the rates of the linearised lateral, yaw and wheel motion.
   static double default_step_s(const VehicleParameters& parameters, const std::vector<GroundKind>& kinds);
-  static constexpr double stability_margin = 1.39;  ///< integration is stable for steps up to this times the default
+  static constexpr double stability_margin = 1.39;  ///< integration is stable for steps up to this factor times the
+                                                    ///< default step
 
   /// Mean friction coefficient under the four wheels.
   double mean_friction(const VehicleState& state) const;

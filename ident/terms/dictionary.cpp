@@ -19,7 +19,7 @@ constexpr int knots = 13;
 constexpr double first_quantile = 0.05, quantile_step = 0.075;
 constexpr double regressor_ridge = 1e-8;  // share of the number of rows; columns have unit root mean square
 
-/// The regressors (without the constant) that a forward linear fit of the targets selects first.
+/// The regressors (without the constant) that a forward selection for a linear fit of the targets takes first.
 std::vector<Index> leading_regressors(const LinearStructure& s, const MatrixXd& X, const MatrixXd& targets) {
   const Index q = s.regressors() - (s.intercept ? 1 : 0);
   const double N = static_cast<double>(X.rows());
@@ -50,13 +50,13 @@ std::vector<Index> leading_regressors(const LinearStructure& s, const MatrixXd& 
   return taken;
 }
 
-/// All directions, grouped by kind. A limit on their number then keeps the most important ones of each state.
+/// All directions, grouped by kind, so that a limit on their number keeps the most important directions of each state.
 std::vector<VectorXd> directions(const LinearStructure& s, const MatrixXd& fit) {
   std::vector<VectorXd> all;
   const Index n = s.dimension(), m = s.inputs;
   const auto add = [&](const VectorXd& direction) {
     const Index entries = (direction.array() != 0.0).count();
-    // a direction with a single entry is a regressor
+    // a direction with a single nonzero entry is a regressor
     if (entries > 1 && std::ssize(all) < most_directions) all.push_back(direction);
   };
   const auto part = [&](Index state, Index first, Index count) {

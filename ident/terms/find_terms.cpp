@@ -17,8 +17,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index most_entries = 6'000'000;    // entries of all candidate columns
-constexpr Index fewest_rows_per_column = 5;  // rows per column of the linear model, in each fold of a half
+constexpr Index most_entries = 6'000'000;    // largest number of entries in all candidate columns
+constexpr Index fewest_rows_per_column = 5;  // least number of rows per column of the linear model, in each fold of a
+                                             // half
 
 std::vector<LinearStructure> structures_of(const LinearStructure& widest) {
   std::vector<LinearStructure> all;
@@ -33,7 +34,7 @@ std::vector<LinearStructure> structures_of(const LinearStructure& widest) {
 
 Index columns_of(const SelectedTerms& selected) { return selected.structure.regressors() + selected.terms.count(); }
 
-/// The smallest number of columns whose loss against the best is within one standard error.
+/// The smallest number of columns whose loss relative to the best number is within one standard error.
 std::size_t chosen_of(const std::vector<SelectedTerms>& all, const TermRows& rows) {
   const auto best = std::max_element(all.begin(), all.end(), [](const SelectedTerms& a, const SelectedTerms& b) {
     return a.log_score() < b.log_score();
@@ -51,7 +52,8 @@ VectorXd densities_of(const TermRows& on, const LinearStructure& structure, cons
   return student_densities(on.Y - design_of(on, structure, terms) * coefficients);
 }
 
-/// Gain of this structure's terms over the linear model on each half, chosen and fitted on the other half.
+/// Gain of this structure's terms over the linear model on each half of the runs. The terms are chosen and fitted on
+/// the other half.
 PartGain measured_gain(const TermRows& rows, const LinearStructure& structure, const FitOptions& options) {
   std::array<VectorXd, 2> gained;
   std::array<std::vector<bool>, 2> half;

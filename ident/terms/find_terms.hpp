@@ -14,28 +14,30 @@ namespace modebank {
 struct TriedTerms {
   LinearStructure structure;
   Eigen::Index terms = 0;
-  double log_score = 0.0;  ///< log score of rows that chose the terms but did not fit the coefficients [nats/sample]
+  double log_score = 0.0;  ///< log score on rows that helped to choose the terms but not to fit the coefficients
+                           ///< [nats/sample]
 };
 
-/// The nonlinear motion, if there is one.
+/// The nonlinear motion, if one was found.
 struct FoundTerms {
-  LinearStructure structure;  ///< structure with the lags that go with the terms
+  LinearStructure structure;  ///< structure with the lags that were chosen together with the terms
   MotionTerms terms = {};     ///< empty if no terms were accepted
-  double gain = 0.0;  ///< gain over the linear model of all lags, on halves that did not choose the terms [nats/sample]
+  double gain = 0.0;  ///< gain over the linear model with all lags, on halves that were not used to choose the terms
+                      ///< [nats/sample]
   double gain_standard_error = 0.0;
-  Eigen::Index terms_asked = 0;  ///< number of terms whose gain was measured; 0 if no structure had any
+  Eigen::Index terms_asked = 0;  ///< number of terms whose gain was measured; 0 if no structure had terms
   std::vector<TriedTerms> tried = {};
 };
 
-/// Smallest gain of terms in nats per sample. The gain must also exceed two standard errors.
+/// Smallest gain of accepted terms in nats per sample. The gain must also be above two standard errors.
 inline constexpr double least_terms_gain = 0.02;
 
 /// Decides whether one motion of the training runs is nonlinear, and selects its terms (method: section 2a, item 4).
 /// Terms are selected with one lag, with two lags and with the lags of `structure`, because linear lags can replace a
-/// nonlinearity. Among these three, the choice has the fewest columns within one standard error of the best score on
-/// left-out rows. The gain over the linear model is measured on each half of the training runs, with terms chosen on
-/// the other half. It must reach 0.02 nats and two standard errors. The result is the same for any number of threads.
-/// Throws DataError without usable transitions.
+/// nonlinearity. Among these three results, the one with the fewest columns within one standard error of the best score
+/// on left-out rows is chosen. The gain over the linear model is measured on each half of the training runs, with terms
+/// chosen on the other half. It must reach 0.02 nats and two standard errors. The result is the same for any number of
+/// threads. Throws DataError without usable transitions.
 FoundTerms find_terms(const Recording& recording, const LinearStructure& structure, const FitOptions& options);
 
 }  // namespace modebank

@@ -23,14 +23,14 @@ constexpr Index folds = 4;
 constexpr Index most_terms = 16;
 constexpr double clipped_errors = 6.0;  // limit in robust standard deviations
 
-// share of the errors' standard deviation, because more than half of the errors may be zero
+// as a share of the errors' standard deviation; needed because more than half of the errors may be zero
 constexpr double least_share = 0.02;
 constexpr double ridge = 1e-6;        // share of the number of rows; columns have unit root mean square
-constexpr double new_share = 1e-3;    // smallest part of a column that is independent of the previous columns
+constexpr double new_share = 1e-3;    // smallest share of a column that must be independent of the previous columns
 constexpr double least_gain = 0.002;  // smallest gain per further term [nats/sample]
-constexpr double exact_share = 1e-9;  // share of the increments; a smaller error counts as an exact prediction
+constexpr double exact_share = 1e-9;  // as a share of the increments; a smaller error counts as an exact prediction
 constexpr double least_scale = 1e-150;
-constexpr Index patience = 3;  // the search ends after this number of steps in a row that gain less than a quarter of
+constexpr Index patience = 3;  // the search ends after this number of successive steps that gain less than a quarter of
                                // least_gain
 
 VectorXd robust_deviations(const MatrixXd& errors, const MatrixXd& increments) {
@@ -66,7 +66,7 @@ class FoldedRegression {
     }
   }
 
-  /// Errors of the left-out rows with these columns.
+  /// Errors of the left-out rows, predicted with the columns `taken`.
   MatrixXd errors(const std::vector<Index>& taken) const {
     MatrixXd result(static_cast<Index>(N_), cross_.cols());
     for (std::size_t f = 0; f < rows_.size(); ++f) {
@@ -79,8 +79,8 @@ class FoldedRegression {
     return result;
   }
 
-  /// Decrease of the squared errors of left-out rows by each further column. Minus infinity for columns that depend
-  /// linearly on those already taken.
+  /// Decrease of the left-out rows' squared errors for each candidate column. Minus infinity for columns that depend
+  /// linearly on the columns already taken.
   VectorXd gains(const std::vector<Index>& taken) const {
     const Index C = gram_.cols();
     VectorXd gain = VectorXd::Zero(C);
@@ -91,7 +91,7 @@ class FoldedRegression {
       square.diagonal().array() += ridge * N_;
       const MatrixXd h = cross_ - h2;
       const MatrixXd theta = solve_semidefinite(square, MatrixXd(h(taken, Eigen::all)));
-      const MatrixXd project = solve_semidefinite(square, A_rows);  // taken x C
+      const MatrixXd project = solve_semidefinite(square, A_rows);  // columns already taken x C
       const MatrixXd A2_project = A2_rows(Eigen::all, taken) * project;
       const VectorXd own = gram_.diagonal() - A2.diagonal();
       VectorXd left = own - A_rows.cwiseProduct(project).colwise().sum().transpose();
@@ -139,7 +139,7 @@ bool stands_still(const std::vector<VectorXd>& path) {
   return lately < before + 0.25 * least_gain;
 }
 
-/// The first step of the path whose loss against the best step is negligible or within one standard error.
+/// The first step of the path whose loss relative to the best step is negligible or within one standard error.
 std::size_t fewest_as_good(const std::vector<VectorXd>& path, const TermRows& rows) {
   const auto best = std::max_element(path.begin(), path.end(),
                                      [](const VectorXd& a, const VectorXd& b) { return a.mean() < b.mean(); });
@@ -190,8 +190,8 @@ SelectedTerms select_terms(const TermRows& rows, const LinearStructure& structur
     targets.col(i) = (X * fit.col(i) + errors.col(i).cwiseMax(-most).cwiseMin(most)) / deviation(i);
   }
   const MotionTerms dictionary = make_dictionary(structure, X, fit, targets);
-  // Any basis of the linear regressors is valid. Lags of a smooth signal are nearly equal columns, so an orthonormal
-  // basis is used.
+  // An orthonormal basis of the linear regressors is used, because lags of a smooth signal are nearly equal columns.
+  // Any basis is valid.
   const MatrixXd basis = decompose(X, excitation_tolerance).U;
   MatrixXd columns(X.rows(), basis.cols() + dictionary.count());
   columns << basis, term_columns(dictionary, X);

@@ -8,24 +8,25 @@
 
 namespace modebank {
 
-/// Transitions of the training runs for the search for terms. All structures up to the widest use the same transitions.
-/// Even with the most lags, their regressors were measured.
+/// Transitions of the training runs for the search for terms. All structures use the same transitions: even with the
+/// most lags, their regressors were measured.
 struct TermRows {
   LinearStructure widest;
-  Eigen::MatrixXd X;               ///< N x q regressors of the widest structure
+  Eigen::MatrixXd X;               ///< N x q regressors of the structure with the most lags
   Eigen::MatrixXd Y;               ///< N x n increments
   std::vector<Eigen::Index> part;  ///< N, index of the row's run or stretch of a run
   Eigen::Index parts = 0;
 
   Eigen::Index count() const { return X.rows(); }
-  /// Regressors of a structure with the same delay and no additional lags.
+  /// Regressors of a structure that has the same delay and no more lags.
   Eigen::MatrixXd regressors(const LinearStructure& structure) const;
-  /// The rows of some parts, with new part numbers. Fewer than six parts are cut into stretches.
+  /// The rows of some parts, with new part numbers. If there are fewer than six parts, these are cut into stretches.
   TermRows some(const std::vector<bool>& of_part) const;
 };
 
-/// Collects the rows. With six or more runs, the parts are the runs. Fewer runs are cut into at least ten stretches.
-/// Long recordings are thinned to evenly spaced stretches of about `most_rows` rows. Sample weights are ignored.
+/// Collects the rows. With six or more runs, the parts are the runs. If there are fewer runs, these are cut into at
+/// least ten stretches. Long recordings are thinned to evenly spaced stretches of about `most_rows` rows in total.
+/// Sample weights are ignored.
 TermRows gather_term_rows(const Recording& recording, const LinearStructure& widest, Eigen::Index most_rows);
 
 /// Mean difference of log densities over rows, and its standard error over parts.

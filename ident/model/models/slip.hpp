@@ -28,8 +28,8 @@ struct SlipModel {
   }
 };
 
-/// SlipModel with the yaw rate as its only state. It cannot separate a slip common to both sides from a wider track. So
-/// W is the track that explains the mean gain. The additional loss of the left side is slip_difference d:
+/// SlipModel with the yaw rate as its only state. Yaw rate alone cannot separate slip common to both sides from a wider
+/// track, so W is the track that explains the mean gain. The additional loss of the left side is slip_difference d:
 ///   w_ss = [(1 + d/2) v_r - (1 - d/2) v_l] / W.
 struct YawSlipModel {
   double wheel_radius_m = 1.0;
