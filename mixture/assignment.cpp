@@ -10,8 +10,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The rows assigned so far, with dual prices that keep every reduced cost nonnegative. Column K is a placeholder where
-/// each search starts.
+/// The rows assigned so far, with dual prices that keep every reduced cost nonnegative. Column K is a placeholder at
+/// which each search starts.
 class Assigner {
  public:
   explicit Assigner(const Eigen::MatrixXd& cost)

@@ -73,8 +73,8 @@ Index best_candidate(const std::vector<Candidate>& candidates, Criterion criteri
 
 namespace {
 
-/// Differences of held-out scores below this number of standard errors count as chance, because the score is the best
-/// of up to twelve.
+/// A difference of held-out scores counts as chance if it is below this number of standard errors. The reason: the
+/// score is the best of up to twelve.
 constexpr double standard_errors = 2.0;
 
 std::string disagreement(const std::vector<Candidate>& candidates, const Candidate& selected) {

@@ -58,7 +58,7 @@ void order_by_weight(GaussianMixture& mixture) {
 
 void to_physical(const ScaledCloud& cloud, EmResult& result) {
   result.mixture = cloud.scale.to_physical(result.mixture);
-  if (cloud.noise.present()) {  // the box of the noise component keeps its exact bits
+  if (cloud.noise.present()) {  // copies the box of the noise component, so that rounding does not change it
     result.mixture.noise.lower = cloud.noise.lower;
     result.mixture.noise.upper = cloud.noise.upper;
   }

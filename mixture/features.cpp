@@ -20,8 +20,8 @@ bool failed(const WindowFits& fits, Index window) { return fits.status(window) =
 
 bool full_rank(const WindowFits& fits, Index window) { return fits.rank(window) == fits.parameter_count(); }
 
-/// Whether the full-rank windows are worth at least two independent windows per feature. Fewer windows would not
-/// determine a component.
+/// Whether the full-rank windows are worth at least two independent windows per feature. With fewer windows, the data
+/// would not determine a component.
 bool enough_of_full_rank(const WindowFits& fits, Index features) {
   Index count = 0;
   for (Index window = 0; window < fits.count(); ++window)
@@ -29,7 +29,7 @@ bool enough_of_full_rank(const WindowFits& fits, Index features) {
   return count * fits.step >= 2 * features * fits.length;
 }
 
-/// The choice of windows that `automatic` means for these windows.
+/// The windows that WindowChoice::automatic selects for these fits.
 WindowChoice resolved(const WindowFits& fits, WindowChoice choice, WindowErrors errors, Index features) {
   if (choice != WindowChoice::automatic) return choice;
   if (errors == WindowErrors::include) return WindowChoice::all;
@@ -49,7 +49,7 @@ Index features_kept(FeatureSet features, Index all) {
   return features == FeatureSet::automatic ? std::min<Index>(all, most_features) : all;
 }
 
-/// Median standard deviation of the clustered windows' errors; 0 if it is unknown.
+/// Median standard deviation of the clustered windows' errors; 0 if the errors are unknown.
 Eigen::VectorXd typical_error(const WindowFits& fits, const std::vector<Index>& windows, Index features) {
   const Index p = fits.parameter_count();
   Eigen::VectorXd result = Eigen::VectorXd::Zero(features);
@@ -65,7 +65,7 @@ Eigen::VectorXd typical_error(const WindowFits& fits, const std::vector<Index>& 
   return result;
 }
 
-/// Builds a cloud window by window, as the options require.
+/// Collects the points of a cloud, window by window, as the options require.
 class CloudBuilder {
  public:
   CloudBuilder(const WindowFits& fits, FeatureSet features, const std::vector<Channel>& states, WindowErrors errors)
@@ -87,7 +87,7 @@ class CloudBuilder {
 
   Index features() const { return point_.size(); }
 
-  /// Adds a window; skips it if its point or error is not finite.
+  /// Adds a window. Skips the window if its point or error is not finite.
   void add(Index window) {
     const Index p = fits_.parameter_count();
     theta_ = fits_.parameters.col(window);

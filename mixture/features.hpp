@@ -15,14 +15,15 @@ struct FeatureCloud {
   std::vector<std::string> names;     ///< F: parameter names, then "log_noise_variance_<state>" when noise is included
   Eigen::MatrixXd points;             ///< F x N, points in physical units
   Eigen::MatrixXd covariances;        ///< F*F x N, covariance of each point's error; empty unless requested
-  Eigen::VectorXd typical_error;      ///< F, median standard deviation of the windows' errors; 0 if it is unknown
-  std::vector<Eigen::Index> windows;  ///< N; an entry is the window of a point
-  std::vector<Eigen::Index> runs;     ///< N; an entry is the run of a point's window
+  Eigen::VectorXd typical_error;      ///< F, median standard deviation of the windows' errors; 0 if the errors are
+                                      ///< unknown
+  std::vector<Eigen::Index> windows;  ///< N, index of each point's window
+  std::vector<Eigen::Index> runs;     ///< N, index of the run of each point's window
 
   PointSet point_set() const { return PointSet(points, detail::no_weights, covariances, typical_error); }
 };
 
-/// Whether the cloud carries the windows' own covariances (error-aware clustering).
+/// Whether the cloud has the windows' own covariances as errors (error-aware clustering).
 enum class WindowErrors { ignore, include };
 
 /// The cloud of the clustered windows, without failed fits and non-finite windows.
@@ -48,15 +49,15 @@ bool clusters_one_lag(const WindowFits& fits, FeatureSet features);
 /// without a feature in the cloud.
 FeatureCloud in_features(FeatureCloud cloud, const std::vector<std::string>& names);
 
-/// Names of the `most` features that vary most beyond their errors, in the cloud's order. Measure: variance of the
-/// points between their 5 % and 95 % quantiles, over the variance of the typical error. Features of unknown error come
-/// last.
+/// Names of the `most` features that vary most relative to their errors, in the cloud's order. The measure is the
+/// variance of the points between their 5 % and 95 % quantiles, divided by the variance of the typical error. Features
+/// of unknown error come last.
 std::vector<std::string> most_varied(const FeatureCloud& cloud, Eigen::Index most);
 
-/// Windows that are not clustered but get a membership. Their data do not determine all parameters. Their errors are
-/// large in the undetermined directions. For each such window the mixture gives the probability of each component.
-/// Empty without a prior (their theta is then no estimate), and if all windows are clustered. `names`: features of the
-/// clustered cloud; if empty, all features.
+/// Windows that are not clustered but get a membership. Their data do not determine all parameters, so their errors are
+/// large in some directions. For each such window the mixture gives the probability of each component. Empty without a
+/// prior, because theta then estimates nothing, and if all windows are clustered. `names`: features of the clustered
+/// cloud; if empty, all features.
 FeatureCloud assigned_features(const WindowFits& fits, const std::vector<Channel>& states,
                                const ClusterOptions& options, const std::vector<std::string>& names = {});
 

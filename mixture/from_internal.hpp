@@ -5,8 +5,8 @@
 
 namespace modebank {
 
-/// Converts a mixture to the public API's type. The reverse conversion throws std::invalid_argument if its parts do not
-/// fit.
+/// Converts a mixture to the public API's type. The reverse conversion throws std::invalid_argument if the parts of the
+/// mixture do not fit together.
 mixture::Mixture from_internal(const GaussianMixture& mixture);
 GaussianMixture to_internal(const mixture::Mixture& mixture);
 

@@ -19,7 +19,7 @@ using Eigen::Index;
 namespace {
 
 /// Checks the values of a mixture, in addition to check_sizes. Weights may have any sum, because the mixture may be a
-/// part of another one.
+/// part of another mixture.
 void check_numbers(const GaussianMixture& mixture) {
   if (!mixture.means.allFinite() || !mixture.weights.allFinite() || mixture.weights.minCoeff() < 0.0)
     throw std::invalid_argument("the mixture has a mean or weight that is not finite, or a negative weight");
@@ -28,7 +28,7 @@ void check_numbers(const GaussianMixture& mixture) {
         fmt::format("noise component has the weight {}; expected a probability", mixture.noise.weight));
 }
 
-/// Evaluates a mixture block by block. With errors, the units are such that the mixture's numbers are near one.
+/// Evaluates a mixture block by block. With errors, units are chosen so that the mixture's numbers are near one.
 class BlockEvaluation {
  public:
   BlockEvaluation(const GaussianMixture& mixture, const PointSet& set)
@@ -40,7 +40,7 @@ class BlockEvaluation {
         memory_(factored_),
         stage_(points_.stage()) {}
 
-  /// Calls visit(first, count) after the kernels' memory holds points first to first + count - 1.
+  /// Calls visit(first, count) when the kernels' memory holds the results for points first to first + count - 1.
   template <class Visit>
   void each(Visit visit) {
     const em::Components components = factored_.components();
@@ -134,7 +134,7 @@ bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType ty
   }
   Eigen::MatrixXd excess = covariance;
   excess.diagonal().array() -= floor;
-  // If the matrix minus the floor is positive definite, every eigenvalue is above the floor. Then no decomposition is
+  // If the matrix minus the floor is positive definite, every eigenvalue is above the floor, and no decomposition is
   // needed.
   if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(excess).info() == Eigen::Success) return false;
   const auto [values, vectors] = symmetric_eigen(covariance);

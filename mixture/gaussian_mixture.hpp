@@ -41,8 +41,7 @@ struct GaussianMixture {
   Eigen::Index parameter_count() const;
 };
 
-/// Error: a component's covariance is not positive definite. In a fit it means that the numbers exceed double
-/// precision.
+/// Error: a component's covariance is not positive definite. In a fit, the cause is numbers beyond double precision.
 class NotPositiveDefinite : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
@@ -55,8 +54,8 @@ void check_sizes(const GaussianMixture& mixture);
 /// a negative variance or a correlation beyond one.
 void check_errors(const PointSet& points);
 
-/// Raises the eigenvalues to `floor`. `diagonal`: raises the variances and sets the off-diagonals to zero. Returns
-/// whether any value was below `floor`.
+/// Raises the eigenvalues to `floor`. If `diagonal`, raises the variances instead and sets the off-diagonals to zero.
+/// Returns whether any value was below `floor`.
 bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type);
 
 // The functions below throw std::invalid_argument for sizes that do not fit, values that are not finite, a negative
@@ -69,7 +68,7 @@ Eigen::VectorXd log_density(const GaussianMixture& mixture, const PointSet& poin
 /// Posterior component probabilities, K x N; each column sums to one, or to one minus the probability of noise.
 Eigen::MatrixXd responsibilities(const GaussianMixture& mixture, const PointSet& points);
 /// `responsibilities` block by block, in order, without a K x N array. visit(first, block) gets the columns of points
-/// first, first + 1, ... (at most 128) and must not keep a reference to them.
+/// first, first + 1, ... (at most 128). It must not keep a reference to the block.
 void visit_responsibilities(const GaussianMixture& mixture, const PointSet& points,
                             const std::function<void(Eigen::Index, const Eigen::Ref<const Eigen::MatrixXd>&)>& visit);
 /// N points drawn from the mixture. The generator is the only source of randomness.

@@ -27,7 +27,7 @@ std::vector<Index> distinct(std::vector<Index> runs) {
   return runs;
 }
 
-/// Positions of the points of every group.
+/// Positions of the points in each group.
 std::vector<std::vector<Index>> points_of_groups(const std::vector<Index>& run_of_point) {
   const std::vector<Index> runs = distinct(run_of_point);
   const Index count = heldout_groups(run_of_point);

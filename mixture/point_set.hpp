@@ -9,16 +9,15 @@ inline const Eigen::VectorXd no_weights;
 inline const Eigen::MatrixXd no_covariances;
 }  // namespace detail
 
-/// Points to be clustered or evaluated, with weights and errors. Holds references to its parts, which must outlive it.
-/// The compiler rejects temporaries.
+/// Points to be clustered or evaluated, with weights and errors. Holds references to these parts, which must outlive
+/// it. The compiler rejects temporaries.
 struct PointSet {
   const Eigen::MatrixXd& points;       ///< F x N
   const Eigen::VectorXd& weights;      ///< N, nonnegative; if empty, all weights are one
   const Eigen::MatrixXd& covariances;  ///< F*F x N, each column the covariance of that point's error; empty without
                                        ///< errors
 
-  /// F, standard deviation of a typical point's error, which is the unit of that feature in the fit. 0 or empty if
-  /// unknown
+  /// F, standard deviation of a typical point's error; the unit of that feature in the fit. 0 or empty if unknown
   const Eigen::VectorXd& typical_error;
 
   PointSet(const Eigen::MatrixXd& points_, const Eigen::VectorXd& weights_ = detail::no_weights,

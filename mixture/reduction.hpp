@@ -25,18 +25,18 @@ struct Merge {
   double loss;  ///< upper bound of the loss in mean log-likelihood per unit weight [nats]
 };
 
-/// Cost of merging i and j, given log |P_i| and log |P_j|. It is the bound of Runnalls 2007, "Kullback-Leibler approach
-/// to Gaussian mixture reduction", IEEE Trans. Aerospace and Electronic Systems 43(3), eq. 16:
-/// ((w_i + w_j) log |P_ij| - w_i log |P_i| - w_j log |P_j|) / 2.
+/// Cost of merging components i and j, given log |P_i| and log |P_j|. It is the bound of Runnalls 2007,
+/// "Kullback-Leibler approach to Gaussian mixture reduction", IEEE Trans. Aerospace and Electronic Systems 43(3), eq.
+/// 16: ((w_i + w_j) log |P_ij| - w_i log |P_i| - w_j log |P_j|) / 2.
 double merge_loss(const GaussianMixture& mixture, Eigen::Index i, Eigen::Index j, double log_determinant_i,
                   double log_determinant_j);
 
 /// All pairs in increasing order of merge_loss.
 std::vector<Merge> merges_by_loss(const GaussianMixture& mixture);
 
-/// Greedy reduction of a mixture: repeatedly merges the pair of least merge_loss (Runnalls 2007, section V). A merged
-/// component takes the place of the earlier of the two. Of pairs with equal cost the first is merged. Time K^2
-/// initially and per merge.
+/// Greedy reduction of a mixture: repeatedly merges the pair with the least merge_loss (Runnalls 2007, section V). A
+/// merged component takes the place of the earlier of the two. On a tie, the first pair is merged. The start and each
+/// merge take time K^2.
 class Reduction {
  public:
   explicit Reduction(GaussianMixture mixture);

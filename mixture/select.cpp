@@ -30,8 +30,8 @@ namespace {
 
 constexpr Index affordable_heldout = 20000;  // points
 
-/// Number of points that represent a cloud of more than most_compared. Comparing candidates on them takes a tenth of
-/// the time for 700,000 points.
+/// Number of points that represent a cloud of more than most_compared points. Comparing candidates on this number takes
+/// a tenth of the time for 700,000 points.
 constexpr Index compared_part = 50'000;
 
 struct FittedCandidate {
@@ -40,7 +40,7 @@ struct FittedCandidate {
   HeldoutScore heldout = {};
 };
 
-/// The inputs that all candidates share.
+/// The inputs that are the same for all candidates.
 struct Task {
   const PointSet& points;
   const SampleDesign& design;
@@ -50,7 +50,8 @@ struct Task {
   double total_weight;
   Index distinct_points;
 
-  /// The seed depends on the candidate's size instead of its place in the table. So other candidates do not change it.
+  /// The seed depends on the candidate's number of components, not on its place in the table. So adding other
+  /// candidates does not change the result.
   std::uint64_t seed_of(Index components) const {
     return derive_seed(seed, "mixture", static_cast<std::uint64_t>(components));
   }
@@ -165,7 +166,8 @@ std::vector<FittedCandidate> fit_all(const Task& task, const std::vector<Index>&
   return fitted;
 }
 
-/// A sample of a large cloud for comparing candidates: one point from each of equal shares, in order.
+/// A sample of a large cloud for comparing candidates. The cloud is divided into equal shares, and each share gives one
+/// point, in order.
 std::optional<PointPart> part_to_compare(const PointSet& points, std::uint64_t seed, std::vector<Index>& positions) {
   if (points.count() <= most_compared) return {};
   std::mt19937_64 generator = make_generator(seed, "compared points");
@@ -173,8 +175,8 @@ std::optional<PointPart> part_to_compare(const PointSet& points, std::uint64_t s
   return PointPart(points, positions);
 }
 
-/// The sample design of a part. The part is worth the same number of independent samples as all points, because
-/// neighbouring points share samples.
+/// The sample design of a part of the points. The part is worth the same number of independent samples as all points,
+/// because neighbouring points share samples.
 SampleDesign design_of(const SampleDesign& all, const std::vector<Index>& positions) {
   SampleDesign part{std::min(all.effective_samples, static_cast<double>(positions.size())), {}};
   for (const Index i : positions)
@@ -182,7 +184,7 @@ SampleDesign design_of(const SampleDesign& all, const std::vector<Index>& positi
   return part;
 }
 
-/// Fits to all points, starting from the mixture that was chosen on a part.
+/// Fits to all points. The fit starts from the mixture that was chosen on a part of the points.
 GaussianMixture fitted_to_all(const PointSet& points, const GaussianMixture& chosen, EmOptions options) {
   options.restarts = 1;
   options.split_merge = 0;

@@ -13,16 +13,16 @@
 
 namespace modebank {
 
-/// Above this number, more points do not separate candidates better, because neighbouring windows share all samples but
+/// With more points than this, candidates are not separated better, because neighbouring windows share all samples but
 /// one.
 inline constexpr Eigen::Index most_compared = 100'000;
 
-/// Sampling design of the points: independent samples and runs.
+/// Sample design of the points: number of independent samples, and runs.
 struct SampleDesign {
   double effective_samples = 0.0;  ///< effective number of independent samples of the points; 0 if all are independent
 
-  /// N, run of each point; runs are left out as a whole. If empty, runs are unknown, and no held-out scores are
-  /// computed.
+  /// N, run of each point; held-out scores leave out whole runs. If empty, the runs are unknown, and no held-out scores
+  /// are computed.
   std::vector<Eigen::Index> runs;
 };
 
@@ -30,20 +30,20 @@ struct SampleDesign {
 struct Selection {
   GaussianMixture mixture;  ///< physical units
   std::vector<Candidate> candidates;
-  Eigen::Index compared = 0;  ///< number of points on which candidates were compared and their figures computed; 0
-                              ///< means all
+  Eigen::Index compared = 0;  ///< number of points on which candidates were compared and their figures were computed; 0
+                              ///< means all points
 };
 
 /// The largest candidate number of components.
 std::ptrdiff_t most_components(const SelectionOptions& options);
 
-/// Fits every candidate and keeps the best by the criterion, the smaller one on a tie. Runs in parallel over candidates
-/// and restarts, each with its own seed. The table is sorted by components, each number once. `start` (physical units,
-/// may be null): start of the first restart of the candidate of its size.
-/// Above 100,000 points, candidates are fitted to about 50,000 points drawn by the seed. The chosen candidate is then
-/// fitted to all points, from that result.
-/// Throws DataError if every candidate has more components than there are distinct points, or if no candidate can be
-/// scored (held-out: fewer than two runs). Throws std::invalid_argument without candidates or for a candidate below 1.
+/// Fits every candidate and keeps the one with the best criterion, on a tie the smaller one. Runs in parallel over
+/// candidates and restarts, each with its own seed. The table is sorted by number of components, without duplicates.
+/// `start` (physical units, may be null) starts the first restart of the candidate of its size. Above 100,000 points,
+/// candidates are fitted to about 50,000 points drawn by the seed. The chosen candidate is then fitted to all points,
+/// from that result. Throws DataError if every candidate has more components than there are distinct points. Also
+/// throws it if no candidate can be scored (held-out score with fewer than two runs). Throws std::invalid_argument
+/// without candidates or for a candidate below 1.
 Selection select(const PointSet& points, const SampleDesign& design, const SelectionOptions& options,
                  std::uint64_t seed, const GaussianMixture* start = nullptr);
 
@@ -52,7 +52,7 @@ struct MixtureResult {
   GaussianMixture mixture;                 ///< physical units
   std::vector<std::string> feature_names;  ///< F
 
-  /// F x M, NaN for windows without features. If empty, the features begin with the windows' own parameters.
+  /// F x M, NaN for windows without features. Empty if the first features are the windows' own parameters.
   Eigen::MatrixXd features;
   Eigen::VectorXi labels;  ///< M, component of each window; -1 for noise, and for windows that are neither clustered
                            ///< nor assigned
@@ -65,15 +65,15 @@ struct MixtureResult {
 /// N_eff = min(N, sum over runs with a clustered window of max(1, M_run step / L)). Overlapping windows share samples.
 double effective_samples(const FeatureCloud& cloud, Eigen::Index length, Eigen::Index step);
 
-/// select() for the cloud of windows. The windows of `assigned` (assigned_features) do not influence the mixture. The
-/// mixture then gives them responsibilities and labels.
+/// select() for the cloud of windows. The windows of `assigned` (from assigned_features) do not influence the mixture.
+/// They get their responsibilities and labels from the finished mixture.
 MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
                              std::uint64_t seed, const GaussianMixture* start = nullptr,
                              const FeatureCloud& assigned = {});
 
-/// Merges components until at most `most` remain, the pair of least merge_loss first, preserving moments
-/// (reduction.hpp). Responsibilities are added and labels updated. The table of candidates does not change. Throws
-/// std::invalid_argument for `most` below 1.
+/// Merges components until at most `most` remain. The pair with the least merge_loss is merged first, and moments are
+/// preserved (reduction.hpp). Responsibilities are added and labels updated. The table of candidates does not change.
+/// Throws std::invalid_argument for `most` below 1.
 MixtureResult merge_components(MixtureResult result, Eigen::Index most);
 
 }  // namespace modebank

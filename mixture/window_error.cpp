@@ -18,7 +18,7 @@ struct DataInformation {
   Eigen::MatrixXd directions;
   Eigen::ArrayXd along;
 
-  /// Share of the data in the posterior information of each direction, at least least_information.
+  /// Share of the data in the posterior information of each direction; at least least_information.
   Eigen::ArrayXd share(double weighed) const { return (1.0 - 1.0 / (1.0 + weighed * along)).max(least_information); }
 };
 
@@ -36,7 +36,7 @@ DataInformation block_of(const DataInformation& all, Index first, Index size) {
   return {vectors, values.array().max(0.0)};
 }
 
-/// Offset of the data's estimate from the prior's mean, before the prior pulled the estimate towards the mean.
+/// Offset of the data's own estimate from the prior's mean, with the prior's pull towards the mean removed.
 Eigen::VectorXd unpulled(const DataInformation& data, double weighed, const Eigen::VectorXd& offset) {
   return data.directions * ((data.directions.transpose() * offset).array() / data.share(weighed)).matrix();
 }
@@ -55,7 +55,7 @@ void take_off_prior(const WindowFits& fits, Index window, Eigen::VectorXd& theta
   const Eigen::VectorXd &sd = fits.prior_sd, &mean = fits.global.theta;
   const Eigen::VectorXd inverse = sd.cwiseInverse();
   const DataInformation data = information_of(inverse.asDiagonal() * covariance * inverse.asDiagonal());
-  // The states of a motion model share its parameters.
+  // All states of a motion model have the same parameters.
   const bool shared = !fits.model_parameters.empty() || fits.structure.states == 1;
   const Index blocks = shared ? 1 : fits.structure.states, size = theta.size() / blocks;
   Eigen::VectorXd offset = (theta - mean).cwiseQuotient(sd);
@@ -65,7 +65,7 @@ void take_off_prior(const WindowFits& fits, Index window, Eigen::VectorXd& theta
     offset.segment(i * size, size) = unpulled(shared ? data : block_of(data, i * size, size), weighed, part);
   }
   theta = mean + offset.cwiseProduct(sd);
-  // If the posterior variance is c (in units of the prior), the data alone give variance c / (1 - c).
+  // If the posterior variance is c (in units of the prior variance), the data alone give the variance c / (1 - c).
   const Eigen::ArrayXd variance = 1.0 / ((1.0 + data.along) * data.share(1.0));
   const Eigen::MatrixXd root = sd.asDiagonal() * data.directions;
   covariance = root * variance.matrix().asDiagonal() * root.transpose();

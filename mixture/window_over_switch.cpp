@@ -8,7 +8,7 @@ namespace {
 using Eigen::Index;
 constexpr double significance = 0.99;
 
-/// Smallest distance of a window, in windows, to one that shares no transition with it.
+/// Smallest distance, in windows, between two windows that share no transition.
 Index neighbour_offset(const WindowFits& fits) { return (fits.length + fits.step - 1) / fits.step; }
 
 bool same_run(const WindowFits& fits, Index a, Index b) {

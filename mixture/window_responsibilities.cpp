@@ -17,7 +17,7 @@ void check_order(const FeatureCloud& cloud, Index windows) {
     throw std::invalid_argument("the windows of a cloud must be strictly increasing");
 }
 
-/// Fills the columns of the cloud's windows first to first + count - 1 in `result`.
+/// Fills the columns of `result` that belong to windows first to first + count - 1 of the cloud.
 void fill_block(const GaussianMixture& mixture, const FeatureCloud& cloud, Index first, Index count,
                 Eigen::MatrixXd& result) {
   const auto begin = std::lower_bound(cloud.windows.begin(), cloud.windows.end(), first);
@@ -40,7 +40,8 @@ WindowResponsibilities::WindowResponsibilities(GaussianMixture mixture, FeatureC
     : windows_(windows) {
   check_order(clustered, windows);
   check_order(assigned, windows);
-  // With few components the inputs take more memory than the responsibilities. The responsibilities are then stored.
+  // With few components the responsibilities take less memory than the inputs from which they are computed, so they are
+  // stored.
   const Index kept_of_a_point = clustered.points.rows() + clustered.covariances.rows() + 1;
   const bool small = mixture.components() * windows <=
                      kept_of_a_point * static_cast<Index>(clustered.windows.size() + assigned.windows.size());

@@ -10,14 +10,14 @@
 namespace modebank {
 
 /// Posterior component probabilities of all windows, K x M; NaN for windows that are neither clustered nor assigned.
-/// They are either stored (as read from an archive) or recomputed block by block on each reading, which saves K x M
-/// memory. Both give the same bits.
+/// They are stored (as read from an archive), or recomputed block by block on each reading to save K x M memory. Both
+/// ways give the same numbers to the last bit.
 class WindowResponsibilities {
  public:
   WindowResponsibilities() = default;
   WindowResponsibilities(Eigen::MatrixXd stored) : stored_(std::move(stored)), windows_(stored_.cols()) {}
-  /// Responsibilities of two clouds: the clustered windows and those assigned afterwards. Each cloud must be in
-  /// increasing order and within `windows`. Throws std::invalid_argument otherwise.
+  /// Responsibilities of two clouds: the clustered windows, and the windows that are assigned afterwards. The windows
+  /// of each cloud must be in increasing order and below `windows`; otherwise throws std::invalid_argument.
   WindowResponsibilities(GaussianMixture mixture, FeatureCloud clustered, FeatureCloud assigned, Eigen::Index windows);
 
   Eigen::Index components() const;
@@ -25,7 +25,8 @@ class WindowResponsibilities {
   /// Probabilities of windows first to first + count - 1, K x count.
   Eigen::MatrixXd block(Eigen::Index first, Eigen::Index count) const;
   Eigen::MatrixXd all() const { return block(0, windows_); }
-  /// Adds the probabilities of component `absorbed` to those of `into`; later components move up by one.
+  /// Adds the probabilities of component `absorbed` to those of `into`. The indices of later components decrease by
+  /// one.
   WindowResponsibilities merged(Eigen::Index into, Eigen::Index absorbed) &&;
 
  private:
@@ -35,7 +36,7 @@ class WindowResponsibilities {
   };
   Eigen::MatrixXd stored_;
   std::shared_ptr<const Source> source_;
-  Eigen::MatrixXd sums_;  ///< merged components x fitted components, entries one or zero; empty without a merge
+  Eigen::MatrixXd sums_;  ///< merged components x fitted components, with entries one or zero; empty without a merge
   Eigen::Index windows_ = 0;
 
   Eigen::Index fitted() const { return source_ ? source_->mixture.components() : stored_.rows(); }

@@ -61,7 +61,7 @@ void PointBlocks::lay_out(Index block, double* to) const {
     double* const column = to + f * block_size;
     const double center = scale_.center(f), inverse = scale_.inverse(f);
     for (Index i = 0; i < filled; ++i) column[i] = (from[i * features_ + f] - center) * inverse;
-    // A point of weight zero may have any position, even one whose square overflows.
+    // A point of weight zero may lie anywhere, even where its square overflows.
     for (Index i = 0; weighted && i < filled; ++i)
       if (!(weights[i] > 0.0)) column[i] = 0.0;
     std::fill(column + filled, column + block_size, 0.0);

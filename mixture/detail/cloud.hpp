@@ -58,11 +58,12 @@ using BlockColumns = Eigen::Array<double, block_size, Eigen::Dynamic>;
 
 /// Weighted points in scaled units, in blocks of fixed length. Within a block each feature is one column (structure of
 /// arrays), so that every loop over points is vectorised. The last block is padded with points of weight zero. Small
-/// clouds are copied. Large clouds are laid out block by block on each reading, with the same bits, and need no second
-/// copy in memory. The object holds a reference to its original points, except for the copies made by for_starts.
+/// clouds are copied. Large clouds are laid out block by block on each reading, so they need no second copy in memory;
+/// the results are the same to the last bit. The object holds a reference to its original points. The copies made by
+/// for_starts hold none.
 class PointBlocks {
  public:
-  /// Clouds of more than `most_copied` bytes are not copied.
+  /// Only clouds of at most `most_copied` bytes are copied.
   PointBlocks(const PointSet& set, const FeatureScale& scale, std::ptrdiff_t most_copied = std::ptrdiff_t{32} << 20);
 
   Eigen::Index features() const { return features_; }
@@ -73,16 +74,17 @@ class PointBlocks {
   /// Number of points in `block` without padding.
   Eigen::Index points_in(Eigen::Index block) const { return std::min(block_size, count_ - block * block_size); }
 
-  /// Memory for laying out a block of a cloud that is not copied.
+  /// Memory in which a block of a cloud is laid out if the cloud is not copied.
   AlignedBuffer stage() const { return AlignedBuffer::unset(copied_ ? 0 : block_doubles()); }
   em::Block block(Eigen::Index block, AlignedBuffer& stage) const;
 
-  /// A copy of at most `most` points from which a start is chosen. It contains all points, or evenly spread ones that
-  /// begin at a random point. Weights fall with the error variances: w / (1 + mean of S_ff over the features). Such a
-  /// copy has no reference to the original points. So calling this function on a copy throws std::logic_error.
+  /// A copy of at most `most` points, from which a start is chosen. If there are more points, the copy holds evenly
+  /// spread ones that begin at a random point. A weight w becomes w / (1 + mean of S_ff over the features), so points
+  /// with large error variances count less. The copy has no reference to the original points, so calling this function
+  /// on a copy throws std::logic_error.
   PointBlocks for_starts(Eigen::Index most, std::mt19937_64& generator) const;
 
-  // Only valid for copied clouds.
+  // The functions below are valid only for copied clouds.
 
   /// block_size x F.
   Eigen::Map<const BlockColumns> points(Eigen::Index block) const { return {data(block), block_size, features_}; }
@@ -92,7 +94,7 @@ class PointBlocks {
 
  private:
   Eigen::Index error_columns() const { return has_errors() ? features_ * (features_ + 1) / 2 : 0; }
-  /// Doubles per block: points, weights, errors.
+  /// Number of doubles per block, for points, weights and errors.
   Eigen::Index block_doubles() const { return (features_ + 1 + error_columns()) * block_size; }
   const double* data(Eigen::Index block) const;
   void lay_out(Eigen::Index block, double* to) const;
@@ -111,7 +113,7 @@ class PointBlocks {
 struct ScaledCloud {
   FeatureScale scale;
   PointBlocks points;
-  UniformNoise noise;  ///< noise component in physical units; absent unless requested
+  UniformNoise noise;  ///< noise component in physical units; absent if it was not requested
 
   ScaledCloud(const PointSet& set, const EmOptions& options)
       : scale(FeatureScale::of(set, options.covariance_floor)), points(set, scale) {
@@ -121,7 +123,7 @@ struct ScaledCloud {
     noise.weight = noise_start;
   }
 
-  /// Sets the noise component of a mixture in scaled units to the requested component, or to none.
+  /// Sets the noise component of a mixture in scaled units: the requested component, or none.
   void set_noise(GaussianMixture& scaled) const {
     const double kept = scaled.noise.weight > 0.0 ? scaled.noise.weight : noise.weight;
     GaussianMixture box = scaled;

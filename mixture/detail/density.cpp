@@ -16,11 +16,11 @@ using Eigen::Index;
 
 namespace {
 
-/// A component is central if the origin is at most this far from its mean [standard deviations]. Squares about the
-/// origin then lose at most three digits.
+/// A component is central if the distance from the origin to its mean is at most this number of standard deviations.
+/// Squares about the origin then lose at most three digits.
 constexpr double central_distance = 32.0;
 
-/// Packs W for the kernels. `diagonal`: W is diagonal.
+/// Packs W in the layout of the kernels. `diagonal`: whether W is diagonal.
 void pack(const Eigen::MatrixXd& W, const Eigen::VectorXd& mean, em::Packing packing, bool diagonal,
           std::vector<double>& out) {
   constexpr Index tile = 4;

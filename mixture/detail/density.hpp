@@ -10,11 +10,11 @@
 
 namespace modebank {
 
-/// A mixture in the layout of the vector kernels, its covariances factored once, with the matching kernels.
+/// A mixture in the layout of the vector kernels, with its covariances factored once and the matching kernels.
 class FactoredMixture {
  public:
-  /// Chooses kernels for points with or without errors. Throws NotPositiveDefinite that names the first component whose
-  /// covariance is not positive definite.
+  /// Chooses kernels for points with or without errors. Throws NotPositiveDefinite if a covariance is not positive
+  /// definite; the message gives the first such component.
   FactoredMixture(const GaussianMixture& mixture, bool errors);
 
   em::Components components() const;
@@ -23,7 +23,7 @@ class FactoredMixture {
   double log_noise() const { return log_noise_; }  ///< log of weight times density of the noise component
 
   /// Converts a component's sums in place into sums of r, r d and r d d' (em::Kernels). Kernels with errors sum in
-  /// units of W. For central components, other kernels sum about the origin.
+  /// units of W. All other kernels sum about the origin for central components.
   void to_plain_sums(Eigen::Index component, Eigen::Ref<Eigen::VectorXd> sums) const;
 
  private:
@@ -35,7 +35,7 @@ class FactoredMixture {
   Eigen::Index stride_ = 0;
   std::vector<double> whitening_;
   std::unique_ptr<bool[]> central_;
-  std::vector<Eigen::MatrixXd> cholesky_;  ///< lower factors; only with errors
+  std::vector<Eigen::MatrixXd> cholesky_;  ///< lower Cholesky factors; set only with errors
   Eigen::VectorXd log_constants_;
 };
 
@@ -54,7 +54,7 @@ class KernelScratch {
   Eigen::Map<const Eigen::Array<double, block_size, 1>> log_density() const {
     return Eigen::Map<const Eigen::Array<double, block_size, 1>>(scratch_.log_density);
   }
-  double* noise() { return noise_; }  ///< a column for em::Block::noise
+  double* noise() { return noise_; }  ///< a column of values for em::Block::noise
 
  private:
   Eigen::Index components_;
@@ -63,7 +63,7 @@ class KernelScratch {
   double* noise_;
 };
 
-/// Replaces the logarithm of a zero weight.
+/// Used in place of the logarithm of a zero weight.
 inline constexpr double log_zero = -1e300;
 
 }  // namespace modebank

@@ -15,10 +15,10 @@ namespace {
 
 constexpr double rounding_share = 1e-13;
 constexpr double smallest_scale = 1e-150;
-/// In standard deviations of the bulk. If at most 2.5 % of the points lie outside but within this distance, they cannot
-/// dominate the standard deviation.
+/// A distance in standard deviations of the bulk. If at most 2.5 % of the points lie outside the bulk, those within
+/// this distance cannot dominate the standard deviation.
 constexpr double far_out = 6.0;
-/// Number of terms per partial sum; sums of partial sums lose less to rounding.
+/// Number of terms per partial sum. Summing partial sums has smaller rounding errors.
 constexpr Index chunk = 4096;
 
 bool counts(const PointSet& set, Index i) { return set.weights.size() == 0 || set.weights(i) > 0.0; }
@@ -102,8 +102,8 @@ struct Bulk {
   double median = 0.0, deviation = 0.0;
 };
 
-/// The bulk from the weighted quantiles at 2.5, 50 and 97.5 %; the outer two are 3.92 standard deviations apart in a
-/// normal distribution. Large clouds are thinned evenly.
+/// The bulk from the weighted quantiles at 2.5, 50 and 97.5 %. In a normal distribution the outer two are 3.92 standard
+/// deviations apart. Large clouds are thinned evenly.
 Bulk bulk_of(const PointSet& set, Index feature) {
   constexpr Index most_points = 131072;
   const Index stride = 1 + (set.count() - 1) / most_points;
@@ -125,15 +125,15 @@ Bulk bulk_of(const PointSet& set, Index feature) {
   return {quantile(0.5), (quantile(0.975) - quantile(0.025)) / 3.92};
 }
 
-/// The smallest allowed unit. The variances of a component lie between the floor and the feature's variance (if it
-/// holds all points). Their ratio must fit double precision.
+/// The smallest allowed unit. The variances of a component lie between the floor and the feature's variance, which a
+/// component has if it holds all points. The ratio of these two must be representable in double precision.
 double smallest_unit(double sd, double floor) {
   constexpr double most_ratio = 1e13;
   return sd / std::sqrt(most_ratio * floor);
 }
 
-/// Takes the bulk's unit if a few far outliers determine the standard deviation. If the unit were that standard
-/// deviation, all other points would lie within the floor of each other.
+/// Uses the bulk's unit if a few far outliers determine the standard deviation. Otherwise the floor would exceed the
+/// distances between all other points.
 void resist_outliers(const PointSet& set, Index feature, double floor, FeatureScale& scale) {
   constexpr double dominated = 20.0;
   const Bulk bulk = bulk_of(set, feature);
@@ -166,7 +166,7 @@ FeatureScale FeatureScale::of(const PointSet& set, double floor) {
   const Index features = set.features();
   const Extent extent = with_features(features, [&](auto F) { return extent_of<F()>(set); });
   const Eigen::ArrayXd magnitude = extent.lower.abs().max(extent.upper.abs());
-  // A unit near the magnitude, so that squares neither overflow nor underflow.
+  // A unit near the magnitude of the values, so that squares neither overflow nor underflow.
   const Eigen::ArrayXd inverse_unit = magnitude.unaryExpr(
       [](double value) { return value > smallest_scale ? std::ldexp(1.0, -std::ilogb(value)) : 1.0; });
   const Eigen::ArrayXd deviation =

@@ -7,21 +7,21 @@
 namespace modebank {
 
 /// Affine map from physical units to the units of the fit. Each feature has zero mean. Its unit is the typical error of
-/// its points, or their standard deviation if the error is unknown. Outliers may raise that standard deviation above 20
-/// times that of the bulk (from the quantiles at 2.5 and 97.5 %). The feature then has zero median and the bulk's unit,
-/// within the limits of double precision.
+/// its points; if the error is unknown, it is the standard deviation of the points. Outliers may make this standard
+/// deviation more than 20 times that of the bulk, which follows from the quantiles at 2.5 and 97.5 %. The feature then
+/// has zero median and the bulk's unit, within the limits of double precision.
 struct FeatureScale {
   Eigen::VectorXd center;   ///< F, weighted mean [feature unit]
-  Eigen::VectorXd scale;    ///< F [feature unit]; 1 for a constant feature of unknown error
+  Eigen::VectorXd scale;    ///< F [feature unit]; 1 for a constant feature whose error is unknown
   Eigen::VectorXd inverse;  ///< F, 1 / scale; 0 for a constant feature, whose scaled values are exactly zero
 
-  /// The map for these points. A feature is constant if its standard deviation is lost in rounding (1e-13 of its
-  /// magnitude) or below 1e-150, where a covariance underflows. Ignores points of weight zero. `floor` is the smallest
+  /// The map for these points. A feature is constant if its standard deviation is below 1e-13 of its magnitude (lost in
+  /// rounding) or below 1e-150 (a covariance would underflow). Ignores points of weight zero. `floor` is the smallest
   /// variance of a component in scaled units.
   static FeatureScale of(const PointSet& points, double floor);
   static FeatureScale identity(Eigen::Index features);
-  /// Units that are powers of two near the components' largest standard deviation. With these units there is no
-  /// rounding, and numbers are near one.
+  /// Units that are powers of two near the components' largest standard deviation. Scaling with them causes no
+  /// rounding, and scaled numbers are near one.
   static FeatureScale near_one(const GaussianMixture& mixture);
 
   GaussianMixture to_scaled(const GaussianMixture& mixture) const;
@@ -32,7 +32,7 @@ struct FeatureScale {
 };
 
 /// The noise component's box in physical units: the bounding box of the points of positive weight. Each side is at
-/// least as wide as a uniform distribution of variance `floor` (scaled units), so its volume is positive.
+/// least as long as that of a uniform distribution with variance `floor` (scaled units), so the volume is positive.
 UniformNoise bounding_box(const PointSet& points, const FeatureScale& scale, double floor);
 
 }  // namespace modebank

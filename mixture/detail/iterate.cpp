@@ -16,16 +16,17 @@ using Eigen::Index;
 
 namespace {
 
-/// Components of less weight are about to vanish. Their logarithms would mislead the extrapolation of the others.
+/// Components of smaller weight are about to vanish. Their logarithms would mislead the extrapolation of the other
+/// components.
 constexpr double least_weight = 1e-9;
 
-/// Safety factor on the estimated remaining gain of EM. A climb is ended early only if even this multiple of the
-/// estimate is too small.
+/// Safety factor on the estimated remaining gain of EM. A climb ends early only if even this factor times the estimate
+/// is too small.
 constexpr double margin = 10.0;
 
 /// A mixture as an unconstrained vector: logarithms of the weights, and Cholesky factors with logarithms on the
-/// diagonal. `scale` has the size of one unit of each entry. This is the square root of the complete data's Fisher
-/// information. Conditional standard deviations replace a full whitening.
+/// diagonal. `scale` has the size of one unit of each entry: the square root of the complete data's Fisher information.
+/// Conditional standard deviations are used in place of a full whitening.
 struct Coordinates {
   Eigen::VectorXd values, scale;
 };
@@ -58,11 +59,11 @@ std::optional<Coordinates> coordinates_of(const GaussianMixture& mixture) {
   return result;
 }
 
-/// Larger logarithms and coordinates (in units of a point's error) cannot describe a mixture of the points.
+/// A mixture of the points cannot have larger logarithms or coordinates (in units of a point's error).
 constexpr double largest_logarithm = 300.0, largest_coordinate_in_errors = 1e8;
 
-/// Inverse of the mapping to coordinates. `pattern` gives covariance type and noise component. Empty if an entry is out
-/// of range or is NaN.
+/// Inverse of the mapping to coordinates. `pattern` gives the covariance type and the noise component. Empty if an
+/// entry is out of range or NaN.
 std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const GaussianMixture& pattern,
                                           const EmOptions& options) {
   if (!(values.array().abs().maxCoeff() < largest_coordinate_in_errors)) return {};
@@ -97,20 +98,20 @@ std::optional<GaussianMixture> mixture_of(const Eigen::VectorXd& values, const G
 }
 
 /// Squared extrapolation from two successive EM steps: SQUAREM with step length S3 (Varadhan & Roland 2008, Scand. J.
-/// Stat. 35, section 6). As in the paper, the longest allowed step grows after a step of that length and shrinks after
-/// a fall of the likelihood.
+/// Stat. 35, section 6). As in the paper, the longest allowed step grows after a step of that length. It shrinks if the
+/// likelihood falls.
 class Extrapolation {
  public:
   void forget() { before_.reset(); }
-  /// Estimated distance to the limit of EM, in lengths of its last but one step. The estimate assumes that steps shrink
-  /// by the factor 1 - 1 / steps_left. Empty if the latest `next` could not estimate it.
+  /// Estimated distance to the limit of EM, divided by the length of its last but one step. The estimate assumes that
+  /// steps shrink by the factor 1 - 1 / steps_left. Empty if the latest call of `next` could not estimate it.
   std::optional<double> steps_left() const { return steps_left_; }
   void shorten() {
     forget();
     longest_ = std::max(shortest, longest_ / growth);
   }
 
-  /// Records that EM went from `from` to `to`. After two such steps in a row returns the extrapolated point.
+  /// Records an EM step from `from` to `to`. After two such steps in a row it returns the extrapolated point.
   std::optional<Eigen::VectorXd> next(const std::optional<Coordinates>& from, const std::optional<Coordinates>& to) {
     const std::optional<Coordinates> before = std::exchange(before_, from);
     steps_left_.reset();
@@ -119,7 +120,7 @@ class Extrapolation {
     const Eigen::VectorXd step = from->values - before->values, bend = to->values - from->values - step;
     const double size = before->scale.cwiseProduct(step).norm() / before->scale.cwiseProduct(bend).norm();
     steps_left_ = std::max(1.0, size);
-    if (!(size > 1.0)) return {};  // EM itself takes this step
+    if (!(size > 1.0)) return {};  // no extrapolation: EM itself makes a step of this length
     const double length = std::min(size, longest_);
     if (length == longest_) longest_ *= growth;
     forget();
@@ -142,7 +143,7 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
   result.log_likelihood = -std::numeric_limits<double>::infinity();
   Extrapolation extrapolation;
   GaussianMixture trial = std::move(start);
-  std::optional<GaussianMixture> plain;  // result of the EM step; set if `trial` is extrapolated
+  std::optional<GaussianMixture> plain;  // the plain EM step; set if `trial` is extrapolated
   while (true) {
     interruption_point();
     const bool last = result.iterations == options.max_iterations;
@@ -155,7 +156,7 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
       continue;
     }
     result.log_likelihood = moments.log_likelihood;
-    // Only the gain of a plain EM step measures how near the optimum is.
+    // Only the gain of a plain EM step shows how near the optimum is.
     result.converged = !plain && gain < least_gain;
     if (result.converged || last) break;
     if (steps == Steps::extrapolated) result.mixture = trial;
@@ -164,8 +165,8 @@ EmResult iterate(const PointBlocks& points, GaussianMixture start, const EmOptio
     plain.reset();
     if (steps == Steps::plain) continue;
     const auto next = extrapolation.next(coordinates_of(result.mixture), coordinates_of(trial));
-    // One geometric series gains at most half of gain * steps. Several series together gain more than the fastest one
-    // shows.
+    // If steps shrink as one geometric series, the remaining gain is at most half of gain * steps. If several series
+    // act together, it is larger than the fastest series suggests.
     if (const auto left = extrapolation.steps_left();
         left && result.log_likelihood + margin * gain * *left < hopeless_below)
       return result;

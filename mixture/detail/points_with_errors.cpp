@@ -9,10 +9,10 @@
 namespace modebank::em {
 namespace {
 
-/// Smallest usable pivot of T, as a share of its diagonal. Below this share, an error is so large in one direction that
-/// rounding hides the other directions. The point then counts as unknown in those directions, too.
+/// Smallest usable pivot of T, as a share of its diagonal. With a smaller pivot, an error is so large in one direction
+/// that rounding hides the other directions. The point then counts as unknown in those directions, too.
 constexpr double smallest_pivot_ratio = 1e-12;
-/// Squared distances that are larger or NaN get this value, so that no density is NaN.
+/// Replaces squared distances that are larger or NaN, so that no density is NaN.
 constexpr double largest_error_distance = 2e300;
 
 Index moments_of(Index features, bool diagonal) { return diagonal ? features : features * (features + 1) / 2; }
@@ -33,7 +33,7 @@ class PointWithError {
     }
   }
 
-  /// y' T^-1 y + log |T|: the density's exponent, times -2. `W` is of Packing::whole.
+  /// y' T^-1 y + log |T|, which is minus twice the exponent of the density. `W` is in the layout Packing::whole.
   double exponent(const double* mean, const double* W) {
     const Index n = x_.size();
     const Eigen::Map<const Eigen::MatrixXd> whitening(W, n, n);
@@ -48,8 +48,8 @@ class PointWithError {
     return (distance < largest_error_distance ? distance : largest_error_distance) + pivots_.array().log().sum();
   }
 
-  /// Computes z, then z z' + I - T^-1 (lower triangle by rows, or the diagonal) for the component of the last call of
-  /// `exponent`.
+  /// Computes z, then z z' + I - T^-1 (lower triangle by rows, or the diagonal). Both are for the component of the
+  /// latest call of `exponent`.
   void expect(double* z, double* second) {
     const Index n = x_.size();
     Eigen::Map<Eigen::VectorXd> expected(z, n);
@@ -62,7 +62,7 @@ class PointWithError {
   }
 
  private:
-  /// T = L D L' with unit lower triangular L: D and the inverse of L.
+  /// Factors T = L D L' with unit lower triangular L; gives D and the inverse of L.
   void factor() {
     const Index n = x_.size();
     const Eigen::VectorXd least = (smallest_pivot_ratio * T_.diagonal()).cwiseMax(1.0);

@@ -18,9 +18,9 @@ namespace modebank {
 
 namespace {
 
-/// Restarts whose mean log-likelihoods per unit weight differ by less count as the same optimum [nats].
+/// Restarts count as agreeing if their mean log-likelihoods per unit weight differ by less than this [nats].
 constexpr double agreement_per_point = 1e-4;
-/// Tolerance at which split-and-merge moves begin: the climb is near enough to an optimum.
+/// Tolerance at which split-and-merge moves begin, because the climb is then near enough to an optimum.
 constexpr double coarse_tolerance = 1e-5;
 
 std::size_t best_of(const std::vector<EmResult>& results) {
@@ -48,7 +48,8 @@ GaussianMixture union_of(const GaussianMixture& a, const GaussianMixture& b) {
   return both;
 }
 
-/// Climbs from a start to an optimum that no split-and-merge move improves. `spent` iterations are already used.
+/// Climbs from a start to an optimum that no split-and-merge move improves. `spent` is the number of iterations already
+/// used.
 EmResult climb(const PointBlocks& points, GaussianMixture start, int spent, const EmOptions& options,
                std::uint64_t seed) {
   const EmOptions rest = with_iterations_left(options, spent);
@@ -57,7 +58,7 @@ EmResult climb(const PointBlocks& points, GaussianMixture start, int spent, cons
   return result;
 }
 
-/// Continues EM from the end of `result`.
+/// Continues EM from the mixture in `result`.
 void follow(const PointBlocks& points, const EmOptions& options, double hopeless_below, EmResult& result) {
   const int spent = result.iterations;
   EmResult rest = iterate(points, std::move(result.mixture), with_iterations_left(options, spent), Steps::extrapolated,
@@ -85,7 +86,7 @@ EmResult best_of_restarts(const PointBlocks& points, const std::function<Gaussia
     require_whole_loop();
   };
   for_each([&](std::size_t i) { results[i] = climb(points, start_of(static_cast<int>(i)), 0, coarse, seed); });
-  std::vector<EmResult> alone = results;  // agreement is counted on the optima that each restart found by itself
+  std::vector<EmResult> alone = results;  // only the optima that each restart found by itself are counted
   std::size_t best = best_of(results);
   if (options.split_merge > 0 && results[best].mixture.components() > 1) {
     for_each([&](std::size_t i) {

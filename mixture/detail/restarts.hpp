@@ -8,12 +8,13 @@
 
 namespace modebank {
 
-/// Combines two mixtures of the same K, features and type. The result has the components on which both agree, and of
-/// the rest those that differ most. Method: takes all 2 K components at half their weight and merges the two closest
-/// (reduction.hpp) until K remain. Two equal mixtures give the same mixture. The time is K^2 per merge.
+/// Combines two mixtures of the same K, features and type. The result keeps the components on which both mixtures
+/// agree, and the most different of the other components. Method: takes all 2 K components at half their weight and
+/// merges the two closest (reduction.hpp) until K remain. If both mixtures are equal, the result is the same mixture.
+/// The time is K^2 per merge.
 GaussianMixture cross(const GaussianMixture& a, const GaussianMixture& b);
 
-/// The best optimum of options.restarts restarts, in the points' units, and the number of restarts that agree with it.
+/// The best optimum of options.restarts restarts, in the points' units, and the number of restarts that reached it.
 ///
 /// 1. Each restart climbs from its start to near an optimum and tries split-and-merge moves, independently of the
 /// others.

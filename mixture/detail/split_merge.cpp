@@ -22,7 +22,7 @@ namespace {
 constexpr Index moves_are_ranked_on = 1500;  // points
 constexpr int partial_iterations = 10, move_iterations = 15;
 constexpr int most_move_rounds = 20;
-/// Optima whose log-likelihoods per unit weight differ by less count as the same [nats].
+/// Optima count as equal if their log-likelihoods per unit weight differ by less than this [nats].
 constexpr double least_gain = 1e-5;
 
 GaussianMixture pair_of(const GaussianMixture& mixture, Index k) {
@@ -34,7 +34,8 @@ GaussianMixture pair_of(const GaussianMixture& mixture, Index k) {
   return pair;
 }
 
-/// Splits a Gaussian by the plane through its mean across its longest axis. Each part has the moments of its half.
+/// Splits a Gaussian by the plane through its mean across its longest axis. Each of the two components has the moments
+/// of its half.
 GaussianMixture halves(const GaussianMixture& mixture, Index k) {
   const auto [values, vectors] = symmetric_eigen(mixture.covariances[static_cast<std::size_t>(k)]);
   const Index longest = mixture.features() - 1;
@@ -49,7 +50,8 @@ GaussianMixture halves(const GaussianMixture& mixture, Index k) {
 
 /// Splits a component into a dense core and a wide shell, for clouds with heavier tails than a Gaussian's.
 GaussianMixture core_and_shell(const GaussianMixture& mixture, Index k) {
-  constexpr double core = 0.1, shell = 1.9;  // variances; the mean of both is the component's variance
+  constexpr double core = 0.1, shell = 1.9;  // factors of the variance; their mean is one, so the component keeps its
+                                             // variance
   GaussianMixture pair = pair_of(mixture, k);
   pair.covariances[0] *= core;
   pair.covariances[1] *= shell;
@@ -61,7 +63,7 @@ void raise_all(GaussianMixture& mixture, const EmOptions& options) {
     raise_to_floor(covariance, options.covariance_floor, options.covariance);
 }
 
-/// The better of the two ways of splitting, with its gain over one component per unit weight of the whole mixture.
+/// The better of the two ways of splitting. Its gain over one component is per unit weight of the whole mixture.
 SplitMergeMove best_split(const GaussianMixture& mixture, Index k, const Eigen::MatrixXd& points,
                           const Eigen::VectorXd& memberships, EmOptions options) {
   SplitMergeMove move;
@@ -105,8 +107,7 @@ std::vector<SplitMergeMove> split_merge_moves(const GaussianMixture& mixture, co
   for (Index k = 0; k < mixture.components(); ++k) {
     const SplitMergeMove split = best_split(mixture, k, points, memberships.row(k), options);
     if (split.parts.components() == 0) continue;
-    // Merges are sorted by cost, so each split needs only its first `most` merges. In total there are K^3 / 2
-    // combinations.
+    // Merges are sorted by cost, so each split needs only its first `most` merges. There are K^3 / 2 combinations.
     std::size_t kept = 0;
     for (const Merge& merge : merges) {
       if (kept == most) break;
@@ -136,7 +137,7 @@ GaussianMixture apply(const SplitMergeMove& move, const GaussianMixture& mixture
 
 namespace {
 
-/// The sample of the cloud on which moves are ranked, with the present mixture's densities.
+/// The sample of the cloud by which moves are ranked, with the densities of the present mixture.
 struct Ranking {
   Eigen::MatrixXd points;       // F x n
   Eigen::MatrixXd memberships;  // K x n
@@ -149,8 +150,8 @@ struct Ranking {
 };
 
 /// Partial EM (Ueda et al. 2000, section 3.2): updates the three components that a move changes. The density of the
-/// other components and the common weight of the three are held. Returns the change of the mean log-likelihood on the
-/// cloud.
+/// other components and the total weight of the three are held fixed. Returns the change of the mean log-likelihood on
+/// the cloud.
 double settle(const Ranking& ranking, const SplitMergeMove& move, const EmOptions& options, GaussianMixture& mixture) {
   const std::vector<Index> touched{move.merged, move.absorbed, move.split};
   const PointBlocks points(PointSet(ranking.points), FeatureScale::identity(ranking.points.rows()));
@@ -186,7 +187,7 @@ struct Trial {
 };
 
 /// The mixtures after the moves that still gain after partial EM, the best first. For points with errors this gain is
-/// ignored, because the cloud has no errors.
+/// not required, because the sample ignores the errors.
 std::vector<Trial> promising(const Ranking& ranking, const GaussianMixture& mixture, bool errors,
                              const EmOptions& options) {
   std::vector<Trial> trials;

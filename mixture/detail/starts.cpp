@@ -19,7 +19,7 @@ namespace {
 
 /// Largest number of points from which a start is chosen.
 constexpr Index start_points = 50000;
-/// Upper limit of squared distances, which overflow for points far out.
+/// Upper limit of squared distances, because the squares of points far out overflow.
 constexpr double largest_distance = 1e200;
 
 BlockColumn squared_distances(const PointBlocks& points, Index block, const double* center) {
@@ -35,7 +35,7 @@ Eigen::VectorXd block_weights(const PointBlocks& points) {
   return sums;
 }
 
-/// Index of a point drawn with probability proportional to its weight; `block_sums`: from block_weights.
+/// Index of a point drawn with probability proportional to its weight. `block_sums` is the result of block_weights.
 Index draw(const PointBlocks& points, const Eigen::VectorXd& block_sums, std::mt19937_64& generator) {
   double rest = boost::random::uniform_01<double>()(generator) * block_sums.sum();
   Index last = 0;
@@ -62,7 +62,7 @@ Eigen::VectorXd point(const PointBlocks& points, Index index) {
 /// Cluster of every point, block_size x blocks. Entries of padding points are arbitrary.
 using Labels = Eigen::Array<Index, block_size, Eigen::Dynamic>;
 
-/// Nearest centre of every point, the lower index on a tie.
+/// Nearest centre of every point; on a tie, the one with the lower index.
 Labels assign(const PointBlocks& points, const Eigen::MatrixXd& centers) {
   Labels labels = Labels::Zero(block_size, points.blocks());
   for (Index b = 0; b < points.blocks(); ++b) {
@@ -95,7 +95,7 @@ Eigen::VectorXd recenter(const PointBlocks& points, const Labels& labels, Eigen:
   return sums.row(0);
 }
 
-/// Weighted scatter (sum of w d d') of each cluster about its centre, its lower triangle.
+/// Weighted scatter (sum of w d d') of each cluster about its centre; its lower triangle only.
 std::vector<Eigen::MatrixXd> scatter(const PointBlocks& points, const Labels& labels, const Eigen::MatrixXd& centers) {
   const Index features = centers.rows();
   std::vector<Eigen::MatrixXd> sums(static_cast<std::size_t>(centers.cols()),
@@ -120,7 +120,8 @@ std::vector<Eigen::MatrixXd> scatter(const PointBlocks& points, const Labels& la
 
 /// A start for EM from the moments of clusters. Each covariance is shrunk towards the pooled within-cluster covariance
 /// with the strength of F + 1 points of mean weight. Each weight is shrunk towards 1/K with the strength of one point.
-/// So an empty or one-point cluster gives a usable start. An empty cluster stays at its column of `centers` (F x K).
+/// So a cluster without points, or with one point, also gives a usable start. An empty cluster stays at its column of
+/// `centers` (F x K).
 GaussianMixture mixture_of_clusters(const PointBlocks& points, const Labels& labels, Eigen::MatrixXd centers,
                                     const EmOptions& options) {
   GaussianMixture start;

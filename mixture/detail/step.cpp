@@ -15,7 +15,7 @@ using Eigen::Index;
 namespace {
 
 constexpr Index blocks_per_group = 32;
-/// With fewer points a pass is too short for several threads. Restarts and candidates run in parallel instead.
+/// With fewer points a pass is too short to use several threads. Restarts and candidates run in parallel instead.
 constexpr Index parallel_points = 20000;
 constexpr double starved_share = 1e-14;
 

@@ -2,11 +2,12 @@
 
 #include <cstddef>
 
-/// Plain numbers and pointers that EM's host code passes to its vector kernels. A kernel is compiled once per
-/// instruction set, so no class with inline code may cross this border.
+/// Plain numbers and pointers that EM's host code passes to its vector kernels. Kernels are compiled once per
+/// instruction set, so this file must not use classes with inline code.
 namespace modebank {
 
-/// Points per block. A block is long enough to hide call overhead, and with 12 components short enough to stay in L1.
+/// Points per block. A block is long enough to make call overhead negligible, and with 12 components short enough to
+/// stay in the L1 cache.
 inline constexpr std::ptrdiff_t block_size = 128;
 
 namespace em {
@@ -37,8 +38,8 @@ struct Components {
   const double* whitening = nullptr;  ///< `stride` doubles per component, in the kernel's Packing
   Index stride = 0;
   const double* log_constants = nullptr;
-  /// One flag per component: whether the origin is so near the mean (in standard deviations) that squares about the
-  /// origin lose little to rounding.
+  /// One flag per component: whether the component is central. The origin is then so near the mean (in standard
+  /// deviations) that squares about the origin lose little to rounding.
   const bool* central = nullptr;
 };
 
@@ -49,8 +50,8 @@ enum class Packing { diagonal, affine, whole, tiles };
 
 /// Working memory of one thread, aligned to 64 bytes.
 struct Scratch {
-  double* relative = nullptr;     ///< block_size x K, one more column for noise: w_k N_k(x) divided by the largest such
-                                  ///< value of the point
+  double* relative = nullptr;     ///< block_size x K, and one more column for noise: w_k N_k(x), divided by the largest
+                                  ///< of these values for the point
   double* sum = nullptr;          ///< block_size: sum of `relative` over the components, at least one
   double* log_density = nullptr;  ///< block_size; at least about -1e300, never NaN
   double* lanes = nullptr;        ///< sums per lane: log-likelihood, noise, then `entries` for each component
@@ -66,23 +67,23 @@ struct Kernels {
   Packing packing = Packing::affine;
   Index entries = 0;
   Index work = 0;                                                                 ///< doubles of Scratch::work
-  void (*evaluate)(const Components&, const Block&, const Scratch&) = nullptr;    ///< fills relative, sum, log_density
-  void (*measure)(const Components&, const Block&, const Scratch&) = nullptr;     ///< evaluates, and adds to the first
-                                                                                  ///< two lane sums
-  void (*accumulate)(const Components&, const Block&, const Scratch&) = nullptr;  ///< evaluates, and adds to all lane
-                                                                                  ///< sums
+  void (*evaluate)(const Components&, const Block&, const Scratch&) = nullptr;    ///< fills relative, sum and
+                                                                                  ///< log_density
+  void (*measure)(const Components&, const Block&, const Scratch&) = nullptr;     ///< like `evaluate`; also adds to the
+                                                                                  ///< first two lane sums
+  void (*accumulate)(const Components&, const Block&, const Scratch&) = nullptr;  ///< like `evaluate`; also adds to all
+                                                                                  ///< lane sums
 };
 
 Kernels plain_kernels(int features, bool diagonal);
-/// Kernels for points with errors. These are plain C++, compiled once for all instruction sets
-/// (points_with_errors.cpp).
+/// Kernels for points with errors. They are plain C++, compiled once for all instruction sets (points_with_errors.cpp).
 Kernels error_kernels(int features, bool diagonal);
 
-/// Number of doubles per vector in this machine's kernels.
+/// Number of doubles per vector in the kernels that this machine uses.
 Index lanes();
 /// Sums the lanes of `count` entries, in lane order.
 void reduce_lanes(const double* lanes, Index count, double* sums);
-/// exp and log of `count` values in place, in the way the kernels compute these functions. `count` is a multiple of 8,
+/// Replaces `count` values by their exp or log, computed in the same way as in the kernels. `count` is a multiple of 8,
 /// and `values` are aligned. exp has a relative error of 1e-15 on [-690, 0]; smaller arguments count as -690. log has
 /// an error of 1e-15 on [1, 1e300].
 void exp_in_place(double* values, Index count);

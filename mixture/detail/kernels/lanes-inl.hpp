@@ -23,8 +23,8 @@ HWY_INLINE V load(const double* from) { return hn::Load(D(), from); }
 HWY_INLINE void store(V value, double* to) { hn::Store(value, D(), to); }
 HWY_INLINE void add_to(double* sum, V value) { store(hn::Add(load(sum), value), sum); }
 
-/// Upper limit of squared distances, so that no density is NaN. It replaces squares that overflow. It also replaces NaN
-/// from parts of a distance that overflow with different signs.
+/// Upper limit of squared distances, so that no density is NaN. It replaces squares that overflow. It also replaces
+/// NaN, which results if parts of a distance overflow with different signs.
 inline constexpr double largest_distance = 2e300;
 
 HWY_INLINE V bounded(V distance) {
@@ -33,8 +33,8 @@ HWY_INLINE V bounded(V distance) {
 }
 
 /// Normalises log densities. On entry scratch.relative has the log densities of `rows` components, and
-/// scratch.log_density the largest of these. On return `relative` has densities relative to the largest, and
-/// log_density the log density of the mixture.
+/// scratch.log_density the largest log density of each point. On return `relative` has the densities divided by the
+/// largest one, and log_density the log density of the mixture.
 HWY_INLINE void normalise(int rows, const Scratch& scratch) {
   const Exp exp;
   const Log log;
@@ -64,7 +64,7 @@ HWY_INLINE int add_noise(const Components& components, const Block& block, const
   return components.count + 1;
 }
 
-/// An upper bound of all log densities in a block, so that a single shift is valid for the whole block.
+/// An upper bound of all log densities in a block, so that one shift is valid for the whole block.
 HWY_INLINE double largest_log_constant(const Components& components) {
   double largest = components.log_constants[0];
   for (int k = 1; k < components.count; ++k)
@@ -73,8 +73,8 @@ HWY_INLINE double largest_log_constant(const Components& components) {
 }
 
 /// Completes densities relative to exp(shift): adds the noise component and converts the sums into log densities.
-/// Returns false if one common shift is impossible, because a point is too far from all components or the noise too
-/// dense.
+/// Returns false if one shift for all points is impossible, because a point is too far from all components or the noise
+/// density is too large.
 HWY_INLINE bool finish_shifted(const Components& components, const Block& block, double shift, const Scratch& scratch) {
   const V least = splat(1e-150), most = splat(1e150), by = splat(shift);
   const Exp exp;
@@ -94,7 +94,7 @@ HWY_INLINE bool finish_shifted(const Components& components, const Block& block,
   return hn::AllTrue(D(), sound);
 }
 
-/// Adds log-likelihood and noise of a block to the first two lane sums. Leaves weight / sum in scratch.sum.
+/// Adds the log-likelihood and the noise of a block to the first two lane sums. Leaves weight / sum in scratch.sum.
 HWY_INLINE void begin_sums(const Components& components, const Block& block, const Scratch& scratch) {
   V likelihood = load(scratch.lanes), noise = load(scratch.lanes + L);
   const double* row = scratch.relative + components.count * block_size;

@@ -15,7 +15,8 @@ namespace modebank::em::HWY_NAMESPACE {
 inline constexpr int abreast = 4;
 static_assert(block_size % (abreast * L) == 0);
 
-/// The constants of a component's log density in every lane: the squared distance |A x + b|^2, in units of log2.
+/// The constants of a component's log density, copied to every lane. The squared distance is |A x + b|^2, in units of
+/// log2.
 template <int F, bool diagonal>
 struct Ellipsoid {
   static constexpr int seconds = diagonal ? F : F * (F + 1) / 2;
@@ -29,7 +30,7 @@ struct Ellipsoid {
     for (int i = 0; i < F; ++i) b[i] = splat(packed[seconds + i]);
   }
 
-  /// Row i of A times x, plus `y` if given.
+  /// Row i of A times x, plus `y` if it is given.
   HWY_INLINE V row(int i, const V (&x)[F], const V* y) const {
     const int first = diagonal ? i : i * (i + 1) / 2, column = diagonal ? i : 0;
     V sum = y ? hn::MulAdd(A[first], x[column], *y) : hn::Mul(A[first], x[column]);
@@ -38,7 +39,7 @@ struct Ellipsoid {
     return sum;
   }
 
-  /// `log2_density` minus the squared distance of a vector of points.
+  /// `log2_density` minus the squared distance, for a vector of points.
   template <bool central>
   HWY_INLINE V log2_density(const double* points, V log2_density) const {
     V x[F];
@@ -90,7 +91,7 @@ struct Small {
     for (Index n = 0; n < block_size; n += L) store(ellipsoid.template log2_density<central>(points + n, c), out + n);
   }
 
-  /// Densities relative to exp(shift) and their sums.
+  /// Densities relative to exp(shift), and their sums over the components.
   static HWY_INLINE void densities(const Components& components, const Block& block, double shift,
                                    const Scratch& scratch) {
     const Exp exp;
@@ -102,7 +103,7 @@ struct Small {
         log2_densities<true>(ellipsoid, block.points, constant, out);
       else
         log2_densities<false>(ellipsoid, block.points, constant, out);
-      // A separate loop, because the processor overlaps several short dependency chains, but cannot speed up one long
+      // A separate loop: the processor overlaps several short dependency chains, but cannot speed up a single long
       // chain.
       for (Index n = 0; n < block_size; n += abreast * L) {
         V density[abreast];
@@ -145,7 +146,7 @@ struct Small {
     for (int i = 0; i < entries; ++i) store(sum[i], lanes + i * L);
   }
 
-  /// Fills one column per sum: the contribution of each point to a component of density one.
+  /// Fills one column per sum with the contribution of each point to a component of density one.
   static HWY_INLINE void moments(const double* points, const double* scale, double* columns) {
     for (Index n = 0; n < block_size; n += L) {
       const V s = load(scale + n);

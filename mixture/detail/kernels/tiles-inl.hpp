@@ -13,7 +13,7 @@ namespace modebank::em::HWY_NAMESPACE {
 
 /// Rows of W per tile (Packing::tiles).
 inline constexpr int tile = 4;
-/// Rows per tile of second moments; AVX-512 has registers for four.
+/// Rows per tile of second moments; the registers of AVX-512 suffice for four.
 inline constexpr int moment_rows = L == 8 ? 4 : 2;
 
 HWY_INLINE int padded(int features) { return (features + tile - 1) / tile * tile; }
@@ -82,7 +82,7 @@ HWY_INLINE void diagonal_log_density(const Components& components, int k, const 
   }
 }
 
-/// Adds one tile of sum r d d'; `rows` holds r d of the tile's rows.
+/// Adds one tile of the sum r d d'; `rows` holds r d of the tile's rows.
 HWY_INLINE void add_moment_tile(int F, int row, int column, const double* rows, const double* offsets, double* lanes) {
   V sum[moment_rows][tile];
   for (int i = 0; i < moment_rows; ++i)
@@ -103,7 +103,7 @@ HWY_INLINE void add_moment_tile(int F, int row, int column, const double* rows, 
     }
 }
 
-/// Adds second moments. `work` holds the offsets, r, then r d of the rows of a tile.
+/// Adds second moments. `work` holds the offsets, then r, then r d of the rows of a tile.
 HWY_INLINE void add_full_moments(int F, double* work, double* lanes) {
   const double *offsets = work, *r = work + padded(F) * block_size;
   double* rows = work + (padded(F) + 1) * block_size;

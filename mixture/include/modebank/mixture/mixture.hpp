@@ -15,9 +15,9 @@ struct Points {
   Matrix values;                ///< F x N, finite, one point per column, the layout of ident::Windows::theta
   std::vector<double> weights;  ///< N, nonnegative; if empty, all weights are one
   Matrix errors;                ///< F*F x N, each column the covariance of that point's error; empty without errors
-  std::vector<std::ptrdiff_t> runs;  ///< N, run of each point; a run is left out as a whole; may be empty
+  std::vector<std::ptrdiff_t> runs;  ///< N, run of each point; held-out scores leave out whole runs; may be empty
   double effective_samples = 0.0;  ///< effective number of independent samples of the points; 0 if all are independent.
-                                   ///< Overlapping windows share samples: N step / length
+                                   ///< For overlapping windows, which share samples, it is N step / length
   std::vector<double> typical_error = {};  ///< F, standard deviation of a typical point's error; empty or 0 if unknown
 };
 
@@ -34,13 +34,13 @@ struct Mixture {
 /// The chosen mixture and the candidates.
 struct Clusters {
   Mixture mixture;                    ///< mixture of the selected candidate
-  std::vector<Candidate> candidates;  ///< in increasing number of components, each number once
+  std::vector<Candidate> candidates;  ///< in increasing number of components, without duplicates
   Matrix responsibilities;            ///< K x N, posterior probability of each component at each point
 };
 
-/// Fits every candidate number of components on all cores and keeps the best by the criterion. The result is the same
-/// for any number of threads. Throws std::invalid_argument for an option out of range, sizes that do not fit or invalid
-/// numbers. Throws DataError (modebank/base/error.hpp) if no candidate can be fitted to the points.
+/// Fits every candidate number of components on all cores and keeps the one with the best criterion. The result is the
+/// same for any number of threads. Throws std::invalid_argument for an option out of range, sizes that do not fit or
+/// invalid numbers. Throws DataError (modebank/base/error.hpp) if no candidate can be fitted to the points.
 Clusters select(const Points& points, const SelectionOptions& options = {}, std::uint64_t seed = 1);
 
 /// Posterior probabilities of the components at other points (F x N), K x N. Columns sum to one, or to one minus the

@@ -22,20 +22,20 @@ struct EmOptions {
   int restarts = 5;                                  ///< number of independent random starts, >= 1
 
   /// Number of split-and-merge moves that each restart tries from its optimum (Ueda et al. 2000). With 0 there are no
-  /// moves, and restarts are not crossed.
+  /// moves, and restarts are not crossed with each other.
   int split_merge = 5;
   double tolerance = 1e-7;    ///< stopping tolerance: gain of the mean log-likelihood per unit weight; a negative value
                               ///< never stops
   int max_iterations = 1000;  ///< largest number of M steps, >= 0
 
-  /// Smallest variance of a component in any feature, as a share of the error variance of the median window. If errors
-  /// are unknown, it is a share of the data's variance without far outliers. >= 1e-10
+  /// Smallest variance of a component in any feature, >= 1e-10. It is a share of the median window's error variance. If
+  /// errors are unknown, it is a share of the data's variance without far outliers
   double covariance_floor = 1e-6;
   bool noise_component = false;  ///< whether to add a uniform component over the points' bounding box
 };
 
-/// Rule that chooses the number of components: an information criterion, or the log density of left-out runs. bic_naive
-/// is BIC that treats all points as independent.
+/// Criterion that chooses the number of components: an information criterion, or the log density of left-out runs.
+/// bic_naive is BIC computed as if all points were independent.
 enum class Criterion { bic, icl, heldout, bic_naive };
 
 template <>
@@ -43,8 +43,8 @@ struct EnumNames<Criterion> {
   static constexpr Names<4> values{"bic", "icl", "heldout", "bic_naive"};
 };
 
-/// How candidates are fitted and the number of components is chosen. A held-out score needs several more fits per
-/// candidate. It is computed for at most 20,000 points of known runs, or if it is the criterion. Defaults are the
+/// How candidates are fitted and how the number of components is chosen. A held-out score needs several more fits per
+/// candidate. It is computed if it is the criterion, or for at most 20,000 points of known runs. Defaults are the
 /// recommended method.
 struct SelectionOptions {
   /// Candidate numbers of components, each at least 1.
@@ -58,9 +58,9 @@ struct SelectionOptions {
 /// to most_features numbers. Above that, one_lag if the model has lags, restricted to the most_features numbers that
 /// vary most beyond their errors.
 ///
-/// Clouds of one-lag fits find the modes best, for any number of lags in the motion. Their mean adjusted Rand index is
-/// 0.82 over 40 clouds of ten known systems, fitted with four and eight lags (12 to 64 coefficients). With all
-/// coefficients it is 0.41, for full and for diagonal covariances (docs/results/mixture.md).
+/// Clouds of one-lag fits separate the modes best, for any number of lags in the motion. The mean adjusted Rand index
+/// is 0.82 over 40 clouds of ten known systems, fitted with four and eight lags (12 to 64 coefficients). If all
+/// coefficients are clustered, the index is 0.41, for full and for diagonal covariances (docs/results/mixture.md).
 enum class FeatureSet { automatic, parameters, parameters_and_noise, one_lag };
 
 template <>
@@ -72,10 +72,10 @@ struct EnumNames<FeatureSet> {
 /// few hundred independent windows determine.
 inline constexpr std::ptrdiff_t most_features = 12;
 
-/// Which windows are clustered. `automatic`: windows whose data determine all parameters. In two cases `automatic`
-/// means all windows: with error_aware; and if the determined windows hold less data than two windows per feature, and
-/// a prior gives the other windows a theta. With a prior, windows that are not clustered are assigned to the components
-/// afterwards, as far as their data allow.
+/// Which windows are clustered. `automatic` means the windows whose data determine all parameters. In two cases it
+/// means all windows. The first case is error_aware. In the second, these windows hold less data than two windows per
+/// feature, and a prior gives the other windows a theta. With a prior, windows that are not clustered are assigned to
+/// the components afterwards, as far as their data allow.
 enum class WindowChoice { automatic, full_rank, all };
 
 template <>
@@ -84,8 +84,7 @@ struct EnumNames<WindowChoice> {
 };
 
 /// Treatment of windows that contain a switch of mode. Such windows follow no single model and would form a component
-/// of their own. `leave_out` removes those that can be detected from their residuals. `keep` clusters them like the
-/// others.
+/// of their own. `leave_out` removes those that the residuals reveal. `keep` clusters them like all other windows.
 enum class WindowsOverSwitch { leave_out, keep };
 
 template <>
@@ -93,7 +92,7 @@ struct EnumNames<WindowsOverSwitch> {
   static constexpr Names<2> values{"leave_out", "keep"};
 };
 
-/// Which windows are clustered, in which features, and how.
+/// How windows are clustered: which windows, in which features, and by which options.
 struct ClusterOptions {
   SelectionOptions selection;                                    ///< how the mixture is chosen
   FeatureSet features = FeatureSet::automatic;                   ///< numbers of a window that are clustered
