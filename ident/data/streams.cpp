@@ -83,7 +83,7 @@ class Grid {
   /// Limits of a grid relative to its streams. Beyond them, the times are not in seconds or the rate is wrong.
   static constexpr Index most_times = 1'000'000, most_per_sample = 1000;
   double first_, end_, rate_hz_;
-  Index samples_ = 0;  ///< multiple of the number of samples of the longest stream
+  Index samples_ = 0;  ///< number of samples of the longest stream
   std::vector<std::pair<double, double>> gaps_;
 
   [[noreturn]] void refuse(double time) const {

@@ -4,7 +4,7 @@
 
 namespace modebank::bench {
 
-/// K modes distributed around the simulated ones.
+/// K modes whose parameters are distributed around those of the simulated modes.
 inline Bank make_bank(Eigen::Index modes) {
   Bank bank;
   bank.structure = {1, 2, false};

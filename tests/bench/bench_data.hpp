@@ -7,7 +7,7 @@
 
 namespace modebank::bench {
 
-/// Runs of the three-mode system similar to ice; all are training runs.
+/// Runs of a system with three modes similar to ice; all are training runs.
 inline Recording make_recording(Index runs, Index samples) {
   SimulationOptions options;
   options.modes = {Eigen::Vector3d(-0.60, -0.72, 0.72), Eigen::Vector3d(-0.30, -0.21, 0.21),

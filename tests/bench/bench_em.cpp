@@ -18,8 +18,8 @@ GaussianMixture make_mixture(Eigen::Index components, Eigen::Index features, Cov
   return mixture;
 }
 
-/// Twenty EM iterations from the truth; arguments: N, F, K, covariance type. Items are points x components x
-/// iterations.
+/// Twenty EM iterations that start from the true mixture. Arguments: N, F, K, covariance type. Items are points x
+/// components x iterations.
 void em_iterations(benchmark::State& state) {
   constexpr int iterations = 20;
   const auto type = static_cast<CovarianceType>(state.range(3));

@@ -9,7 +9,7 @@
 namespace modebank {
 namespace {
 
-/// Log likelihood of one run; argument: K. Items are steps.
+/// Log likelihood of one run. Argument: K. Items are steps.
 void imm_steps(benchmark::State& state) {
   const Recording recording = bench::make_recording(1, 20000);
   const Bank bank = bench::make_bank(state.range(0));

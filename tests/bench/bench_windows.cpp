@@ -6,7 +6,7 @@
 namespace modebank {
 namespace {
 
-/// Windows of 25 transitions, 3 parameters, the full default path; argument: the loss.
+/// Windows of 25 transitions and 3 parameters, fitted with the default options. Argument: the loss.
 void fit_windows_of_loss(benchmark::State& state) {
   const Recording recording = bench::make_recording(4, 800);
   FitOptions options;

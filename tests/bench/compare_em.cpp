@@ -32,10 +32,11 @@ namespace {
 /// Largest relative difference in log-likelihood between implementations of the same algorithm.
 constexpr double same = 1e-11;
 
-/// CPU seconds of this process. They do not depend on the machine's load.
+/// CPU seconds of this process, which do not depend on the machine's load.
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// K overlapping components, and a start that differs from the components. Both are drawn as in the peers' gmm_make.py.
+/// K overlapping components, and a start that differs from them. Both are drawn in the same way as in the peers'
+/// gmm_make.py.
 EmCase make_case(const std::string& name, Index points, Index features, Index components, CovarianceType type,
                  int iterations) {
   auto generator = make_generator(1, "compare_em " + std::to_string(features), static_cast<std::uint64_t>(components));
@@ -112,7 +113,7 @@ void compare(const EmCase& problem, int rounds) {
   std::fflush(stdout);
 }
 
-/// Different covariances for all points, each about a tenth of those of the components.
+/// A different error covariance for each point, about a tenth of the components' covariances.
 Eigen::MatrixXd make_errors(const EmCase& problem) {
   auto generator = make_generator(1, "compare_em errors");
   std::normal_distribution<double> normal;
@@ -140,7 +141,7 @@ void compare_errors(const EmCase& problem, int rounds) {
   std::fflush(stdout);
 }
 
-/// Layout: int64 N, F, K, iterations; points F x N, one point after the other; weights; means; covariances.
+/// Layout of the file: int64 N, F, K, iterations; points F x N, one point after the other; weights; means; covariances.
 void write_case(const EmCase& problem, const std::string& folder) {
   std::ofstream file(folder + "/" + problem.name + ".bin", std::ios::binary);
   const std::int64_t head[4] = {problem.points.cols(), problem.points.rows(), problem.start.components(),
@@ -155,13 +156,13 @@ void write_case(const EmCase& problem, const std::string& folder) {
   for (const Eigen::MatrixXd& covariance : problem.start.covariances) write(covariance.data(), covariance.size());
 }
 
-/// Fits every number of components up to `most`, each from `restarts` starts, with scikit-learn's tolerance and
-/// iterations. Returns seconds and the sum of log-likelihoods.
+/// Fits every number of components up to `most`, each from `restarts` starts, with the tolerance and the iteration
+/// limit of scikit-learn. Returns seconds and the sum of log-likelihoods.
 EmRun sweep(const EmCase& problem, int threads, int most, int restarts, int seed) {
   EmOptions options;
   options.covariance = problem.type;
   options.restarts = restarts;
-  // scikit-learn has no split-and-merge moves.
+  // scikit-learn has no split-and-merge moves, so they are off
   options.split_merge = 0;
   options.tolerance = 1e-3;
   options.max_iterations = 100;
@@ -189,7 +190,7 @@ double peak_memory_bytes() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// fit_em and all responsibilities for a cloud of 240 MB.
+/// fit_em and all responsibilities, for a cloud of 240 MB.
 void measure_memory() {
   constexpr Index count = 10000000, components = 25;
   Eigen::MatrixXd points(3, count);

@@ -1,5 +1,5 @@
-// compare_imm [ROUNDS]: compares the filter's step with a straightforward program that uses dynamic Eigen matrices (the
-// project's peer imm_eigen.cpp: filters in a vector, S.inverse(), Joseph's form, likelihoods in the linear domain).
+// compare_imm [ROUNDS]: compares the filter's step with a plain program that uses dynamic Eigen matrices. This is the
+// project's peer imm_eigen.cpp: filters in a vector, S.inverse(), Joseph's form, likelihoods in the linear domain.
 // Rounds alternate on one thread. Prints medians. Every number is compared with that of the peer.
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ using Eigen::VectorXd;
 
 constexpr Index steps = 4000;
 
-/// The peer's models. The first state switches and is measured; the other states follow the first.
+/// The peer's models. The first state switches between modes and is measured; the other states follow it.
 Bank make_bank(Index n, Index K) {
   Bank bank;
   bank.structure = {n, 2, false};
@@ -78,7 +78,7 @@ struct PlainFilter {
   }
 };
 
-/// Log likelihood by the plain program, with the start of modebank.
+/// Log likelihood by the plain program, which starts from the same state as modebank.
 double plain(const Bank& bank, const Trajectory& run) {
   const Index K = bank.mode_count(), n = bank.structure.states;
   const StartMoments first = start_moments(bank);
@@ -136,7 +136,7 @@ double live(const Bank& bank, const Trajectory& run) {
   return sum;
 }
 
-/// The filter by the equations, which support every variant and size.
+/// The filter computed from its equations, for every variant and size.
 template <int N, int NY>
 double equations(const Bank& bank, const Trajectory& run) {
   const FilterModel<N, NY> model(bank, {});
@@ -156,7 +156,7 @@ struct Contestant {
   std::vector<double> ns = {};
 };
 
-/// CPU time of this thread. It does not depend on other programs.
+/// CPU time of this thread, which does not depend on other programs.
 double processor_ns() {
   timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -30,7 +30,7 @@ constexpr Index job = 1024;
 constexpr double residual_scale = 0.1;
 const LinearStructure structure{1, 2, false};
 
-/// Regimes of 200 to 1000 samples, smooth commands and 2 % outliers, similar to the trajectory of the peers'
+/// A run with regimes of 200 to 1000 samples, smooth commands and 2 % outliers, similar to that of the peers'
 /// make_data.py.
 Trajectory make_trajectory() {
   constexpr double regimes[6][3] = {{-.35, -.50, .50}, {-.60, -.80, .75}, {-.15, -.20, .25},
@@ -74,7 +74,7 @@ PeerData peer_data(const Trajectory& run) {
   return data;
 }
 
-/// The problem that the peers solve.
+/// The window problem that the peers solve.
 FitOptions peer_options(Loss loss) {
   FitOptions options;
   options.loss = loss;
@@ -92,7 +92,7 @@ struct JobResults {
   std::vector<batch::Verdict> verdict = std::vector<batch::Verdict>(job);
 };
 
-/// Fits all windows job by job, including staging. `consume` gets the results of each job.
+/// Fits all windows job by job, including the copying of samples. `consume` gets the results of each job.
 void run_batch(const Trajectory& run, const BatchSolver& solver, Index windows,
                const std::function<void(Index, Index, const JobResults&)>& consume) {
   static BatchWorkspace workspace;
@@ -153,7 +153,7 @@ struct PlainModel {
   }
 };
 
-/// Fits the first windows as a motion model, from a start that fits none of the regimes.
+/// Fits the first windows as a motion model. The search starts from parameters that fit none of the regimes.
 void run_general(const Trajectory& run, Loss loss, Index windows, Eigen::MatrixXd& theta) {
   const auto model = make_auto_diff_model<1, 2, 3>(PlainModel(), "plain", {{"A", ""}, {"B1", ""}, {"B2", ""}});
   const ModelEstimator estimator = make_model_estimator(*model, peer_options(loss));
@@ -166,8 +166,8 @@ void run_general(const Trajectory& run, Loss loss, Index windows, Eigen::MatrixX
   }
 }
 
-/// Compares theta of the first windows with naive Ceres, which stops within 1e-3 of the optimum at worst, and usually
-/// within 1e-5.
+/// Compares theta of the first windows with that of naive Ceres. Naive Ceres stops within 1e-3 of the optimum at worst,
+/// and usually within 1e-5.
 void check_against(const std::vector<PeerFit>& peers, const Trajectory& run, const BatchSolver& solver) {
   Index near = 0, solved = 0;
   const Index windows = static_cast<Index>(peers.size());
@@ -215,7 +215,8 @@ void compare(const Trajectory& run, const PeerData& data, Loss loss, int rounds)
     fmt::print("  {:<28} {:>10.1f} ns/window  {:>8.2f} x the batch\n", entry.name, entry.median(), entry.median() / ns);
 }
 
-/// Compares fit_windows on two threads and on one, best of 5. Writes the file that the Python peers read.
+/// Compares the time of fit_windows on two threads with that on one thread, best of 5. Writes the file that the Python
+/// peers read.
 void compare_threads(const Trajectory& run) {
   Recording recording;
   recording.states = {{"x", ""}};

@@ -1,5 +1,5 @@
-// Armadillo's mixtures from the given start. The peer may use all instruction sets of this machine: CMake compiles this
-// file with -O3 -march=native.
+// Armadillo's mixtures from the given start. This file may use all instruction sets of this machine: CMake compiles it
+// with -O3 -march=native.
 #include "tests/bench/em_cases.hpp"
 
 #ifdef MODEBANK_HAS_ARMADILLO

@@ -7,7 +7,7 @@
 
 namespace modebank::bench {
 
-/// One comparison: points, the start that all programs share, and a fixed number of iterations.
+/// One case of the comparison: points, the start that all programs share, and a fixed number of iterations.
 struct EmCase {
   std::string name;
   CovarianceType type = CovarianceType::full;
@@ -16,7 +16,7 @@ struct EmCase {
   GaussianMixture start;
 };
 
-/// Result of a program for a case: seconds for all iterations, and the final log-likelihood.
+/// Result of one program for one case: seconds for all iterations, and the final log-likelihood.
 struct EmRun {
   double seconds = 0.0;
   double log_likelihood = 0.0;

@@ -1,5 +1,5 @@
-// Measures how often the number of modes of simulated systems is found (docs/results/mixture.md). Arguments: seeds
-// (default 50).
+// Measures how often the right number of modes is found for simulated systems (docs/results/mixture.md). Argument:
+// number of seeds (default 50).
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -38,10 +38,10 @@ constexpr double sd = 0.1;
 
 /// A run of x[k+1] = a x[k] + 0.3 u[k] + w, with variables that change from step to step.
 struct Step {
-  double x, u, memory;  // memory: further state of a system
+  double x, u, memory;  // memory: a further state that some systems have
 };
 using Draw = std::function<double()>;
-/// Returns the next x. May change the memory of the step.
+/// Returns the next x. May change `memory`.
 using Motion = std::function<double(Step&, double size, const Draw& normal, const Draw& uniform)>;
 
 Recording simulate(const Motion& motion, double size, double start_memory_sd, Index runs, int seed,
@@ -67,7 +67,7 @@ Recording simulate(const Motion& motion, double size, double start_memory_sd, In
 
 double one_motion(Step& at, double, const Draw& normal, const Draw&) { return 0.8 * at.x + 0.3 * at.u + sd * normal(); }
 
-/// Result of a proposal.
+/// Result of one proposed addition.
 struct Answer {
   double gain = 0.0, standard_error = 0.0;
   bool taken = false;
@@ -75,7 +75,7 @@ struct Answer {
 
 struct Question {
   std::string proposal;
-  std::array<double, 2> sizes;  ///< gains .06 and .03 nats per sample
+  std::array<double, 2> sizes;  ///< sizes at which the addition gains .06 and .03 nats per sample
   std::function<Recording(double size, Index runs, int seed)> system;
   std::function<Answer(const Recording&)> ask;
 };

@@ -1,6 +1,6 @@
 // track_latency PROGRAM [SECONDS]: time from an input line to the output line of `modebank track`, over pipes at 1 kHz
-// with a bank of 25 modes. For comparison it also runs a program that only echoes lines. Every millisecond both get a
-// line, in alternating order. Then measures the filter's step alone at the same rate.
+// with a bank of 25 modes. A program that only echoes lines runs for comparison. Every millisecond each program gets a
+// line, in alternating order. Afterwards the filter's step alone is measured at the same rate.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Echoes every line.
+/// Echoes every line of its input.
 int echo() {
   char buffer[65536];
   for (ssize_t count; (count = read(STDIN_FILENO, buffer, sizeof buffer)) > 0;)
@@ -61,7 +61,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Microseconds from a line to its answer. Stores the answer in `answer`.
+  /// Microseconds from a line to its answer, which is stored in `answer`.
   double ask(const std::string& line) {
     const auto begin = Clock::now();
     if (write(to_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))

@@ -20,10 +20,12 @@ struct PeerFit {
   double covariance[6];
 };
 
-/// A user's first version: a ceres::Problem per window with automatic derivatives, DENSE_QR and ceres::Covariance.
+/// The first version that a user would write: one ceres::Problem per window with automatic derivatives, DENSE_QR and
+/// ceres::Covariance.
 void fit_naive_ceres(const PeerData& data, Loss loss, double scale, Index windows, PeerFit* fits);
 
-/// ceres::TinySolver on sign(r) sqrt(rho), started from the previous window; covariance of the reweighted problem.
+/// ceres::TinySolver on sign(r) sqrt(rho), started from the result of the previous window. The covariance is that of
+/// the reweighted problem.
 void fit_tiny_solver(const PeerData& data, Loss loss, double scale, Index windows, PeerFit* fits);
 
 }  // namespace modebank::bench

@@ -19,7 +19,7 @@
 
 namespace modebank::test {
 
-/// One yaw-rate state, two wheels: the layout of the real logs.
+/// One state (the yaw rate) and two wheels: the signals of the real logs.
 inline const LinearStructure skid_structure{1, 2, false};
 inline const Eigen::Vector3d skid_theta(-0.3, -0.4, 0.5);
 
@@ -52,7 +52,8 @@ inline Recording make_recording(std::vector<Trajectory> runs) {
   return recording;
 }
 
-/// A run with uniform inputs in +-1 and Gaussian process noise, from state zero; n and m from the structure.
+/// A run with uniform inputs in +-1 and Gaussian process noise. It starts at state zero; n and m are those of the
+/// structure.
 inline Trajectory gaussian_run(const LinearStructure& structure, const Eigen::VectorXd& theta, double noise_sd,
                                Index samples, std::mt19937_64& generator) {
   boost::random::uniform_real_distribution<double> level(-1.0, 1.0);

@@ -37,7 +37,7 @@ TEST(MixtureDoor, GivesTheSameBits) {
     EXPECT_TRUE(test::same_bits(converted.responsibilities, to_matrix(responsibilities(internal.mixture, set))));
     ASSERT_EQ(converted.candidates.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(converted.candidates[i].bic, internal.candidates[i].bic);
-    // Conversion to the public type and back.
+    // Conversion of a mixture to the public type and back.
     EXPECT_TRUE(test::same_bits(mixture::responsibilities(converted.mixture, to_matrix(points)),
                                 to_matrix(responsibilities(internal.mixture, points))));
     EXPECT_TRUE(test::same_bits(mixture::log_density(converted.mixture, to_matrix(points)),

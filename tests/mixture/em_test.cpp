@@ -15,7 +15,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double law_tolerance = 1e-9;
-/// Relative to |log L|: rounding of a sum of hundreds of terms.
+/// Relative to |log L|. Allows the rounding of a sum of hundreds of terms.
 constexpr double monotone_slack = 1e-12;
 
 /// Checks that two mixtures are equal up to the tolerance.
@@ -65,7 +65,8 @@ TEST(Em, LogLikelihoodNeverFallsWithActiveFloorEither) {
   }
 }
 
-/// Restarts use extrapolated steps. They must end at the optimum of plain EM or higher, without remaining gain.
+/// Restarts use extrapolated steps. They must end at the optimum of plain EM or at a higher one, and no gain may
+/// remain.
 TEST(Em, AcceleratedRestartsEndWherePlainEmDoes) {
   for (const CovarianceType type : {CovarianceType::full, CovarianceType::diagonal})
     for (const bool noise : {false, true}) {
@@ -175,9 +176,10 @@ TEST(Em, FindsSeparatedClustersAndOrdersThemByWeight) {
   const EmResult fit = fit_em(draw(truth, 3000, 11), unweighted, 3, EmOptions(), 1);
   EXPECT_TRUE(fit.converged);
   EXPECT_FALSE(fit.floor_active);
-  EXPECT_GE(fit.agreeing_restarts, 2);  // well-separated clusters (twelve standard deviations) are found repeatedly
+  EXPECT_GE(fit.agreeing_restarts, 2);  // several restarts find well-separated clusters (twelve standard deviations
+                                        // apart)
 
-  // Six standard errors: 0.0091 for a weight, 0.045 for a mean (600 points), 0.07 for a variance.
+  // The tolerances are six standard errors: 0.0091 for a weight, 0.045 for a mean (600 points), 0.07 for a variance.
   EXPECT_TRUE(near(fit.mixture.weights, truth.weights, 6 * 0.0091));
   EXPECT_TRUE(near(fit.mixture.means, truth.means, 6 * 0.045));
   for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE(near(fit.mixture.covariances[k], truth.covariances[k], 6 * 0.07));
@@ -209,7 +211,7 @@ TEST(Em, SameSeedSameResultOtherSeedOtherStarts) {
 }
 
 TEST(Em, ResultIsBitwiseTheSameForAnyNumberOfThreads) {
-  for (const Index count : {Index(700), Index(30000)}) {  // parallel over restarts; parallel over blocks
+  for (const Index count : {Index(700), Index(30000)}) {  // first parallel over restarts, then over blocks
     const Eigen::MatrixXd points = draw(three_clusters(2.0), count, 15);
     EmOptions options = fixed_iterations(15);
     options.restarts = 3;

@@ -22,7 +22,7 @@ EmOptions unfloored(int iterations, CovarianceType type = CovarianceType::full) 
   return options;
 }
 
-/// Random covariances of about `scale` squared, one per column.
+/// Random covariances of size `scale` squared, one per column.
 Eigen::MatrixXd random_errors(Index features, Index count, double scale, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal(0.0, scale);
@@ -34,7 +34,7 @@ Eigen::MatrixXd random_errors(Index features, Index count, double scale, std::ui
   return errors;
 }
 
-/// The points with random errors of these covariances added.
+/// The points, each with a random error of its covariance added.
 Eigen::MatrixXd with_errors(Eigen::MatrixXd points, const Eigen::MatrixXd& errors, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -105,7 +105,7 @@ TEST(ErrorAware, ZeroErrorsGiveThePlainFit) {
       const Eigen::MatrixXd points = draw(truth, 333, 5), none = Eigen::MatrixXd::Zero(features * features, 333);
       const EmResult plain = fit_em(PointSet(points), truth, unfloored(30, type));
       const EmResult aware = fit_em(PointSet(points, unweighted, none), truth, unfloored(30, type));
-      EXPECT_LT(difference(aware, plain), 1e-13 * 30) << features;  // rounding over thirty iterations
+      EXPECT_LT(difference(aware, plain), 1e-13 * 30) << features;  // rounding errors over thirty iterations
       EXPECT_NEAR(aware.log_likelihood / plain.log_likelihood, 1.0, 1e-13) << features;
       EXPECT_TRUE(
           near(responsibilities(truth, PointSet(points, unweighted, none)), responsibilities(truth, points), 1e-13));
@@ -114,8 +114,9 @@ TEST(ErrorAware, ZeroErrorsGiveThePlainFit) {
 }
 
 TEST(ErrorAware, EqualErrorsAddToTheCovariances) {
-  // If all points share one S, a mixture of inflated components has the same density N(mu, Sigma + S).
-  for (const Index features : {2, 4, 9}) {  // the last size exceeds the unrolled kernels
+  // If all points have the same error covariance S, a mixture of inflated components has the same density N(mu, Sigma +
+  // S).
+  for (const Index features : {2, 4, 9}) {  // the last size is beyond the unrolled kernels
     const GaussianMixture mixture = any_mixture(features, 3);
     GaussianMixture inflated = mixture;
     const Eigen::MatrixXd error = random_errors(features, 1, 0.8, 3);
@@ -183,8 +184,8 @@ TEST(ErrorAware, AStepIsWhatTheFormulaeSay) {
 }
 
 TEST(ErrorAware, PointsFarFromEverythingKeepTheirDensity) {
-  // Densities relative to any common number would underflow. At equal errors, a mixture of inflated components gives
-  // the expected values.
+  // Densities relative to one common number would underflow. If all errors are equal, a mixture of inflated components
+  // gives the expected values.
   for (const Index features : {2, 6}) {
     const GaussianMixture mixture = any_mixture(features, 3);
     GaussianMixture inflated = mixture;

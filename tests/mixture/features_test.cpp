@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-/// Five windows of one state and two inputs: valid, rank deficient, failed, not finite, valid. Parameter names as in
-/// linear_model.hpp.
+/// Five windows of one state and two inputs: valid, rank deficient, failed, not finite, valid. Parameters have the
+/// names of linear_model.hpp.
 WindowFits five_windows() {
   WindowFits fits;
   fits.structure = LinearStructure{1, 2, false};
@@ -42,8 +42,8 @@ TEST(Features, AllLeavesOutOnlyFailedAndNonFiniteWindows) {
   EXPECT_EQ(cloud.windows, (std::vector<Index>{0, 1, 4}));
 }
 
-/// Three full-rank windows of length one. If a window begins at every second sample, they are worth two independent
-/// windows per feature (of three). If a window begins at every sample, they are worth less.
+/// Three full-rank windows of length one. If windows begin at every second sample, they are worth two independent
+/// windows for each of the three features. If windows begin at every sample, they are worth less.
 TEST(Features, AutomaticTakesAllWindowsOnlyWhereTooFewHaveFullRank) {
   WindowFits fits = five_windows();
   const auto automatic = [&] {
@@ -111,7 +111,8 @@ TEST(Features, StateNamesMustMatch) {
   EXPECT_THROW(make_features(five_windows(), FeatureSet::parameters, WindowChoice::all, {}), std::invalid_argument);
 }
 
-/// Points of four features whose central variances are 8/9 of their squared half-widths, in units of different errors.
+/// Points of four features whose central variances are 8/9 of the squared half-widths. The features have different
+/// units and errors.
 FeatureCloud four_features() {
   FeatureCloud cloud;
   cloud.names = {"a", "b", "c", "d"};

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double rounding = 1e-14;
 
-// The compiler rejects temporaries: PointSet set(x.leftCols(3)) once referred to freed memory.
+// The compiler must reject temporaries: PointSet set(x.leftCols(3)) once referred to freed memory.
 static_assert(std::is_constructible_v<PointSet, Eigen::MatrixXd&>);
 static_assert(!std::is_constructible_v<PointSet, Eigen::MatrixXd>);
 static_assert(!std::is_constructible_v<PointSet, decltype(std::declval<Eigen::MatrixXd&>().leftCols(3))>);
@@ -38,7 +38,8 @@ TEST(GaussianMixture, OneComponentHasTheNormalDensity) {
 }
 
 TEST(GaussianMixture, DensityFollowsItsFormulaForAnyNumberOfFeatures) {
-  for (Eigen::Index features = 1; features <= 11; ++features) {  // covers every specialised kernel and the general one
+  for (Eigen::Index features = 1; features <= 11; ++features) {  // these sizes use every specialised kernel and the
+                                                                 // general kernel
     GaussianMixture mixture;
     mixture.weights = Eigen::VectorXd::Ones(1);
     mixture.means = Eigen::VectorXd::LinSpaced(features, -1.0, 2.0);
@@ -103,7 +104,7 @@ TEST(GaussianMixture, SampleHasTheMixturesMoments) {
   }
   const Eigen::VectorXd sample_mean = points.rowwise().mean();
   const Eigen::MatrixXd centered = points.colwise() - sample_mean;
-  // Five standard errors of a mean, and more than that of a second moment.
+  // The tolerance is five standard errors of a mean, and more than five of a second moment.
   const double standard_error = std::sqrt(covariance.diagonal().maxCoeff() / count);
   EXPECT_TRUE(near(sample_mean, mean, 5.0 * standard_error));
   EXPECT_TRUE(near(centered * centered.transpose() / count, covariance,

@@ -14,12 +14,12 @@ namespace {
 
 using nlohmann::json;
 
-/// Sums of about a thousand terms in another order. The test compares algorithms, not rounding.
+/// Allows sums of about a thousand terms in another order. The test compares algorithms, not rounding.
 constexpr double parameter_tolerance = 1e-8;
 constexpr double log_likelihood_tolerance = 1e-8;
-/// A few units in the last place, relative to the log density, which reaches -1e12 at the outermost probe.
+/// Allows a few units in the last place of the log density, which reaches -1e12 at the outermost probe.
 constexpr double relative_density_tolerance = 2e-15;
-/// A responsibility other than 0 or 1 is the exponential of a difference of log densities of up to a few hundred.
+/// A responsibility other than 0 or 1 is the exponential of a difference of log densities, up to a few hundred.
 constexpr double responsibility_tolerance = 1e-13;
 
 GaussianMixture mixture(const json& values) {
@@ -38,7 +38,7 @@ TEST(MixtureGolden, FitsAgreeWithScikitLearnFromTheSameStart) {
     SCOPED_TRACE(expected["covariance"].get<std::string>() + " " + expected["iterations"].dump());
     EmOptions options;
     options.covariance = expected["covariance"] == "full" ? CovarianceType::full : CovarianceType::diagonal;
-    options.tolerance = -1.0;  // never converges: a fixed number of iterations
+    options.tolerance = -1.0;  // does not converge, so the number of iterations is fixed
     options.max_iterations = expected["iterations"].get<int>();
     options.covariance_floor = 1e-10;
     const EmResult fit = fit_em(points, Eigen::VectorXd(), mixture(file["start"]), options);
@@ -47,7 +47,7 @@ TEST(MixtureGolden, FitsAgreeWithScikitLearnFromTheSameStart) {
     EXPECT_NEAR(fit.log_likelihood, expected["log_likelihood"].get<double>(), log_likelihood_tolerance);
     const GaussianMixture reference = mixture(expected);
     EXPECT_TRUE(near(fit.mixture.weights, reference.weights, parameter_tolerance));
-    // In units of each feature's standard deviation; these differ by a factor of 500.
+    // In units of each feature's standard deviation, because these differ by a factor of 500.
     const Eigen::ArrayXd unit = reference.covariances[0].diagonal().array().sqrt();
     EXPECT_TRUE(near(fit.mixture.means.array().colwise() / unit, reference.means.array().colwise() / unit,
                      parameter_tolerance));

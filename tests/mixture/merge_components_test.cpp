@@ -1,4 +1,4 @@
-// Mixture reduction: moments are preserved, the closest pair is merged first, labels of windows follow.
+// Mixture reduction: moments are preserved, the closest pair is merged first, and the windows' labels are updated.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// The mixture library on its own, without windows or files. Draws points from a known mixture and fits a mixture to
-// them. Exit status 0 if it equals the known one.
+// The mixture library alone, without windows or files. Draws points from a known mixture and fits a mixture to them.
+// Exit status 0 if the fitted mixture equals the known one.
 #include <cstdio>
 #include <random>
 
@@ -15,7 +15,7 @@ int main() {
 
   modebank::SelectionOptions options;
   options.components = {1, 2, 3, 4};
-  modebank::SampleDesign design;  // every point is a run of its own
+  modebank::SampleDesign design;  // each point is a run of its own
   for (Eigen::Index i = 0; i < points.cols(); ++i) design.runs.push_back(i);
   const modebank::Selection found = modebank::select(points, design, options, 1);
   for (const modebank::Candidate& row : found.candidates)

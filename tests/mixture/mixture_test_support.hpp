@@ -12,7 +12,8 @@ namespace modebank::test {
 
 inline const Eigen::VectorXd unweighted;
 
-/// Three clusters of different shape in two features, overlapping or `distance` standard deviations apart.
+/// Three clusters of different shape in two features, at `distance` standard deviations from each other. They overlap
+/// if `distance` is small.
 inline GaussianMixture three_clusters(double distance) {
   GaussianMixture mixture;
   mixture.weights = Eigen::Vector3d(0.5, 0.3, 0.2);
@@ -28,7 +29,7 @@ inline Eigen::MatrixXd draw(const GaussianMixture& mixture, Eigen::Index count, 
   return sample(mixture, count, generator);
 }
 
-/// Options for exactly this number of iterations, converged or not.
+/// Options for exactly this number of iterations, whether EM converges or not.
 inline EmOptions fixed_iterations(int iterations, CovarianceType type = CovarianceType::full) {
   EmOptions options;
   options.covariance = type;
@@ -37,7 +38,7 @@ inline EmOptions fixed_iterations(int iterations, CovarianceType type = Covarian
   return options;
 }
 
-/// Whether every entry is finite and the weights are a distribution.
+/// Whether every entry is finite, and the weights are at least 0 with the sum 1.
 inline bool is_finite(const GaussianMixture& mixture) {
   bool finite = mixture.weights.allFinite() && mixture.means.allFinite();
   for (const Eigen::MatrixXd& covariance : mixture.covariances) finite = finite && covariance.allFinite();
@@ -45,7 +46,7 @@ inline bool is_finite(const GaussianMixture& mixture) {
          mixture.weights.minCoeff() >= 0.0;
 }
 
-/// A cloud of clustered windows in `runs` runs of equal length, in order; `fits` matches it.
+/// A cloud of clustered windows in `runs` runs of equal length, in order. `fits` has the same windows.
 inline FeatureCloud cloud_of(const Eigen::MatrixXd& points, Eigen::Index runs) {
   FeatureCloud cloud;
   for (Eigen::Index f = 0; f < points.rows(); ++f) cloud.names.emplace_back(1, static_cast<char>('a' + f));

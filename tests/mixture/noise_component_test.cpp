@@ -19,7 +19,8 @@ EmOptions with_noise(int iterations = 1000) {
   return options;
 }
 
-/// Clusters, with a share `noise` of the points uniform over a much larger box, in alternating order.
+/// Clusters in which a share `noise` of the points is uniform over a much larger box. Noise points and cluster points
+/// alternate.
 GaussianMixture noisy_clusters(double distance, double noise) {
   GaussianMixture mixture = three_clusters(distance);
   mixture.weights *= 1.0 - noise;
@@ -81,12 +82,12 @@ TEST(NoiseComponent, TakesWhatBelongsToNoCluster) {
   const Eigen::MatrixXd points = draw(truth, 3000, 3);
   const EmResult fit = fit_em(points, unweighted, 3, with_noise(), 1),
                  plain = fit_em(points, unweighted, 3, EmOptions(), 1);
-  EXPECT_NEAR(fit.mixture.noise.weight, 0.1, 6 * 0.0055);  // six standard errors
+  EXPECT_NEAR(fit.mixture.noise.weight, 0.1, 6 * 0.0055);  // the tolerance is six standard errors
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_TRUE(near(fit.mixture.covariances[k], truth.covariances[k], 6 * 0.075)) << k;
   double largest = 0.0;
   for (const Eigen::MatrixXd& covariance : plain.mixture.covariances) largest = std::max(largest, covariance.trace());
-  EXPECT_GT(largest, 50.0);  // without a noise component, some component absorbs the noise
+  EXPECT_GT(largest, 50.0);  // without a noise component, another component explains the noise points
 }
 
 TEST(NoiseComponent, ItsWindowsGetNoLabel) {

@@ -33,7 +33,7 @@ TEST_P(Robustness, IdenticalPoints) {
   const EmResult result = fit(points, 4);
   expect_sound(result, points);
   EXPECT_TRUE(result.floor_active);
-  // A constant feature keeps its unit, and the floor is 1e-6 of that unit.
+  // A constant feature keeps its unit, and its floor is 1e-6 of that unit.
   EXPECT_TRUE(near(result.mixture.means, points.leftCols(4), 1e-9));
   EXPECT_TRUE(near(result.mixture.covariances[0], 1e-6 * Eigen::Matrix3d::Identity(), 1e-18));
 }
@@ -75,7 +75,7 @@ TEST_P(Robustness, ExtremeOutlier) {
     points.col(17).setConstant(distance);
     const EmResult result = fit(points, 2);
     expect_sound(result, points);
-    // One component is expected for the outlier, and one for the other points.
+    // Two components are expected: one for the outlier, and one for all other points.
     EXPECT_NEAR(result.mixture.weights(0), 499.0 / 500.0, 1e-6);
     EXPECT_NEAR(result.mixture.means(0, 1) / distance, 1.0, 1e-6);
   }
@@ -153,7 +153,8 @@ TEST_P(Robustness, SinglePointComponents) {
 }
 
 TEST_P(Robustness, DensitiesBelowTheSmallestNumber) {
-  // exp(-745) and less is zero in double precision. Without the log domain all responsibilities would be 0/0.
+  // exp(-745) and smaller numbers are zero in double precision. Without the log domain all responsibilities would be
+  // 0/0.
   Eigen::MatrixXd points = draw(three_clusters(2.0), 200, 7);
   points.col(5) << 60.0, -70.0;
   const EmResult result = fit(points, 2);
@@ -211,7 +212,7 @@ TEST(RobustnessErrors, CallersMistakesThrow) {
   EXPECT_THROW(fit_em(points, unweighted, 2, wrong, 1), std::invalid_argument);
 }
 
-/// The floor is a share of each feature's error variance, for any points.
+/// The floor is a share of each feature's error variance, whatever the points.
 TEST(Robustness, TheFloorIsRelativeToThePointsErrors) {
   EmOptions options;
   options.covariance_floor = 1e-4;

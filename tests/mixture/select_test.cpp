@@ -33,12 +33,13 @@ Index selected(const MixtureResult& result) {
 
 TEST(EffectiveSamples, CountsByHand) {
   FeatureCloud cloud;
-  // N_eff for runs of 100, 10 and 30 windows with L = 25, step 1: 4 + max(1, 0.4) + 1.2.
+  // N_eff for runs of 100, 10 and 30 windows with L = 25 and step 1: 4 + max(1, 0.4) + 1.2.
   for (const auto& [run, windows] : {std::pair<Index, int>{0, 100}, {3, 10}, {5, 30}})
     cloud.runs.insert(cloud.runs.end(), static_cast<std::size_t>(windows), run);
   EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 1), 4.0 + 1.0 + 1.2);
   EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 5), 20.0 + 2.0 + 6.0);
-  EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 50), 140.0);  // windows do not overlap, so each counts once
+  EXPECT_DOUBLE_EQ(effective_samples(cloud, 25, 50), 140.0);  // windows do not overlap, so each one counts as
+                                                              // independent
 }
 
 TEST(Criteria, FormulasByHand) {
@@ -66,14 +67,14 @@ TEST(Criteria, TiesGoToTheFirstAndNonFiniteRowsAreSkipped) {
   rows[0].heldout = -3.0;
   rows.push_back(rows[0]);
   rows[1].heldout = -2.0;
-  EXPECT_EQ(best_candidate(rows, Criterion::heldout), 1);  // higher is better
+  EXPECT_EQ(best_candidate(rows, Criterion::heldout), 1);  // a higher held-out score is better
 }
 
 TEST(Select, EveryCriterionFindsThreeSeparatedClusters) {
   const FeatureCloud cloud = cloud_of(draw(three_clusters(12.0), 1500, 1), 6);
   for (const Criterion criterion : {Criterion::bic, Criterion::icl, Criterion::heldout, Criterion::bic_naive}) {
     const MixtureResult result = select_mixture(fits_of(cloud, 1, 1), cloud, up_to(5, criterion), 1);
-    // A held-out score hardly falls with superfluous components. It must fall with too few components.
+    // Superfluous components hardly reduce a held-out score, but too few components must reduce it.
     if (criterion == Criterion::heldout)
       EXPECT_GE(selected(result), 3);
     else
@@ -103,7 +104,7 @@ TEST(Select, TableRowsAgreeWithTheMixtures) {
 TEST(Select, MembershipsCoverClusteredWindowsOnly) {
   FeatureCloud cloud = cloud_of(draw(three_clusters(12.0), 300, 3), 3);
   WindowFits fits = fits_of(cloud, 1, 1);
-  for (Index& window : cloud.windows) window = 2 * window;  // every other window is missing
+  for (Index& window : cloud.windows) window = 2 * window;  // only every other window is in the cloud
   fits.windows.resize(600);
   const MixtureResult result = select_mixture(fits, cloud, up_to(4), 1);
   ASSERT_EQ(result.labels.size(), 600);
@@ -120,7 +121,8 @@ TEST(Select, MembershipsCoverClusteredWindowsOnly) {
   }
 }
 
-/// Windows outside the fit get the posterior probabilities of N(mean, covariance + error), computed here independently.
+/// Windows that are not clustered get the posterior probabilities under N(mean, covariance + error). This test computes
+/// these probabilities independently.
 TEST(Select, AssignedWindowsGetTheComponentsThatSuitThem) {
   FeatureCloud cloud = cloud_of(draw(three_clusters(6.0), 300, 3), 3);
   for (Index i = 0; i < 300; ++i) cloud.windows[static_cast<std::size_t>(i)] = i + 2;
@@ -167,8 +169,8 @@ TEST(Select, OtherCandidatesDoNotChangeARow) {
   EXPECT_EQ(one.candidates[0].iterations, all.candidates[3].iterations);
 }
 
-/// 120,000 points of three clusters. A part of the points chooses, all points are fitted, and the number of threads has
-/// no effect.
+/// 120,000 points of three clusters. The number of components is chosen on a part of the points, and the mixture is
+/// fitted to all points. The number of threads has no effect.
 TEST(Select, OfManyPointsAPartIsComparedAndAllAreFitted) {
   const FeatureCloud cloud = cloud_of(draw(three_clusters(6.0), 120'000, 8), 4);
   SelectionOptions options = up_to(4);
@@ -186,7 +188,7 @@ TEST(Select, OfManyPointsAPartIsComparedAndAllAreFitted) {
   EXPECT_EQ(result.candidates[1].bic, again.candidates[1].bic);
   EXPECT_NE(result.candidates[1].bic, other.candidates[1].bic) << "another part";
   EXPECT_DOUBLE_EQ(result.candidates[0].effective_samples, 4800.0) << "what all windows are worth";
-  // The result must be the maximum for all points. So more EM gains nothing.
+  // The result must be a maximum for all points, so more EM steps must not gain anything.
   const double found = log_density(result.mixture, cloud.points).sum();
   const EmResult on = fit_em(PointSet(cloud.points), result.mixture, options.em);
   EXPECT_LT(on.log_likelihood - found, 0.01);
@@ -226,7 +228,7 @@ TEST(Select, ImpossibleRequestsSayWhatWouldBeRight) {
     EXPECT_NE(std::string(error.what()).find("at most 4 components"), std::string::npos) << error.what();
   }
   EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud_of(Eigen::MatrixXd(2, 0), 1), up_to(3), 1), DataError);
-  // a single run
+  // a single run cannot be left out
   EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud, up_to(2, Criterion::heldout), 1), DataError);
   options.components = {0, 1};
   EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud, options, 1), std::invalid_argument);

@@ -1,4 +1,4 @@
-// Selection without windows, its warnings, and its results for bad clouds.
+// Selection without windows, its warnings, and its results for unusable clouds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,8 @@ Index chosen(const std::vector<Candidate>& candidates) {
   return 0;
 }
 
-/// Checks that only unrequested held-out scores are NaN, and that a status explains each missing fit.
+/// Checks that held-out scores are NaN only if they were not requested. Also checks that a status explains each missing
+/// fit.
 void expect_stated(const Selection& result) {
   EXPECT_TRUE(is_finite(result.mixture));
   for (const Candidate& row : result.candidates) {
@@ -43,16 +44,16 @@ TEST(Selection, FindsThreeClustersAmongIndependentPoints) {
   const Eigen::MatrixXd points = draw(three_clusters(12.0), 600, 1);
   const Selection result = select(points, {}, from_one_to(5), 1);
   EXPECT_EQ(chosen(result.candidates), 3);
-  // For independent points N_eff = N, so BIC equals bic_naive.
+  // If points are independent, N_eff = N, so BIC equals bic_naive.
   for (const Candidate& row : result.candidates) {
     EXPECT_DOUBLE_EQ(row.effective_samples, 600.0);
     EXPECT_DOUBLE_EQ(row.bic, row.bic_naive);
-    EXPECT_TRUE(std::isnan(row.heldout));  // without runs no held-out score is possible
+    EXPECT_TRUE(std::isnan(row.heldout));  // held-out scores need runs
   }
 }
 
 TEST(Selection, OverlapTakesEvidenceAway) {
-  // 600 independent points show these clusters. If the points are worth only 30, they do not.
+  // 600 independent points reveal these clusters. If the points are worth only 30 independent points, they do not.
   const Eigen::MatrixXd points = draw(three_clusters(3.0), 600, 2);
   SampleDesign design;
   design.effective_samples = 30.0;
@@ -66,7 +67,7 @@ TEST(Selection, OverlapTakesEvidenceAway) {
 TEST(Selection, WholeWeightsAreCopies) {
   const Eigen::MatrixXd points = draw(three_clusters(8.0), 200, 3);
   const Eigen::VectorXd twice = Eigen::VectorXd::Constant(200, 2.0);
-  SelectionOptions options = from_one_to(1);  // one component: starts have no effect
+  SelectionOptions options = from_one_to(1);  // the start has no effect on a single component
   const Candidate weighted = select(PointSet(points, twice), {}, options, 1).candidates[0];
   const Eigen::MatrixXd twofold = points.replicate(1, 2);
   const Candidate copied = select(twofold, {}, options, 1).candidates[0];
@@ -96,13 +97,13 @@ TEST(Selection, StartsFromAGivenMixture) {
   SelectionOptions options = from_one_to(3);
   options.em.restarts = 1;
   options.em.split_merge = 0;
-  options.em.max_iterations = 0;  // without iterations the result is the start
+  options.em.max_iterations = 0;  // without iterations the result equals the start
   const GaussianMixture start = three_clusters(12.0);
   const Selection result = select(points, {}, options, 1, &start);
   EXPECT_NEAR(result.candidates[2].log_likelihood, log_density(three_clusters(12.0), points).sum(), 1e-8);
 }
 
-/// Three groups by hand: differences 1, 2 and 9 with weights 1, 1 and 2, about their mean of 3 per unit weight.
+/// Three groups, computed by hand: differences 1, 2 and 9 with weights 1, 1 and 2; the mean is 3 per unit weight.
 TEST(Selection, HeldOutDifferencesHaveAnErrorOverGroups) {
   const HeldoutScore a{Eigen::Vector3d(5.0, 5.0, 9.0), Eigen::Vector3d(1.0, 1.0, 2.0)};
   const HeldoutScore b{Eigen::Vector3d(4.0, 3.0, 0.0), a.weights};
@@ -111,8 +112,8 @@ TEST(Selection, HeldOutDifferencesHaveAnErrorOverGroups) {
   EXPECT_TRUE(std::isnan(difference_error(a, {})));
 }
 
-/// A candidate that throws (here from a start that is singular in double precision) must become a row with a failed
-/// status.
+/// A candidate whose fit throws must become a row with a failed status. The cause here is a start that is singular in
+/// double precision.
 TEST(Selection, ACandidateThatFailsIsARow) {
   const Eigen::MatrixXd points = draw(three_clusters(12.0), 300, 5);
   GaussianMixture start = three_clusters(12.0);
@@ -139,7 +140,7 @@ TEST(SelectionWarnings, NameWhatSpeaksAgainstTheChoice) {
   EXPECT_TRUE(selection_warnings(rows).empty());
   rows[1].agreeing_restarts = 2;
   rows[1].converged = false;
-  rows[2].aic = 0.0;  // must be ignored
+  rows[2].aic = 0.0;  // a better AIC, which must be ignored
   rows[2].heldout = 1.5;
   rows[2].heldout_error = 0.3;
   EXPECT_EQ(selection_warnings(rows).size(), 2u) << "half a nat is less than twice its error";
@@ -151,8 +152,8 @@ TEST(SelectionWarnings, NameWhatSpeaksAgainstTheChoice) {
   EXPECT_NE(warnings[2].find("more likely with 3 components than with 2: by 0.5 +- 0.2"), std::string::npos);
 }
 
-/// The likelihood of a fit at the covariance floor depends on the floor. Such a fit is chosen, with a warning, only if
-/// all fits are at the floor.
+/// Because its likelihood depends on the covariance floor, a fit at this floor is chosen only if all fits are at the
+/// floor. The selection then has a warning.
 TEST(SelectionWarnings, TheFloorIsNamedWhereNothingElseIsLeft) {
   std::vector<Candidate> rows(3);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -171,8 +172,7 @@ TEST(SelectionWarnings, TheFloorIsNamedWhereNothingElseIsLeft) {
   EXPECT_TRUE(named);
 }
 
-/// Twenty windows at one point, like those of a stretch of standstill. By BIC they would be worth a component, for any
-/// floor.
+/// Twenty windows at one point, as at standstill. By BIC they would justify a component of their own, for any floor.
 TEST(Selection, AClusterWithoutExtentIsNotChosen) {
   Eigen::MatrixXd points(2, 220);
   points.leftCols(200) = draw(three_clusters(0.0), 200, 6);
@@ -198,7 +198,7 @@ TEST(SelectionWarnings, TheEdgeOfTheRange) {
     rows[i].heldout = -rows[i].bic;
   }
   rows[0].selected = true;
-  EXPECT_TRUE(selection_warnings(rows).empty());  // a number below one cannot be suggested
+  EXPECT_TRUE(selection_warnings(rows).empty());  // fewer than one component cannot be suggested
   rows[0].components = 2;
   rows[1].components = 3;
   EXPECT_NE(selection_warnings(rows).at(0).find("fewest"), std::string::npos);

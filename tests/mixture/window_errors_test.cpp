@@ -15,8 +15,8 @@ using Eigen::Index;
 
 constexpr Index window_length = 25;
 
-/// Runs of the length of one window. In each run the parameters are drawn from one of two modes. The inputs of each run
-/// have their own amplitude, log-uniform from 0.03 to 1.
+/// Runs with the length of one window. The parameters of each run are drawn from one of two modes. The inputs of each
+/// run have their own amplitude, log-uniform from 0.03 to 1.
 struct WindowRuns {
   GaussianMixture truth;
   Recording recording;
@@ -63,7 +63,7 @@ FeatureCloud cloud_with(const WindowFits& fits, WindowErrors errors) {
   return make_features(fits, FeatureSet::parameters, WindowChoice::all, {{"x", ""}}, WindowsOverSwitch::keep, errors);
 }
 
-/// Errors of the means and of the input parameters' covariances.
+/// Errors of the components' means and of their standard deviations of the input parameters.
 struct Misfit {
   double mean;       ///< largest error of a mean, in standard deviations of its component
   double inflation;  ///< largest ratio of the input parameters' standard deviation to the true one
@@ -101,9 +101,9 @@ TEST(WindowErrors, ThePriorIsTakenOffAgain) {
   const WindowFits free = stretches.fits(Prior::none), held = stretches.fits(Prior::global, 0.1);
   const FeatureCloud a = cloud_with(free, WindowErrors::include), b = cloud_with(held, WindowErrors::include);
   ASSERT_EQ(a.points.cols(), b.points.cols());
-  double pull = 0.0, left = 0.0;  // sums of squares in standard errors
+  double pull = 0.0, left = 0.0;  // sums of squares, in units of standard errors
   for (Index i = 0; i < a.points.cols(); ++i) {
-    // with less information the prior is not removed completely
+    // if data have less information, the prior is not removed completely
     if (held.information.col(i).minCoeff() < 0.3) continue;
     const Eigen::ArrayXd sd = a.covariances.col(i).reshaped(3, 3).diagonal().array().sqrt();
     pull += ((a.points.col(i) - held.parameters.col(i)).array() / sd).square().sum();
@@ -123,7 +123,7 @@ TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
   options.prior = Prior::global;
   options.prior_sd = {0.1};
   const WindowFits held = fit_windows(stretches.recording, options);
-  WindowFits alike = held;  // result for a weight in the fit that equals the stated information
+  WindowFits alike = held;  // the result if the data had the same information in the fit as in the covariance
   alike.weighed_information.setOnes();
   const FeatureCloud a = cloud_with(free, WindowErrors::include), b = cloud_with(held, WindowErrors::include),
                      c = cloud_with(alike, WindowErrors::include);
@@ -141,8 +141,8 @@ TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
   EXPECT_LT(left, 0.5 * left_alike);
 }
 
-/// Closed form for two states of one parameter each. The data have information d_i, weighed s_i times in the fit. The
-/// prior pulls the data's estimate y_i towards its mean, to s d / (1 + s d) y_i.
+/// Closed form for two states with one parameter each. The data have information d_i, multiplied by s_i in the fit. The
+/// prior pulls the data's estimate y_i towards its mean, to s_i d_i / (1 + s_i d_i) y_i.
 TEST(WindowErrors, ThePriorIsTakenOffStateByState) {
   WindowFits fits;
   fits.structure = LinearStructure{2, 0, false};

@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-/// Windows of 25 transitions of one run. The residual variance is 1e-4, and `ratio` times that in windows 40..60.
+/// Windows of 25 transitions of one run. The residual variance is 1e-4. In windows 40..60 it is `ratio` times as large.
 WindowFits fits_with_a_loud_stretch(double ratio, Index step = 1) {
   WindowFits fits;
   fits.structure = {1, 2, false};
@@ -38,7 +38,7 @@ TEST(WindowOverSwitch, NotBelowTheQuantile) {
 }
 
 TEST(WindowOverSwitch, AModeThatLastsHasNone) {
-  // At step 5 the stretch of larger variance lasts 100 transitions, so every window in it has a neighbour with equal
+  // With step 5, the windows with the larger variance cover 100 transitions. So each of them has a neighbour with equal
   // variance.
   const std::vector<bool> flags = windows_over_switch(fits_with_a_loud_stretch(100.0, 5));
   EXPECT_EQ(std::count(flags.begin(), flags.end(), true), 0);

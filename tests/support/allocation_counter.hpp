@@ -4,8 +4,8 @@
 #include <cerrno>
 #include <cstddef>
 
-// For a single source file of a separate test program. It replaces the allocation functions for all code of the program
-// and its libraries, Eigen and operator new included.
+// Include this file in only one source file of a separate test program. It replaces the allocation functions for all
+// code of the program and its libraries, Eigen and operator new included.
 namespace modebank::test {
 inline std::atomic<long> allocations = 0;
 }  // namespace modebank::test

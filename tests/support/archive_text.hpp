@@ -7,7 +7,7 @@
 
 namespace modebank::test {
 
-/// All numbers of an archive below `path`, as text that round-trips.
+/// All numbers of an archive below `path`, as text from which the same numbers can be read back.
 inline std::string numbers_of(const std::string& archive, const std::string& path) {
   const nlohmann::json object = inspect(archive, path);
   if (!object.contains("members")) return path + object.at("value").dump() + "\n";

@@ -14,7 +14,7 @@ namespace modebank {
 
 namespace {
 
-/// A smaller share of information counts as none: the region is then that of the prior.
+/// A smaller share of information counts as zero; the region is then that of the prior.
 constexpr double least_share = 1e-6;
 
 void check_level(double level) {

@@ -6,37 +6,38 @@
 
 namespace modebank {
 
-/// p standard errors of theta: roots of the covariance's diagonal; NaN if the entry is NaN.
+/// p standard errors of theta: square roots of the covariance's diagonal; NaN for an entry that is NaN.
 Eigen::VectorXd standard_error(const LocalModel& fit);
 
 /// theta / standard error: distance from zero.
 Eigen::VectorXd t_value(const LocalModel& fit);
 
-/// Degrees of freedom nu of the noise variance in the covariance: regions are (theta - truth)' covariance^-1 (theta -
-/// truth) <= p F_level(p, nu). Without a prior nu = L - p, at least 1. With a prior only f = sum of `information` of
-/// the p directions depend on the estimated noise variance, the others on the prior's known one. Then nu = 2 + (L - p -
-/// 2) p / f, which gives the statistic its mean for truth drawn from the prior. For L <= q it is infinite (the noise is
-/// known, regions are chi-square).
+/// Degrees of freedom nu of the noise variance in the covariance. Regions are (theta - truth)' covariance^-1 (theta -
+/// truth) <= p F_level(p, nu). Without a prior nu = L - p, at least 1. With a prior, only f = sum of `information` of
+/// the p directions depend on the estimated noise variance. The other directions depend on the prior's variance, which
+/// is known. Then nu = 2 + (L - p - 2) p / f, which gives the statistic its mean if the truth is drawn from the prior.
+/// For L <= q, nu is infinite: the noise is known, and regions are chi-square.
 double region_degrees_of_freedom(const LocalModel& fit);
 
-/// The ellipsoid that contains the true theta with probability `level`. With a sandwich covariance of several states it
-/// is too small unless L is large against p (docs/explanation/uncertainty.md); use each state's parameters separately
-/// there.
+/// The ellipsoid that contains the true theta with probability `level`. With a sandwich covariance of several states,
+/// it is too small unless L is large compared with p (docs/explanation/uncertainty.md). In that case use the parameters
+/// of each state separately.
 struct ConfidenceRegion {
   Eigen::VectorXd center;      ///< p, theta
   Eigen::MatrixXd covariance;  ///< p x p
-  double limit = 0.0;          ///< p F(p, nu), or chi-square(p): largest squared Mahalanobis distance; NaN: undefined
+  double limit = 0.0;          ///< largest squared Mahalanobis distance in the region: p F(p, nu), or chi-square(p);
+                               ///< NaN if it is undefined
 
-  /// False where the region is undefined.
+  /// Returns false if the region is undefined.
   bool contains(const Eigen::VectorXd& theta) const;
-  /// p x p, one semi-axis per column, longest first.
+  /// p x p, one semi-axis per column, the longest first.
   Eigen::MatrixXd semi_axes() const;
 };
 
 /// Throws std::invalid_argument unless 0 < level < 1.
 ConfidenceRegion confidence_region(const LocalModel& fit, double level = 0.95);
 
-/// Half width of each parameter's own interval: standard error times the quantile of Student's t with
+/// Half width of each parameter's own interval: its standard error times the quantile of Student's t, with
 /// region_degrees_of_freedom.
 Eigen::VectorXd interval_half_width(const LocalModel& fit, double level = 0.95);
 

@@ -2,7 +2,7 @@
 //
 // Simulates a disk that becomes full, for any library. Runs a program and counts the system calls of it and its
 // children that write to FOLDER (and to standard output, if that is a file): create, write, truncate, sync, close after
-// writing, rename, link. The K-th call fails with ENOSPC and does nothing; with K+ all later ones fail, too. REPORT
+// writing, rename, link. The K-th call fails with ENOSPC and does nothing; with K+ all later calls fail, too. REPORT
 // gets the number of calls, and one line for each failed call. The exit status is the program's. The kernel reports
 // each call before it acts (seccomp's user notification), so calls inside the C library count, too.
 #include <fcntl.h>
@@ -68,7 +68,7 @@ constexpr std::array calls{Call{SYS_write, "write", On::descriptor, 0},
   std::exit(125);
 }
 
-/// Makes the kernel report these calls; returns the descriptor for the reports.
+/// Makes the kernel report these calls. Returns the descriptor for the reports.
 int install_filter() {
   std::vector<sock_filter> program;
   program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)));
@@ -95,7 +95,7 @@ struct DescriptorMessage {
     header.msg_control = control.data();
     header.msg_controllen = control.size();
   }
-  DescriptorMessage(const DescriptorMessage&) = delete;  // contains pointers into itself
+  DescriptorMessage(const DescriptorMessage&) = delete;  // the header contains pointers into this object
   DescriptorMessage& operator=(const DescriptorMessage&) = delete;
 };
 
@@ -124,7 +124,7 @@ std::string link_target(const std::string& link) {
   return count > 0 ? std::string(target.data(), static_cast<std::size_t>(count)) : std::string();
 }
 
-/// The text at an address of another process.
+/// The text at an address in another process.
 std::string text_at(unsigned pid, std::uint64_t address) {
   std::string text(4096, '\0');
   const int memory = open(fmt::format("/proc/{}/mem", pid).c_str(), O_RDONLY | O_CLOEXEC);
@@ -136,7 +136,7 @@ std::string text_at(unsigned pid, std::uint64_t address) {
   return text.c_str();
 }
 
-/// The file to which the call writes; empty if it is outside the folder.
+/// The file to which the call writes; empty if the file is outside the folder.
 class Counted {
  public:
   explicit Counted(std::string folder) : folder_(std::move(folder)) {}
@@ -178,7 +178,7 @@ class Counted {
   std::string folder_;
 };
 
-/// Answers every call until no process is left. Returns the number of calls.
+/// Answers every report until no process is left. Returns the number of calls.
 std::uint64_t answer_all(int listener, std::uint64_t first, std::uint64_t last, const Counted& counted,
                          std::vector<std::string>& failed) {
   std::uint64_t count = 0;
@@ -188,7 +188,7 @@ std::uint64_t answer_all(int listener, std::uint64_t first, std::uint64_t last, 
       continue;
     }
     seccomp_notif asked{};
-    if (ioctl(listener, SECCOMP_IOCTL_NOTIF_RECV, &asked) != 0) continue;  // the process was killed meanwhile
+    if (ioctl(listener, SECCOMP_IOCTL_NOTIF_RECV, &asked) != 0) continue;  // the process has been killed
     seccomp_notif_resp answer{asked.id, 0, 0, SECCOMP_USER_NOTIF_FLAG_CONTINUE};
     for (const Call& call : calls) {
       if (call.number != asked.data.nr) continue;
@@ -222,7 +222,7 @@ int main(int argc, char** argv) {
     const int listener = install_filter();
     if (listener < 0) fail("seccomp");
     send_descriptor(pair[1], listener);
-    // Closed by exec, because a close() here would be reported.
+    // Closed by exec, because a call of close() here would be reported.
     fcntl(listener, F_SETFD, FD_CLOEXEC);
     execvp(argv[4], argv + 4);
     fail(argv[4]);

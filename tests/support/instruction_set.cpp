@@ -1,7 +1,7 @@
-// Preloaded before a test program (LD_PRELOAD). The vector kernels of the program then use the instruction set in
-// MODEBANK_TEST_INSTRUCTION_SET (AVX3, AVX2, SCALAR) instead of the machine's best. Ends the program with `skipped` if
-// the machine lacks this instruction set. Ends it with `unused` if no kernel was called, so that a test cannot pass
-// with another instruction set.
+// Preloaded before a test program (LD_PRELOAD). The vector kernels of the program then use the instruction set that
+// MODEBANK_TEST_INSTRUCTION_SET names (AVX3, AVX2, SCALAR) instead of the machine's best. Ends the program with
+// `skipped` if the machine lacks this instruction set. Ends it with `unused` if no kernel was called, so that a test
+// cannot pass with another instruction set.
 #include <hwy/targets.h>
 #include <unistd.h>
 

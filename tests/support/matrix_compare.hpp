@@ -7,7 +7,8 @@
 
 namespace modebank::test {
 
-/// Passes when shapes agree and every entry differs by at most `tolerance` (NaN equals NaN). A failure names the entry.
+/// Passes if shapes agree and every entry differs by at most `tolerance` (NaN equals NaN). The message of a failure
+/// shows the entry.
 inline ::testing::AssertionResult near(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected,
                                        double tolerance) {
   if (actual.rows() != expected.rows() || actual.cols() != expected.cols())

@@ -28,7 +28,7 @@ std::filesystem::path shared_data_dir() {
   return found;
 }
 
-/// Found before main, because CliTest hides MODEBANK_DATA from the program, and so from this process.
+/// Found before main runs, because CliTest hides MODEBANK_DATA from the program, and so from this process.
 [[maybe_unused]] const std::filesystem::path looked_up = shared_data_dir();
 
 TemporaryFolder::TemporaryFolder() {

@@ -10,7 +10,7 @@ std::filesystem::path project_dir();
 /// Folder of golden files; its subfolder generate/ has the scripts that made them.
 std::filesystem::path golden_dir();
 
-/// Real data: $MODEBANK_DATA, else ../shared/data beside the checkout; empty when there is none.
+/// Folder of real data: $MODEBANK_DATA, else ../shared/data beside the checkout. Empty if neither exists.
 std::filesystem::path shared_data_dir();
 
 /// A temporary folder; the destructor removes it.
@@ -40,17 +40,17 @@ bool has_python_modules(const std::string& names);
 
 }  // namespace modebank::test
 
-/// Skips the test, with a reason, if something outside of the project is missing. Fails instead if `required`.
+/// Skips the test, with a reason, if something that is not part of the project is missing. Fails instead if `required`.
 #define MODEBANK_NEEDS_UNLESS(present, absence, required)            \
   if (!(present)) {                                                  \
     ASSERT_FALSE(required) << (absence) << " (it is required here)"; \
     GTEST_SKIP() << (absence);                                       \
   }
 
-/// A tool such as Octave. It is required in the nightly run (MODEBANK_NIGHTLY=1).
+/// For a test that needs a tool such as Octave. The tool is required in the nightly run (MODEBANK_NIGHTLY=1).
 #define MODEBANK_NEEDS(present, absence) MODEBANK_NEEDS_UNLESS(present, absence, ::modebank::test::is_nightly())
 
-/// Real data. They are required in continuous integration (CI=true) and in the nightly run.
+/// For a test that needs real data. They are required in continuous integration (CI=true) and in the nightly run.
 #define MODEBANK_NEEDS_DATA(present)                                                                            \
   MODEBANK_NEEDS_UNLESS(present, "real data are absent: set MODEBANK_DATA to a folder that holds borealtc/ICE", \
                         ::modebank::test::is_ci() || ::modebank::test::is_nightly())

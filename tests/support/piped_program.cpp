@@ -24,7 +24,7 @@ PipedProgram::PipedProgram(const std::vector<std::string>& arguments) {
   if (child_ < 0) throw std::runtime_error("fork failed");
   if (child_ == 0) {
     std::signal(SIGPIPE, SIG_DFL);
-    std::signal(SIGINT, SIG_DFL);  // background processes of a shell ignore it
+    std::signal(SIGINT, SIG_DFL);  // background processes of a shell ignore SIGINT
     const int file = open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     if (dup2(to[0], STDIN_FILENO) < 0 || dup2(from[1], STDOUT_FILENO) < 0 || dup2(file, STDERR_FILENO) < 0) _exit(126);
     execvp(argv[0], argv.data());

@@ -15,7 +15,7 @@ namespace modebank::test {
 class PipedProgram {
  public:
   explicit PipedProgram(const std::vector<std::string>& arguments);
-  ~PipedProgram();  ///< kills the program if it still runs
+  ~PipedProgram();  ///< kills the program if it is still running
   PipedProgram(const PipedProgram&) = delete;
   PipedProgram& operator=(const PipedProgram&) = delete;
 
@@ -25,7 +25,7 @@ class PipedProgram {
   void close_input();
   void close_output();
   void send_signal(int signal) const;
-  /// Exit status; 128 + signal when killed.
+  /// Exit status; 128 + signal number if the program was killed.
   int wait();
   std::string errors() const;
 

@@ -9,7 +9,7 @@
 
 namespace modebank::test {
 
-/// A recording in the form that the installed API takes.
+/// The recording in the type of the public API.
 inline RecordedRuns recorded_runs(const Recording& recording) {
   RecordedRuns result{{}, names_of(recording.states), names_of(recording.inputs)};
   for (const Trajectory& run : recording.runs)
@@ -18,7 +18,7 @@ inline RecordedRuns recorded_runs(const Recording& recording) {
   return result;
 }
 
-/// Whether both have the same numbers, NaN included.
+/// Whether `a` and `b` have the same numbers, NaN included.
 inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }

@@ -6,7 +6,7 @@
 namespace modebank::test {
 
 struct ProgramResult {
-  int status = -1;  ///< exit status; 128 + signal when killed
+  int status = -1;  ///< exit status; 128 + signal number if the program was killed
   std::string out;
   std::string err;
 };

@@ -36,7 +36,7 @@ struct Mount {
   std::chrono::duration<double> cache{0.0};
   std::int64_t skew_s = 0;
   std::mutex mutex;
-  std::map<std::string, Known> known;  ///< by path below the mount
+  std::map<std::string, Known> known;  ///< attributes by path below the mount
 } mount;
 
 std::string real(const char* path) { return mount.backing + path; }
@@ -81,8 +81,8 @@ int get_attributes(const char* path, struct stat* about, fuse_file_info* file) {
 
 int open_file(const char* path, fuse_file_info* file) {
   forget(path);
-  // The kernel identifies files here by their names, and would mix pages of a replaced file with those of the new one.
-  // A real network file system numbers files.
+  // The kernel identifies files here by their names, and would mix pages of a replaced file with those of the new file.
+  // A real network file system identifies files by numbers.
   file->direct_io = (file->flags & O_ACCMODE) == O_RDONLY;
   const int descriptor =
       ::open(real(path).c_str(), file->flags & ~O_APPEND);  // the kernel passes the offset of each write
@@ -99,7 +99,7 @@ int create_file(const char* path, mode_t mode, fuse_file_info* file) {
   return 0;
 }
 
-/// Whether the server has dropped the file: only this mount had it open.
+/// Whether the server has deleted the file: only this mount still had it open.
 bool is_stale(int descriptor) {
   struct stat about {};
   return ::fstat(descriptor, &about) == 0 && about.st_nlink == 0;

@@ -48,7 +48,7 @@ bool SlurmCluster::installed() {
 }
 
 SlurmCluster::SlurmCluster(int nodes, int cpus_per_node) {
-  // Ports that no other test's cluster uses, below the kernel's range of dynamic ports.
+  // Ports that no other test's cluster uses. They lie below the kernel's range of dynamic ports.
   const int first_port = 12'000 + 16 * static_cast<int>(getpid() % 1'000);
   const ProgramResult started =
       run_program({"/bin/sh", script("slurm_up.sh"), folder_.path().string(), std::to_string(nodes),

@@ -1,5 +1,5 @@
-// Linked into every test program: its last line names the instruction set that its vector kernels used, if it called
-// any.
+// Linked into every test program. If the program called vector kernels, its last line of output names their instruction
+// set.
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
@@ -8,14 +8,15 @@
 
 namespace {
 
-/// The target that Highway's dispatch selects: the best one that is compiled and supported by the machine. This file is
-/// compiled with the kernels' definitions, so HWY_TARGETS is theirs. 0: no kernel was called.
+/// The target that Highway's dispatch selects: the best one that is compiled and that the machine supports. 0 if no
+/// kernel was called. This file is compiled with the same definitions as the kernels, so HWY_TARGETS has the same
+/// value.
 std::int64_t target_that_ran() {
   constexpr std::int64_t compiled = HWY_TARGETS;
-  if constexpr ((compiled & (compiled - 1)) == 0) return compiled;  // no dispatch, as on ARM
+  if constexpr ((compiled & (compiled - 1)) == 0) return compiled;  // a single target needs no dispatch
   if (!hwy::GetChosenTarget().IsInitialized()) return 0;
   const std::int64_t usable = hwy::SupportedTargets() & compiled;
-  return usable & -usable;  // Highway's lowest bit is its best target
+  return usable & -usable;  // the lowest bit is the best target
 }
 
 class NamesInstructionSet : public ::testing::EmptyTestEventListener {

@@ -16,7 +16,8 @@ namespace {
 using Eigen::Index;
 using test::near;
 
-/// The columns do not fill a whole tile. The rows fill several blocks or none. Every third row is missing.
+/// The number of columns is not a multiple of a tile's columns. The rows fill several blocks or only a part of one.
+/// Every third row is omitted.
 TEST(WeightedGram, IsThePlainProductOfTheRowsThatAreListed) {
   for (const Index count : {1, 5, 255, 256, 257, 1000})
     for (const Index columns : {1, 3, 4, 5, 17}) {
@@ -34,7 +35,7 @@ TEST(WeightedGram, IsThePlainProductOfTheRowsThatAreListed) {
     }
 }
 
-/// Small and large matrices use different algorithms.
+/// Small and large matrices use different algorithms, so both are tested.
 TEST(SingularValues, AreThoseThatTheMatrixWasMadeOf) {
   for (const Index n : {3, 23, 24, 60}) {
     const Eigen::MatrixXd U = thin_qr(Eigen::MatrixXd::Random(n, n)).Q, V = thin_qr(Eigen::MatrixXd::Random(n, n)).Q;

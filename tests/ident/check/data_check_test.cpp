@@ -23,7 +23,7 @@ TEST(CheckSampling, CountsWhatIsWrongWithTimes) {
   EXPECT_NEAR(clean.jitter, 0.0, 1e-9);
   EXPECT_EQ(clean.gaps + clean.repeated_times + clean.backward_times + clean.missing_samples, 0);
   stream.time_s(20) = stream.time_s(19);            // a repeated time
-  std::swap(stream.time_s(40), stream.time_s(41));  // one step back in time
+  std::swap(stream.time_s(40), stream.time_s(41));  // two swapped times: one step back
   stream.time_s(60) = not_a_number;
   stream.values(0, 70) = not_a_number;
   stream.time_s.tail(20).array() += 3.0;
@@ -79,7 +79,7 @@ TEST(Saturation, IsAPileUpAtFullScale) {
   EXPECT_FALSE(std::isfinite(upper.low)) << "far from full scale: a rest, not a limit";
 }
 
-/// A test signal of random held levels has few levels, so by chance more of these may lie near one end.
+/// A test signal of random held levels has few levels. So by chance more of its levels may lie near one end.
 TEST(Saturation, IsNotSeenInHeldRandomLevels) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::mt19937_64 generator(seed);
@@ -110,7 +110,7 @@ TEST(Saturation, IsNotSeenInSignalsOfFewLevels) {
     }
     return signal;
   };
-  for (const double sd : {0.0, 0.02}) {  // levels as commanded, then as measured
+  for (const double sd : {0.0, 0.02}) {  // levels first as commanded, then as measured
     const VectorXd binary = held({-1.0, 1.0}, sd);
     EXPECT_TRUE(has_two_levels(binary));
     EXPECT_FALSE(std::isfinite(saturation_limits({binary}).high));
@@ -138,7 +138,7 @@ TEST(Rest, RepeatsNothingThatMoves) {
     if (rests) states.values(0, k) = 0.0;
   }
   for (Index k = 110; k < 160; k += 10)
-    states.values(0, k) = states.values(0, k - 1);  // five of two hundred samples, in motion
+    states.values(0, k) = states.values(0, k - 1);  // five repeated values among two hundred samples in motion
   const VectorXd level = VectorXd::Constant(1, 0.01), state = states.values.row(0);
   const std::vector<bool> rests = resting_samples(states, inputs, level);
   EXPECT_EQ(std::count(rests.begin(), rests.end(), true), 99 + 99);
@@ -208,8 +208,8 @@ Trajectory driven_run(Index samples, Index hold) {
 
 TEST(DeficientWindows, AreThoseWithinOneCommand) {
   const Trajectory run = driven_run(401, 40);
-  // In 31 of every 40 starts a window of 10 transitions lies within one command of 40 samples. Two held inputs are then
-  // collinear.
+  // In 31 of every 40 possible starts, a window of 10 transitions lies within one command of 40 samples. Two held
+  // inputs are then collinear.
   const DeficientWindows windows = count_deficient_windows(run, 10, skid_structure);
   EXPECT_EQ(windows.windows, 391);
   EXPECT_EQ(windows.deficient, 310);

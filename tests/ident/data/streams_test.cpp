@@ -14,9 +14,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Same formula and arithmetic as numpy: a few roundings of values of size ten.
+// Formula and arithmetic are the same as in numpy. The tolerance allows a few roundings of values of size ten.
 constexpr double interpolation_tolerance = 1e-14;
-constexpr double time_tolerance_s = 1e-12;  // rounding of sums and products of a few times
+constexpr double time_tolerance_s = 1e-12;  // allows rounding in sums and products of a few times
 
 Stream golden_stream(const char* name) {
   const std::string path = (test::golden_dir() / name).string();
@@ -95,7 +95,7 @@ TEST(JointTimes, UniformGridKeepsItsEnd) {
   EXPECT_TRUE(test::near(joint_times(time_s, time_s, {6.5, 0}), time_s, time_tolerance_s));
 }
 
-/// Stamps in a different unit than stated. A grid for them would need too much memory.
+/// Stamps in another unit than the configured one. A grid of such times would need too much memory.
 TEST(JointTimes, NoGridIsFarFinerThanItsStreams) {
   const VectorXd time_s = vector({0, 1e9, 2e9, 3e9});
   EXPECT_THROW(joint_times(time_s, time_s, {1000, 0}), DataError);

@@ -16,7 +16,7 @@ Trajectory run_of(Index samples, Role role = Role::train) {
 TEST(Windows, NeverCrossRunsAndCoverTrainingRunsOnly) {
   const Recording recording = test::make_recording({run_of(11), run_of(20, Role::test), run_of(5), run_of(8)});
   const std::vector<Window> windows = make_windows(recording, 5, 2);
-  // 10 transitions: starts 0 2 4; 4 transitions: none; 7 transitions: starts 0 2.
+  // Runs with 10, 4 and 7 transitions: windows start at 0, 2, 4; no window; windows start at 0, 2.
   const std::vector<std::pair<Index, Index>> expected{{0, 0}, {0, 2}, {0, 4}, {3, 0}, {3, 2}};
   ASSERT_EQ(windows.size(), expected.size());
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -91,7 +91,7 @@ TEST(WindowSummary, HoldsMediansOfWhatIsDefined) {
 }
 
 TEST(Seed, HasTheStatedMixing) {
-  // tests/golden/generate/derive_seed.py prints these numbers.
+  // These numbers are printed by tests/golden/generate/derive_seed.py.
   EXPECT_EQ(derive_seed(0, ""), 12014417281350144652ULL);
   EXPECT_EQ(derive_seed(1, "simulate.modes", 7), 4341455876973663748ULL);
 }

@@ -80,7 +80,7 @@ TEST(IdentDoor, TakesMotionModelsByNameAndOnesOwn) {
   EXPECT_THROW(ident::fit_windows(test::recorded_runs(skid), FitOptions(), *own), std::invalid_argument);
 }
 
-/// The exception's message for bad arguments.
+/// The message of the exception for bad arguments.
 std::string refusal(const RecordedRuns& runs, const FitOptions& options) {
   try {
     ident::fit_windows(runs, options);

@@ -107,7 +107,7 @@ TEST_P(Batch, HasTheSameLocalModelsAsCeres) {
           EXPECT_LE(batch.audit.gradient, 1.1e-10);  // Ceres alone, used below, reaches only about 1e-7
           EXPECT_LE(batch.audit.parameter_difference, 1e-6);
         }
-        Index others = 0;  // losses with several minima may end in other minima
+        Index others = 0;  // if a loss has several minima, the solvers may find different minima
         for (Index i = 0; i < batch.count(); ++i) {
           if (!near(batch.parameters.col(i), ceres.parameters.col(i), 1e-7)) {
             ++others;
@@ -149,7 +149,7 @@ TEST_P(Batch, UnitsDoNotMatter) {
     EXPECT_TRUE(fits.status == expected.status) << unit;
     EXPECT_GE(fits.audit.batch, expected.audit.batch) << unit;
     const MatrixXd back = Eigen::Vector3d(1, unit, unit).asDiagonal() * fits.parameters;
-    Index others = 0;  // losses with several minima may end in other minima
+    Index others = 0;  // if a loss has several minima, the solvers may find different minima
     for (Index i = 0; i < fits.count(); ++i) {
       // the minimum-norm solution depends on units
       if (fits.status(i) == 2 && options().prior == Prior::none) continue;
@@ -168,7 +168,8 @@ TEST_P(Batch, ThreadsChunksAndNeighboursDoNotChangeABit) {
   }
   expect_same_bits(results[0], results[1]);
 
-  // Fits the same windows in chunks of one to eleven. Each window then has other neighbours in other lanes.
+  // Fits the same windows in chunks of one to eleven windows. Each window is then in another lane, beside other
+  // windows.
   FitOptions o = options();
   const ParameterPrior prior{results[0].global.theta,
                              o.prior == Prior::global ? results[0].prior_sd : VectorXd::Ones(3)};

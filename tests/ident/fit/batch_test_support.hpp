@@ -89,7 +89,7 @@ struct ReferenceProblem {
     return out;
   }
 
-  /// |Q' psi| / |psi|, where Q is an orthonormal basis of the regressors (and the prior's rows).
+  /// |Q' psi| / |psi|, where Q is an orthonormal basis of the regressors and the prior's rows.
   double relative_gradient(const Regression& w, const RealVector& theta) const {
     const ReferenceTerms t = terms(w, theta);
     RealMatrix gram = w.X.transpose() * w.X / (sigma * sigma);
@@ -98,8 +98,8 @@ struct ReferenceProblem {
     return static_cast<double>(std::sqrt(std::max<Real>(square, 0) / t.psi_square));
   }
 
-  /// Newton's method from least squares, for convex losses. Steps are halved until the cost falls, and damped if the
-  /// second derivative is singular.
+  /// Newton's method from least squares, for convex losses. Steps are halved until the cost falls. They are damped if
+  /// the second derivative is singular.
   RealVector minimum(const Regression& w) const {
     const ReferenceProblem squares{Loss::trivial, 1, sigma, mean, precision};
     RealVector theta = mean.size() > 0 ? mean : RealVector::Zero(w.X.cols()).eval();
@@ -121,7 +121,7 @@ struct ReferenceProblem {
   }
 };
 
-/// Changes of regime, 5 % outliers, a stretch of standstill and missing samples.
+/// A recording with changes of regime, 5 % outliers, a stretch of standstill and missing samples.
 inline Recording hard_recording(const LinearStructure& structure, Index samples, bool missing) {
   std::mt19937_64 generator(11);
   std::vector<Trajectory> runs;

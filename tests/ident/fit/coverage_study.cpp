@@ -23,7 +23,7 @@ constexpr Index length = 25;
 constexpr Index warm_up = 20;
 const LinearStructure structure{1, 2, false};
 const Eigen::Vector3d mean_theta(-0.5, -0.4, 0.5);
-const Eigen::Vector3d prior_sd(0.12, 0.3, 0.3);  // 1 + A stays inside the unit circle for 4 sd
+const Eigen::Vector3d prior_sd(0.12, 0.3, 0.3);  // 1 + A is inside the unit circle up to 4 standard deviations
 
 /// One independent window and its true theta.
 struct Draw {

@@ -11,8 +11,8 @@ namespace modebank {
 /// independent.
 enum class CoverageCase {
   gaussian,       ///< white inputs, Gaussian noise of sd 0.1
-  outliers,       ///< 5 % of the noise terms ten times as large
-  growing_noise,  ///< noise sd 0.02 + 0.3 |x|
+  outliers,       ///< 5 % of the noise terms are ten times as large
+  growing_noise,  ///< noise with standard deviation 0.02 + 0.3 |x|
   poor  ///< theta drawn from the prior and fitted with it; every other window has one command (rank 2 of 3), in the
         ///< others it varies by 2 % (nearly rank 2)
 };

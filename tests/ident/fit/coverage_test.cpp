@@ -7,9 +7,9 @@
 namespace modebank {
 namespace {
 
-constexpr Index windows = 5000;  // standard error of a share: 0.003
+constexpr Index windows = 5000;  // number of windows at which the standard error of a share is 0.003
 
-/// The range that docs/results/uncertainty.md states for a case.
+/// The range of coverage that docs/results/uncertainty.md promises for a case.
 struct Promise {
   CoverageCase which;
   CovarianceKind kind;
@@ -33,7 +33,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Coverage,
                                            Promise{CoverageCase::poor, CovarianceKind::model, 0.93, 0.97},
                                            Promise{CoverageCase::outliers, CovarianceKind::sandwich, 0.88, 0.97},
                                            Promise{CoverageCase::growing_noise, CovarianceKind::sandwich, 0.88, 0.97},
-                                           // HC3 loses some accuracy at L = 25 even if it is not needed.
+                                           // At L = 25 HC3 loses some accuracy, also in cases that do not need it.
                                            Promise{CoverageCase::gaussian, CovarianceKind::sandwich, 0.88, 0.97},
                                            Promise{CoverageCase::poor, CovarianceKind::sandwich, 0.93, 0.97}),
                          [](const auto& instance) {
@@ -41,7 +41,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, Coverage,
                                   std::string(name_of(instance.param.kind));
                          });
 
-/// Reason for the sandwich covariance. If noise grows with |x|, the coverage of `model` falls below its promised range.
+/// The reason for the sandwich covariance: if noise grows with |x|, the coverage of `model` falls below its promised
+/// range.
 TEST(ModelCovariance, IsShortWhereTheNoiseDependsOnTheState) {
   for (const Loss loss : {Loss::trivial, Loss::huber})
     EXPECT_LT(test::measure_coverage(CoverageCase::growing_noise, loss, CovarianceKind::model, windows), 0.90);

@@ -111,7 +111,7 @@ TEST_P(Degenerate, MissingSamplesLeaveTheirTransitionsOut) {
 }
 
 TEST_P(Degenerate, MostlyExactSamplesWithFewErrorsDoNotBreak) {
-  Signals s = excited(0.0);  // the residuals' median deviation is rounding error, so sigma is at its floor
+  Signals s = excited(0.0);  // the median deviation of the residuals is a rounding error, so sigma is at its floor
   for (const Index k : {12, 30, 47}) s.state(0, k) += 1.0;
   const WindowFits fits = fit_quietly(s.state, s.input, options());
   if (options().loss == Loss::trivial || options().prior == Prior::none) return;

@@ -64,7 +64,7 @@ TEST(FitWindows, AgreeWithFitWindow) {
   const ParameterPrior prior{fits.global.theta, VectorXd::Constant(3, 0.7)};
   const VectorXd floor = 1e-3 * fits.global.noise_variance().cwiseSqrt();
   EXPECT_TRUE(near(fits.prior_sd, prior.sd, 0));
-  ASSERT_EQ(fits.count(), 3 * 10);  // 89 transitions: starts 0, 7, ..., 63
+  ASSERT_EQ(fits.count(), 3 * 10);  // a run has 89 transitions, so its windows start at 0, 7, ..., 63
   for (const Index i : {0, 11, 29}) {
     const Window window = fits.windows[static_cast<std::size_t>(i)];
     const LocalModel one = fit_window(recording.runs[static_cast<std::size_t>(window.run)], window.start,
@@ -85,7 +85,7 @@ TEST(FitWindows, TakeSigmaFromWhereTheyAreTold) {
     const Index i = 3;
     const Trajectory& run = recording.runs[0];
     const bool whole = source == ScaleSource::run;
-    // Scale by its definition: 1.4826 MAD of least-squares residuals, times sqrt(N / (N - 3)).
+    // The scale by its definition: 1.4826 times the MAD of least-squares residuals, times sqrt(N / (N - 3)).
     const Index first = whole ? 0 : fits.windows[3].start, N = whole ? run.transitions() : 25;
     MatrixXd X(N, 3);
     X.col(0) = run.state.row(0).segment(first, N).transpose();
@@ -105,8 +105,8 @@ TEST(FitWindows, TakeSigmaFromWhereTheyAreTold) {
   }
 }
 
-/// Windows of four lags, and one-lag fits of the same transitions. The one-lag fits must equal fit_windows of those
-/// windows.
+/// Windows of four lags, and one-lag fits of the same transitions. The one-lag fits must equal the results of
+/// fit_windows for these transitions.
 TEST(FitWindows, OneLagFitsAreOfTheSameTransitions) {
   const Recording recording = mixed_recording();
   FitOptions options;
@@ -193,7 +193,8 @@ TEST(NoiseVariance, IsConsistentUnderGaussianNoise) {
   const Trajectory one_state = test::gaussian_run(test::skid_structure, test::skid_theta, sd, 20001, generator);
   const Trajectory two_states = test::gaussian_run(two, truth, sd, 20001, generator);
   for (const Loss loss : {Loss::trivial, Loss::huber, Loss::cauchy, Loss::softlone, Loss::tukey, Loss::arctan}) {
-    constexpr double four_standard_errors = 4 * 0.012 * sd * sd;  // sqrt(2 / 20000) = 0.010, /sqrt(0.7) efficiency
+    constexpr double four_standard_errors = 4 * 0.012 * sd * sd;  // sqrt(2 / 20000) = 0.010; an efficiency of 0.7 gives
+                                                                  // 0.010 / sqrt(0.7)
     const LocalModel a = fit_window(one_state, 0, test::skid_structure, test::whole_run(one_state, loss),
                                     VectorXd::Constant(1, sd), nullptr);
     EXPECT_NEAR(a.noise_variance(0), sd * sd, four_standard_errors) << name_of(loss);
@@ -206,7 +207,7 @@ TEST(NoiseVariance, IsConsistentUnderGaussianNoise) {
 TEST(InlierFraction, CountsSamplesThatKeepHalfTheirWeight) {
   std::mt19937_64 generator(13);
   Trajectory run = test::gaussian_run(test::skid_structure, test::skid_theta, 0.0, 101, generator);
-  run.state(0, 100) += 10.0;  // one bad transition; its Huber weight is 1.345 sigma / 10
+  run.state(0, 100) += 10.0;  // one bad transition, whose Huber weight is 1.345 sigma / 10
   const LocalModel fit =
       fit_window(run, 0, test::skid_structure, test::whole_run(run, Loss::huber), VectorXd::Constant(1, 1.0), nullptr);
   EXPECT_DOUBLE_EQ(fit.inlier_fraction, 0.99);

@@ -72,7 +72,7 @@ TEST(LeastSquares, SeveralStatesWithInterceptAgreeWithStatsmodels) {
 TEST(GlobalModel, AgreesWithStatsmodels) {
   for (const std::string name : {"single_state", "two_states"}) {
     const GoldenCase c(name);
-    Trajectory test_run = c.run;  // must be ignored
+    Trajectory test_run = c.run;  // a held-out run, which must be ignored
     test_run.role = Role::test;
     test_run.state *= 2.0;
     const GlobalModel global = fit_global(test::make_recording({c.run, test_run}), c.structure);

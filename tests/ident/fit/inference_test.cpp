@@ -160,7 +160,7 @@ TEST(Quality, OfAConstantStateIsUndefined) {
   EXPECT_TRUE(std::isfinite(fit.aic));
 }
 
-/// Under a prior, the effective number of parameters lies between zero and all.
+/// A tight prior leaves no effective parameters; without a prior all parameters are effective.
 TEST(Quality, OfAFitHeldByThePriorCountsNoParameters) {
   const WeightedCase c("weighted_least_squares");
   const LocalModel free = c.fit(Loss::trivial);
@@ -181,7 +181,7 @@ LocalModel model_of(Index n, Index q, Index transitions) {
 
 TEST(ConfidenceRegion, HasTheQuantilesOfTheTables) {
   EXPECT_NEAR(confidence_region(model_of(1, 3, 25)).limit, 3 * 3.0491, 3e-4);  // F(3, 22)
-  EXPECT_NEAR(confidence_region(model_of(1, 3, 3)).limit, 7.8147, 1e-4);       // chi-square(3): L <= q
+  EXPECT_NEAR(confidence_region(model_of(1, 3, 3)).limit, 7.8147, 1e-4);       // for L <= q: chi-square(3)
   EXPECT_NEAR(interval_half_width(model_of(1, 3, 25))(1), 2.0739, 1e-4);       // t(22)
   EXPECT_NEAR(interval_half_width(model_of(1, 3, 2))(1), 1.9600, 1e-4);
   EXPECT_NEAR(confidence_region(model_of(2, 4, 25), 0.99).limit, 8 * 3.7910, 1e-2);  // F(8, 17)
@@ -192,7 +192,8 @@ TEST(ConfidenceRegion, RestsOnThePriorWhereTheDataSayNothing) {
   fit.information.setOnes();
   EXPECT_NEAR(region_degrees_of_freedom(fit), 22.0, 1e-12);
   fit.information = Eigen::Vector3d(0.0, 0.0, 1.0);
-  // The mean of F(3, nu) must equal (2 + 22 / 20) / 3: two directions are chi-square, one has an estimated variance.
+  // The mean of F(3, nu) must equal (2 + 22 / 20) / 3: two directions are chi-square, and one has an estimated
+  // variance.
   const double nu = region_degrees_of_freedom(fit);
   EXPECT_NEAR(nu / (nu - 2.0), (2.0 + 22.0 / 20.0) / 3.0, 1e-12);
   fit.information.setZero();
@@ -222,9 +223,9 @@ TEST(ConfidenceRegion, OfAnUndefinedCovarianceHoldsNothing) {
   }
 }
 
-/// One window with two relations, of 18 and 6 transitions. Least squares lies between the two. There every residual is
-/// beyond Tukey's cut-off and the cost is flat. The Huber optimum lies near the larger group, and redescending losses
-/// reach that group from there.
+/// One window with two relations, of 18 and 6 transitions. Least squares lies between the two relations. Every residual
+/// is then beyond Tukey's cut-off, and the cost is flat. The Huber optimum lies near the larger group. From there
+/// redescending losses reach the fit of that group.
 TEST(NonConvexLosses, StartFromTheHuberOptimum) {
   constexpr Index N = 24;
   Eigen::MatrixXd x(1, N + 1), u(1, N + 1);

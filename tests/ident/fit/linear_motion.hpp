@@ -9,8 +9,8 @@
 
 namespace modebank::test {
 
-/// The linear increment model (without lags) as a motion model, whose fits must equal those of the linear model. Its
-/// start theta = 0 means a constant state.
+/// The linear increment model (without lags) as a motion model. Its fits must equal those of the linear model. Its
+/// start theta = 0 means that the state stays constant.
 class LinearMotion final : public MotionModel {
  public:
   explicit LinearMotion(const LinearStructure& structure) : structure_(structure) {

@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(Losses, EachLoss,
                          [](const auto& instance) { return std::string(name_of(instance.param)); });
 
 TEST(GaussianConsistency, HuberHasItsClosedForm) {
-  // Stein: E[psi(z) z] = E[psi'(z)] = 2 Phi(c) - 1 for one state.
+  // By Stein's lemma, E[psi(z) z] = E[psi'(z)], which is 2 Phi(c) - 1 for one state.
   const boost::math::normal normal;
   EXPECT_NEAR(gaussian_consistency(RobustLoss(Loss::huber, 0.0), 1), 2 * boost::math::cdf(normal, 1.345) - 1, 1e-12);
   EXPECT_EQ(gaussian_consistency(RobustLoss(Loss::trivial, 0.0), 3), 1.0);

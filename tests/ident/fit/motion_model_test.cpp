@@ -16,7 +16,7 @@ namespace {
 
 ModelSettings two_states() { return {2, 2, 0.165}; }
 
-/// A run of the model with process noise; wheel speeds change every few samples.
+/// A run of the model with process noise. The wheel speeds change every few samples.
 Trajectory drive(const MotionModel& model, const Eigen::VectorXd& theta, const Eigen::VectorXd& noise_sd, Index samples,
                  std::mt19937_64& generator, double measurement_sd = 0.0) {
   boost::random::uniform_real_distribution<double> speed(-6.0, 6.0);
@@ -75,7 +75,7 @@ TEST(MotionModel, NoiselessRunsGiveTheParametersBack) {
   }
 }
 
-// Computes the model's equations by hand: the body rotates about its instantaneous centres.
+// Computes the model's equations independently: the body rotates about its instantaneous centres.
 TEST(MotionModel, IcrMatchesThePublishedKinematics) {
   const auto model = make_motion_model("icr", {3, 2, 1.0});
   const Eigen::VectorXd theta = (Eigen::VectorXd(5) << 0.5, -0.75, 1.0, 1.0, 0.2).finished();
@@ -119,8 +119,8 @@ TEST(MotionModel, DerivativesAreThoseOfDifferences) {
   }
 }
 
-/// Number of full-rank windows. For each parameter, the number of windows whose true value lies within three standard
-/// errors.
+/// Counts the full-rank windows. For each parameter, also counts the windows whose true value lies within three
+/// standard errors.
 struct Recovery {
   Index windows = 0;
   Eigen::ArrayXi inside;
@@ -185,7 +185,8 @@ TEST(MotionModel, LinearModelThroughEitherDoorIsTheSame) {
         const ModelResiduals residuals(*motion, {{&run, 0, run.transitions()}});
         const LocalModel general = fit_model(residuals, make_model_estimator(*motion, options), sigma,
                                              Eigen::VectorXd::Zero(1), p, Eigen::Vector3d::Zero());
-        // Ceres stops if costs are equal up to rounding, at about sqrt(2 epsilon cost) = 5e-8 standard errors.
+        // Ceres stops if costs are equal up to rounding; theta is then within about sqrt(2 epsilon cost) = 5e-8
+        // standard errors.
         const Eigen::ArrayXd standard_error = linear.covariance.diagonal().array().sqrt();
         EXPECT_LT(((general.theta - linear.theta).array() / standard_error).abs().maxCoeff(), 5e-7)
             << name_of(options.loss);
@@ -207,7 +208,7 @@ TEST(MotionModel, SampleWeightsEnterTheScaleAsInTheLinearDoor) {
     Trajectory run = test::gaussian_run(structure, theta, 0.1, 90, generator);
     run.weight = Eigen::VectorXd::Ones(run.samples());
     for (Index k = 0; k < run.samples(); ++k)
-      if (k % 3 == 0) {  // a third of the samples is bad and has weight zero
+      if (k % 3 == 0) {  // a third of the samples is wrong and has weight zero
         run.state.col(k).array() += k % 2 ? 2.0 : -1.0;
         run.weight(k) = k % 9 == 0 ? 0.0 : 0.01;
       }
@@ -251,7 +252,7 @@ TEST(MotionModel, UnexcitedWindowsAreAStatusAndTakeThePrior) {
   EXPECT_TRUE(std::isnan(fit_windows(test::make_recording({still, moving}), options).at(0).covariance(0, 0)));
 }
 
-/// docs/howto/own_model.md prints tests/ident/fit/decay.hpp.
+/// docs/howto/own_model.md shows tests/ident/fit/decay.hpp.
 TEST(MotionModel, TheExampleOfThePagesIsAWholeModel) {
   const auto model = models::make_decay({});
   const Eigen::Vector2d theta(0.7, 1.3);
@@ -306,7 +307,8 @@ TEST(AutoDiffMotionModel, FitsTheWindowsOfTheModelByHand) {
   const WindowFits ours = fit_windows(recording, options, model);
   const WindowFits by_hand = fit_windows(recording, options, test::LinearMotion(structure));
   ASSERT_EQ(ours.count(), by_hand.count());
-  for (Index i = 0; i < ours.count(); ++i) {  // sums in another order differ by the convergence tolerance
+  for (Index i = 0; i < ours.count(); ++i) {  // sums are computed in another order, so the results differ by the
+                                              // convergence tolerance
     const LocalModel a = ours.at(i), b = by_hand.at(i);
     const Eigen::ArrayXd standard_error = b.covariance.diagonal().array().sqrt();
     EXPECT_LT(((a.theta - b.theta).array() / standard_error).abs().maxCoeff(), 5e-7) << i;
@@ -319,7 +321,7 @@ TEST(AutoDiffMotionModel, RefusesAnotherNumberOfParameters) {
   EXPECT_THROW(Model({}, "linear", named({"a", "b"})), std::invalid_argument);
 }
 
-/// Derivatives of a function of two numbers, compared with central differences, whose error is about 1e-9.
+/// Derivatives of a function of two numbers. They are compared with central differences, whose error is about 1e-9.
 template <class F>
 void expect_slopes(const char* name, F f) {
   constexpr double step = 1e-6;

@@ -9,7 +9,7 @@
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/paths.hpp"
 
-// Nonlinear regression sets of NIST's StRD through the public API: a response y of one predictor u. y is treated as a
+// Nonlinear regression sets of NIST's StRD through the public API: a response y of one predictor u. y is passed as a
 // "state" that does not depend on its past.
 namespace modebank {
 namespace {
@@ -80,7 +80,7 @@ struct Rat43 {
 };
 
 struct NistSet {
-  Eigen::MatrixXd starts;  ///< p x 2, the harder start first
+  Eigen::MatrixXd starts;  ///< p x 2, the harder of the two starts first
   Eigen::VectorXd certified, standard_deviation;
   Trajectory run;
 };
@@ -122,7 +122,7 @@ NistSet read_nist(const std::string& name) {
   return set;
 }
 
-/// Number of correct significant digits, in NIST's definition.
+/// Number of correct significant digits, as defined by NIST.
 double digits(const Eigen::VectorXd& value, const Eigen::VectorXd& certified) {
   return -std::log10(((value - certified).array() / certified.array()).abs().maxCoeff() + 1e-16);
 }

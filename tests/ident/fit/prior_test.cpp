@@ -95,7 +95,7 @@ TEST(Prior, LongWindowsHaveTheClosedFormPosterior) {
   const VectorXd theta =
       (X.transpose() * X / 0.01 + P).ldlt().solve(VectorXd(X.transpose() * y / 0.01 + P * e.prior.mean));
   const double s2 = (y - X * theta).squaredNorm() / 22;
-  // Degrees of freedom of the data: the trace of the hat matrix.
+  // Degrees of freedom that the data determine: the trace of the hat matrix.
   const double f = ((X.transpose() * X / 0.01 + P).inverse() * X.transpose() * X / 0.01).trace();
   const double unbiased = (y - X * theta).squaredNorm() / (25 - f);
   const LocalModel model = fit(e, run, 0, 25, Loss::trivial);
@@ -131,7 +131,7 @@ TEST(Prior, AWideOneChangesNothingAndANarrowOneDecides) {
     narrow.prior.sd.setConstant(1e-9);
     const LocalModel free = fit(e, run, 0, 25, loss, false);
     const LocalModel loose = fit(wide, run, 0, 25, loss);
-    constexpr double prior_pull = 1e-9;  // (1e7)^-2 relative to an information of about 100, and rounding
+    constexpr double prior_pull = 1e-9;  // (1e7)^-2 divided by an information of about 100, and rounding
     EXPECT_TRUE(near(loose.theta, free.theta, prior_pull)) << name_of(loss);
     EXPECT_TRUE(near(loose.covariance, free.covariance, prior_pull)) << name_of(loss);
     EXPECT_TRUE(near(fit(narrow, run, 0, 25, loss).theta, e.prior.mean, 1e-12)) << name_of(loss);
@@ -147,12 +147,12 @@ GlobalModel global_of(double variance) {
 }
 
 TEST(DefaultPriorSd, IsThreeTimesTheRobustSpread) {
-  const MatrixXd fits{{-2.0, 1.0, 0.0, 3.0, 1e9}};  // median 1; absolute deviations 3 0 1 2 1e9 with median 2
+  const MatrixXd fits{{-2.0, 1.0, 0.0, 3.0, 1e9}};  // median 1; absolute deviations 3 0 1 2 1e9, whose median is 2
   EXPECT_NEAR(default_prior_sd(fits, global_of(1.0), 25)(0), 3 * 1.4826 * 2, 1e-12);
 }
 
 TEST(DefaultPriorSd, FallsBackInTheStatedOrder) {
-  const MatrixXd mostly_equal{{1.0, 1.0, 1.0, 5.0}};  // sample variance 12 / 3
+  const MatrixXd mostly_equal{{1.0, 1.0, 1.0, 5.0}};  // the sample variance is 12 / 3
   EXPECT_NEAR(default_prior_sd(mostly_equal, global_of(1.0), 25)(0), 3 * 2.0, 1e-12);
   EXPECT_NEAR(default_prior_sd(MatrixXd::Ones(1, 4), global_of(0.01), 25)(0), 3 * 0.1 * 2, 1e-12);
   EXPECT_NEAR(default_prior_sd(MatrixXd(1, 0), global_of(0.01), 25)(0), 3 * 0.1 * 2, 1e-12);

@@ -25,8 +25,8 @@ Eigen::MatrixXd read_rows(const std::filesystem::path& path) {
   return result;
 }
 
-/// Rows i * rows .. of `lags` blocks hold `signal` i samples before its column plus `ahead`. NaN before the start of
-/// the run.
+/// Block i of `lags` blocks, at rows i * rows and below, holds in each column `signal` at that column + ahead - i. NaN
+/// before the start of the run.
 Eigen::MatrixXd lagged(const Eigen::MatrixXd& signal, Index lags, Index ahead, Index columns) {
   Eigen::MatrixXd blocks = Eigen::MatrixXd::Constant(signal.rows() * lags, columns, not_a_number);
   for (Index k = 0; k < columns; ++k)
@@ -57,7 +57,7 @@ double fit_percent(const Eigen::VectorXd& y, const Eigen::VectorXd& prediction) 
   return 100.0 * (1.0 - (y - prediction).norm() / (y.array() - y.mean()).matrix().norm());
 }
 
-/// One-step predictions of every sample from the first one that has all lags.
+/// One-step predictions of every sample, from the first sample that has all lags.
 Eigen::VectorXd one_step(const LinearStructure& s, const Eigen::VectorXd& theta, const Trajectory& run, Index first) {
   const LinearModel model = unpack(s, theta);
   const Eigen::MatrixXd z = stacked_states(s, run), v = acting_inputs(s, run);
@@ -66,7 +66,7 @@ Eigen::VectorXd one_step(const LinearStructure& s, const Eigen::VectorXd& theta,
   return prediction;
 }
 
-/// The model driven by its own predictions; the first samples are measured.
+/// Predictions of the model from its own predictions; only the first samples are measured.
 Eigen::VectorXd free_run(const LinearStructure& s, const Eigen::VectorXd& theta, const Trajectory& run, Index first) {
   const LinearModel model = unpack(s, theta);
   Trajectory simulated = run;
@@ -81,7 +81,8 @@ struct ArmCase {
   double fit_train, fit_test, fit_simulation;
 };
 
-// Reference: the README of sysid_classic in the shared data, numpy's ordinary least squares on rows 0..511 with nk = 0.
+// The reference is the README of sysid_classic in the shared data: numpy's ordinary least squares on rows 0..511 with
+// nk = 0.
 TEST(Varx, RobotArmAsOrdinaryLeastSquaresHasIt) {
   MODEBANK_NEEDS_SHARED_DATA();
   const Eigen::MatrixXd data = read_rows(test::shared_data_dir() / "sysid_classic" / "robot_arm.dat");

@@ -7,7 +7,7 @@ namespace {
 
 constexpr LinearStructure many_lags{1, 2, false, 8, 8};  // 24 regressors
 
-/// Six runs of 1000 samples that switch between two motions every `stay` samples; with 0 there is one motion.
+/// Six runs of 1000 samples that switch between two motions every `stay` samples. With `stay` 0 there is one motion.
 Recording switching_runs(Index stay) {
   std::mt19937_64 generator(5);
   boost::random::uniform_real_distribution<double> level(-1.0, 1.0);
@@ -57,7 +57,7 @@ TEST(WindowLength, LookedAtRunsAreThoseThatTrain) {
   EXPECT_EQ(automatic_length(recording, many_lags), 72);
 }
 
-/// A step of three transitions leaves 100,000 windows of 300,000.
+/// With a step of three transitions, 300,000 transitions have 100,000 windows.
 TEST(WindowStep, LeavesAHundredThousandWindows) {
   Recording recording =
       test::make_recording({test::make_run(Eigen::MatrixXd::Zero(1, 300001), Eigen::MatrixXd::Zero(1, 300001))});

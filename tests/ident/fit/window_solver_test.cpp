@@ -1,4 +1,4 @@
-// Which solver solves how many windows, and the audit.
+// The number of windows that each solver solves, and the audit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ TEST(WindowSolverAuto, DependsOnTheNumberOfWindowsAlone) {
 TEST(WindowSolverAuto, CountsSolutionsNotAttempts) {
   std::mt19937_64 generator(5);
   Trajectory run = test::gaussian_run(test::skid_structure, test::skid_theta, 0.05, 150, generator);
-  run.state.middleCols(0, 40).setConstant(std::nan(""));  // windows without a transition
+  run.state.middleCols(0, 40).setConstant(std::nan(""));  // windows without any transition
   for (const WindowSolver solver : {WindowSolver::ceres, WindowSolver::batch}) {
     FitOptions o;
     o.solver = solver;

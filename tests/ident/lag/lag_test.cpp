@@ -8,7 +8,7 @@
 namespace modebank::test {
 namespace {
 
-constexpr double lag_tolerance_s = 0.05;  // the promised accuracy on simulated data
+constexpr double lag_tolerance_s = 0.05;  // the accuracy that the documentation promises on simulated data
 
 struct Case {
   double lag_s, time_constant_s, state_rate_hz;
@@ -52,8 +52,9 @@ TEST(Lag, DriftIsFoundWithTheLagInTheMiddle) {
   EXPECT_LT(fit.drift_standard_error, 5e-4);
 }
 
-/// The stated standard error must match the standard deviation of the estimates. It is one sixth too small: the mean
-/// squared z is 1.37 +- 0.1 over these 200 runs. An error of a factor sqrt(2) would fail.
+/// The estimated standard error must match the standard deviation of the estimates. It is one sixth too small: the mean
+/// squared z is 1.37 +- 0.1 over these 200 runs. A standard error that is wrong by a factor of sqrt(2) would fail this
+/// test.
 TEST(Lag, StandardErrorIsTheSpreadOverRuns) {
   constexpr int runs = 200;
   DelayedSystem system;
@@ -90,7 +91,7 @@ TEST(Lag, WithoutExcitationThereIsNone) {
   RunPair constant = run;
   constant.inputs.values.setConstant(0.2);
   EXPECT_EQ(estimate_lag(constant.states, constant.inputs, {}).constant.status, LagStatus::not_excited);
-  RunPair foreign = run;  // inputs unrelated to the states
+  RunPair foreign = run;  // inputs that do not act on the states
   foreign.inputs = simulate_delayed(system, 77).inputs;
   EXPECT_EQ(estimate_lag(foreign.states, foreign.inputs, {}).constant.status, LagStatus::not_excited);
   RunPair tiny = run;
@@ -114,14 +115,15 @@ TEST(LagTrack, FollowsADrift) {
   const RunPair run = simulate_delayed(system, 6);
   const LagTrack track = track_lag(run.states, run.inputs);
   ASSERT_GT(track.windows(), 15);
-  // If signals are paired sample by sample, they match best half an input period later than a held input acts.
+  // A held input acts over a whole period. So the best match of sample pairs lies half an input period later than its
+  // action.
   const double half_period_s = 0.5 / system.input_rate_hz;
   for (Index w = 0; w < track.windows(); ++w)
     EXPECT_NEAR(track.lag_s(w), system.clock.at(track.time_s(w)) + half_period_s, 0.1) << track.time_s(w);
 }
 
 TEST(PooledEstimate, IsTheRandomEffectsMean) {
-  // By hand: estimates 0, 2, 4 have weights 1, 1, 1/4; the fixed-effect mean is (0 + 2 + 1) / 2.25 = 4/3.
+  // By hand: the estimates 0, 2, 4 have weights 1, 1, 1/4. The fixed-effect mean is (0 + 2 + 1) / 2.25 = 4/3.
   const Eigen::Vector3d estimates(0.0, 2.0, 4.0), errors(1.0, 1.0, 2.0);
   const PooledEstimate pooled = pool(estimates, errors);
   const double fixed = 3.0 / 2.25;

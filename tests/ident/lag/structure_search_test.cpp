@@ -87,14 +87,14 @@ TEST(StructureSearch, FindsTheOrderOfASecondOrderMotion) {
   EXPECT_GE(seeds_with(second, {2, 1, 1}, 20), 18);
 }
 
-/// Multiplied by 1 - rho q^-1, the system is an ARX model with one more lag of state and input.
+/// If the system is multiplied by 1 - rho q^-1, it is an ARX model with one more lag of state and input.
 TEST(StructureSearch, FindsTheLagsThatColouredNoiseNeeds) {
   System coloured;
   coloured.rho = 0.7;
   EXPECT_GE(seeds_with(coloured, {2, 2, 1}, 20), 18);
 }
 
-/// With few runs, stretches of runs are left out.
+/// If there are few runs, stretches of runs are left out instead.
 TEST(StructureSearch, FindsTheStructureInOneRun) {
   System second;
   second.a = {1.5, -0.7};
@@ -106,7 +106,7 @@ TEST(StructureSearch, FindsTheStructureInOneRun) {
   EXPECT_EQ(found.parts, 10);
 }
 
-/// An input that acts at once must gain 0.02 nats over the best later input. An input that is held over four samples
+/// An input that acts at once must gain 0.02 nats over the best delayed input. An input that is held over four samples
 /// does not gain that much.
 TEST(StructureSearch, TakesNoDelayOnlyWhereItPays) {
   System at_once;
@@ -211,7 +211,7 @@ TEST(StructureSearch, HasASmallerRangeForShortRunsAndSaysSo) {
   EXPECT_THAT(found.remark, testing::HasSubstr("searched up to"));
 }
 
-/// Empty, constant and collinear data must give a result, too.
+/// Empty, constant and collinear data must also give a result.
 TEST(StructureSearch, SurvivesDataThatDetermineNothing) {
   System tiny;
   tiny.runs = 1;
@@ -236,7 +236,8 @@ TEST(StructureSearch, SurvivesDataThatDetermineNothing) {
   for (const StructureScore& score : still.scores) EXPECT_TRUE(std::isfinite(score.log_score));
 }
 
-/// Any structure that contains a noise-free motion predicts it exactly; the smallest must be chosen.
+/// Any structure that contains a noise-free motion predicts it exactly. The smallest of these structures must be
+/// chosen.
 TEST(StructureSearch, TakesTheSmallestExactStructure) {
   System exact;
   exact.a = {1.5, -0.7};
@@ -251,7 +252,7 @@ TEST(StructureSearch, LeavesOutSamplesOfNoWeight) {
   for (Trajectory& run : recording.runs) {
     run.weight = Eigen::VectorXd::Ones(run.samples());
     run.state.row(0).segment(100, 30).array() += 100.0;
-    run.weight.segment(100, 45).setZero();  // transitions that end there, or whose lags reach that sample
+    run.weight.segment(100, 45).setZero();  // transitions that end in the shifted samples, or whose lags reach them
   }
   EXPECT_EQ(lags_of(find(recording)), (std::array<Index, 3>{2, 1, 1}));
 }
@@ -263,9 +264,9 @@ TEST(LaggedRows, HaveTheirFullHistory) {
   recording.runs[0].state(0, 50) = std::numeric_limits<double>::quiet_NaN();
   const StructureRanges ranges{{1, 4}, {1, 3}, {0, 5}};
   const LaggedRows rows = make_lagged_rows(recording, ranges, true);
-  const Index first = 5 + 3 - 2;  // transitions 0 .. 5 reach before the run
+  const Index first = 5 + 3 - 2;  // the lags of transitions 0 .. 5 reach to before the run
 
-  // the missing sample is in the increments of two transitions, and in a lag of three more
+  // the missing sample is part of the increments of two transitions, and of the lags of three more
   const Index lost_behind_gap = 5;
   EXPECT_EQ(rows.count(), 6 * (399 - first) - lost_behind_gap);
   EXPECT_EQ(rows.X.cols(), 4 + 8 + 1);

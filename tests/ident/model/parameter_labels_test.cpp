@@ -18,14 +18,14 @@ TEST(ParameterLabels, SeveralStatesRowByRow) {
             (Names{"wz <- wz", "wz <- vx", "wz <- u", "vx <- wz", "vx <- vx", "vx <- u"}));
 }
 
-/// theta is [A_1 A_2 B_0 B_1]; a bank names all of its lagged samples.
+/// theta is [A_1 A_2 B_0 B_1]; a bank has a name for each lagged sample.
 TEST(ParameterLabels, LagsAsABankNamesThem) {
   EXPECT_EQ(parameter_labels({1, 2, false, 2, 2, 0}, {"wz", "wz[k-1]"}, {"l[k+1]", "r[k+1]", "l", "r"}),
             (Names{"wz <- wz (lag 1)", "wz <- wz (lag 2)", "wz <- l (lag 0)", "wz <- r (lag 0)", "wz <- l (lag 1)",
                    "wz <- r (lag 1)"}));
 }
 
-/// The position of the label must match the entry of that name in A, B or c.
+/// The position of the label must match the entry for that name in A, B or c.
 TEST(ParameterLabels, StandInThetasOrder) {
   const LinearStructure structure{2, 2, true, 3, 2, 2};
   const Names labels = parameter_labels(structure, {"p", "q"}, {"l", "r"}), codes = structure.parameter_names();

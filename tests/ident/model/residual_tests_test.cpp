@@ -20,7 +20,7 @@ MatrixXd white(Index rows, Index samples, std::uint64_t seed) {
   return values;
 }
 
-/// x[k] = phi x[k-1] + white.
+/// x[k] = phi x[k-1] + white noise.
 MatrixXd autoregressive(MatrixXd series, double phi) {
   for (Index k = 1; k < series.cols(); ++k) series.col(k) += phi * series.col(k - 1);
   return series;
@@ -34,7 +34,7 @@ TEST(ResidualTests, AgreeWithStatsmodels) {
   EXPECT_TRUE(near(tests.autocorrelation.transpose(), test::golden_rows(golden.at("autocorrelation")), rounding));
   EXPECT_TRUE(near(tests.cross_correlation, test::golden_rows(golden.at("cross_correlation")), rounding));
   EXPECT_NEAR(tests.autocorrelation_band, 2.5758293 / 20.0, 1e-8);
-  // statsmodels computes 12 lags for 60 samples; modebank's limit of a fifth of the samples is the same number.
+  // statsmodels computes 12 lags for 60 samples. modebank's limit, a fifth of the samples, is also 12.
   EXPECT_NEAR(test_residuals(residual.leftCols(60), input.leftCols(60)).ljung_box_p(0),
               golden.at("ljung_box_p").get<double>(), rounding);
   // The input acts three samples later.
@@ -44,8 +44,8 @@ TEST(ResidualTests, AgreeWithStatsmodels) {
   EXPECT_EQ(lag, 3);
 }
 
-/// Shares outside the bands over many series, against the binomial's 1e-4 quantiles (lags of one series are nearly
-/// independent).
+/// Shares of lags outside the bands over many series. They are compared with the binomial's 1e-4 quantiles, because the
+/// lags of one series are nearly independent.
 TEST(ResidualTests, OfWhiteNoiseStayInsideTheirBands) {
   constexpr int series = 100;
   double autocorrelation = 0.0, cross = 0.0, small_p = 0.0;
@@ -64,7 +64,7 @@ TEST(ResidualTests, OfWhiteNoiseStayInsideTheirBands) {
   EXPECT_TRUE(within(small_p, series, 0.05)) << small_p;
 }
 
-/// For two independent autocorrelated series, +- z / sqrt(N) would be much too narrow.
+/// For two independent autocorrelated series, a band of +- z / sqrt(N) would be much too narrow.
 TEST(ResidualTests, CrossCorrelationBandsAllowForAutocorrelation) {
   constexpr int series = 100;
   double outside = 0.0, outside_naive = 0.0;
@@ -80,7 +80,8 @@ TEST(ResidualTests, CrossCorrelationBandsAllowForAutocorrelation) {
 }
 
 TEST(ResidualTests, OfAnAutoregressionArePowersOfPhi) {
-  constexpr double phi = 0.7, four_standard_errors = 0.05;  // sqrt((1 + phi^2) / (1 - phi^2) / N) = 0.012
+  constexpr double phi = 0.7, four_standard_errors = 0.05;  // the standard error is sqrt((1 + phi^2) / (1 - phi^2) / N)
+                                                            // = 0.012
   const ResidualTests tests = test_residuals(autoregressive(white(1, 20'000, 3), phi), white(1, 20'000, 4));
   for (Index lag = 0; lag < 10; ++lag)
     EXPECT_NEAR(tests.autocorrelation(0, lag), std::pow(phi, lag), four_standard_errors) << lag;

@@ -31,7 +31,7 @@ SimulationOptions two_modes() {
   return options;
 }
 
-/// w[k] = x[k+1] - prediction of the mode of transition k, for the transitions of one mode.
+/// w[k] = x[k+1] - prediction by the mode of transition k, for the transitions of one mode.
 VectorXd process_noise(const SimulatedRun& run, const SimulationOptions& options, int mode) {
   const LinearModel model =
       unpack({options.states, options.inputs, options.intercept}, options.modes[static_cast<std::size_t>(mode)]);
@@ -85,7 +85,8 @@ TEST(Simulate, TransitionsHaveTheirFrequencies) {
   for (const SimulatedRun& run : simulate(options, seed))
     for (Index k = 0; k + 1 < run.mode.size(); ++k) counts(run.mode(k), run.mode(k + 1)) += 1;
   const MatrixXd frequencies = counts.rowwise().sum().cwiseInverse().asDiagonal() * counts;
-  constexpr double four_standard_errors = 0.013;  // sqrt(0.3 * 0.7 / 20000) = 0.0032 in the rarer mode
+  constexpr double four_standard_errors = 0.013;  // the standard error is sqrt(0.3 * 0.7 / 20000) = 0.0032 in the rarer
+                                                  // mode
   EXPECT_TRUE(near(frequencies, options.transition, four_standard_errors));
 }
 
@@ -99,7 +100,7 @@ TEST(Simulate, ModesDwellAsLongAsAsked) {
 
 TEST(Simulate, RunsStartInTheStationaryDistribution) {
   SimulationOptions options = two_modes();
-  options.transition = MatrixXd{{0.9, 0.1}, {0.3, 0.7}};  // stationary: 3/4, 1/4
+  options.transition = MatrixXd{{0.9, 0.1}, {0.3, 0.7}};  // the stationary distribution is 3/4, 1/4
   options.runs = 2000;
   options.samples = 2;
   double first = 0;
@@ -227,8 +228,8 @@ TEST(InputLaw, DriveMixesItsCommands) {
     const Eigen::Vector2d bend = u.col(k + 1) - 2 * u.col(k) + u.col(k - 1);
     ramps += u.col(k) != u.col(k + 1) && bend.cwiseAbs().maxCoeff() < simulation_rounding ? 1 : 0;
   }
-  // Shares of samples equal shares of commands, because length and kind are independent. For 5000 commands of geometric
-  // length the standard error is about sqrt(2 p / 5000).
+  // Because length and kind of commands are independent, shares of samples equal shares of commands. For 5000 commands
+  // of geometric length the standard error is about sqrt(2 p / 5000).
   const double samples = static_cast<double>(u.cols());
   EXPECT_NEAR(still / samples, 0.1, 4 * std::sqrt(2 * 0.1 / 5000));
   EXPECT_NEAR(equal / samples, 0.3, 4 * std::sqrt(2 * 0.3 / 5000));

@@ -26,7 +26,7 @@ VehicleSimulationOptions short_runs() {
   return options;
 }
 
-/// Row i of the truth at any time, by linear interpolation.
+/// Row i of the true signals at any time, by linear interpolation.
 double at(const VehicleRun& run, const MatrixXd& truth, Index i, double time_s) {
   const double position = std::clamp(time_s * 65.0, 0.0, static_cast<double>(run.time_s.size() - 2));
   const Index j = static_cast<Index>(position);
@@ -111,7 +111,7 @@ TEST(SimulateVehicle, ForwardSpeedAndTurnScaleShapeTheCommands) {
 TEST(SimulateVehicle, GyroNoiseBiasAndWalkHaveTheirSizes) {
   VehicleSimulationOptions options = short_runs();
   options.runs = 1;
-  options.friction = {0.01};  // long steps are allowed, because nothing moves
+  options.friction = {0.01};  // long steps are accurate enough, because nothing moves
   options.commands.samples = 4000;
   options.commands.standstill_fraction = 1.0;
   options.commands.equal_fraction = 0.0;
@@ -221,7 +221,8 @@ TEST(SimulateVehicle, HalvingTheStepChangesLittle) {
   VehicleSimulationOptions options = short_runs();
   options.runs = 1;
   options.commands.samples = 60;
-  options.friction = {0.06};  // a single ground, because the time at which a wheel crosses an edge depends on the step
+  options.friction = {0.06};  // a single kind of ground, because the time at which a wheel crosses an edge depends on
+                              // the step
   const VehicleRun coarse = simulate_vehicle(options, vehicle_seed).front();
   options.step_s = 0.5 * Vehicle::default_step_s(options.vehicle, {{0.06, 0.005, 0.02}});
   const VehicleRun fine = simulate_vehicle(options, vehicle_seed).front();

@@ -1,4 +1,4 @@
-// The simulated vehicle, tested with laws that do not come from its code.
+// The simulated vehicle, tested with physical laws that its code does not contain.
 #include "ident/simulate/vehicle.hpp"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(Vehicle, MotionResistanceIsPaidWithSlip) {
   snow.resistance = 0.05;
   const VehicleState state = settle({}, snow, {0.5, 0.5});
   // Small slip: mu N z / 2 = resistance N.
-  const double z = 2.0 * 0.05 / 0.6 * (1.0 + 0.05 / 0.6 / 1.5);  // next order of 1 - (1 - exp(-z)) / z
+  const double z = 2.0 * 0.05 / 0.6 * (1.0 + 0.05 / 0.6 / 1.5);  // the next term of 1 - (1 - exp(-z)) / z
   const double slip = z * 0.005 * (0.5 + 0.05) / 0.1;
   EXPECT_NEAR(0.5 - state[At::vx], slip, 0.02 * slip);
 }
@@ -113,7 +113,7 @@ TEST(Vehicle, AccelerationNeverExceedsFriction) {
 
 TEST(Vehicle, LockedWheelsStopLikeASlidingBox) {
   VehicleParameters vehicle;
-  vehicle.slip_speed_m_s = 0.002;  // near Coulomb's step
+  vehicle.slip_speed_m_s = 0.002;  // a slip near the step of Coulomb friction
   const Ground ground = plane(ice);
   const Vehicle robot(vehicle, ground);
   const double step = step_for(vehicle, ice), speed = 1.0, deceleration = ice.friction * gravity;
@@ -137,8 +137,8 @@ TEST(Vehicle, LockedWheelsStopLikeASlidingBox) {
 
 // For a robot that turns on the spot, the slip velocities of the four wheels are (w b - v, w a). With equal loads and
 // forces along the slip, the yaw moments balance at w = v b / (a^2 + b^2) for any friction law. So the effective track
-// is track (1 + (wheelbase / track)^2). For the Husky that is 1.867 times the track; its driver software uses 1.875.
-// The BorealTC runs show 1.03 to 1.05 m on flooring and on ice (with set-points in true m/s).
+// is track (1 + (wheelbase / track)^2). For the Husky it is 1.867 times the track; the Husky's driver software uses
+// 1.875. The BorealTC runs show 1.03 to 1.05 m on flooring and on ice (with set-points in true m/s).
 TEST(Vehicle, EffectiveTrackOnTheSpotIsGeometryWhateverTheFriction) {
   const VehicleParameters husky;
   const double ratio = 1.0 + std::pow(husky.wheelbase_m / husky.track_m, 2);
@@ -166,11 +166,11 @@ TEST(Vehicle, AnswersSlowlyOnIce) {
 
 TEST(Vehicle, MotorsAreLimited) {
   VehicleParameters weak;
-  weak.drive_force_N = 20.0;  // scrub on grip takes about 120 N from each side
+  weak.drive_force_N = 20.0;  // on grip, sideways scrub takes about 120 N from each side
   const VehicleState stuck = settle(weak, grip, {-0.5, 0.5}, 5.0);
   EXPECT_LT(stuck[At::wheel_right], 0.1);
   EXPECT_GT(settle(weak, ice, {-0.5, 0.5}, 5.0)[At::wheel_right], 0.45) << "ice takes less than they give";
-  // Driving straight: the whole force accelerates mass and wheels.
+  // While driving straight, the whole force accelerates mass and wheels.
   const VehicleState pushed = settle(weak, grip, {1.0, 1.0}, 0.5);
   EXPECT_NEAR(pushed[At::wheel_left], 0.5 * 2 * 20.0 / (weak.mass_kg + 2 * weak.drive_mass_kg), 0.01);
 }
@@ -203,7 +203,7 @@ TEST(Vehicle, MotionDoesNotDependOnHeading) {
   EXPECT_NEAR(turned[At::yaw_rate], state[At::yaw_rate], 1e-12);
 }
 
-/// Largest difference from the reference (much shorter steps) after half a second on ice.
+/// Largest difference from a reference with much shorter steps, after half a second on ice.
 double integration_error(double step, const VehicleState& reference, const Vehicle& robot) {
   VehicleState state;
   state[At::vx] = 0.4;
@@ -232,7 +232,7 @@ TEST(Vehicle, ConvergesWithTheFourthPowerOfTheStep) {
 
 TEST(Vehicle, DefaultStepIsStableWhereItIsStiffest) {
   VehicleParameters vehicle;
-  vehicle.drive_force_N = 5.0;  // motors at their limit: wheels move with the tyres
+  vehicle.drive_force_N = 5.0;  // motors at their limit: the wheels' speeds follow the tyres
   const GroundKind stiff{0.9, 0.001, 0.0};
   const Ground ground = plane(stiff);
   const Vehicle robot(vehicle, ground);

@@ -30,7 +30,7 @@ MotionTerms example_terms() {
   return terms;
 }
 
-/// The functions computed by hand at two rows; units and ranges come from the rows.
+/// The terms are computed by hand at two rows. Units and ranges come from the rows.
 TEST(StatedTerms, AreTheFunctionsThatTheyName) {
   MatrixXd rows(2, 4);          // v, v[k-1], u[k+1] and the constant
   rows << 2.0, -1.0, 0.5, 1.0,  //
@@ -117,7 +117,7 @@ TEST(Equations, AreInPhysicalUnits) {
   EXPECT_EQ(lines[3], "p1 = 0.5 left[k] - 1 right[k], p1 within -1 to 1");
 }
 
-/// Six runs of x[k+1] = .7 x[k] + bend(.2 u1 - .2 u0) + noise, inputs held for some samples.
+/// Six runs of x[k+1] = .7 x[k] + bend(.2 u1 - .2 u0) + noise, with inputs held for some samples.
 template <class Bend>
 Recording bent_runs(Bend bend, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
@@ -142,7 +142,7 @@ TEST(FindTerms, FindsASaturationOfTwoInputsTogether) {
       find_terms(bent_runs([](double v) { return std::clamp(v, -0.1, 0.1); }, 1), {1, 2}, FitOptions());
   EXPECT_FALSE(found.terms.empty());
   EXPECT_GT(found.gain, 0.1);
-  bool combined = false;  // whether some term is in the inputs' direction
+  bool combined = false;  // whether some term has the direction of the inputs
   for (Index v = 0; v < found.terms.variables(); ++v)
     combined = combined || (found.terms.direction.col(v).array() != 0.0).count() == 2;
   EXPECT_TRUE(combined);
@@ -162,7 +162,7 @@ TEST(FindTerms, TriesFewerLags) {
   ASSERT_EQ(found.tried.size(), 3U);
   EXPECT_EQ(found.tried[1].structure.state_lags, 2);
   EXPECT_EQ(found.tried[2].structure.input_lags, 3);
-  EXPECT_EQ(found.structure.state_lags, 1);  // linear lags could replace the nonlinearity; without such lags it is
+  EXPECT_EQ(found.structure.state_lags, 1);  // linear lags could replace the nonlinearity, so without such lags it is
                                              // found
 }
 

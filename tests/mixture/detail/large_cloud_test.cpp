@@ -31,7 +31,7 @@ TEST(LargeCloud, BlocksLaidOutWhenReadAreThoseThatAreKept) {
   }
 }
 
-/// r, r d and r d d' (its diagonal), summed point by point.
+/// Sums of r, r d and r d d' (its diagonal), computed point by point.
 Eigen::MatrixXd sums_by_definition(const GaussianMixture& mixture, const Eigen::MatrixXd& points,
                                    const Eigen::VectorXd& weights) {
   const Index F = points.rows();

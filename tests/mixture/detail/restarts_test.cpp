@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Four clusters in a row at equal distances.
+/// Four clusters in a row, at equal distances.
 GaussianMixture four_in_a_row() {
   GaussianMixture mixture;
   mixture.weights = Eigen::VectorXd::Constant(4, 0.25);
@@ -25,7 +25,7 @@ GaussianMixture four_in_a_row() {
   return mixture;
 }
 
-/// The same mixture, but with one cluster split in two and two clusters merged.
+/// The same mixture with two errors: one cluster is split in two, and two clusters are merged.
 GaussianMixture with_error(Index divided, Index first, Index second) {
   GaussianMixture mixture = four_in_a_row();
   mixture.means.col(first) = 0.5 * (mixture.means.col(first) + mixture.means.col(second));
@@ -43,8 +43,8 @@ TEST(Cross, SameMixturesGiveThemselves) {
   for (std::size_t k = 0; k < 4; ++k) EXPECT_LT((result.covariances[k] - one.covariances[k]).norm(), 1e-12);
 }
 
-/// One mixture is wrong at one end of the row, the other mixture at the other end. The child must be right at both
-/// ends.
+/// One mixture is wrong at one end of the row of clusters, the other mixture at the other end. Their child must be
+/// right at both ends.
 TEST(Cross, TakesWhatIsRightInEither) {
   const Eigen::MatrixXd points = draw(four_in_a_row(), 800, 3);
   const GaussianMixture left = with_error(3, 0, 1), right = with_error(0, 2, 3);
@@ -56,8 +56,8 @@ TEST(Cross, TakesWhatIsRightInEither) {
   EXPECT_GT(child, truth - 1.0);
 }
 
-/// Agreement counts the optima that each restart finds by itself. The number must equal that of separate single
-/// restarts. After crossing with the best, nearly all would agree.
+/// Agreement counts the optima that each restart finds by itself, so it must equal the agreement of separate single
+/// restarts. After crossing with the best restart, nearly all would agree.
 TEST(Restarts, AgreementIsCountedBeforeCrossing) {
   GaussianMixture truth;
   constexpr Index clusters = 9;
@@ -118,7 +118,7 @@ TEST(Restarts, BadOptionsAreNamed) {
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.tolerance = nan; });
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.covariance_floor = 1e300 * 1e300; });
   refused([&](SelectionOptions& options, SampleDesign&) { options.em.restarts = 0; });
-  // An invalid call must throw, and not count as a failed candidate.
+  // A call with invalid arguments must throw. It must not count as a failed candidate.
   GaussianMixture other_features = three_clusters(2.0);
   other_features.means.conservativeResize(1, Eigen::NoChange);
   for (Eigen::MatrixXd& covariance : other_features.covariances) covariance = Eigen::MatrixXd::Identity(1, 1);

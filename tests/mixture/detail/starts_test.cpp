@@ -1,4 +1,4 @@
-// Starts, moves out of poor optima, and matching of components.
+// Starts, moves away from poor optima, and matching of components.
 #include "mixture/detail/starts.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Six clusters in a row with two different distances. Random starts often put two centres in one cluster.
+/// Six clusters in a row, at two different distances. Random starts often put two centres in one cluster.
 GaussianMixture six_clusters() {
   GaussianMixture mixture;
   mixture.weights = Eigen::VectorXd::Constant(6, 1.0 / 6.0);
@@ -39,7 +39,7 @@ TEST(Starts, RandomOnesFindSeparateClusters) {
   EXPECT_EQ(fit.agreeing_restarts, 3);
 }
 
-/// The moments of clusters computed one by one (within-cluster and pooled scatter).
+/// Moments of clusters, computed one by one (within-cluster and pooled scatter).
 TEST(Starts, ClustersMomentsAreDrawnTowardsThePooledOnes) {
   Eigen::MatrixXd points(1, 4);
   points << 0.0, 2.0, 100.0, 104.0;
@@ -48,11 +48,11 @@ TEST(Starts, ClustersMomentsAreDrawnTowardsThePooledOnes) {
   std::mt19937_64 generator(1);
   GaussianMixture start;
   do start = random_start(blocks, 2, EmOptions{}, generator);
-  while (std::abs(start.means(0) - start.means(1)) < 90.0);  // repeats until both centres are drawn in one cluster
+  while (std::abs(start.means(0) - start.means(1)) < 90.0);  // repeats until both centres lie in the same cluster
   const Index low = start.means(0) < 50.0 ? 0 : 1;
   EXPECT_NEAR(start.means(low), 1.0, 1e-14);
   EXPECT_NEAR(start.means(1 - low), 103.0, 1e-14);
-  // Scatters 2 and 12 with weights 2 and 4, pooled 14 / 6; strength: (F + 1) times the mean weight 1.5.
+  // The scatters are 2 and 12 with weights 2 and 4, pooled 14 / 6. The strength is (F + 1) times the mean weight 1.5.
   EXPECT_NEAR(start.covariances[static_cast<std::size_t>(low)](0, 0), (2.0 + 3.0 * 14.0 / 6.0) / 5.0, 1e-14);
   EXPECT_NEAR(start.covariances[static_cast<std::size_t>(1 - low)](0, 0), (12.0 + 3.0 * 14.0 / 6.0) / 7.0, 1e-14);
   EXPECT_NEAR(start.weights(low), 3.5 / 9.0, 1e-15);
@@ -67,7 +67,7 @@ TEST(Starts, PointsForStartsAreNotChosenFromAgain) {
   EXPECT_THROW(chosen.for_starts(10, generator), std::logic_error);  // regression test; it once read freed memory
 }
 
-/// A start with two components in one cluster and one component for two clusters; EM alone stays there.
+/// A start with two components in one cluster and one component for two clusters. EM alone does not leave it.
 GaussianMixture poor_start() {
   GaussianMixture start = six_clusters();
   start.means.col(1) = start.means.col(0) + Eigen::Vector2d(0.2, 0.0);
@@ -106,7 +106,7 @@ TEST(SplitAndMerge, TheExpectedBestMoveIsTheRightOne) {
   EXPECT_GT(log_density(after, points).sum(), log_density(stuck, points).sum());
 }
 
-/// Only `most` of the K^3 / 2 moves may be stored. With 500 components all moves would not fit in memory.
+/// Only `most` of the K^3 / 2 moves may be stored. With 500 components, all moves would not fit into memory.
 TEST(SplitAndMerge, TheFewBestMovesAreTheBestOfAll) {
   std::mt19937_64 generator(7);
   std::normal_distribution<double> normal;
