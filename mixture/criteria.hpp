@@ -25,13 +25,13 @@ double criterion_value(const Candidate& candidate, Criterion criterion);
 /// at the covariance floor rank after all other rows, because the floor determined their likelihood.
 Eigen::Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion);
 
-/// Reasons against trusting the selected row, one sentence each:
+/// Reasons against trusting the selected row, one sentence for each:
 /// - restarts disagree;
 /// - the fit is at the covariance floor;
 /// - the row is at the edge of the range;
 /// - fits did not converge;
-/// - another number of components has a better score on left-out runs, by more than two standard errors. Disagreement
-///   of criteria does not count, because AIC nearly always chooses more components than BIC.
+/// - another number of components has a better score on left-out runs, by more than two standard errors.
+/// Disagreement of criteria does not count, because AIC nearly always chooses more components than BIC.
 std::vector<std::string> selection_warnings(const std::vector<Candidate>& candidates);
 
 }  // namespace modebank

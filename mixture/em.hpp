@@ -29,18 +29,19 @@ void check_points(const PointSet& points);
 /// Fits K components: the best of options.restarts restarts, improved by split-and-merge moves (Ueda et al. 2000) and
 /// by crossing (restarts.hpp). Points must be finite, up to 1e150 in magnitude.
 /// - Units: a feature is measured in units of its typical error or, if the error is unknown, of its standard deviation.
-///   So the fit does not depend on
-///   the features' units. A constant feature keeps its unit; the floor limits its variance, and also that of coinciding
-///   points.
+///   So the fit does not depend on the features' units. A constant feature keeps its unit. The floor limits the
+///   variance of a constant feature, and of points at one place.
 /// - The M step with the floor is the exact constrained maximiser, so the likelihood never falls. A component that
 ///   explains less than 1e-14 of the weight keeps its mean and covariance.
 /// - Squared extrapolation (Varadhan & Roland 2008) reduces the iterations.
 /// - Points with error covariances are deconvolved: the components describe the error-free points (Bovy, Hogg &
-///   Roweis 2011, Ann. Appl. Stat. 5, eq. 16). Zero errors change nothing. Throws std::invalid_argument for K < 1, K >
-///   N, invalid options, weights, points or error covariances. The result has the same bits for any number of threads.
+///   Roweis 2011, Ann. Appl. Stat. 5, eq. 16). With errors of zero the result does not change.
+///
+/// Throws std::invalid_argument for K < 1, K > N, invalid options, weights, points or error covariances. The result is
+/// the same to the last bit for any number of threads.
 EmResult fit_em(const PointSet& points, Eigen::Index components, const EmOptions& options, std::uint64_t seed);
-/// fit_em for several numbers of components over the same points. The points are prepared once and must outlive the
-/// sweep. fit() may be called from several threads; its result depends on its own arguments alone.
+/// fit_em for several numbers of components over the same points. The points are prepared once and must outlive this
+/// object. Several threads may call fit(). Its result depends on its own arguments alone.
 class EmSweep {
  public:
   EmSweep(const PointSet& points, const EmOptions& options);

@@ -34,15 +34,15 @@ enum class WindowErrors { ignore, include };
 /// - The point's covariance is that of theta. The logarithm of a noise variance has variance 2 / (L - rank / n),
 ///   uncorrelated with theta (delta method: an estimate of sigma^2 on nu degrees of freedom has variance 2 sigma^4 / nu
 ///   under Gaussian noise).
-/// - Windows with a non-finite covariance are skipped: they are rank deficient without a prior, and their theta
-///   measures nothing.
+/// - Windows with a non-finite covariance are skipped: they are rank deficient without a prior, so their theta
+///   contains no information.
 FeatureCloud make_features(const WindowFits& fits, FeatureSet features, WindowChoice choice,
                            const std::vector<Channel>& states, WindowsOverSwitch over_switch = WindowsOverSwitch::keep,
                            WindowErrors errors = WindowErrors::ignore);
 /// make_features with the choices of the options. FeatureSet::automatic gives at most most_features features.
 FeatureCloud make_features(const WindowFits& fits, const std::vector<Channel>& states, const ClusterOptions& options);
 
-/// Whether one-lag fits of the windows are clustered instead of `fits`.
+/// Whether one-lag fits of the windows are clustered in place of `fits`.
 bool clusters_one_lag(const WindowFits& fits, FeatureSet features);
 
 /// The cloud restricted to the named features, in the order of the names. Throws std::invalid_argument for a name

@@ -54,8 +54,8 @@ void check_sizes(const GaussianMixture& mixture);
 /// a negative variance or a correlation beyond one.
 void check_errors(const PointSet& points);
 
-/// Raises the eigenvalues to `floor`. If `diagonal`, raises the variances instead and sets the off-diagonals to zero.
-/// Returns whether any value was below `floor`.
+/// Raises the eigenvalues of a covariance to `floor`. If `diagonal`, raises the variances instead, and sets the
+/// off-diagonals to zero. Returns whether any value was below `floor`.
 bool raise_to_floor(Eigen::MatrixXd& covariance, double floor, CovarianceType type);
 
 // The functions below throw std::invalid_argument for sizes that do not fit, values that are not finite, a negative

@@ -16,7 +16,8 @@ struct Component {
 Component component_of(const GaussianMixture& mixture, Eigen::Index k);
 void put(const Component& component, Eigen::Index k, GaussianMixture& mixture);
 
-/// Merges components i and j into one of the same weight, mean and covariance (its diagonal for diagonal mixtures).
+/// Merges components i and j into one component of the same weight, mean and covariance (its diagonal for diagonal
+/// mixtures).
 Component merged(const GaussianMixture& mixture, Eigen::Index i, Eigen::Index j);
 
 /// A pair i < j and the cost of merging it.

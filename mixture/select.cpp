@@ -175,8 +175,8 @@ std::optional<PointPart> part_to_compare(const PointSet& points, std::uint64_t s
   return PointPart(points, positions);
 }
 
-/// The sample design of a part of the points. The part is worth the same number of independent samples as all points,
-/// because neighbouring points share samples.
+/// The sample design of a part of the points. Neighbouring points share samples, so the part counts as the same number
+/// of independent samples as all points.
 SampleDesign design_of(const SampleDesign& all, const std::vector<Index>& positions) {
   SampleDesign part{std::min(all.effective_samples, static_cast<double>(positions.size())), {}};
   for (const Index i : positions)

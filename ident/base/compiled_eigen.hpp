@@ -96,7 +96,8 @@ MODEBANK_EIGEN_SOLUTION(OnTheRight, Upper, RowMajor);
 
 }  // namespace internal
 
-// Factorisations that ident/base/linalg.hpp does not instantiate itself. Constructors that take a matrix use these.
+// Factorisations that ident/base/linalg.hpp does not instantiate. Eigen's constructors that take a matrix use these
+// factorisations.
 MODEBANK_EIGEN_TEMPLATE LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);
 MODEBANK_EIGEN_TEMPLATE LLT<Ref<MatrixXd>>& LLT<Ref<MatrixXd>>::compute(const EigenBase<MatrixXd>&);
 MODEBANK_EIGEN_TEMPLATE LDLT<MatrixXd>& LDLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);

@@ -1,4 +1,4 @@
-// Sums of outer products in register tiles, one block of rows after the other.
+// Sums of outer products, computed block by block in register tiles.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ident/base/gram.cpp"
 #include "ident/base/gram.hpp"

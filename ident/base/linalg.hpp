@@ -6,8 +6,8 @@
 #include <functional>
 #include <optional>
 
-/// Dense matrix decompositions by Eigen. Eigen's templates for them are slow to compile, so they are compiled once.
-/// Matrices must be finite.
+/// Dense matrix decompositions by Eigen. Eigen's templates for decompositions are slow to compile, so this file
+/// compiles them once. Matrices must be finite.
 namespace modebank {
 
 /// X = U diag(sigma) V' with min(rows, columns) singular values in decreasing order.

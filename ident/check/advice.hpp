@@ -49,11 +49,11 @@ struct RateAdvice {
   double rate_hz = 0.0;  ///< value for data.rate_hz; 0 keeps the inputs' own times
   RateReason reason = RateReason::keep;
 };
-/// Recommends a sample rate. Two to thirty samples per time constant are good. Faster data are reduced to ten samples
-/// per time constant. Slower data are raised to five if the states are sampled fast enough. If the jitter is above a
-/// fifth of a period, resampling at the median rate is recommended. If an encoder repeats at least 30 % of its samples,
-/// the rate at which its values change is recommended. The rate is a whole multiple or a whole fraction of the inputs'
-/// rate, so that predictions at both rates can be compared at the same times.
+/// Recommends a sample rate. Two to thirty samples per time constant of the response are good. Faster data are reduced
+/// to ten samples per time constant. Slower data are raised to five if the states are sampled fast enough. If the
+/// jitter is above a fifth of a period, resampling at the median rate is recommended. If an encoder repeats at least 30
+/// % of its samples, the rate at which its values change is recommended. The rate is a whole multiple or a whole
+/// fraction of the inputs' rate, so that predictions at both rates can be compared at the same times.
 RateAdvice advise_rate(const RateFacts& facts);
 
 }  // namespace modebank

@@ -12,9 +12,9 @@ namespace modebank {
 /// An input counts as zero (still) up to this share of its largest value.
 inline constexpr double still_share = 0.005;
 
-/// Flags the samples of `states` at rest. At rest all inputs are within `still_level` (m, one per input) of zero, at
-/// the sample and one sample earlier, and every state repeats its previous value. Without inputs no sample is flagged,
-/// because a coarse measurement would also repeat its values.
+/// Flags the samples of `states` at rest. A sample is at rest if two conditions hold. All inputs are within
+/// `still_level` (m, one per input) of zero, at the sample and one sample earlier. Every state repeats its previous
+/// value. Without inputs no sample is flagged, because a coarse measurement would also repeat its values.
 std::vector<bool> resting_samples(const Stream& states, const Stream& inputs, const Eigen::VectorXd& still_level);
 
 /// Flags the samples of `inputs` at which all inputs are within `still_level` of zero, both at the sample and one
@@ -43,9 +43,9 @@ struct RestCheck {
 };
 RestCheck check_rest(const Stream& states, const Stream& inputs, const Eigen::VectorXd& still_level);
 
-/// Order of persistent excitation (Ljung 1999, def. 13.2). It is the largest d, up to `most`, for which all eigenvalues
-/// of a matrix are above 1e-4. This is the second-moment matrix of the inputs and their first d - 1 delays. Each input
-/// is divided by its root mean square.
+/// Order of persistent excitation (Ljung 1999, def. 13.2). Consider the second-moment matrix of the inputs and their
+/// first d - 1 delays. The order is the largest d, up to `most`, for which all eigenvalues of this matrix are above
+/// 1e-4. Each input is divided by its root mean square.
 inline constexpr Eigen::Index most_excitation_order = 10;
 Eigen::Index excitation_order(const Eigen::MatrixXd& inputs, Eigen::Index most = most_excitation_order);
 

@@ -47,9 +47,9 @@ ChannelCheck check_channel(const Eigen::VectorXd& values);
 /// values.
 bool has_two_levels(const Eigen::VectorXd& values);
 
-/// Number of isolated outliers. An outlier differs from both neighbours in the same direction. Its distance from the
-/// mean of the neighbours exceeds three limits: 12 robust standard deviations of these distances in the surrounding 51
-/// samples, three quanta, and 1 % of the range.
+/// Number of isolated outliers. An outlier differs from both neighbours in the same direction. Consider its distance
+/// from the mean of the two neighbours. This distance exceeds three limits: 12 robust standard deviations of such
+/// distances in the surrounding 51 samples, three quanta, and 1 % of the range.
 Eigen::Index spikes(const Eigen::VectorXd& values, double quantum);
 
 /// Detects the ends of a signal's range at which a limiter acts. Full scale is the largest absolute value over all

@@ -9,8 +9,8 @@ namespace modebank {
 /// if its sizes do not fit or its times do not increase.
 Trajectory to_trajectory(const RecordedRun& run, Index states, Index inputs);
 
-/// Converts all runs in order. Throws the same errors as to_trajectory. Also throws std::invalid_argument if the number
-/// of names differs from the number of signals.
+/// Converts all runs in order. Throws the errors of to_trajectory. Also throws std::invalid_argument if the number of
+/// names differs from the number of signals.
 Recording to_recording(const RecordedRuns& runs);
 
 }  // namespace modebank

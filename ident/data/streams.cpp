@@ -80,7 +80,8 @@ class Grid {
 
   // in periods of the model; a filter restarts after a gap of 50 periods
   static constexpr double longest_gap = 1000.0, margin = 100.0;
-  /// Limits of a grid relative to its streams. Beyond them, the times are not in seconds or the rate is wrong.
+  /// Limits of a grid relative to its streams. A grid beyond these limits has times that are not in seconds, or a wrong
+  /// rate.
   static constexpr Index most_times = 1'000'000, most_per_sample = 1000;
   double first_, end_, rate_hz_;
   Index samples_ = 0;  ///< number of samples of the longest stream

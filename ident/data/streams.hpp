@@ -23,12 +23,12 @@ Eigen::MatrixXd interpolate(const Stream& stream, const Eigen::VectorXd& time_s)
 Eigen::MatrixXd average_ending(const Stream& stream, const Eigen::VectorXd& time_s, double step_s);
 
 /// Columns that are averaged when a log is reduced to a lower rate, because their values change at each sample of the
-/// log. Other columns are not averaged: their states are interpolated and their inputs held.
+/// log. Columns of states that are not averaged are interpolated, and columns of inputs are held.
 struct AveragedColumns {
   std::vector<Eigen::Index> states = {}, inputs = {};  ///< positions
 
-  /// Lag that is added for averaged inputs; held inputs keep their lag. If a lag is estimated, averaged inputs are
-  /// taken at the middle of each transition (hold_mid_transition).
+  /// Lag that is added for averaged inputs. The lag of held inputs does not change. If a lag is estimated, averaged
+  /// inputs are taken at the middle of each transition (hold_mid_transition).
   double further_lag_s = 0.0;
 
   bool any() const { return !states.empty() || !inputs.empty(); }
@@ -52,7 +52,7 @@ Eigen::MatrixXd hold(const Stream& stream, const Eigen::VectorXd& time_s);
 /// zero. `weights` is 1 x N.
 Eigen::VectorXd interpolate_weights(const Stream& weights, const Eigen::VectorXd& time_s);
 
-/// A gap lies between two samples if they are more than this many median periods of their stream apart.
+/// A gap lies between two samples if their distance is above this number of median periods of the stream.
 inline constexpr double gap_periods = 5.0;
 
 /// Standard deviation of the steps about their median, divided by the median, over all series. Gaps do not count as
@@ -63,7 +63,8 @@ double step_scatter(const std::vector<const Eigen::VectorXd*>& times_s);
 /// mixed step lengths, a single motion looks like several motions.
 inline constexpr double most_step_scatter = 0.1;
 
-/// Replaces by NaN the values that were interpolated across a gap of their stream (`stream_time_s`, increasing).
+/// Replaces by NaN all values that were interpolated across a gap of the stream with the times `stream_time_s`
+/// (increasing).
 void blank_gaps(const Eigen::VectorXd& stream_time_s, const Eigen::VectorXd& time_s, Eigen::MatrixXd& values);
 
 struct JoinTimes {

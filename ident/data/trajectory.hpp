@@ -48,9 +48,9 @@ struct Trajectory {
   /// sample k; weight(0) is unused. Weights are finite and at least 0; a weight of 0 excludes the transition. Only
   /// ratios of weights matter, because every fit divides by the mean over its transitions.
   Eigen::VectorXd weight;
-  /// Signals in memory of the calling program: n and m rows of N columns. They replace `state` and `input`, which are
-  /// then empty. Windows of linear models with one-step residuals read them through states() and inputs(). No other
-  /// function accepts such a run.
+  /// Signals in memory of the calling program: n and m rows of N columns. `state` and `input` are then empty. Windows
+  /// of linear models with one-step residuals read the signals through states() and inputs(). No other function accepts
+  /// such a run.
   struct Kept {
     const double *state = nullptr, *input = nullptr;
     Index states = 0, inputs = 0, samples = 0;

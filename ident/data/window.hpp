@@ -27,7 +27,7 @@ class WindowPlan {
   struct Range {
     Index first = 0;  ///< index of the first window
     Index count = 0;
-    Window window;  ///< the first of these windows
+    Window window;  ///< first window of the range
   };
   /// Windows first .. first + count - 1, divided into ranges of at most `longest` windows.
   std::vector<Range> ranges(Index first, Index count, Index longest) const;

@@ -86,7 +86,8 @@ bool add_to_audit(const AuditedWindow& window, WindowAudit& audit) {
   const bool rejected =
       !(window.cost <= WindowAudit::tolerance) || !(window.gradient <= WindowAudit::gradient_tolerance);
   audit.replaced += rejected ? 1 : 0;
-  // If a loss has several minima, the other solver may have found a lower one. The minimisation then did not fail.
+  // If a loss has several minima, the other solver may have found a lower minimum. This does not count as a failed
+  // minimisation.
   audit.lower += window.cost < -WindowAudit::tolerance ? 1 : 0;
   return rejected;
 }

@@ -187,7 +187,7 @@ class Fitting {
     }
   }
 
-  /// Counts which solver solved these windows, and checks a sample of the batch solver's results.
+  /// Counts the windows that each solver solved, and checks a sample of the batch solver's results.
   void audit(Index first, Index count, WindowFits& fits) {
     common_.audit.batch += std::count(fits.by_batch.begin(), fits.by_batch.end(), 1);
     const auto begin = std::lower_bound(audited_.begin(), audited_.end(), first),

@@ -13,15 +13,15 @@
 namespace modebank {
 
 /// Cuts and fits every window of the training runs, in parallel on oneTBB. Result i depends only on window i, the
-/// global model and the prior. sigma is the robust_scale of the window, or that of its run (ScaleSource::run, and if L
-/// <= q). It is at least scale_floor. options.solver selects the solver; the batch solver's results are audited. The
-/// default prior comes from all full-rank windows, or from 200,000 randomly drawn ones (64 consecutive at a time) if
-/// there are more. Throws DataError if no training run has options.length transitions. Throws ConfigurationError for an
-/// option out of range or a solver that does not support the model.
+/// global model and the prior. sigma is the robust_scale of the window. With ScaleSource::run, and if L <= q, it is the
+/// robust_scale of the run. It is at least scale_floor. options.solver selects the solver; the batch solver's results
+/// are audited. The default prior comes from all full-rank windows, or from 200,000 randomly drawn windows (64
+/// consecutive windows at a time) if there are more. Throws DataError if no training run has options.length
+/// transitions. Throws ConfigurationError for an option out of range or a solver that does not support the model.
 WindowFits fit_windows(const Recording& recording, const FitOptions& options);
 
-/// Fits the windows of `fits` with a one-lag model instead of their model with several lags; the other options are the
-/// same. Window i covers the same transitions. Prior standard deviations that are given per parameter are ignored.
+/// Fits the windows of `fits`, a model with several lags, again with a one-lag model. All other options are the same.
+/// Window i covers the same transitions. Prior standard deviations that are given per parameter are ignored.
 WindowFits fit_one_lag(const Recording& recording, const WindowFits& fits, FitOptions options);
 
 /// Number of windows that fit_windows will return.

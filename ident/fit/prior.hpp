@@ -21,7 +21,8 @@ struct ParameterPrior {
 /// tolerance have extreme estimates, which would dominate a sample standard deviation. If the robust value is zero
 /// (more than half of the windows agree exactly), the sample standard deviation is used. If this is also zero, or
 /// without full-rank windows, the value is global standard error x sqrt(N / length). This is the standard deviation
-/// that noise alone gives windows of `length` transitions. If it is zero or undefined, the value is 1.
+/// that noise alone gives windows of `length` transitions. If this standard deviation is zero or undefined, the value
+/// is 1.
 Eigen::VectorXd default_prior_sd(const Eigen::MatrixXd& parameters, const GlobalModel& global, Index length);
 
 /// Prior standard deviations from the options, one per parameter or one for all parameters. Without this option,

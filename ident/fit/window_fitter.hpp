@@ -39,7 +39,7 @@ class WindowFitter {
 
   /// robust_scale of a run's least-squares residuals; NaN if the run is too short.
   virtual Eigen::VectorXd scale_of(const Trajectory& run) const = 0;
-  /// sigma as the options require. It is `own`, the scale of the window's residuals, under three conditions: the
+  /// sigma as the options require. It is the scale of the window's residuals (`own`) under three conditions: the
   /// options ask for it, the window has at least `enough` samples, and `own` is finite. Otherwise it is the sigma of
   /// the run.
   Eigen::VectorXd window_sigma(const Window& window, bool enough, const std::function<Eigen::VectorXd()>& own) const;

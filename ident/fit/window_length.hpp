@@ -14,8 +14,8 @@ inline constexpr Index shortest_automatic_length = 25;
 ///
 /// Modes count as short if the motion changes in more than one window in six. A change means that the one-lag models of
 /// a window's halves differ significantly in coefficients (Chow 1960) or in residual variance. The test misses about
-/// half of the switches, for example those near the ends of a window. If windows last a third of a mode's duration, it
-/// finds a change in 28 % of the windows.
+/// half of the switches, for example those near the ends of a window. If windows last a third of a mode's duration, the
+/// test finds a change in 28 % of the windows.
 Index automatic_length(const Recording& recording, const LinearStructure& structure);
 /// automatic_length for the linear model, or the linearised motion model, that the options name.
 Index automatic_length(const Recording& recording, const FitOptions& options);

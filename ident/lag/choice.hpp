@@ -31,10 +31,10 @@ RunLag estimate_run(const RunPair& run, double range_s);
 /// Estimates lag and drift of every training run. Chooses a correction by cross-validation over the training runs (at
 /// most ten folds; a single run is split in halves). The score is the log score of the global model's one-step
 /// predictions (with intercept, Gaussian) on the transitions that all corrections share. The choice is the simplest
-/// correction whose gain over `none` is above one standard error and whose score is within one standard error of the
-/// best. A left-out run is shifted like a held-out run, by the pooled values of the other runs. Training runs use their
-/// own estimates, shrunk towards the pooled values by their errors. Runs without a usable estimate use the pooled
-/// values. Parallel over runs, deterministic.
+/// correction that meets two conditions. Its gain over `none` is above one standard error. Its score is within one
+/// standard error of the best score. A left-out run is shifted like a held-out run, by the pooled values of the other
+/// runs. Training runs use their own estimates, shrunk towards the pooled values by their errors. Runs without a usable
+/// estimate use the pooled values. Parallel over runs, deterministic.
 LagReport choose_lag(const std::vector<RunPair>& runs, const LagChoiceOptions& options);
 
 }  // namespace modebank

@@ -20,7 +20,7 @@ constexpr Index most_rows = 50000;  // more rows would increase the t values wit
 struct InputRows {
   MatrixXd older;       ///< N x (input lags before the newest, and a constant)
   MatrixXd newest;      ///< N x m
-  MatrixXd past, same;  ///< N x n, innovations of the previous and of the same transition
+  MatrixXd past, same;  ///< N x n, innovations of the previous transition and of the same transition
 };
 
 struct Regressors {

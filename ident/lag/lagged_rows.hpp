@@ -25,10 +25,10 @@ struct StructureRanges {
   }
 };
 
-/// The transitions of the training runs that all structures in some ranges can predict: even with the largest lags,
-/// their regressors were measured in the same run. Rows are ordered by fold.
+/// The transitions of the training runs that every structure in some ranges can predict. Even with the largest lags,
+/// the regressors of these transitions were measured in the same run. Rows are ordered by fold.
 ///
-/// The columns of X belong to the structure with the largest lags; other structures use leading parts of them. The
+/// X has the columns of the structure with the largest lags. Other structures use the leading columns of each kind. The
 /// columns are the newest state, differences between successive older states (accurate for smooth signals), inputs from
 /// the smallest delay on, and a constant. Columns have unit root mean square, and zero mean if there is a constant.
 struct LaggedRows {
@@ -42,7 +42,7 @@ struct LaggedRows {
   std::vector<Index> fold_begin;  ///< folds + 1, first row of each fold
   Index parts = 0;
   bool by_runs = false;  ///< true: the parts are whole runs; false: stretches of runs
-  double share = 0.0;    ///< number of these rows, as a share of the rows that a one-lag model could use
+  double share = 0.0;    ///< number of rows of X, as a share of the rows that a one-lag model could use
 
   Index count() const { return X.rows(); }
   Index folds() const { return static_cast<Index>(fold_begin.size()) - 1; }
@@ -51,9 +51,9 @@ struct LaggedRows {
   std::vector<Index> columns(const LinearStructure& structure) const;
 };
 
-/// Makes the rows and distributes their parts over five folds. With six or more runs, the parts are the runs. If there
-/// are fewer runs, these are cut into at least ten stretches. Long recordings are thinned to evenly spaced stretches,
-/// so that X has at most about four million entries.
+/// Makes the rows and distributes their parts over five folds. With six or more runs, the parts are the runs. Fewer
+/// than six runs are cut into at least ten stretches. Long recordings are thinned to evenly spaced stretches, so that X
+/// has at most about four million entries.
 LaggedRows make_lagged_rows(const Recording& recording, const StructureRanges& ranges, bool intercept);
 
 }  // namespace modebank

@@ -12,8 +12,8 @@ struct StretchParts {
   bool by_runs = false;  ///< true: the parts are whole runs; false: stretches of runs
 };
 
-/// Divides rows into parts. With six or more runs, the parts are the runs. If there are fewer runs, these are cut into
-/// at least ten stretches with about equal numbers of rows. `run`: N, index of each row's run, below `runs`.
+/// Divides rows into parts. With six or more runs, the parts are the runs. Fewer than six runs are cut into at least
+/// ten stretches with about equal numbers of rows. `run`: N, index of each row's run, below `runs`.
 StretchParts stretch_parts(std::vector<Eigen::Index> run, Eigen::Index runs);
 
 }  // namespace modebank

@@ -23,8 +23,8 @@ inline bool acts_later(const Lags& lags) { return lags[2] > 0; }
 
 ScoredStructures select(const ScoredStructures& all, bool (*wanted)(const Lags&));
 
-/// The structure with the highest score; on a tie, the first of these. Only wanted structures are considered; at least
-/// one must be wanted.
+/// The structure with the highest score. On a tie, the first structure with this score. Only structures for which
+/// `wanted` is true are considered; there must be at least one.
 Lags best_of(const ScoredStructures& all);
 Lags best_of(const ScoredStructures& all, bool (*wanted)(const Lags&));
 

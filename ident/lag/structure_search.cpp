@@ -111,7 +111,7 @@ class StructureClimb {
 
   bool holds(const Lags& lags) const { return rows_.ranges.holds(lags[0], lags[1], lags[2]); }
 
-  /// The structure with the highest score; on a tie, the first of these.
+  /// The structure with the highest score. On a tie, the first structure with this score.
   Lags best(const std::vector<Lags>& line) {
     std::vector<Lags> fresh;
     std::copy_if(line.begin(), line.end(), std::back_inserter(fresh), [&](const Lags& l) { return !seen_.count(l); });

@@ -135,7 +135,7 @@ LagTrack track_lag(const Stream& states, const Stream& inputs, const LagTrackOpt
   Index first = 0;
   for (double start = u.time_s(0); start + window_s <= u.time_s(0) + span_s + 1.5 * period_s; start += 0.5 * window_s) {
     while (first < u.time_s.size() && u.time_s(first) < start) ++first;
-    // A pause may hold many windows, all of them empty. Continue at the first window with samples.
+    // A pause may hold many windows without samples. Continue at the first window with samples.
     if (first < u.time_s.size())
       start += 0.5 * window_s * std::max(0.0, std::floor((u.time_s(first) - window_s - start) / (0.5 * window_s)));
     if (!(start + 0.5 * window_s > start)) break;  // at times so far from zero, a double does not resolve a step

@@ -6,8 +6,8 @@
 
 namespace modebank {
 
-/// Long-run covariance sum of the scores (q x N): the sum over lags of their autocovariances with Bartlett weights
-/// (Newey & West 1987). Bandwidth by Andrews (1991), eq. 6.2 and 6.4, for first-order autoregressions.
+/// Long-run covariance of the scores (q x N): their autocovariances, summed over lags with Bartlett weights (Newey &
+/// West 1987). Bandwidth by Andrews (1991), eq. 6.2 and 6.4, for first-order autoregressions.
 Eigen::MatrixXd long_run_sum(const Eigen::MatrixXd& scores);
 
 /// Variances of lag, drift and time constant at the optimum. NaN for a parameter that the data do not determine. A

@@ -15,7 +15,7 @@ std::string number(double value) {
   return text;
 }
 
-/// "wz[k]" from "wz". Other names of samples already contain their sample.
+/// Makes "wz[k]" of "wz". The names of other samples already contain their sample.
 std::string at_its_sample(const std::string& name) { return name.empty() || name.back() != ']' ? name + "[k]" : name; }
 
 /// A printed sum of products: "a x - b y".
@@ -71,7 +71,7 @@ struct VariableNames {
   int definitions_of_directions_ = 0;
 };
 
-/// The text "max(0, p1 - 0.4)", and the factor of its coefficient in these units.
+/// The text "max(0, p1 - 0.4)", and the factor that converts the coefficient of the term to these units.
 std::pair<std::string, double> in_units(const Term& term, const MotionTerms& terms,
                                         const std::vector<std::string>& names) {
   const auto name = [&](Index v) { return names[static_cast<std::size_t>(v)]; };

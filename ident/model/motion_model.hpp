@@ -19,8 +19,8 @@ struct ModelSettings {
 /// The motion models of the folder ident/model/models, by name.
 std::vector<std::string> motion_model_names();
 
-/// Throws ConfigurationError for an unknown name, with a list of the names. Also throws it for states or inputs that do
-/// not fit the model, with a list of those that fit.
+/// Throws ConfigurationError for an unknown name; the message lists the known names. Also throws it if the states or
+/// inputs do not fit the model; the message lists the model's states and inputs.
 std::shared_ptr<const MotionModel> make_motion_model(const std::string& name, const ModelSettings& settings);
 
 }  // namespace modebank

@@ -19,7 +19,7 @@ using Eigen::ArrayXd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A centred series, with zeros in place of values that are not finite, and its sum of squares.
+/// A series about its mean, with zeros in place of values that are not finite. Also the sum of its squares.
 struct Centred {
   ArrayXd values;
   double square_sum = 0.0;

@@ -44,7 +44,7 @@ struct MotionTerms {
 /// such part.
 void check_terms(const MotionTerms& terms, Eigen::Index regressors);
 
-/// The terms with the indices `used`, with only those variables that they use.
+/// The terms with the indices `used`, and only those variables that appear in these terms.
 MotionTerms used_part(const MotionTerms& terms, const std::vector<Term>& used);
 
 /// Evaluates terms at one point. The first use allocates; later ones do not.

@@ -22,7 +22,7 @@ struct EnumNames<InputLaw> {
 /// Options for drawing the inputs.
 struct CommandOptions {
   InputLaw input_law = InputLaw::drive;
-  Index hold_samples = 10;           ///< number of samples in a command (law `drive`: their mean)
+  Index hold_samples = 10;           ///< number of samples in a command (law `drive`: mean number)
   double input_amplitude = 0.5;      ///< commands are drawn from [-amplitude, amplitude] [input unit]
   double input_quantum = 0.0;        ///< applied inputs are rounded to multiples of this; 0 means no rounding
   double standstill_fraction = 0.1;  ///< share of commands with all inputs zero (law `drive`)

@@ -50,7 +50,7 @@ std::vector<Index> leading_regressors(const LinearStructure& s, const MatrixXd& 
   return taken;
 }
 
-/// All directions, grouped by kind, so that a limit on their number keeps the most important directions of each state.
+/// All directions, grouped by kind. If their number is limited, the most important directions of each state are kept.
 std::vector<VectorXd> directions(const LinearStructure& s, const MatrixXd& fit) {
   std::vector<VectorXd> all;
   const Index n = s.dimension(), m = s.inputs;

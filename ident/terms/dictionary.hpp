@@ -12,8 +12,8 @@ namespace modebank {
 ///
 /// Regressors are chosen one after another; each new regressor explains the most of the remaining increments. The
 /// increment of a state gives several directions: the part from inputs of all lags, the whole increment, and the parts
-/// from each of the newest two input samples. Directions matter because a saturation acts on b'u instead of a single
-/// input.
+/// from each of the newest two input samples. Directions matter because a saturation acts on a sum of inputs b'u, not
+/// on a single input.
 ///
 /// `regressors`: N x q; `fit`: q x n, the linear fit; `targets`: N x n, the values to be explained.
 MotionTerms make_dictionary(const LinearStructure& structure, const Eigen::MatrixXd& regressors,

@@ -34,10 +34,10 @@ inline constexpr double least_terms_gain = 0.02;
 
 /// Decides whether one motion of the training runs is nonlinear, and selects its terms (method: section 2a, item 4).
 /// Terms are selected with one lag, with two lags and with the lags of `structure`, because linear lags can replace a
-/// nonlinearity. Among these three results, the one with the fewest columns within one standard error of the best score
-/// on left-out rows is chosen. The gain over the linear model is measured on each half of the training runs, with terms
-/// chosen on the other half. It must reach 0.02 nats and two standard errors. The result is the same for any number of
-/// threads. Throws DataError without usable transitions.
+/// nonlinearity. Among these three results, those within one standard error of the best score on left-out rows are
+/// considered. The result with the fewest columns is chosen. The gain over the linear model is measured on each half of
+/// the training runs, with terms chosen on the other half. It must reach 0.02 nats and two standard errors. The result
+/// is the same for any number of threads. Throws DataError without usable transitions.
 FoundTerms find_terms(const Recording& recording, const LinearStructure& structure, const FitOptions& options);
 
 }  // namespace modebank

@@ -43,7 +43,7 @@ RunRegression rows_of(const Trajectory& run, const LinearStructure& widest, Inde
   return rows;
 }
 
-/// Cuts the parts into stretches if their number is small.
+/// Cuts the parts into stretches if there are few parts.
 void cut_few_parts(TermRows& rows) {
   StretchParts cut = stretch_parts(std::move(rows.part), rows.parts);
   rows.part = std::move(cut.part);

@@ -8,8 +8,8 @@
 
 namespace modebank {
 
-/// Transitions of the training runs for the search for terms. All structures use the same transitions: even with the
-/// most lags, their regressors were measured.
+/// Transitions of the training runs for the search for terms. All structures use the same transitions. Even with the
+/// most lags, the regressors of these transitions were measured.
 struct TermRows {
   LinearStructure widest;
   Eigen::MatrixXd X;               ///< N x q regressors of the structure with the most lags
@@ -18,15 +18,15 @@ struct TermRows {
   Eigen::Index parts = 0;
 
   Eigen::Index count() const { return X.rows(); }
-  /// Regressors of a structure that has the same delay and no more lags.
+  /// Regressors of a structure with the same delay and at most the same numbers of lags.
   Eigen::MatrixXd regressors(const LinearStructure& structure) const;
-  /// The rows of some parts, with new part numbers. If there are fewer than six parts, these are cut into stretches.
+  /// The rows of some parts, with new part numbers. Fewer than six parts are cut into stretches.
   TermRows some(const std::vector<bool>& of_part) const;
 };
 
-/// Collects the rows. With six or more runs, the parts are the runs. If there are fewer runs, these are cut into at
-/// least ten stretches. Long recordings are thinned to evenly spaced stretches of about `most_rows` rows in total.
-/// Sample weights are ignored.
+/// Collects the rows. With six or more runs, the parts are the runs. Fewer than six runs are cut into at least ten
+/// stretches. Long recordings are thinned to evenly spaced stretches of about `most_rows` rows in total. Sample weights
+/// are ignored.
 TermRows gather_term_rows(const Recording& recording, const LinearStructure& widest, Eigen::Index most_rows);
 
 /// Mean difference of log densities over rows, and its standard error over parts.

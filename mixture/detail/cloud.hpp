@@ -58,9 +58,9 @@ using BlockColumns = Eigen::Array<double, block_size, Eigen::Dynamic>;
 
 /// Weighted points in scaled units, in blocks of fixed length. Within a block each feature is one column (structure of
 /// arrays), so that every loop over points is vectorised. The last block is padded with points of weight zero. Small
-/// clouds are copied. Large clouds are laid out block by block on each reading, so they need no second copy in memory;
-/// the results are the same to the last bit. The object holds a reference to its original points. The copies made by
-/// for_starts hold none.
+/// clouds are copied. Large clouds are laid out block by block on each reading, which saves the memory of a copy. The
+/// results are the same to the last bit. The object holds a reference to its original points, but an object made by
+/// for_starts does not.
 class PointBlocks {
  public:
   /// Only clouds of at most `most_copied` bytes are copied.

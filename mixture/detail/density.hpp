@@ -63,7 +63,7 @@ class KernelScratch {
   double* noise_;
 };
 
-/// Used in place of the logarithm of a zero weight.
+/// Replaces the logarithm of a zero weight.
 inline constexpr double log_zero = -1e300;
 
 }  // namespace modebank

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double rounding_share = 1e-13;
 constexpr double smallest_scale = 1e-150;
-/// A distance in standard deviations of the bulk. If at most 2.5 % of the points lie outside the bulk, those within
+/// A distance in standard deviations of the bulk. If at most 2.5 % of the points lie outside the bulk, points within
 /// this distance cannot dominate the standard deviation.
 constexpr double far_out = 6.0;
 /// Number of terms per partial sum. Summing partial sums has smaller rounding errors.
@@ -125,8 +125,8 @@ Bulk bulk_of(const PointSet& set, Index feature) {
   return {quantile(0.5), (quantile(0.975) - quantile(0.025)) / 3.92};
 }
 
-/// The smallest allowed unit. The variances of a component lie between the floor and the feature's variance, which a
-/// component has if it holds all points. The ratio of these two must be representable in double precision.
+/// The smallest allowed unit. A component's variance lies between the floor and the variance of the feature. The ratio
+/// of floor and variance must be representable in double precision.
 double smallest_unit(double sd, double floor) {
   constexpr double most_ratio = 1e13;
   return sd / std::sqrt(most_ratio * floor);

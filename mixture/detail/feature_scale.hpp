@@ -7,9 +7,9 @@
 namespace modebank {
 
 /// Affine map from physical units to the units of the fit. Each feature has zero mean. Its unit is the typical error of
-/// its points; if the error is unknown, it is the standard deviation of the points. Outliers may make this standard
-/// deviation more than 20 times that of the bulk, which follows from the quantiles at 2.5 and 97.5 %. The feature then
-/// has zero median and the bulk's unit, within the limits of double precision.
+/// its points; if the error is unknown, it is the standard deviation of the points. The bulk's standard deviation
+/// follows from the quantiles at 2.5 and 97.5 %. If outliers make the standard deviation more than 20 times as large as
+/// that, the feature has zero median and the bulk's standard deviation as unit, within the limits of double precision.
 struct FeatureScale {
   Eigen::VectorXd center;   ///< F, weighted mean [feature unit]
   Eigen::VectorXd scale;    ///< F [feature unit]; 1 for a constant feature whose error is unknown
@@ -31,8 +31,8 @@ struct FeatureScale {
   double log_jacobian() const { return -scale.array().log().sum(); }
 };
 
-/// The noise component's box in physical units: the bounding box of the points of positive weight. Each side is at
-/// least as long as that of a uniform distribution with variance `floor` (scaled units), so the volume is positive.
+/// The noise component's box in physical units: the bounding box of the points of positive weight. Each side has at
+/// least the length of a uniform distribution with variance `floor` (scaled units), so the volume is positive.
 UniformNoise bounding_box(const PointSet& points, const FeatureScale& scale, double floor);
 
 }  // namespace modebank

@@ -15,7 +15,8 @@ using Eigen::Index;
 namespace {
 
 constexpr Index blocks_per_group = 32;
-/// With fewer points a pass is too short to use several threads. Restarts and candidates run in parallel instead.
+/// If there are fewer points, a pass is too short to use several threads. Restarts and candidates run in parallel
+/// instead.
 constexpr Index parallel_points = 20000;
 constexpr double starved_share = 1e-14;
 

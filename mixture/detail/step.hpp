@@ -23,7 +23,7 @@ struct MixtureMoments {
 /// noise component: a log density at every point.
 MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture, const double* background = nullptr);
 
-/// `expect` without the components' sums. Log-likelihood and noise are the same as there, to the last bit.
+/// `expect` without the components' sums. Log-likelihood and noise equal those of `expect` to the last bit.
 MixtureMoments measure(const PointBlocks& points, const GaussianMixture& mixture);
 
 /// M step in place. Eigenvalues of covariances (for diagonal ones, variances) are raised to at least `floor`. The

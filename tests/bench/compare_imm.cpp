@@ -1,6 +1,6 @@
 // compare_imm [ROUNDS]: compares the filter's step with a plain program that uses dynamic Eigen matrices. This is the
 // project's peer imm_eigen.cpp: filters in a vector, S.inverse(), Joseph's form, likelihoods in the linear domain.
-// Rounds alternate on one thread. Prints medians. Every number is compared with that of the peer.
+// Rounds alternate on one thread. Prints medians. Every number is compared with the peer's number.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>

@@ -114,8 +114,8 @@ TEST(ErrorAware, ZeroErrorsGiveThePlainFit) {
 }
 
 TEST(ErrorAware, EqualErrorsAddToTheCovariances) {
-  // If all points have the same error covariance S, a mixture of inflated components has the same density N(mu, Sigma +
-  // S).
+  // If all points have the same error covariance S, a mixture whose components are inflated by S has the same density
+  // N(mu, Sigma + S).
   for (const Index features : {2, 4, 9}) {  // the last size is beyond the unrolled kernels
     const GaussianMixture mixture = any_mixture(features, 3);
     GaussianMixture inflated = mixture;

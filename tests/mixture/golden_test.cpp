@@ -47,7 +47,7 @@ TEST(MixtureGolden, FitsAgreeWithScikitLearnFromTheSameStart) {
     EXPECT_NEAR(fit.log_likelihood, expected["log_likelihood"].get<double>(), log_likelihood_tolerance);
     const GaussianMixture reference = mixture(expected);
     EXPECT_TRUE(near(fit.mixture.weights, reference.weights, parameter_tolerance));
-    // In units of each feature's standard deviation, because these differ by a factor of 500.
+    // In units of each feature's standard deviation, because the standard deviations differ by a factor of 500.
     const Eigen::ArrayXd unit = reference.covariances[0].diagonal().array().sqrt();
     EXPECT_TRUE(near(fit.mixture.means.array().colwise() / unit, reference.means.array().colwise() / unit,
                      parameter_tolerance));

@@ -53,7 +53,7 @@ TEST(Selection, FindsThreeClustersAmongIndependentPoints) {
 }
 
 TEST(Selection, OverlapTakesEvidenceAway) {
-  // 600 independent points reveal these clusters. If the points are worth only 30 independent points, they do not.
+  // 600 independent points reveal these clusters. The same points do not, if they are worth only 30 independent points.
   const Eigen::MatrixXd points = draw(three_clusters(3.0), 600, 2);
   SampleDesign design;
   design.effective_samples = 30.0;

@@ -63,7 +63,7 @@ FeatureCloud cloud_with(const WindowFits& fits, WindowErrors errors) {
   return make_features(fits, FeatureSet::parameters, WindowChoice::all, {{"x", ""}}, WindowsOverSwitch::keep, errors);
 }
 
-/// Errors of the components' means and of their standard deviations of the input parameters.
+/// Errors of the components' means and standard deviations.
 struct Misfit {
   double mean;       ///< largest error of a mean, in standard deviations of its component
   double inflation;  ///< largest ratio of the input parameters' standard deviation to the true one
@@ -123,7 +123,7 @@ TEST(WindowErrors, ThePriorIsTakenOffOfRobustFits) {
   options.prior = Prior::global;
   options.prior_sd = {0.1};
   const WindowFits held = fit_windows(stretches.recording, options);
-  WindowFits alike = held;  // the result if the data had the same information in the fit as in the covariance
+  WindowFits alike = held;  // the result if the data had the same information in the fit and in the covariance
   alike.weighed_information.setOnes();
   const FeatureCloud a = cloud_with(free, WindowErrors::include), b = cloud_with(held, WindowErrors::include),
                      c = cloud_with(alike, WindowErrors::include);

@@ -38,8 +38,8 @@ TEST(WindowOverSwitch, NotBelowTheQuantile) {
 }
 
 TEST(WindowOverSwitch, AModeThatLastsHasNone) {
-  // With step 5, the windows with the larger variance cover 100 transitions. So each of them has a neighbour with equal
-  // variance.
+  // With step 5, the windows with the larger variance cover 100 transitions. So each of these windows has a neighbour
+  // with the same variance.
   const std::vector<bool> flags = windows_over_switch(fits_with_a_loud_stretch(100.0, 5));
   EXPECT_EQ(std::count(flags.begin(), flags.end(), true), 0);
 }

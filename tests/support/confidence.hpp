@@ -15,8 +15,8 @@ Eigen::VectorXd t_value(const LocalModel& fit);
 /// Degrees of freedom nu of the noise variance in the covariance. Regions are (theta - truth)' covariance^-1 (theta -
 /// truth) <= p F_level(p, nu). Without a prior nu = L - p, at least 1. With a prior, only f = sum of `information` of
 /// the p directions depend on the estimated noise variance. The other directions depend on the prior's variance, which
-/// is known. Then nu = 2 + (L - p - 2) p / f, which gives the statistic its mean if the truth is drawn from the prior.
-/// For L <= q, nu is infinite: the noise is known, and regions are chi-square.
+/// is known. Then nu = 2 + (L - p - 2) p / f. The statistic then has the right mean if the truth is drawn from the
+/// prior. For L <= q, nu is infinite: the noise is known, and regions are chi-square.
 double region_degrees_of_freedom(const LocalModel& fit);
 
 /// The ellipsoid that contains the true theta with probability `level`. With a sandwich covariance of several states,

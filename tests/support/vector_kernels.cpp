@@ -8,7 +8,7 @@
 
 namespace {
 
-/// The target that Highway's dispatch selects: the best one that is compiled and that the machine supports. 0 if no
+/// The target that Highway's dispatch selects: the best target that is compiled and that the machine supports. 0 if no
 /// kernel was called. This file is compiled with the same definitions as the kernels, so HWY_TARGETS has the same
 /// value.
 std::int64_t target_that_ran() {

@@ -50,8 +50,8 @@ enum class Packing { diagonal, affine, whole, tiles };
 
 /// Working memory of one thread, aligned to 64 bytes.
 struct Scratch {
-  double* relative = nullptr;     ///< block_size x K, and one more column for noise: w_k N_k(x), divided by the largest
-                                  ///< of these values for the point
+  double* relative = nullptr;     ///< block_size x K, and one more column for noise: w_k N_k(x), divided by its largest
+                                  ///< value over k
   double* sum = nullptr;          ///< block_size: sum of `relative` over the components, at least one
   double* log_density = nullptr;  ///< block_size; at least about -1e300, never NaN
   double* lanes = nullptr;        ///< sums per lane: log-likelihood, noise, then `entries` for each component

@@ -104,7 +104,7 @@ TEST_P(Batch, HasTheSameLocalModelsAsCeres) {
         EXPECT_TRUE(batch.rank == ceres.rank);
         if (convex(o.loss)) {
           EXPECT_LE(batch.audit.cost_difference, WindowAudit::tolerance);
-          EXPECT_LE(batch.audit.gradient, 1.1e-10);  // Ceres alone, used below, reaches only about 1e-7
+          EXPECT_LE(batch.audit.gradient, 1.1e-10);  // Ceres alone, whose result is used below, reaches only about 1e-7
           EXPECT_LE(batch.audit.parameter_difference, 1e-6);
         }
         Index others = 0;  // if a loss has several minima, the solvers may find different minima

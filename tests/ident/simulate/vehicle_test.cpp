@@ -232,7 +232,7 @@ TEST(Vehicle, ConvergesWithTheFourthPowerOfTheStep) {
 
 TEST(Vehicle, DefaultStepIsStableWhereItIsStiffest) {
   VehicleParameters vehicle;
-  vehicle.drive_force_N = 5.0;  // motors at their limit: the wheels' speeds follow the tyres
+  vehicle.drive_force_N = 5.0;  // motors at their limit: the tyres determine the wheels' speeds
   const GroundKind stiff{0.9, 0.001, 0.0};
   const Ground ground = plane(stiff);
   const Vehicle robot(vehicle, ground);

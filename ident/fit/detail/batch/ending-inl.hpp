@@ -1,4 +1,4 @@
-// Sums over the residuals at the optimum, and the covariances computed from them.
+// Sums over the residuals at the optimum, and the covariances that follow from these sums.
 #if defined(MODEBANK_BATCH_ENDING_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_BATCH_ENDING_INL
 #undef MODEBANK_BATCH_ENDING_INL

@@ -21,7 +21,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 inline constexpr double stationary_square = stationary_gradient * stationary_gradient;
 /// Gains below this share of sum y^2 are rounding errors.
 inline constexpr double rounding_square = 1e-30;
-/// Newton steps need a second derivative whose pivots exceed this share of those of the regressors.
+/// Newton steps need a second derivative whose pivots are above this share of the pivots of the regressors' Gram
+/// matrix.
 inline constexpr double least_curvature = 1e-8;
 /// Reweighted steps need a Gram matrix whose pivots exceed this share.
 inline constexpr double least_weight = 1e-12;
@@ -73,8 +74,8 @@ HWY_INLINE V magnitude(const Symmetric<Q>& gram, V square_sum, const V (&theta)[
 }
 
 /// A step for the lanes in `weak`, whose second derivative is not safely positive. A share of the regressors' own
-/// second derivative is added first. If the sum is still not positive, the step is that of reweighted least squares,
-/// which cannot increase these losses. Returns the lanes that have a step.
+/// second derivative is added first. If the sum is still not positive, takes a step of reweighted least squares, which
+/// cannot increase the loss. Returns the lanes that have a step.
 template <int Q, class LossT>
 HWY_NOINLINE M cautious_step(const View& view, const LossT& loss, const Surroundings<Q>& around, const V (&theta)[Q],
                              const Sums<Q>& s, M weak, V (&step)[Q]) {

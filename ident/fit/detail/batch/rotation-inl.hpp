@@ -33,7 +33,7 @@ struct Start {
   M deficient;  // lanes of `certain` that are rank deficient
 };
 
-/// Orthogonalises the columns of regressors and increments one after the other: modified Gram-Schmidt with the
+/// Orthogonalises the columns of regressors and increments one after another by modified Gram-Schmidt, with the
 /// increments as last column (backward stable: Bjorck 1967). Leaves the least-squares residuals in the last column.
 template <int Q>
 struct Orthogonal {

@@ -29,8 +29,8 @@ class BatchWorkspace {
 /// Fits consecutive windows of models that are linear in their parameters (one state), a vector of windows at a time.
 /// Objective and definitions are those of fit_window. Newton's method starts from each window's (posterior) least
 /// squares; for non-convex losses it starts from the Huber optimum. A window's result depends on that window alone, to
-/// the last bit. Convergence is a gradient of 1e-10 |psi| in orthonormal coordinates. The caller must solve the windows
-/// with another verdict than `solved`. They have too few samples, a condition above 1e5, rank-deficient regressors
+/// the last bit. Convergence is a gradient of 1e-10 |psi| in orthonormal coordinates. The caller must solve all windows
+/// whose verdict is not `solved`. These windows have too few samples, a condition above 1e5, rank-deficient regressors
 /// without a prior, or no convergence.
 class BatchSolver {
  public:

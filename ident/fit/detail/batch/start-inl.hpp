@@ -15,8 +15,8 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::batch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// If every pivot of the normal equations is above this share of its diagonal element, solving them loses at most four
-/// of sixteen digits.
+/// If every pivot of the normal equations is above this share of its diagonal element, their solution loses at most
+/// four of sixteen digits.
 inline constexpr double safe_pivot = 1e-4;
 
 HWY_INLINE V sample_count(const View& view) {
@@ -27,8 +27,8 @@ HWY_INLINE V sample_count(const View& view) {
 }
 
 /// Smallest and largest eigenvalue of a positive definite matrix with unit diagonal and the given determinant. In three
-/// dimensions the largest comes from the trigonometric formula (Smith 1961, Communications of the ACM 4). The others
-/// come from the trace and the determinant, without cancellation.
+/// dimensions the largest comes from the trigonometric formula (Smith 1961, Communications of the ACM 4). The other
+/// eigenvalues come from the trace and the determinant, without cancellation.
 struct Extremes {
   V least, largest;
 };

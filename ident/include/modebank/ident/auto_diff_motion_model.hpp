@@ -48,8 +48,8 @@ class AutoDiffMotionModel final : public MotionModel {
       functor_(theta, x, u, dt_s, next);
   }
 
-  /// Residuals of many transitions. Needs only one virtual call and one conversion of theta to dual numbers for all of
-  /// them.
+  /// Residuals of many transitions. For all of them together, needs only one virtual call and one conversion of theta
+  /// to dual numbers.
   void residuals(const double* theta, const Transition* transitions, std::ptrdiff_t count, double* r,
                  double* by_theta) const override {
     if (by_theta) return residuals_with_derivatives(theta, transitions, count, r, by_theta);

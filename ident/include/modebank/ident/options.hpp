@@ -47,8 +47,8 @@ struct EnumNames<Prior> {
 };
 
 /// Solver of the window fits. `ceres`: one window at a time. `batch`: many linear windows of one state at a time; Ceres
-/// fits windows that the batch solver passes on. `automatic`: Ceres for up to most_ceres_windows windows; for more, the
-/// batch solver if it has kernels. The choice depends on the runs and the options alone.
+/// fits the windows that the batch solver cannot fit. `automatic`: Ceres for up to most_ceres_windows windows; for more
+/// windows, the batch solver if it has kernels for the model. The choice depends on the runs and the options alone.
 enum class WindowSolver { ceres, batch, automatic };
 
 template <>

@@ -5,9 +5,9 @@
 
 namespace modebank {
 
-/// Solvers and tolerances of the windows, and a comparison of a random sample of batch solutions with those of Ceres
-/// alone. In the comparison Ceres runs to tolerances of 1e-16. Both solutions are judged by the objective and its
-/// gradient.
+/// Solvers and tolerances of the windows, and a check of the batch solver. The check compares a random sample of its
+/// solutions with the solutions of Ceres alone, at tolerances of 1e-16. The objective and its gradient judge both
+/// solutions.
 struct WindowAudit {
   static constexpr double tolerance = 1e-9;  ///< relative cost difference above which a solution is not a minimum
   static constexpr double gradient_tolerance = 1e-8;  ///< scaled gradient above which a solution is not a minimum, in
@@ -21,9 +21,10 @@ struct WindowAudit {
   double gradient = 0.0;              ///< largest scaled gradient of the batch solver's solutions
   double ceres_gradient = 0.0;        ///< largest scaled gradient of Ceres' solutions
   double parameter_difference = 0.0;  ///< largest difference of a parameter, in standard errors; for information only
-  std::ptrdiff_t replaced = 0;        ///< checked windows above a tolerance; their results come from Ceres
-  std::ptrdiff_t lower = 0;           ///< checked windows whose cost was below that of Ceres by more than the tolerance
-                                      ///< (losses with several minima)
+  std::ptrdiff_t replaced = 0;        ///< checked windows above a tolerance, whose results are replaced by those of
+                                      ///< Ceres
+  std::ptrdiff_t lower = 0;           ///< checked windows whose cost was below the cost of Ceres by more than the
+                                      ///< tolerance (losses with several minima)
 };
 
 }  // namespace modebank

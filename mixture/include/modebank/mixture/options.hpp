@@ -55,8 +55,8 @@ struct SelectionOptions {
 
 /// Which numbers of a window are clustered. `parameters`: its parameters. `parameters_and_noise`: also the logarithms
 /// of its noise variances. `one_lag`: both, from a one-lag fit of the same window. `automatic`: parameters_and_noise up
-/// to most_features numbers. Above that, one_lag if the model has lags, restricted to the most_features numbers that
-/// vary most beyond their errors.
+/// to most_features numbers. For more numbers, only the most_features numbers that vary most relative to their errors
+/// are clustered; they come from one_lag if the model has lags.
 ///
 /// Clouds of one-lag fits separate the modes best, for any number of lags in the motion. The mean adjusted Rand index
 /// is 0.82 over 40 clouds of ten known systems, fitted with four and eight lags (12 to 64 coefficients). If all
@@ -73,9 +73,9 @@ struct EnumNames<FeatureSet> {
 inline constexpr std::ptrdiff_t most_features = 12;
 
 /// Which windows are clustered. `automatic` means the windows whose data determine all parameters. In two cases it
-/// means all windows. The first case is error_aware. In the second, these windows hold less data than two windows per
-/// feature, and a prior gives the other windows a theta. With a prior, windows that are not clustered are assigned to
-/// the components afterwards, as far as their data allow.
+/// means all windows. The first case is error_aware. In the second case, these windows hold less data than two windows
+/// per feature, and a prior gives all other windows a theta. With a prior, windows that are not clustered are assigned
+/// to the components afterwards, as far as their data allow.
 enum class WindowChoice { automatic, full_rank, all };
 
 template <>
