@@ -10,11 +10,12 @@ namespace modebank {
 
 namespace {
 
-constexpr std::size_t growth_bytes = std::size_t{4} << 20;  ///< memory grows in steps of this size
+constexpr std::size_t growth_bytes = std::size_t{4} << 20;  ///< memory is extended in steps of this size
 
 hdf5::Handle file_access() {
   hdf5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the archive");
-  // The 1.8 format has checksums on all metadata. Every HDF5 since 2008 reads it, also in MATLAB and Octave.
+  // The 1.8 format has checksums on all metadata. Every HDF5 library since 2008 reads this format, also in MATLAB and
+  // Octave.
   hdf5::check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18), "choose the file format");
   return access;
 }
@@ -32,7 +33,7 @@ hdf5::Handle create_file(const std::string& name, const hdf5::Handle& access) {
   return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose, "create the archive"};
 }
 
-/// HDF5 also identifies files in memory by name, so each image needs its own name.
+/// HDF5 identifies files in memory by name too, so each one needs a different name.
 std::string image_name() {
   static std::atomic<unsigned> count{0};
   return "modebank " + std::to_string(count++);

@@ -8,13 +8,13 @@
 
 namespace modebank {
 
-/// An empty archive in a file, to be filled part by part. Its user block is zero until the hash is computed.
+/// An empty archive file, to be filled part by part. Its user block contains zeros until the hash is computed.
 hdf5::Handle create_archive_file(const std::filesystem::path& path);
 /// Writes the hash into the user block of a closed archive file.
 void stamp_hash(const std::filesystem::path& path);
 
-/// An archive in memory while it is made. A full disk thus cannot leave a half-flushed file, and the bytes depend only
-/// on the content.
+/// Memory in which an archive is made. If the disk is full, no half-written file remains. The bytes depend only on the
+/// content.
 class ArchiveImage {
  public:
   ArchiveImage();

@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// Tells check_output how to recognise an archive, complete or damaged: by the hash, or by HDF5's signature behind the
+/// Tells check_output how to recognise a complete or damaged archive: by its hash, or by HDF5's signature after the
 /// hash. A study's table is not an archive.
 FileForm archive_form();
 

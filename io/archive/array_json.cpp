@@ -47,7 +47,7 @@ json real_at(hid_t type, const char* bytes) {
 }
 
 json text_at(hid_t type, const char* bytes) {
-  if (H5Tis_variable_str(type) != 0) return nullptr;  // archives have no such type
+  if (H5Tis_variable_str(type) != 0) return nullptr;  // archives contain no values of this type
   std::string text(bytes, H5Tget_size(type));
   const char padding = H5Tget_strpad(type) == H5T_STR_SPACEPAD ? ' ' : '\0';
   if (H5Tget_strpad(type) == H5T_STR_NULLTERM) text.resize(std::min(text.size(), text.find('\0')));
@@ -72,13 +72,13 @@ json row_at(hid_t type, const char* bytes) {
   return row;
 }
 
-/// Values of one type that are contiguous in memory, nested by the extents from `dimension` on.
+/// JSON of contiguous values of one type. The lists are nested by the extents from `dimension` on.
 json nested(hid_t type, const Shape& shape, std::size_t dimension, const char* bytes) {
   if (dimension == shape.size()) return value_at(type, bytes);
   const std::size_t stride =
       H5Tget_size(type) * element_count(Shape(shape.begin() + static_cast<std::ptrdiff_t>(dimension) + 1, shape.end()));
   json list = json::array();
-  // An extent of 0 means no elements, so later extents need not be valid.
+  // If an extent is 0, there are no elements and later extents may be invalid.
   const hsize_t extent = element_count(shape) == 0 && stride == 0 ? 0 : shape[dimension];
   for (hsize_t i = 0; i < extent; ++i) list.push_back(nested(type, shape, dimension + 1, bytes + i * stride));
   return list;

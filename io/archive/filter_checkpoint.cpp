@@ -18,7 +18,7 @@ using nlohmann::json;
 
 constexpr const char* checkpoint_format = "modebank checkpoint 2";
 
-/// SHA-256 of a checkpoint without its digest.
+/// SHA-256 of a checkpoint, computed without the digest that it contains.
 std::string digest_of(json stored) {
   stored.erase("sha256");
   return sha256_hex(stored.dump());
@@ -68,7 +68,7 @@ std::vector<Eigen::MatrixXd> matrices_of(const json& stored) {
   return matrices;
 }
 
-/// State of a filter whose modes drift; empty for others.
+/// State of a filter whose modes drift. Empty for other filters.
 DriftState drift_of(const json& stored) {
   if (!stored.contains("drift")) return {};
   const json& drift = stored.at("drift");

@@ -37,7 +37,7 @@ bool is_hard_link(const hdf5::Handle& group, const std::string& name) {
   return info.type == H5L_TYPE_HARD;
 }
 
-/// The requested run, if any: its row of /data/runs and its rows in arrays over samples.
+/// The requested run, if any. Contains its row of /data/runs and its rows in arrays over samples.
 struct AskedRun {
   std::string name;
   json row;
@@ -46,7 +46,7 @@ struct AskedRun {
   explicit operator bool() const { return !name.empty(); }
 };
 
-/// Whether a group's arrays are over the samples of all runs: /data, /evaluation/FILTER.
+/// Whether the group has arrays over the samples of all runs. This holds for /data and /evaluation/FILTER.
 bool is_of_samples(const std::string& group) {
   return group == "/data" || (group.starts_with("/evaluation/") && group.find('/', 1) == group.rfind('/') &&
                               group != "/evaluation/evidence");
@@ -59,7 +59,7 @@ bool has_samples(const std::string& group, const std::string& name) {
 
 json members_of(const hdf5::Handle& group, const std::string& path, const AskedRun& run, int levels);
 
-/// The entry of a member in the listing of its group.
+/// Describes a member in the listing of its group.
 json listing(const hdf5::Handle& group, const std::string& path, const std::string& name, const AskedRun& run,
              int levels) {
   if (!is_hard_link(group, name)) return {{"kind", "link"}};
@@ -140,7 +140,7 @@ std::vector<std::string> components(const std::string& path) {
   return parts;
 }
 
-/// Descends group by group, so that the error for a wrong path lists the members of the last existing group.
+/// Opens one group after another, so that the error for a wrong path lists the members of the last existing group.
 json json_at(hdf5::Handle group, const std::string& path, const AskedRun& run) {
   std::string so_far = "/";
   const std::vector<std::string> parts = components(path);

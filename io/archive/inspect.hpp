@@ -13,12 +13,11 @@ namespace modebank {
 ///   objects, and "columns" lists their names in the file's order.
 /// - NaN becomes null.
 ///
-/// With the name of a run, arrays over samples contain only this run's rows, and so do tables with the column `run`.
-/// The root becomes {"run": the run's row of /data/runs, "members": arrays of /data and of every filter's evaluation,
-/// by path}.
+/// If a run is named, arrays over samples and tables with a column `run` contain only this run's rows. The root becomes
+/// {"run": the run's row of /data/runs, "members": arrays of /data and of every filter's evaluation, by path}.
 ///
-/// Throws ConfigurationError for a path that does not exist (with the members of the deepest existing group), for an
-/// unknown run (with the known runs), and for a path without arrays by run.
+/// Throws ConfigurationError in three cases. A path does not exist: the message lists the members of the deepest
+/// existing group. A run is unknown: the message lists the known runs. A path has no arrays by run.
 nlohmann::json inspect(const OpenArchive& archive, const std::string& path, const std::string& run = "");
 
 }  // namespace modebank

@@ -74,7 +74,7 @@ void exchange_run(Io& samples, T& run, L& label, const Units& units) {
   samples.field("input", run.input, {"S", "m"}, units.inputs(), rule::finite_or_missing);
   samples.optional_field("truth", run.truth, {"S", "n"}, units.states(), rule::finite_or_missing);
   samples.optional_field("weight", run.weight, {"S"}, {}, rule::not_negative_or_missing);
-  samples.optional_field("label", label, {"S"});  // indices in label_names
+  samples.optional_field("label", label, {"S"});  // positions in `label_names`
 }
 
 /// `labels`: with data.label.

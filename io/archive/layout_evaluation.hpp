@@ -98,7 +98,7 @@ void exchange_free_run(Io& io, F& run, const Unit& states) {
     });
 }
 
-/// One filter's evaluation of one run, or of all runs where whole arrays are checked.
+/// One filter's evaluation of one run, or of all runs if whole arrays are checked.
 template <class Io, class E, class F>
 void exchange_filter_run(Io& samples, E& evaluation, F& free_run, const Unit& states) {
   exchange_run_evaluation(samples, evaluation, states);
@@ -112,7 +112,7 @@ void exchange_filter_run(Io& samples, E& evaluation, F& free_run, const Unit& st
 template <class Io, class F>
 void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Unit& states) {
   const std::vector<hdf5::Rows> rows = rows_of(recording.runs);
-  std::conditional_t<Io::reads, FreeRun, const FreeRun> none{};  // empty and left out where there are none
+  std::conditional_t<Io::reads, FreeRun, const FreeRun> none{};  // absent if empty
   if constexpr (Io::reads) {
     evaluation.runs.resize(rows.size());
     if (io.has("free_run_mean")) evaluation.free_runs.resize(rows.size());

@@ -5,8 +5,8 @@
 
 namespace modebank {
 
-/// The columns of an archive's data that were averaged to data.rate_hz; empty if there are none. The other parts of the
-/// file are not decoded. Throws as load_bank does.
+/// The columns of an archive's data that were averaged to `data.rate_hz`. Empty if no column was averaged. The other
+/// parts of the file are not decoded. Throws the same exceptions as load_bank.
 AveragedColumns load_averaged(const OpenArchive& archive);
 
 }  // namespace modebank

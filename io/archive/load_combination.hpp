@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// Weights of an archive's filters in their combined forecasts; empty if no filters were combined. The other parts of
-/// the file are not decoded. Throws as load_bank does.
+/// Weights of an archive's filters in the combined forecasts. Empty if no filters were combined. The other parts of the
+/// file are not decoded. Throws the same exceptions as load_bank.
 std::vector<CombinationRow> load_combination(const OpenArchive& archive);
 
 }  // namespace modebank

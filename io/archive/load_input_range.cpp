@@ -11,7 +11,7 @@
 namespace modebank {
 namespace {
 
-/// Widens the range by the values of a run; missing values are ignored.
+/// Extends the range to the values of a run. Missing values are ignored.
 void widen(InputRange& range, const Eigen::MatrixXd& input) {
   for (Eigen::Index i = 0; i < input.rows(); ++i)
     for (const double value : input.row(i)) {

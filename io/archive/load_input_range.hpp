@@ -6,13 +6,13 @@
 
 namespace modebank {
 
-/// The smallest and the largest value of each input (m) in the training runs of an archive. Empty without runs; NaN for
-/// an input without values.
+/// The smallest and the largest value of each input (m) in the training runs of an archive. Empty if the archive has no
+/// runs; NaN for an input that has no values.
 struct InputRange {
   Eigen::VectorXd least, largest;
 };
 
-/// Reads only the inputs of the training runs. Throws as load_bank does.
+/// Reads only the inputs of the training runs. Throws the same exceptions as load_bank.
 InputRange load_input_range(const OpenArchive& archive);
 
 }  // namespace modebank

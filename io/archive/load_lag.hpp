@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// The lag report of an archive with data.lag_s = auto; empty for other archives. The other parts of the file are not
-/// decoded. Throws as load_bank does.
+/// The lag report of an archive with `data.lag_s = auto`. Empty for other archives. The other parts of the file are not
+/// decoded. Throws the same exceptions as load_bank.
 std::optional<LagReport> load_lag(const OpenArchive& archive);
 
 }  // namespace modebank

@@ -12,7 +12,7 @@ namespace {
 
 using Fields = FilterEvaluation::Fields;
 
-/// Evaluations that stay in the archive's file.
+/// Evaluations that are not loaded but stay in the archive's file.
 class EvaluationsInFile {
  public:
   EvaluationsInFile(OpenArchive file, const Archive& archive)
@@ -56,7 +56,7 @@ class EvaluationsInFile {
   std::map<std::string, Filter> filters_;
 };
 
-/// Arrays of windows that neither a page nor a summary shows.
+/// The arrays of windows that are shown neither on a page nor in a summary.
 LeftOut left_out_by(Evaluations evaluations) {
   if (evaluations == Evaluations::in_memory) return {};
   return {{"/windows/condition", "/windows/information", "/windows/inlier_fraction", "/windows/weighed_information"},

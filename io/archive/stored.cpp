@@ -181,7 +181,7 @@ void check_rows(const std::vector<Row>& rows, const std::set<std::string>& runs,
   }
 }
 
-/// Nullopt for an unreadable bank, so that verification continues without it.
+/// Returns nullopt for an unreadable bank, so that verification continues without the bank.
 std::optional<Bank> whole_bank(const Archive& archive, const std::string& filter) try {
   return archive.bank_of(filter);
 } catch (const std::invalid_argument&) {

@@ -16,7 +16,7 @@
 
 namespace modebank {
 
-/// Stored forms (io/archive/bank/stored_bank.hpp) of an archive's parts other than banks.
+/// Stored forms of an archive's parts other than banks. Those of banks are in io/archive/bank/stored_bank.hpp.
 
 StoredChannels store_channels(const std::vector<Channel>& channels);
 std::vector<Channel> restore_channels(const StoredChannels& stored);
@@ -25,61 +25,61 @@ std::vector<Channel> restore_channels(const StoredChannels& stored);
 struct RunRow {
   std::string name;
   Role role = Role::train;
-  Index first = 0;  ///< index of the run's first sample in all arrays over samples
+  Index first = 0;  ///< row of the run's first sample in all arrays over samples
   Index samples = 0;
   double lag_s = 0.0;
   std::int64_t time_origin_ns = 0;
   std::string file;
 };
 std::vector<RunRow> store_runs(const std::vector<Trajectory>& runs);
-/// Runs without their samples. Throws if the rows do not follow each other without a gap.
+/// Makes runs without their samples. Throws if there is a gap between the rows of two runs.
 std::vector<Trajectory> restore_runs(const std::vector<RunRow>& rows);
 std::vector<hdf5::Rows> rows_of(const std::vector<RunRow>& rows);
-/// Rows of runs in memory, one run after another.
+/// The rows of runs that are in memory, one run after another.
 std::vector<hdf5::Rows> rows_of(const std::vector<Trajectory>& runs);
 
-/// A run's labels; -1 if unknown. Throws DataError for an index outside the names.
+/// A run's labels; -1 if unknown. Throws DataError for an index without a name.
 Eigen::VectorXi restore_label(const Eigen::VectorXi& stored, const RunRow& run, std::size_t names);
 
-/// Windows, with the name of their run.
+/// Windows, each with the name of its run.
 struct StoredWindows {
   std::vector<std::string> run;                          ///< M
   Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> start;  ///< M
 };
 StoredWindows store_windows(const std::vector<Window>& windows, const std::vector<Trajectory>& runs);
-/// Throws if a window is not inside its run.
+/// Throws if a window lies partly or fully outside its run.
 std::vector<Window> restore_windows(const StoredWindows& stored, const std::vector<Trajectory>& runs, Index length);
 
-/// restore_structure for windows, whose arrays have one entry per measured state. If there is a motion model, p is the
-/// number of its parameters.
+/// Like restore_structure, but for windows. Their arrays have one entry per measured state. With a motion model, p is
+/// the number of its parameters.
 void restore_window_structure(WindowFits& fits, Index states, Index parameters);
-/// Throws if a count of the audit exceeds the number of windows.
+/// Throws if a number in the audit exceeds the number of windows.
 void check_audit(const WindowFits& fits);
 
-/// The components' covariances, F*F x K.
+/// The covariances of the components, F*F x K.
 Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances);
 std::vector<Eigen::MatrixXd> restore_covariances(const Eigen::MatrixXd& stored, Index features);
 
-// These functions compare arrays that were read one by one; each throws DataError.
+// The functions below compare arrays that were read one by one. Each throws DataError if they disagree.
 void check_mixture(const MixtureResult& result);
 
-/// Throws unless either all members of these sizes exist or none.
+/// Throws unless all members of these sizes exist, or none of them.
 void check_together(const char* what, std::initializer_list<Eigen::Index> sizes);
-/// Checks that tables name existing modes.
+/// Throws unless all modes named in the tables exist.
 void check_modes(const Archive& archive);
-/// Checks that tables name existing runs and labels and known filters.
+/// Throws unless all runs, labels and filters named in the tables exist.
 void check_score_names(const Archive& archive);
 /// Checks that each of these groups exists exactly once.
 void check_different(const std::string& what, const std::vector<std::string>& names);
 
-/// Binds the number of samples of all runs, the bound of every count of samples.
+/// Binds the letter for the number of samples of all runs. No number of samples may exceed it.
 void set_samples(Sizes& sizes, const Recording& recording);
-/// Extents of a filter's evaluation, from its bank and the data, if the archive has them.
+/// Extents of a filter's evaluation. They come from the filter's bank and the data, if the archive contains these.
 Sizes sizes_of_filter(const Archive& archive, const std::string& filter);
 /// Extents of the tables over all filters.
 Sizes sizes_of_evaluation(const Archive& archive, const Recording& recording);
 
-/// Residual tests as two tables: one row per model and run, and one row per lag of each of these.
+/// Residual tests as two tables. One has a row per model and run; the other has a row per model, run and lag.
 struct ResidualRunRow {
   std::string model, run;
   Index samples = 0;
@@ -99,13 +99,13 @@ void store_residual_runs(const std::vector<ResidualTestSet>& sets, const std::ve
                          const std::function<void(const std::vector<ResidualRunRow>&)>& append);
 void store_residual_lags(const std::vector<ResidualTestSet>& sets, const std::vector<Trajectory>& runs,
                          const std::function<void(const std::vector<ResidualLagRow>&)>& append);
-/// Adds the rows of both tables one by one; rows of runs come first.
+/// Adds rows to both tables one by one. The rows of runs must come first.
 class RestoredResiduals {
  public:
   explicit RestoredResiduals(const Recording& recording);
   void take(const ResidualRunRow& row);
   void take(const ResidualLagRow& row);
-  /// Throws DataError if either table lacks a row.
+  /// Throws DataError if a table lacks a row.
   std::vector<ResidualTestSet> sets();
 
  private:

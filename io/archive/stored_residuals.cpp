@@ -14,7 +14,7 @@ Eigen::VectorXd entries(const Eigen::MatrixXd& matrix) {
   return Eigen::Map<const Eigen::VectorXd>(matrix.data(), matrix.size());
 }
 
-/// HDF5 has no arrays of length 0, which a system without inputs would need.
+/// HDF5 has no arrays of length 0, which systems without inputs would need.
 Eigen::VectorXd at_least_one(const Eigen::VectorXd& values) {
   return values.size() > 0 ? values : Eigen::VectorXd::Constant(1, not_a_number);
 }
@@ -69,7 +69,7 @@ ResidualTests& RestoredResiduals::tests_of(const std::string& model, const std::
 }
 
 void RestoredResiduals::take(const ResidualRunRow& row) {
-  constexpr Index most_lags = 1'000'000;  // limit, so that products of sizes do not overflow
+  constexpr Index most_lags = 1'000'000;  // upper limit, so that products of sizes do not overflow
   if (row.ljung_box_p.size() != n_ || row.cross_correlation_band.size() != std::max(Index{1}, n_ * m_) ||
       row.lags < 0 || row.lags > most_lags)
     throw DataError("the row of " + row.model + " and run '" + row.run + "' does not fit " + std::to_string(n_) +

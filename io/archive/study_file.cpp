@@ -35,7 +35,7 @@ hdf5::Handle make_group(const hdf5::Handle& file, const char* name) {
   return {H5Gcreate2(file.id(), name, H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose, what};
 }
 
-/// Writes all parts except the archives.
+/// Writes all parts of the file except the archives.
 void write_table_of_runs(const hdf5::Handle& file, const StudyFile& study) {
   Archive origin;
   origin.provenance = study.provenance;
@@ -106,7 +106,7 @@ std::vector<NamedColumn> read_columns(const hdf5::StoredArray& table) {
 
 namespace {
 
-/// Made in memory, so that a full disk cannot interrupt HDF5.
+/// The file is made in memory, so a full disk cannot interrupt HDF5.
 void write_linked(const std::filesystem::path& path, const StudyFile& study) {
   const ArchiveImage image;
   write_table_of_runs(image.file(), study);
@@ -116,7 +116,7 @@ void write_linked(const std::filesystem::path& path, const StudyFile& study) {
   replace_file(path, {std::string_view(block.data(), block.size()), content});
 }
 
-/// Made on disk, since all archives together may exceed memory.
+/// The file is made on disk, because all archives together may exceed memory.
 void write_copied(const std::filesystem::path& path, const StudyFile& study) {
   replace_file(path, [&](const std::filesystem::path& temporary) {
     {
@@ -155,7 +155,7 @@ StudyFile read_study_file(const OpenArchive& file, const std::string& table) {
 
 namespace {
 
-/// Collects the summary's scores through the layout, so their names are those of the columns.
+/// Collects the summary's scores through the layout, so the scores have the names of the columns.
 struct ScoreCollector {
   const std::vector<std::string>& states;
   std::vector<std::pair<std::string, double>> scores = {};

@@ -24,8 +24,8 @@ struct NamedTable {
   std::vector<NamedColumn> columns;
 };
 
-/// A table of runs in a file with the root of an archive: the study's resolved /config, /provenance with the inputs,
-/// and the hash in the user block. The file has one compound dataset and the tables of answers.
+/// A table of runs in a file. The file's root is like an archive's: the study's resolved /config, /provenance with the
+/// inputs, and the hash in the user block. The file has one compound dataset and the tables of answers.
 struct StudyFile {
   Provenance provenance;
   std::string config;
@@ -35,25 +35,27 @@ struct StudyFile {
   std::vector<NamedTable> answers;  ///< computed from the table; stored as /answers/<name>
 };
 
-/// Whether /trials/<name> are external links, relative to the file's folder, or copies of the archives' content.
+/// Whether /trials/<name> are external links or copies of the archives' content. Links are relative to the file's
+/// folder.
 enum class ArchiveUse { link, copy };
 
-/// Writes under a temporary name, hashes and renames, as write_archive does.
+/// Writes the file under a temporary name, hashes it and renames it, like write_archive.
 void write_study_file(const std::filesystem::path& path, const StudyFile& study, ArchiveUse use = ArchiveUse::link);
 
-/// Reads everything except the archives. Throws as read_archive does, and DataError if the table does not exist.
+/// Reads everything except the archives. Throws the same exceptions as read_archive, and DataError if the table does
+/// not exist.
 StudyFile read_study_file(const OpenArchive& file, const std::string& table);
 
 /// The parts of a trial's archive that a study's table contains.
 struct TrialScores {
   std::string modebank_version, config_hash, data_hash;
   std::int64_t modes = 0;  ///< number of the bank's modes
-  std::string evidence;    ///< the finding's answer; empty without a finding
+  std::string evidence;    ///< the finding's answer; empty if the archive has no finding
   std::vector<std::pair<std::string, double>>
-      pooled;  ///< <filter>_<role>_<score>, ..._rmse_<state>: the summary's rows for run "*"
+      pooled;  ///< <filter>_<role>_<score> and <filter>_<role>_rmse_<state>, from the summary's rows for run "*"
 };
 
-/// Reads only these parts. Throws as read_archive does.
+/// Reads only these parts. Throws the same exceptions as read_archive.
 TrialScores read_trial_scores(const OpenArchive& archive);
 
 /// The names and values of pooled scores, from a summary in memory.

@@ -13,7 +13,7 @@
 namespace modebank {
 namespace {
 
-/// Number of values in all evaluations, the largest part of an archive of long recordings.
+/// Number of values in all evaluations. These are the largest part of an archive of long recordings.
 Index evaluated_numbers(const Archive& archive) {
   constexpr Index numbers_beside_covariances = 64;  // per sample
   if (!archive.recording) return 0;
@@ -26,7 +26,7 @@ Index evaluated_numbers(const Archive& archive) {
   return samples * per_sample;
 }
 
-/// Whether an archive is made on disk rather than in memory.
+/// Whether the archive is made on disk rather than in memory.
 bool is_large(const Archive& archive) {
   constexpr Index most_in_memory = Index{2} << 20;  // doubles
   constexpr Index numbers_per_parameter = 8;        // numbers per window: value, error and description of the fit
@@ -74,7 +74,7 @@ void write_in_file(const std::filesystem::path& path, const std::function<void(c
   });
 }
 
-/// Writes evaluations one by one.
+/// Writes evaluations one after another.
 class EvaluationFile {
  public:
   EvaluationFile(const hdf5::Handle& file, const Recording& recording)
@@ -116,7 +116,7 @@ class EvaluationFile {
   std::string latest_;
 };
 
-/// Marks an exception of the caller's function, which is not an error of writing.
+/// Marks an exception of the caller's function. Such an exception is not a write error.
 struct NotMade {};
 
 }  // namespace

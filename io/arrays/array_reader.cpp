@@ -20,7 +20,7 @@ namespace modebank {
 
 namespace {
 
-/// Columns with the same rows, as indices in the store.
+/// Columns that have the same rows, as indices in the store.
 struct Block {
   std::string group;
   std::uint64_t rows = 0;
@@ -44,7 +44,7 @@ bool is_above(const std::string& group, const std::string& below) {
   return group.empty() ? !below.empty() : below.starts_with(group + ".") || below.starts_with(group + "[");
 }
 
-/// Blocks without times join the nearest enclosing group that has times of the same length.
+/// A block without times joins the nearest enclosing group that has times of the block's length.
 std::vector<Block> joined(const std::vector<Block>& blocks) {
   std::vector<Block> result;
   for (const Block& block : blocks)
@@ -91,8 +91,8 @@ class ArrayReader : public TableReader {
   std::vector<Block> blocks_;
   std::vector<TableInfo> tables_;
 
-  /// A table has the name of its group. If a group has columns of several lengths, the names of all tables but the
-  /// first include the length.
+  /// A table has the name of its group. If columns of a group have several lengths, the group has several tables. All
+  /// names but the first then include the length.
   TableInfo table_of(std::size_t b) const {
     const Block& block = blocks_[b];
     TableInfo table;
@@ -133,7 +133,7 @@ class ArrayReader : public TableReader {
     return table;
   }
 
-  /// Adds one note for all columns in which the same rows are missing.
+  /// Adds one note for all columns that lack the same rows.
   void note_unwritten(const TableRequest& request, Table& table) const {
     std::vector<std::string> names = request.numbers;
     names.insert(names.end(), request.texts.begin(), request.texts.end());
@@ -172,7 +172,7 @@ class ArrayReader : public TableReader {
     return result;
   }
 
-  /// A time that was never written reads as NaN. Its row is left out if values may be missing.
+  /// A time that was never written is read as NaN. Its row is removed if values may be missing.
   static void leave_out_untimed(const TableRequest& request, const std::vector<double>& times, Table& table) {
     const bool may_miss = std::find(request.may_miss.begin(), request.may_miss.end(), true) != request.may_miss.end();
     if (!may_miss || table.unwritten.empty() || times.empty()) return;

@@ -55,7 +55,7 @@ class Hdf5Columns : public ColumnStore {
     return found == unwritten_.end() ? std::string() : found->second;
   }
   std::vector<LineRange> unwritten(std::size_t column) const override {
-    if (columns_.at(column).step_s > 0.0) return {};  // such a column is computed, not stored
+    if (columns_.at(column).step_s > 0.0) return {};  // this column is computed, not stored
     return at_column(column, [](hid_t data, const Hdf5Place& place) {
       return hdf5_unwritten_lines(data, place.rows_along, place.element);
     });
@@ -111,7 +111,7 @@ class Hdf5Columns : public ColumnStore {
 
   template <class T>
   std::vector<T> read(std::size_t column, hid_t memory) const {
-    if (columns_[column].type.starts_with("bits")) {  // HDF5 converts bits only to longer bits
+    if (columns_[column].type.starts_with("bits")) {  // HDF5 can convert bits only to longer bits
       const std::vector<std::uint64_t> bits = read_as<std::uint64_t>(column, H5T_NATIVE_B64);
       return std::vector<T>(bits.begin(), bits.end());
     }

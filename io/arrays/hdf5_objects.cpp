@@ -112,7 +112,7 @@ hsize_t hdf5_array_elements(hid_t array_type) {
 Handle hdf5_open_log(const std::string& path) {
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file >= 0) return {file, H5Fclose, "open the file"};
-  // A logger in SWMR mode (single writer, multiple readers) is still writing the file, or was killed.
+  // A logger in SWMR mode (single writer, multiple readers) is still writing the file, or it was killed while writing.
   const hid_t written = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT);
   return written >= 0 ? Handle(written, H5Fclose, "open the file") : hdf5::open_file(path);
 }
@@ -124,8 +124,8 @@ bool hdf5_lies_outside(hid_t dataset) {
 
 namespace {
 
-/// The filter of a dataset that is not installed, with a line of Python that copies the file without this filter. Empty
-/// if all filters are installed.
+/// Names a dataset's filter that is not installed. Adds a line of Python that copies the file without this filter.
+/// Empty if all filters are installed.
 std::string missing_filter(hid_t dataset) {
   constexpr H5Z_filter_t lzf = 32000;
   const Handle made(H5Dget_create_plist(dataset), H5Pclose, "look at a dataset");
@@ -221,7 +221,7 @@ std::vector<std::string> pickled_names(const std::string& pickle) {
   while (!rest.empty() && rest != "." && rest != "a.") {
     std::string_view line = take_line();
     if (line.starts_with("a")) line.remove_prefix(1);
-    if (line.starts_with("p")) continue;  // here Python's pickler would store an object for later use
+    if (line.starts_with("p")) continue;  // Python's pickler stores an object here for later use
     if (!line.starts_with("V") || line.find('\\') != std::string_view::npos) return {};
     names.emplace_back(line.substr(1));
   }

@@ -6,48 +6,50 @@
 #include "io/hdf5/array.hpp"
 #include "io/table/table_reader.hpp"
 
-/// Elements of foreign HDF5 logs: types, attributes and lines of datasets.
+/// Types, attributes and lines of datasets in HDF5 logs of other programs.
 namespace modebank {
 
 haddr_t hdf5_address(hid_t object);
 std::string hdf5_path(hid_t object);
-/// A text of fixed length; empty if the attribute does not exist or has another type.
+/// A text attribute of fixed length. Empty if the attribute does not exist or has another type.
 std::string hdf5_text_attribute(hid_t object, const std::string& name);
-/// Value of the attribute units, unit or Units.
+/// Value of the attribute `units`, `unit` or `Units`.
 std::string hdf5_unit(hid_t object);
 hdf5::Shape hdf5_shape(hid_t dataset);
 
-/// Whether values convert to numbers: integers, floats, enumerations (h5py's booleans) and bits.
+/// Whether values can be converted to numbers. This holds for integers, floats, enumerations (h5py's booleans) and
+/// bits.
 bool hdf5_is_number(hid_t type);
-/// Whether a type is a bit field of at most 64 bits, in which PyTables and pandas store truth values.
+/// Whether a type is a bit field of at most 64 bits. PyTables and pandas store truth values as bit fields.
 bool hdf5_is_bits(hid_t type);
 bool hdf5_is_whole(hid_t type);
 bool hdf5_is_text(hid_t type);
-/// double, float32, int16, uint8, bits8, text, ...
+/// Name of a type: double, float32, int16, uint8, bits8, text, ...
 std::string hdf5_type_name(hid_t type);
 std::string hdf5_member_name(hid_t compound, unsigned member);
 hsize_t hdf5_array_elements(hid_t array_type);
 
-/// Opens a log for reading, even while it is written in SWMR mode.
+/// Opens a log for reading, even if a program is still writing the log in SWMR mode.
 hdf5::Handle hdf5_open_log(const std::string& path);
 /// Whether a dataset's values are in another file or in other datasets.
 bool hdf5_lies_outside(hid_t dataset);
 
-/// H5Dread. Throws DataError with HDF5's reason. If a filter is not installed, the message contains the line that
-/// copies the file without it.
+/// Calls H5Dread. Throws DataError with HDF5's reason. If an HDF5 filter is not installed, the message contains a line
+/// of Python that copies the file without this filter.
 void hdf5_read(hid_t dataset, hid_t memory_type, hid_t memory_space, hid_t file_space, void* to);
 
-/// Rows (from 1) in chunks that were never written, along one line of a dataset of one or two dimensions. HDF5 returns
-/// the fill value for these rows.
+/// Rows (counted from 1) of one line of a dataset, in chunks that were never written. HDF5 returns the fill value for
+/// these rows. The dataset has one or two dimensions.
 std::vector<LineRange> hdf5_unwritten_lines(hid_t dataset, hsize_t along, hsize_t across);
 
-/// The type of a member of a compound; `member` lists names through nested compounds. Without names, the type itself.
+/// The type of a member of a compound. `member` lists the names of the nested compounds and the member. If the list is
+/// empty, returns the type itself.
 hdf5::Handle hdf5_member_type(hid_t compound, const std::vector<std::string>& member);
-/// An in-memory type of rows with only this member, of type `cell`.
+/// An in-memory type of rows that contain only this member, with the type `cell`.
 hdf5::Handle hdf5_only_member(const std::vector<std::string>& member, hdf5::Handle cell);
 
-/// Texts of a list that Python pickled in its oldest, plain form (protocol 0), as PyTables does. Nothing is executed.
-/// Any other content gives an empty list.
+/// The texts of a list that Python pickled in its oldest, plain form (protocol 0), like PyTables. Nothing is executed.
+/// If the content is anything else, the list is empty.
 std::vector<std::string> pickled_names(const std::string& pickle);
 
 /// One line of a dataset of one or two dimensions.
@@ -69,7 +71,7 @@ std::vector<T> hdf5_read_line(hid_t dataset, hsize_t along, hsize_t line, hid_t 
   return values;
 }
 
-/// One element of a member, in every row of a table.
+/// One element of a table's member, in every row.
 template <class T>
 std::vector<T> hdf5_read_member(hid_t dataset, const std::vector<std::string>& member, hsize_t element, hid_t memory,
                                 std::size_t rows) {
@@ -86,7 +88,7 @@ std::vector<T> hdf5_read_member(hid_t dataset, const std::vector<std::string>& m
   return values;
 }
 
-/// All texts of a dataset, or of a table's member, without blanks and zeros at the end.
+/// All texts of a dataset or of a table's member. Blanks and zeros at their ends are removed.
 std::vector<std::string> hdf5_read_texts(hid_t dataset, const std::vector<std::string>& member = {});
 
 }  // namespace modebank

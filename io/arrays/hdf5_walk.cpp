@@ -23,7 +23,7 @@ void Hdf5Walk::group(hid_t id, const std::string& path, const std::string& name,
   if (hdf5::has_attribute(id, "OCTAVE_NEW_FORMAT") && hdf5::has_link(id, "value"))
     return octave_variable(id, path, name, depth);
   for (const std::string& member : hdf5::member_names(id)) {
-    if (member.starts_with("#")) continue;  // MATLAB's folder for values to which others refer
+    if (member.starts_with("#")) continue;  // MATLAB's folder for values that are used by reference
     if (columns.size() > most_objects)
       throw DataError(fmt::format("more than {} columns, which is too many for a log", most_objects));
     link(id, member, path + "/" + member, name, depth);
@@ -101,7 +101,7 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
   const bool table = H5Tget_class(type.id()) == H5T_COMPOUND;
   if (!table && !column.text && !hdf5_is_number(type.id())) return;
   if (hdf5::element_count(shape) > 1 &&
-      H5Dget_storage_size(id) == 0) {  // HDF5 allocates late, so this means that no value was written
+      H5Dget_storage_size(id) == 0) {  // no value was written, because HDF5 allocates at the first write
     unwritten[full] = fmt::format("its {} values were never written", hdf5::element_count(shape));
     return left_out.push_back(fmt::format("{} is left out: {}", full, unwritten[full]));
   }
@@ -208,7 +208,7 @@ void Hdf5Walk::fixed_block(hid_t id, const std::string& path, const std::string&
   const Handle data(H5Dopen2(id, member.c_str(), H5P_DEFAULT), H5Dclose, "open '" + member + "'");
   const Handle type(H5Dget_type(data.id()), H5Tclose, "read the type of '" + member + "'");
   const Shape shape = hdf5_shape(data.id());
-  if (!hdf5_is_number(type.id()) || shape.size() != 2 || shape[0] < 2) return;  // a pickle, which may contain texts
+  if (!hdf5_is_number(type.id()) || shape.size() != 2 || shape[0] < 2) return;  // a pickle; it may contain texts
   const Handle names(H5Dopen2(id, fmt::format("block{}_items", block).c_str(), H5P_DEFAULT), H5Dclose,
                      "open the items");
   const std::vector<std::string> items = hdf5_read_texts(names.id());

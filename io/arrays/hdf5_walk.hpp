@@ -10,18 +10,20 @@
 
 namespace modebank {
 
-/// Location of a column: a line of a dataset of one or two dimensions, or an element of a member in a table's rows.
+/// Location of a column. A column is a line of a dataset of one or two dimensions, or an element of a member in a
+/// table's rows.
 struct Hdf5Place {
   std::string object;               ///< path of the dataset in the file
-  std::vector<std::string> member;  ///< path of the member in compounds; empty: the dataset itself has numbers or texts
-  hsize_t element = 0;              ///< index in a member that is an array; else the line of a matrix
-  hsize_t rows_along = 0;           ///< the dimension along which rows run
+  std::vector<std::string> member;  ///< path of the member in compounds; empty: the dataset itself contains numbers or
+                                    ///< texts
+  hsize_t element = 0;              ///< index within a member that is an array, otherwise the line of a matrix
+  hsize_t rows_along = 0;           ///< the dimension whose index is the row
 };
 
 /// Walks through a file and lists its columns.
 class Hdf5Walk {
  public:
-  /// `named`: the file's name, for lines about objects.
+  /// `named`: the file's name, for the lines about its objects.
   explicit Hdf5Walk(std::string named) : file(std::move(named)) {}
 
   const std::string file;
@@ -29,14 +31,14 @@ class Hdf5Walk {
   std::vector<Hdf5Place> places;
   std::map<std::string, std::string> labels;
   std::vector<std::string> left_out;              ///< one line for each object without columns
-  std::map<std::string, std::string> unwritten;   ///< for datasets that were never written: reason by column name
+  std::map<std::string, std::string> unwritten;   ///< datasets that were never written: the reason, by column name
   std::map<std::string, Hdf5Place> sample_times;  ///< groups with a scalar Ts
-  int tables = 0;                                 ///< number of tables of pandas or compound rows
+  int tables = 0;                                 ///< number of tables, from pandas or with compound rows
 
   void group(hid_t id, const std::string& path, const std::string& name, int depth);
 
-  /// Chooses the dimension of matrix rows. It is the dimension whose length a vector of the file has, else the usual
-  /// one of the program that wrote the file.
+  /// Chooses which dimension of a matrix counts rows. It is the dimension that is as long as a vector of the file. If
+  /// there is none, it is the usual dimension of the program that wrote the file.
   void turn_matrices();
 
  private:
@@ -58,7 +60,7 @@ class Hdf5Walk {
 
   void note_foreign(const std::string& path);
 
-  /// A group in which Octave's `save -hdf5` stores a variable.
+  /// A group that Octave's `save -hdf5` wrote for one variable.
   void octave_variable(hid_t id, const std::string& path, const std::string& name, int depth);
 
   void link(hid_t parent, const std::string& member, const std::string& path, const std::string& group_name, int depth);
@@ -67,13 +69,13 @@ class Hdf5Walk {
 
   void plain(StoredColumn column, const std::string& path, const hdf5::Shape& shape, hsize_t habit);
 
-  /// Adds members of a table's rows, also those in nested compounds. `names`: names of a member's elements.
+  /// Adds the members of a table's rows, including members in nested compounds. `names`: names of a member's elements.
   void compound(hid_t type, const hdf5::Shape& shape, const Hdf5Place& place, const std::string& group_name,
                 const std::map<std::string, std::vector<std::string>>& names);
   void member(hid_t type, hsize_t rows, const Hdf5Place& place, const std::string& group_name,
               const std::vector<std::string>& names);
 
-  /// MATLAB stores each field of a struct array as a dataset of references, one per struct.
+  /// MATLAB stores each field of a struct array as a dataset of references. Each reference belongs to one struct.
   void struct_array(hid_t id, hid_t type, const hdf5::Shape& shape, const std::string& group_name,
                     const std::string& name, int depth);
 

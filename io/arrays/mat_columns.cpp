@@ -21,15 +21,15 @@ struct FreeVariable {
 using MatFile = std::unique_ptr<mat_t, CloseFile>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
-thread_local std::string last_reason;  ///< last message of matio in this thread
+thread_local std::string last_reason;  ///< matio's last message in this thread
 
-/// A template, because in matio 1.5.28 the text is `const`.
+/// This is a template, because the text is `const` in matio 1.5.28.
 template <class Text>
 void keep_reason(int, Text* text) {
   last_reason = text;
 }
 
-/// Throws DataError with matio's reason.
+/// Throws DataError with the reason that matio gives.
 MatFile open_mat(const std::string& path) {
   Mat_LogInitFunc("modebank", keep_reason);
   last_reason.clear();
@@ -51,7 +51,7 @@ std::string type_name(const matvar_t& v) {
   return v.isLogical ? "logical" : names[v.class_type - MAT_C_DOUBLE];
 }
 
-/// The product of the extents; the largest number if it overflows.
+/// The product of the extents. If it overflows, the largest number.
 std::uint64_t elements(const matvar_t& v) {
   std::uint64_t product = v.rank > 0 && v.dims ? 1 : 0;
   for (int i = 0; product > 0 && i < v.rank; ++i)
@@ -59,7 +59,7 @@ std::uint64_t elements(const matvar_t& v) {
   return product;
 }
 
-/// Step from a variable to one of its parts: a field of a struct, with its element in a struct array.
+/// One step from a variable to a part of it: a field of a struct. In a struct array, also the index of the element.
 struct MatStep {
   std::string field;
   std::size_t element = 0;
@@ -79,7 +79,7 @@ matvar_t* follow(matvar_t* v, const std::vector<MatStep>& steps) {
   return v;
 }
 
-/// Lists the columns from the variables' headers.
+/// Lists the columns. Only the variables' headers are read.
 class MatWalk {
  public:
   explicit MatWalk(const std::string& file) : file_(file) {}
@@ -173,7 +173,7 @@ class MatColumns : public ColumnStore {
   std::vector<MatPlace> places_;
   std::vector<std::string> left_out_;
 
-  /// Whether all declared elements were read; a damaged file may declare more.
+  /// Whether all declared elements were read. A damaged file may declare more elements than it contains.
   static bool holds(const matvar_t& part, std::uint64_t count) {
     return part.data && part.data_size > 0 && part.nbytes / static_cast<std::size_t>(part.data_size) >= count;
   }

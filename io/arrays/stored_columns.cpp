@@ -17,7 +17,7 @@ std::size_t last_part(const std::string& path) {
   return dot == std::string::npos ? 0 : dot + 1;
 }
 
-/// "signals", or "[0]" of "signals[0]", from a group's last part; empty for any other part.
+/// The last part of a group's path if it is "signals" or "[0]" of "signals[0]". Empty for any other part.
 std::string signal_of(const std::string& group) {
   const std::string part = group.substr(last_part(group));
   if (part == "signals") return part;
@@ -96,7 +96,7 @@ std::string read_iddata_line(const std::string& file) {
 std::string matlab_object(const std::string& class_name, const std::string& variable, const std::string& file) {
   const std::string what = fmt::format("{} is a MATLAB {}", variable, class_name.empty() ? "object" : class_name);
   const std::string line = matlab_conversion(class_name, variable);
-  if (class_name.empty())  // matio does not return the class
+  if (class_name.empty())  // matio does not return the object's class
     return fmt::format(
         "{} (class({}) names its kind): convert an iddata in MATLAB with {}   or by python3 -c \"{}\"; a timeseries "
         "with {}",

@@ -14,35 +14,35 @@ namespace modebank {
 
 /// A column of a file of arrays (HDF5, MATLAB): a vector, a column of a matrix, or a member of a table.
 struct StoredColumn {
-  std::string group;  ///< path of the enclosing object, parts joined by dots; empty: the file itself
+  std::string group;  ///< path of the enclosing object, with dots between its parts; empty: the file itself
   std::string name;   ///< name within the group
-  std::string type;   ///< type by the file: double, int32, datetime64[ns], text, ...
-  std::string unit;   ///< empty: not in the file
+  std::string type;   ///< type in the file: double, int32, datetime64[ns], text, ...
+  std::string unit;   ///< empty if the file states no unit
   std::uint64_t rows = 0;
-  bool whole = false;  ///< whole numbers, which whole_numbers() returns exactly
+  bool whole = false;  ///< the values are whole numbers; whole_numbers() returns them exactly
   bool text = false;
-  double step_s = 0.0;  ///< above 0: no values are stored, and row k has the value k * step_s
+  double step_s = 0.0;  ///< > 0: the file has no values, and row k has the value k * step_s
 
   std::string path() const { return group.empty() ? name : group + "." + name; }
 };
 
 constexpr std::string_view nanoseconds_type = "datetime64[ns]";
-/// Whether a column has times, by its type or its name.
+/// Whether a column contains times. Its type or its name shows this.
 bool is_time(const StoredColumn& column);
 
-/// Columns of a file; each is read on request.
+/// The columns of a file. A column is read when it is requested.
 class ColumnStore {
  public:
   virtual ~ColumnStore() = default;
   virtual const std::vector<StoredColumn>& columns() const = 0;
-  /// One line, with advice, for every object that gives no columns. These are MATLAB objects, with the code that
-  /// converts them, and datasets that were never written or are in another file.
+  /// One line, with advice, for every object that has no columns. Such objects are MATLAB objects and datasets that
+  /// were never written or are in another file. For MATLAB objects the line has the code that converts them.
   virtual const std::vector<std::string>& left_out() const = 0;
-  /// Reason why a column of that name is missing; empty if unknown.
+  /// Reason why a column of that name is missing. Empty if the reason is unknown.
   virtual std::string why_without(const std::string& /*column*/) const { return {}; }
-  /// Rows of a column that were never written and so have the file's fill value.
+  /// Rows of a column that were never written. They contain the file's fill value.
   virtual std::vector<LineRange> unwritten(std::size_t /*column*/) const { return {}; }
-  /// Read a stored column. Throw DataError, naming the column, on failure.
+  /// These functions read a stored column. On failure they throw DataError, which names the column.
   virtual std::vector<double> numbers(std::size_t column) const = 0;
   virtual std::vector<std::int64_t> whole_numbers(std::size_t column) const = 0;
   virtual std::vector<std::string> texts(std::size_t column) const = 0;
@@ -50,34 +50,34 @@ class ColumnStore {
 
 /// Reads datasets of one or two dimensions (h5py, HDF5's own tools), compound tables, pandas' fixed and table formats,
 /// and MATLAB's v7.3 files, which are HDF5. External links, external storage and virtual datasets are not followed, and
-/// no pickle is executed. Throws ConfigurationError for a modebank archive, and for a file without columns, with advice
-/// on its conversion. Throws DataError with HDF5's reason if HDF5 fails.
+/// no pickle is executed. Throws ConfigurationError for a modebank archive. Throws it, with advice on conversion, for a
+/// file without columns. Throws DataError with HDF5's reason if HDF5 fails.
 std::unique_ptr<ColumnStore> open_hdf5_columns(const std::filesystem::path& path);
 
-/// Reads MATLAB's v4, v6 and v7 files with matio: vectors and matrices, also in nested structs. Throws as
-/// open_hdf5_columns does.
+/// Reads vectors and matrices of MATLAB's v4, v6 and v7 files with matio, including those in nested structs. Throws the
+/// same exceptions as open_hdf5_columns.
 std::unique_ptr<ColumnStore> open_mat_columns(const std::filesystem::path& path);
 
-/// Simulink's structure with time. A signal's values get the signal's label as name, and the group of the time.
-/// `labels`: texts of NAME.signals.label or NAME.signals[0].label by path.
+/// For Simulink's "structure with time". A signal's values get the signal's label as their name, and the group that has
+/// the time. `labels`: the texts of NAME.signals.label or NAME.signals[0].label, by path.
 void name_signals(std::vector<StoredColumn>& columns, const std::map<std::string, std::string>& labels);
 
-/// A struct's scalar Ts is the sample time of its columns. Adds a column "time" to such groups unless they have times.
-/// The column is as long as the most frequent number of rows in and below the group.
+/// A scalar Ts in a struct is the sample time of the struct's columns. Adds a column "time" to each struct that has Ts
+/// but no times. The new column has the most frequent length of the columns in the struct and its substructs.
 void add_sample_times(std::vector<StoredColumn>& columns, const std::map<std::string, double>& sample_time);
 
-/// MATLAB code that converts an object of this class; "" for unknown classes.
+/// MATLAB code that converts an object of this class. Empty if the class is unknown.
 std::string matlab_conversion(const std::string& class_name, const std::string& variable);
 
-/// Names a MATLAB object, with the code of MATLAB and Python that converts it. Empty `class_name`: the class is
-/// unknown. Empty `file`: Python's scipy cannot read the object.
+/// A line that names a MATLAB object and has the code of MATLAB and Python that converts it. `class_name` is empty if
+/// the class is unknown. `file` is empty if Python's scipy cannot read the object.
 std::string matlab_object(const std::string& class_name, const std::string& variable, const std::string& file);
 
-/// The same for objects of the newer class system in files of version 7, for which matio returns neither name nor
-/// class.
+/// A line for objects of the newer class system in files of version 7. matio returns neither the name nor the class of
+/// these objects.
 std::string matlab_objects_without_name();
 
-/// Columns of a wider matrix are not listed.
+/// A matrix with more columns than this is not listed column by column.
 constexpr std::uint64_t most_columns = 1000;
 constexpr int deepest_group = 20;
 

@@ -25,7 +25,7 @@ namespace modebank {
 
 namespace {
 
-/// Collects the requested columns of all rows after the header.
+/// Collects the requested columns of all rows below the header.
 struct TableSink {
   static constexpr int skipped = -1;
   static constexpr auto none = static_cast<std::size_t>(-1);
@@ -33,18 +33,19 @@ struct TableSink {
   struct Target {
     int numbers = skipped, texts = skipped;
   };
-  std::vector<Target> target;                            // per column of the file: skipped, or index in the table
-  std::size_t time_column = none, second_column = none;  // columns of a stamp in two parts
+  std::vector<Target> target;                            // for each column of the file: skipped, or its index in the
+                                                         // table
+  std::size_t time_column = none, second_column = none;  // the columns, if a stamp has two parts in two columns
   std::vector<std::string> header;
   Table table;
-  std::vector<bool> may_miss;  // by index in table.numbers
+  std::vector<bool> may_miss;  // same index as in table.numbers
   StampColumn stamps;
   bool time_may_miss;
   std::string first, second;    // parts of the row's stamp
-  std::size_t header_rows = 1;  // number of header rows that follow
+  std::size_t header_rows = 1;  // number of header rows that are still to come
   CsvNumbers parse;
   bool rows_seen = false, empty_line_seen = false;
-  std::vector<std::uint64_t> comment_lines;  // number of empty lines in place of comments
+  std::vector<std::uint64_t> comment_lines;  // line numbers of the empty lines that replace comments
   std::size_t next_comment = 0;
   std::size_t fields = 0;
   std::uint64_t line = 1;
@@ -89,7 +90,7 @@ struct TableSink {
     if (!parse.decimal_comma())
       if (const NumberStatus status = stamps.add(text); status != NumberStatus::text) return status;
     if (const std::optional<std::string> number = parse.with_point(text)) return stamps.add(*number);
-    // If decimal commas are in use, 12.5 is an error; dates keep their points.
+    // With decimal commas, 12.5 is an error. Dates keep their points.
     const bool other_mark = parse_number(text).status == NumberStatus::ok;
     return other_mark || !parse.decimal_comma() ? NumberStatus::text : stamps.add(commas_as_points(text));
   }
@@ -173,14 +174,14 @@ TableSink make_sink(std::string_view file, const CsvHead& head, const TableReque
   return sink;
 }
 
-/// Whether there is a comment after the first rows.
+/// Whether a comment follows the first rows.
 bool has_late_comment(std::string_view text) {
   for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1))
     if (at > 0 && text[at - 1] == '\n') return true;
   return false;
 }
 
-/// Reads one request from a text whose head has been read.
+/// Reads the columns of one request from a text whose head was already read.
 Table parse_rows(std::string_view file, std::string_view text, const CsvHead& head, const TableRequest& request,
                  const std::vector<std::string>& na) {
   const auto rows_at_most = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));

@@ -57,7 +57,8 @@ std::size_t common_width(const std::vector<Fields>& rows) {
   return common == widths.end() ? 0 : common->first;
 }
 
-/// Score of a separator: the share of rows with the most frequent width, and of values among their fields.
+/// Score of a separator. It counts two shares: rows with the most frequent width, and fields of these rows that are
+/// values.
 double score(const std::vector<Fields>& rows) {
   const std::size_t width = common_width(rows);
   if (width < 2) return 0.0;
@@ -94,14 +95,14 @@ bool has_decimal_commas(const std::vector<Fields>& rows, Separator separator) {
       either_comma = either_comma || shown == MarkShown::either_comma;
       either_point = either_point || shown == MarkShown::either_point;
     }
-  // If commas separate fields, a field with a comma is quoted, and this comma more often separates thousands than
-  // decimals.
+  // If commas separate fields, a field that contains a comma is in quotes. Its comma is more often a thousands
+  // separator than a decimal mark.
   return comma || (either_comma && !either_point && separator != Separator::comma);
 }
 
 bool any_value(const Fields& row) { return std::any_of(row.begin(), row.end(), is_value); }
 
-/// Whether the first row has values in the same columns as the second row, in at least one column.
+/// Whether the first two rows have values in the same columns, and in at least one column.
 bool is_headless(const std::vector<Fields>& rows, const std::vector<std::string>& na) {
   if (rows.empty() || !any_value(rows[0])) return false;
   if (rows.size() < 2) return true;
@@ -117,8 +118,8 @@ bool has_units_row(const std::vector<Fields>& rows) {
          any_value(rows[2]);
 }
 
-/// Names in the last comment before the rows, as numpy.savetxt writes them. Empty if there are more or fewer names than
-/// fields.
+/// Names from the last comment before the rows, the place where numpy.savetxt writes them. Empty if the numbers of
+/// names and fields differ.
 Fields commented_names(const std::vector<TextRecord>& records, Separator separator, std::size_t width) {
   std::string_view last;
   for (const TextRecord& record : records) {
@@ -153,9 +154,9 @@ std::size_t lines_above_table(std::string_view text, bool complete, const Format
     for (std::size_t i = first; i < end; ++i)
       found = found && rows[i].size() == width && (i < first + names_and_units || any_value(rows[i]));
     if (!found) continue;
-    // R's headers have no name for the row numbers, so that a header looks like a title.
+    // R's headers have no name for the row numbers, so such a header looks like a title.
     if (first == 1 && rows[0].size() > 1 && rows[0].size() + 1 == width && any_value(rows[1])) return 0;
-    // Comments after the title are kept, because the last one may name the columns.
+    // Comments below the title are kept, because the last comment may name the columns.
     const auto behind = std::find_if(all.begin(), all.end(),
                                      [&](const TextRecord& record) { return record.line > records[first - 1].line; });
     return static_cast<std::size_t>(behind->line) - 1;

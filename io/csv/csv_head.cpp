@@ -15,7 +15,8 @@ namespace modebank {
 
 namespace {
 
-constexpr std::size_t probed_bytes = 1 << 16;  // bytes of a file that are read first, to find its dialect and header
+constexpr std::size_t probed_bytes = 1 << 16;  // number of bytes that are read first, to find the file's dialect and
+                                               // header
 constexpr std::size_t most_probed_bytes = 1 << 24;
 
 std::string too_many_columns() { return fmt::format("more than {} columns", most_csv_columns); }
@@ -85,7 +86,7 @@ CsvHead read_csv_head(const std::filesystem::path& path, const FormatOptions& op
     const bool complete = content.size() < wanted;
     std::string storage;
     const std::string_view text = as_utf8(content, storage);
-    // Number of rows to read; more if a title must be skipped.
+    // Number of rows to read. It is larger if a title must be skipped.
     const std::size_t enough = options.skip_automatic ? rows_looked_at_for_table : 4;
     const bool enough_bytes = options.skip_automatic && content.size() >= most_probed_bytes;
     if (complete || enough_bytes ||

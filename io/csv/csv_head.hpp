@@ -15,11 +15,11 @@ struct CsvHead {
   std::vector<std::string> names, units;
 };
 
-/// The head of a text; unless `complete`, the text is only a beginning. `file`: name for error messages. Throws
-/// ConfigurationError without a header, and DataError if the header's quotes are malformed.
+/// The head of a text, or of its beginning unless it is `complete`. `file`: name for error messages. Throws
+/// ConfigurationError if there is no header. Throws DataError if the header's quotes are malformed.
 CsvHead read_csv_head(std::string_view file, std::string_view text, bool complete, const FormatOptions& options);
 
-/// The head of a file. Reads only as far as needed.
+/// The head of a file. Reads the file only as far as needed.
 CsvHead read_csv_head(const std::filesystem::path& path, const FormatOptions& options);
 
 }  // namespace modebank

@@ -10,10 +10,10 @@ namespace modebank {
 
 namespace {
 
-/// Blanks that spreadsheets put between thousands: no-break, narrow no-break and thin blanks.
+/// The blanks that spreadsheets use as thousands separators: no-break, narrow no-break and thin blanks.
 constexpr std::string_view wide_blanks[]{"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
 
-/// Length in bytes of a thousands separator at the start of the text; 0: none.
+/// Length in bytes of a thousands separator at the start of the text. 0 if there is none.
 std::size_t group_mark(std::string_view text, char mark) {
   if (text.empty()) return 0;
   if (text.front() == mark || text.front() == ' ' || text.front() == '\'') return 1;
@@ -23,12 +23,12 @@ std::size_t group_mark(std::string_view text, char mark) {
 }
 
 struct Grouped {
-  std::string digits;     ///< without separators, with a decimal point
+  std::string digits;     ///< the number without thousands separators and with a decimal point
   std::size_t marks = 0;  ///< number of thousands separators
   bool has_decimals = false;
 };
 
-/// Parses one to three digits, groups of three behind thousands separators, and decimals.
+/// Parses one to three digits, then groups of three digits after thousands separators, then decimals.
 std::optional<Grouped> grouped(std::string_view field, char decimal, char mark) {
   std::string_view rest = without_blanks(field);
   Grouped result;
@@ -60,7 +60,7 @@ std::optional<Grouped> grouped(std::string_view field, char decimal, char mark) 
   const bool has_exponent = rest.find_first_of("eE") != std::string_view::npos;
   if (result.marks > 0 && !result.has_decimals && has_exponent)
     return std::nullopt;  // the mark in 2.499e3 is a decimal mark
-  result.digits += rest;  // decimals and an exponent; parse_number checks them
+  result.digits += rest;  // only decimals and an exponent may follow; parse_number checks them
   return result;
 }
 

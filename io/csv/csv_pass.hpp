@@ -14,8 +14,9 @@ namespace modebank {
 
 /// One pass of libcsv over a text. It counts lines, passes fields and rows to `Sink`, and stops at the sink's first
 /// error. Exceptions must not cross libcsv's C frames, so errors are stored until the pass ends. A Sink has
-/// - void field(std::string_view), void row() (also for empty lines) and bool done();
-/// - the members fields (number in this row so far), line (start of the row) and error (empty: no error).
+/// - void field(std::string_view), void row() (also called for empty lines) and bool done();
+/// - the members `fields` (number of fields in this row so far), `line` (start of the row) and `error` (empty: no
+/// error).
 template <class Sink>
 class CsvPass {
  public:
@@ -54,7 +55,7 @@ class CsvPass {
   static void on_row(int terminator, void* pass) { self(pass).row(terminator); }
 
   void field(std::string_view text) {
-    if (sink_.done()) return;  // libcsv continues to the end of its chunk
+    if (sink_.done()) return;  // libcsv parses to the end of its chunk
     if (sink_.fields == 0) sink_.line = line_;
     after_return_ = false;
     sink_.field(text);
@@ -62,7 +63,7 @@ class CsvPass {
       line_ += static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
   }
 
-  /// libcsv reports both bytes of CRLF; the second does not end another line.
+  /// libcsv reports both bytes of CRLF. The second byte does not end a line again.
   void row(int terminator) {
     if (sink_.done()) return;
     const bool second_byte = terminator == CSV_LF && after_return_ && sink_.fields == 0;
@@ -84,8 +85,8 @@ class CsvPass {
         fmt::format("{}:{}: malformed quotes: a quoted field must end before the next separator", file_, line_));
   }
 
-  static constexpr std::size_t chunk_bytes =
-      1 << 18;  // bytes that are parsed before the sink is asked again whether it is done
+  static constexpr std::size_t chunk_bytes = 1
+                                             << 18;  // the sink is asked whether it is done after this number of bytes
 
   std::string_view file_;
   Sink& sink_;

@@ -13,10 +13,10 @@ constexpr std::string_view utf8_mark = "\xEF\xBB\xBF", low_first = "\xFF\xFE", h
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
-/// Whether a quote after this character opens a quoted field.
+/// Whether a quote that follows this character opens a quoted field.
 bool starts_field(char before) { return std::string_view(",;|\t \n\r").find(before) != std::string_view::npos; }
 
-/// Converts UTF-16; an unpaired surrogate becomes U+FFFD.
+/// Converts UTF-16 to UTF-8. An unpaired surrogate becomes U+FFFD.
 std::string from_utf16(std::string_view content) {
   bool low_byte_first = content.starts_with(low_first);
   if (low_byte_first || content.starts_with(high_first))
@@ -94,7 +94,7 @@ std::vector<TextRecord> first_records(std::string_view text, bool complete, std:
     if (before == '\n' && !quoted && is_comment(text.substr(i, 1))) i = std::min(text.find('\n', i), text.size()) - 1;
     if (c == '"') {
       if (quoted)
-        quoted = false;  // a second quote opens it again
+        quoted = false;  // a second quote continues the quoted field
       else
         quoted = starts_field(before) || before == '"';
     }
@@ -116,7 +116,7 @@ bool is_comment(std::string_view record) {
 }
 
 std::vector<std::string> fields_of(std::string_view record, char separator) {
-  if (separator == '\t')  // a tab at the end also separates
+  if (separator == '\t')  // a tab at the end is also a separator
     while (!record.empty() && (record.back() == '\r' || record.back() == '\n')) record.remove_suffix(1);
   else
     record = without_blanks(record);

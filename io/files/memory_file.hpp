@@ -5,7 +5,7 @@
 
 namespace modebank {
 
-/// A file in memory, for a library that takes file names and does not report a full disk (libmatio). replace_file then
+/// A file in memory. It serves libmatio, which takes file names and does not report a full disk. replace_file then
 /// writes the complete content to disk.
 class MemoryFile {
  public:
@@ -16,7 +16,7 @@ class MemoryFile {
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   int descriptor() const { return descriptor_; }
-  /// The path of the file in this process.
+  /// A path that leads to the file, only within this process.
   std::filesystem::path path() const;
   /// All bytes that were written.
   std::string content() const;

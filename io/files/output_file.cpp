@@ -21,7 +21,8 @@ std::string front_of(const fs::path& path, std::size_t bytes) {
   return front;
 }
 
-/// Reason why the path cannot be written, including links that lead back to themselves; empty if it can.
+/// Reason why the path cannot be written. Empty if it can be written. Symbolic links that form a loop are such a
+/// reason.
 std::string obstacle_at(const fs::path& path) {
   fs::path target;
   try {

@@ -8,23 +8,24 @@
 
 namespace modebank {
 
-/// A type of file that commands write, and the test by which such a file is recognised.
+/// A type of file that commands write, and the test that recognises such a file.
 struct FileForm {
-  std::string name;                                          ///< with its article: "a checkpoint of track"
-  std::function<bool(const std::filesystem::path&)> is_one;  ///< called for regular files that are not empty
+  std::string name;                                          ///< the type's name with its article: "a checkpoint of
+                                                             ///< track"
+  std::function<bool(const std::filesystem::path&)> is_one;  ///< called only for regular files that are not empty
 };
 
-/// A form that is recognised by text near the start of the file: `sign` within the first `within` bytes.
+/// A form that is recognised by the text `sign` within the first `within` bytes of the file.
 FileForm form_by_front(std::string name, std::string sign, std::size_t within);
 
 /// An output file that a user names.
 struct OutputFile {
-  std::string option;          ///< the option that names it: "-o", "track.checkpoint"
-  std::filesystem::path path;  ///< path as typed
-  FileForm form;               ///< form of its content
+  std::string option;          ///< the option with the file's path: "-o", "track.checkpoint"
+  std::filesystem::path path;  ///< the path as the user typed it
+  FileForm form;               ///< form of the file's content
 };
 
-/// Protects every output. Throws ConfigurationError with option and path for
+/// Checks each output before it is written. Throws ConfigurationError with option and path for
 /// - a file that cannot be written,
 /// - one of `sources` (input files of the command), by any name or link,
 /// - an existing file of another form. An empty file may be replaced.

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 std::string system_reason() { return std::generic_category().message(errno); }
 
-/// Throws for an error of the disk in a folder that could otherwise take the file.
+/// Thrown if the disk fails in a folder that could otherwise contain the file.
 struct DiskFailure : DataError {
   using DataError::DataError;
 };
@@ -62,7 +62,7 @@ class Descriptor {
   int descriptor_;
 };
 
-/// A file with a temporary name; removed unless it was renamed.
+/// A file with a temporary name. The destructor removes the file unless it was renamed.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target)
@@ -91,12 +91,12 @@ class TemporaryFile {
 }  // namespace
 
 fs::path final_target(const fs::path& path) {
-  constexpr int most_links = 40;  // the limit of Linux
+  constexpr int most_links = 40;  // Linux's limit
   fs::path target = path;
   std::error_code error;
   for (int link = 0; link <= most_links; ++link) {
     if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
-    // An absolute link replaces the folder.
+    // If the link's target is absolute, it replaces the folder.
     target = folder_of(target) / fs::read_symlink(target, error);
     if (error) throw DataError("'" + path.string() + "': " + error.message());
   }
@@ -111,8 +111,8 @@ bool is_disk_failure(const std::error_code& error) {
 
 namespace {
 
-/// Reason why a path cannot be written, as far as this is known beforehand; empty if none is known. A symbolic link is
-/// no reason: the file replaces the link.
+/// Reason why a path cannot be written. Empty if no reason is known before the file is created. A symbolic link is not
+/// a reason, because the file replaces the link.
 std::string seen_obstacle(const fs::path& path) {
   std::error_code error;
   if (!path.has_filename()) return "'" + path.string() + "' is not the name of a file";
@@ -125,7 +125,7 @@ std::string seen_obstacle(const fs::path& path) {
   return {};
 }
 
-/// Done once per folder and process, because a study writes thousands of files into one folder.
+/// Leftovers are removed once per folder and process, because a study writes thousands of files into one folder.
 void tidy_once(const fs::path& folder) {
   static std::mutex guard;
   static std::set<fs::path> tidied;
@@ -139,8 +139,8 @@ void tidy_once(const fs::path& folder) {
   remove_leftovers(place);
 }
 
-/// Creates the file with a temporary name, or throws the reason. Only this test is reliable: permissions do not show
-/// read-only mounts, /proc or root.
+/// Creates the file with a temporary name. Throws an error with the reason on failure. Only this test is reliable,
+/// because permissions do not show read-only mounts, /proc or the rights of root.
 TemporaryFile make_temporary(const fs::path& path) {
   tidy_once(folder_of(path));
   try {
@@ -157,7 +157,7 @@ TemporaryFile make_temporary(const fs::path& path) {
 std::string write_obstacle(const fs::path& path) {
   try {
     if (std::string obstacle = seen_obstacle(path); !obstacle.empty()) return obstacle;
-    make_temporary(path);  // created as a test and removed at once
+    make_temporary(path);  // the file was created as a test and is removed at once
   } catch (const DiskFailure& failure) {
     throw DataError("cannot write " + path.string() + ": " + failure.what());
   } catch (const DataError& obstacle) {
@@ -168,7 +168,7 @@ std::string write_obstacle(const fs::path& path) {
 
 namespace {
 
-/// `named`: the path for error messages.
+/// `named`: the path that error messages contain.
 void replace(const fs::path& path, const fs::path& named, const std::function<void(const fs::path&)>& fill) {
   try {
     if (const std::string obstacle = seen_obstacle(path); !obstacle.empty()) throw DataError(obstacle);

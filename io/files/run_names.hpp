@@ -13,9 +13,9 @@ std::vector<std::string> run_names(const std::vector<Run>& runs) {
   return names;
 }
 
-/// Run names are texts of the archive and parts of file names. Throws DataError for an impossible name, and for a name
-/// that two runs share. Impossible are the empty name, names with '/' or a zero byte, the folders "." and "..", and
-/// "*", which means all runs in the summary.
+/// Run names are texts of the archive and parts of file names. Throws DataError for an invalid name, and if two runs
+/// have the same name. Invalid are the empty name, names with '/' or a zero byte, the folders "." and "..", and "*",
+/// which means all runs in the summary.
 void check_run_names(const std::vector<std::string>& names);
 
 }  // namespace modebank

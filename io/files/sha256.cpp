@@ -28,7 +28,7 @@ void Sha256::update(const void* data, std::size_t bytes) {
 }
 
 std::string Sha256::hex() const {
-  // EVP_DigestFinal_ex ends a context, so it is called on a copy.
+  // EVP_DigestFinal_ex ends a context, so the call gets a copy.
   const Context copy(EVP_MD_CTX_new());
   std::array<unsigned char, hash_bytes> hash;
   require_success(copy && EVP_MD_CTX_copy_ex(copy.get(), context_.get()) == 1 &&

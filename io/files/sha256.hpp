@@ -9,14 +9,14 @@ struct evp_md_ctx_st;  // type of libcrypto
 
 namespace modebank {
 
-/// Incremental SHA-256 (FIPS 180-4) by libcrypto. Throws std::runtime_error if libcrypto does not have it.
+/// Incremental SHA-256 (FIPS 180-4), computed by libcrypto. Throws std::runtime_error if libcrypto lacks SHA-256.
 class Sha256 {
  public:
   Sha256();
 
   void update(const void* data, std::size_t bytes);
   void update(std::string_view bytes) { update(bytes.data(), bytes.size()); }
-  /// The hash so far as 64 lowercase hex digits; more data may follow.
+  /// The hash of the data so far, as 64 lowercase hex digits. More data may follow.
   std::string hex() const;
 
  private:
@@ -28,7 +28,7 @@ class Sha256 {
   Context context_;
 };
 
-/// Whether a text is a SHA-256: 64 lowercase hexadecimal digits.
+/// Whether a text is a SHA-256, that is, 64 lowercase hexadecimal digits.
 bool is_sha256(std::string_view text);
 
 std::string sha256_hex(std::string_view bytes);

@@ -19,7 +19,7 @@ bool say(std::string_view text) {
 }
 
 bool say_now(std::string_view text) {
-  // A writable descriptor takes this many bytes without waiting (POSIX: PIPE_BUF). No message is longer.
+  // A writable descriptor takes this number of bytes without waiting (POSIX: PIPE_BUF). No message is longer.
   constexpr std::size_t page = 4096;
   pollfd error{STDERR_FILENO, POLLOUT, 0};
   if (::poll(&error, 1, 0) != 1 || (error.revents & POLLOUT) == 0) return false;
@@ -27,7 +27,7 @@ bool say_now(std::string_view text) {
 }
 
 void occupy_standard_streams() {
-  // Opened with the opposite access, so that reading and writing fail with EBADF.
+  // The stream is opened with the opposite access, so reading or writing it fails with EBADF.
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor)
     if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF)
       (void)::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);

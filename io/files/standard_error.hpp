@@ -8,11 +8,12 @@ namespace modebank {
 /// the program. Returns false if text was dropped.
 bool say(std::string_view text);
 
-/// The same without waiting: text is dropped if the reader has no room for it.
+/// Writes text without waiting. Text is dropped if the reader has no room for it.
 bool say_now(std::string_view text);
 
-/// Opens closed standard streams so that their use fails as before. Otherwise a file that is opened later would get the
-/// number of such a stream, and messages would go into this file. Call it before any file is opened.
+/// Opens closed standard streams in such a way that using them still fails. Otherwise a file that is opened later would
+/// get the number of such a stream, and messages would be written into this file. Call this function before any file is
+/// opened.
 void occupy_standard_streams();
 
 }  // namespace modebank

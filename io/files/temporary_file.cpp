@@ -33,7 +33,7 @@ std::string random_word() {
 }
 
 fs::path temporary_path(const fs::path& target) {
-  constexpr std::size_t longest_name = 255;  // limit of a file name, in bytes
+  constexpr std::size_t longest_name = 255;  // limit of a file name's length, in bytes
   const std::string end = std::string(mark) + random_word() + std::string(suffix);
   std::string name = "." + target.filename().string();
   name.resize(std::min(name.size(), longest_name - end.size()));
@@ -52,7 +52,7 @@ void remove_leftovers(const fs::path& folder) {
   std::vector<fs::path> left;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (is_leftover(entry->path())) left.push_back(entry->path());
-  for (const fs::path& path : left) fs::remove_all(path, error);  // removes links without following them
+  for (const fs::path& path : left) fs::remove_all(path, error);  // this removes links without following them
 }
 
 }  // namespace modebank

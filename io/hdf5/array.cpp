@@ -50,7 +50,8 @@ std::size_t longest(const std::vector<std::string>& texts) {
 
 Handle array_text_type(const std::vector<std::string>& texts) {
   Handle type = string_type(longest(texts));
-  // ASCII is valid UTF-8, but Octave's load drops a whole group if a dataset such as /windows/run is UTF-8.
+  // ASCII is valid UTF-8, so readers accept both. But if a dataset such as /windows/run is marked UTF-8, Octave's load
+  // drops its whole group.
   if (is_ascii(texts)) check(H5Tset_cset(type.id(), H5T_CSET_ASCII), "make an ASCII type");
   return type;
 }
@@ -118,7 +119,7 @@ Shape shape_of(const Handle& space) {
   return shape;
 }
 
-/// Selects rows in a dataset's space and returns the shape of the selection.
+/// Selects rows in a dataset's space. Returns the shape of the selection.
 Shape select_rows(const Handle& space, const std::vector<Rows>& rows) {
   Shape extent = shape_of(space), first(extent.size(), 0);
   hsize_t count = 0;
@@ -172,7 +173,7 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
   Handle space;
   if (place == Place::dataset) {
     object_ = Handle(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + what);
-    // modebank's archives contain all their data. A layout with outside data must not make the program read other
+    // Archives of modebank contain all their data. A layout with external data must not make the program read other
     // files.
     if (lies_outside(object())) throw DataError(what + " has its content in another file");
     type_ = Handle(H5Dget_type(object()), H5Tclose, "read the type of " + what);
@@ -189,13 +190,13 @@ StoredArray::StoredArray(hid_t parent, Place place, const std::string& name) : p
 
 void StoredArray::check_plausible() const {
   const auto refuse = [&] { throw DataError(quoted(place_, name_) + " declares more content than the file has"); };
-  const std::size_t element_bytes = H5Tget_size(type());  // HDF5 divides by it
+  const std::size_t element_bytes = H5Tget_size(type());  // HDF5 divides by this size
   if (element_bytes == 0) throw DataError(quoted(place_, name_) + " has elements of size 0");
   const hsize_t bytes = saturating_product(elements_, element_bytes);
   hsize_t file_bytes = 0;
   const Handle file(H5Iget_file_id(object()), H5Fclose, "find the file");
   check(H5Fget_filesize(file.id(), &file_bytes), "read the size of the file");
-  // An array without elements may still declare extents, which readers use as counts.
+  // An array without elements may still declare extents, and readers use extents as numbers of items.
   const hsize_t longest_extent = shape_.empty() ? 0 : *std::max_element(shape_.begin(), shape_.end());
   if (bytes > file_bytes || longest_extent > file_bytes) refuse();
 }
@@ -217,7 +218,7 @@ void StoredArray::read_rows(const Rows& rows, hid_t memory_type, void* data) con
 
 namespace {
 
-/// Whether values of the type are plain bytes without references.
+/// Whether values of the type are plain bytes that contain no references.
 bool is_plain(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);
   if (kind == H5T_ARRAY) return is_plain(Handle(H5Tget_super(type), H5Tclose, "read a type").id());

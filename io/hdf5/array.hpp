@@ -11,10 +11,10 @@ namespace modebank::hdf5 {
 
 using Shape = std::vector<hsize_t>;
 
-/// Arrays of datasets and attributes are equal; only the calls that create and open them differ.
+/// Datasets and attributes both contain arrays. Only the calls that create and open them differ.
 enum class Place { dataset, attribute };
 
-/// Memory and file type of a number; files are little-endian on every machine.
+/// Types of a number in memory and in the file. Files are little-endian on every machine.
 template <class T>
 hid_t memory_type() {
   if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
@@ -33,47 +33,48 @@ hid_t file_type() {
   if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_STD_U64LE;
 }
 
-/// Fixed-length, null-padded UTF-8. HDF5 has no strings of length 0, so the smallest length is 1.
+/// A type of UTF-8 texts of fixed length, padded with zero bytes. HDF5 has no strings of length 0, so the smallest
+/// length is 1.
 Handle string_type(std::size_t bytes);
-/// Type of a dataset with these texts: ASCII if all are.
+/// Type of a dataset with these texts. It is ASCII if all texts are ASCII.
 Handle array_text_type(const std::vector<std::string>& texts);
 std::size_t longest(const std::vector<std::string>& texts);
 /// Packs texts into contiguous cells of `bytes` each, and unpacks them.
 std::string pack_texts(const std::vector<std::string>& texts, std::size_t bytes);
 std::vector<std::string> unpack_texts(const std::string& cells, std::size_t bytes);
 
-/// a * b, or the largest number on overflow.
+/// The product a * b. On overflow, the largest number.
 hsize_t saturating_product(hsize_t a, hsize_t b);
-/// Number of elements; the largest hsize_t on overflow.
+/// Number of elements. On overflow, the largest hsize_t.
 hsize_t element_count(const Shape& shape);
 
 /// Whether a dataset's values are in another file or in other datasets.
 bool lies_outside(hid_t dataset);
 
-/// Creates a dataset (contiguous, without time stamps) or attribute, writes it and returns it open. An empty shape is a
+/// Creates and writes a dataset (contiguous, without time stamps) or an attribute. Returns it open. An empty shape is a
 /// scalar.
 Handle write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
                    const Shape& shape, const void* data);
 
-/// `count` rows of a dataset from `first` on.
+/// Selects `count` rows of a dataset, beginning with row `first`.
 struct Rows {
   hsize_t first = 0, count = 0;
   hsize_t end() const { return first + count; }
 };
-/// Creates a dataset that is written in rows. The content of rows that are never written is undefined.
+/// Creates a dataset whose rows are written later. Rows that are never written have undefined content.
 Handle create_rows(hid_t parent, const std::string& name, hid_t file_type, const Shape& shape);
-/// The same for rows that may stay unwritten. An unwritten entry is `missing`, a value of `memory_type`. `prefill`:
-/// some rows will not be written.
+/// Creates a dataset in which rows may stay unwritten. An unwritten entry is `missing`, a value of `memory_type`.
+/// `prefill`: some rows will not be written.
 Handle create_rows(hid_t parent, const std::string& name, hid_t file_type, hid_t memory_type, const Shape& shape,
                    const void* missing, bool prefill);
-/// Writes several ranges of rows by one call; `data` contains them one after the other.
+/// Writes several ranges of rows in one call. `data` contains the ranges one after another.
 void write_rows(const Handle& dataset, hid_t memory_type, const std::vector<Rows>& rows, const void* data);
 
 Handle write_texts(hid_t parent, Place place, const std::string& name, const std::vector<std::string>& texts,
                    const Shape& shape);
 
-/// An open dataset or attribute. Its declared size is checked against the file's size, so that a corrupt shape cannot
-/// cause a huge allocation.
+/// An open dataset or attribute. Its declared size is compared with the file's size, so a corrupt shape cannot cause a
+/// huge allocation.
 class StoredArray {
  public:
   StoredArray(hid_t parent, Place place, const std::string& name);
@@ -86,10 +87,10 @@ class StoredArray {
   void read(hid_t memory_type, void* data) const;
   /// A range of rows of a dataset, within its first extent.
   void read_rows(const Rows& rows, hid_t memory_type, void* data) const;
-  /// Rows of a table as in the file, of type `type()`. Throws DataError for members that are neither numbers nor texts
-  /// of fixed length.
+  /// Rows of a table as they are in the file, of type `type()`. Throws DataError if a member is neither a number nor a
+  /// text of fixed length.
   std::string row_bytes(const Rows& rows) const;
-  /// All texts in order. Throws DataError unless the type is a fixed-length string.
+  /// All texts in order. Throws DataError if the type is not a string of fixed length.
   std::vector<std::string> texts() const;
 
  private:

@@ -8,7 +8,7 @@ namespace modebank::hdf5 {
 
 namespace {
 
-/// HDF5 walks its error stack from the innermost record (n = 0) outwards; the first record is the reason.
+/// HDF5 visits its error stack from the innermost record (n = 0) outwards. The innermost record is the reason.
 herr_t keep_innermost(unsigned n, const H5E_error2_t* record, void* text) {
   if (n == 0 && record->desc) *static_cast<std::string*>(text) = record->desc;
   return 0;
@@ -17,7 +17,7 @@ herr_t keep_innermost(unsigned n, const H5E_error2_t* record, void* text) {
 std::string innermost_reason() {
   std::string text = "unknown reason";
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &text);
-  // HDF5's file drivers add times and addresses around the system's message; users do not need them.
+  // HDF5's file drivers write times and addresses around the system's message. Users do not need them.
   const std::string mark = "error message = '";
   const auto begin = text.find(mark);
   if (begin == std::string::npos) return text;
@@ -57,7 +57,7 @@ void check(herr_t status, const std::string& what) {
 
 namespace {
 
-/// Locked by one thread at a time if HDF5 was built without thread safety.
+/// Lets only one thread at a time call HDF5, if HDF5 was built without thread safety.
 std::unique_lock<std::recursive_mutex> one_thread() {
   static std::recursive_mutex mutex;
   static const bool has_its_own = [] {
@@ -82,7 +82,7 @@ Handle open_file(const std::string& path) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare the file access");
   check(H5Pset_file_locking(access.id(), false, true), "switch file locking off");
   hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id());
-  // If h5py has the file open in the same process, HDF5 requires the same lock setting, the default.
+  // h5py may have opened the file in the same process. HDF5 then requires the same lock setting, which is the default.
   if (file < 0) file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   return {file, H5Fclose, "open the file"};
 }
@@ -102,8 +102,8 @@ herr_t append_name(hid_t, const char* name, const Info*, void* list) {
 
 }  // namespace
 
-// Both lists are sorted here. If asked for an order, HDF5 1.10 builds a table, and crashes when it frees the
-// half-filled table of a damaged file.
+// The functions below sort both lists themselves. If HDF5 1.10 is asked for an order, it builds a table. It crashes
+// when it frees the half-filled table of a damaged file.
 std::vector<std::string> member_names(hid_t group) {
   std::vector<std::string> names;
   check(H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, append_name<H5L_info_t>, &names), "list the members");

@@ -9,8 +9,8 @@
 
 namespace modebank::hdf5 {
 
-/// Owns an HDF5 identifier. A negative identifier of a failed call becomes a DataError with the action and HDF5's
-/// reason.
+/// Owns an HDF5 identifier. If a call failed, its identifier is negative. The constructor then throws DataError with
+/// the action and HDF5's reason.
 class Handle {
  public:
   using Closer = herr_t (*)(hid_t);
@@ -31,12 +31,13 @@ class Handle {
   Closer close_ = nullptr;
 };
 
-/// Throws DataError "cannot <what>: <HDF5's innermost reason>" if the status is negative.
+/// Throws DataError "cannot <what>: <HDF5's innermost reason>" if `status` is negative.
 void check(herr_t status, const std::string& what);
 
-/// Must live while a function calls HDF5. Unless HDF5 is thread-safe, other threads wait. Meanwhile HDF5 prints no
-/// error stack in this thread; afterwards the application's own setting returns. After a failure it does not return:
-/// HDF5 1.10 leaks memory at a wrong metadata checksum, and would print messages when the process ends.
+/// An object of this class must exist while a function calls HDF5. Unless HDF5 is thread-safe, other threads wait.
+/// Meanwhile HDF5 prints no error stack in this thread. Afterwards the application's own setting is restored, but not
+/// after a failure: HDF5 1.10 leaks memory at a wrong metadata checksum, and would print messages when the process
+/// ends.
 class Quiet {
  public:
   Quiet();
@@ -50,10 +51,10 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-/// Opens an existing file for reading. Takes no lock: archives never change under their final name, and many file
+/// Opens an existing file for reading, without a lock. Archives never change under their final name, and many file
 /// systems have no locks.
 Handle open_file(const std::string& path);
-/// A member group; "/": the root.
+/// A member group. The name "/" means the root.
 Handle open_group(hid_t parent, const std::string& name);
 /// Names of a group's members and of an object's attributes, in byte order.
 std::vector<std::string> member_names(hid_t group);

@@ -23,12 +23,12 @@ Handle array_type(hid_t element, hsize_t length) {
   return {H5Tarray_create2(element, 1, &length), H5Tclose, "make an array type"};
 }
 
-/// HDF5 has no array type of length 0, so an empty table's array column has length 1.
+/// HDF5 has no array type of length 0, so the array column of an empty table has length 1.
 hsize_t array_length(const Eigen::MatrixXd& values) {
   return static_cast<hsize_t>(std::max<Eigen::Index>(values.rows(), 1));
 }
 
-/// Types of a column's cell in the file, and in memory when values are contiguous.
+/// The types of a column's cell: in the file, and in memory if values are contiguous.
 struct CellTypes {
   Handle file;
   Handle memory;
@@ -45,7 +45,7 @@ CellTypes cell_types(const Eigen::MatrixXd& values) {
   return {array_type(H5T_IEEE_F64LE, array_length(values)), array_type(H5T_NATIVE_DOUBLE, array_length(values))};
 }
 
-/// Type of a row with contiguous members; a number has as many bytes in memory as in the file.
+/// Type of a row with contiguous members. Numbers have equal sizes in memory and in the file.
 Handle row_type(const std::vector<TableColumn>& columns, const std::vector<CellTypes>& cells,
                 Handle CellTypes::*where) {
   std::size_t bytes = 0;
@@ -69,15 +69,15 @@ std::string raw_bytes(const Eigen::MatrixXd& values) {
   return {reinterpret_cast<const char*>(values.data()), static_cast<std::size_t>(values.size()) * sizeof(double)};
 }
 
-/// A column's contiguous cells, as in the file.
+/// The contiguous cells of a column, as they are in the file.
 struct StoredColumn {
   Handle type;
   std::size_t cell_bytes = 0;
   std::string cells;
 };
 
-/// The cells of a member, after a check of its type. Rows are read once for all columns: for each member, HDF5 would
-/// allocate and clear a megabyte.
+/// The cells of a member, after a check of their type. Rows are read once for all columns. If members were read one by
+/// one, HDF5 would allocate and clear a megabyte for each.
 StoredColumn stored_column(const TableRows& all, const std::string& name, H5T_class_t expected) {
   const StoredArray& table = all.table;
   const int index = H5Tget_member_index(table.type(), name.c_str());
@@ -96,7 +96,7 @@ StoredColumn stored_column(const TableRows& all, const std::string& name, H5T_cl
   return column;
 }
 
-/// Converts the `count` cells of the stored type to another type of the same size.
+/// Converts `count` cells from the stored type to another type of the same size.
 const std::string& converted(StoredColumn& column, hid_t stored, hid_t wanted, std::size_t count) {
   if (H5Tequal(stored, wanted) <= 0)
     check(H5Tconvert(stored, wanted, count, column.cells.data(), nullptr, H5P_DEFAULT), "convert a column");
@@ -106,7 +106,7 @@ const std::string& converted(StoredColumn& column, hid_t stored, hid_t wanted, s
 template <class T>
 void read_values(const TableRows& rows, const std::string& name, Vector<T>& values) {
   StoredColumn stored = stored_column(rows, name, std::is_floating_point_v<T> ? H5T_FLOAT : H5T_INTEGER);
-  // With a narrower number, a small file could require much memory.
+  // If a smaller number were accepted, a small file could require much memory.
   if (stored.cell_bytes != sizeof(T)) throw DataError("column '" + name + "' has numbers of another width");
   values.resize(static_cast<std::size_t>(rows.rows.count));
   const std::string& cells = converted(stored, stored.type.id(), memory_type<T>(), values.size());
@@ -164,7 +164,7 @@ Handle write_table(hid_t group, const std::string& name, std::vector<TableColumn
   const Handle type = row_type(columns, cells, &CellTypes::file),
                in_memory = row_type(columns, cells, &CellTypes::memory);
   const std::size_t row_bytes = H5Tget_size(in_memory.id());
-  // Writes whole rows: for each member, HDF5 would allocate and clear a megabyte.
+  // Writes whole rows. If members were written one by one, HDF5 would allocate and clear a megabyte for each.
   std::string packed(static_cast<std::size_t>(rows) * row_bytes, '\0');
   std::size_t offset = 0;
   for (std::size_t i = 0; i < columns.size(); ++i) {

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Keeps the samples that lie within the time span of `source`.
+/// Keeps the samples whose times lie within the time span of `source`.
 void keep_covered(FileStream& target, const FileStream& source) {
   const VectorXd& time_s = target.stream.time_s;
   const VectorXd& covered = source.stream.time_s;

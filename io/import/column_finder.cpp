@@ -22,7 +22,7 @@ const ColumnInfo* find_column(const TableInfo& table, const std::string& name) {
   return found == table.columns.end() ? nullptr : &*found;
 }
 
-/// A column by its full name, or by the part of its name after the table's name.
+/// Finds a column by its full name, or by the part of the full name that follows the table's name.
 const ColumnInfo* find_within(const TableInfo& table, const std::string& name) {
   if (const ColumnInfo* column = find_column(table, name)) return column;
   if (table.name.empty()) return nullptr;
@@ -31,7 +31,8 @@ const ColumnInfo* find_within(const TableInfo& table, const std::string& name) {
   return nullptr;
 }
 
-/// The stamps of a recording's table: the header's stamps, else the receive times, else its first stamps.
+/// The column of stamps in a recording's table. The header's stamps come first, then the receive times, then the first
+/// other stamps.
 const ColumnInfo* own_stamps(const TableInfo& table) {
   for (const char* name : {"header.stamp", "receive_time"})
     if (const ColumnInfo* column = find_within(table, name)) return column;
@@ -45,8 +46,7 @@ const ColumnInfo* find_time(const TableInfo& table, const DataOptions& options) 
   return options.time == DataOptions().time ? own_stamps(table) : nullptr;
 }
 
-/// The time column of this table ("log.cmd.t") if the configuration has the full name of another table's time column
-/// ("log.imu.t").
+/// The time column of this table ("log.cmd.t"), if the configuration names another table's time column ("log.imu.t").
 const ColumnInfo* find_time_of_another(const TableInfo& table, const std::vector<TableInfo>& tables,
                                        const std::string& name) {
   for (const TableInfo& other : tables)
@@ -56,7 +56,7 @@ const ColumnInfo* find_time_of_another(const TableInfo& table, const std::vector
   return nullptr;
 }
 
-/// Columns of a file for messages; only its tables if there are too many columns.
+/// Lists the columns of a file for messages. If there are too many, lists only the tables.
 std::string listing(const std::vector<TableInfo>& tables) {
   constexpr std::size_t most_columns = 100;
   Texts columns, names;
@@ -116,7 +116,7 @@ std::size_t ColumnFinder::source_with(const std::string& column, const std::vect
   for (const std::size_t file : files)
     for (std::size_t table = 0; table < tables_[file].size(); ++table)
       if (find_column(tables_[file][table], column) != nullptr) {
-        column_position(names_[file], column_names(tables_[file][table]), column);  // throws if the name occurs twice
+        column_position(names_[file], column_names(tables_[file][table]), column);  // throws if the name is repeated
         return source_of(file, table);
       }
   fail(column, files);
@@ -218,7 +218,7 @@ void ColumnFinder::time(std::size_t source, const DataOptions& options) {
   if (column == nullptr)
     column = find_time_of_another(table, tables_[plan_.sources[source].path], options.time.front());
   if (column == nullptr) fail(options.time.front(), {plan_.sources[source].path});
-  column_position(path_of(source), column_names(table), column->name);  // throws if the name occurs twice
+  column_position(path_of(source), column_names(table), column->name);  // throws if two columns have this name
   request.column = column->name;
   request.unit = options.time_unit;
   request.format = options.time_format;

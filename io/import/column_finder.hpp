@@ -11,32 +11,33 @@ namespace modebank {
 /// ConfigurationError with the existing names if a column does not exist.
 class ColumnFinder {
  public:
-  /// The readers of `plan` must be open.
+  /// `plan` must have open readers.
   ColumnFinder(FilePlan& plan, std::shared_ptr<const DerivedChannels> derived);
 
-  /// A column of numbers: a derived channel, or a column of the first of `files` (indices in FilePlan::paths) that has
-  /// this column. A derived channel may also use other files.
+  /// Finds a column of numbers. It is a derived channel, or a column of the first file that has it. `files`: indices in
+  /// FilePlan::paths. A derived channel may also use other files.
   ColumnRef number(const std::string& column, const std::vector<std::size_t>& files);
   std::vector<ColumnRef> numbers(const std::vector<std::string>& columns, const std::vector<std::size_t>& files);
 
   /// The column of data.where.
   ColumnRef where(const std::vector<std::size_t>& files);
-  /// A source of the column.
+  /// A source that has the column.
   std::size_t clock_of(ColumnRef ref) const;
 
-  /// The source for a file of which only times are needed: its only table, or `states` if that is in the same file.
+  /// The source of a file that provides only times. It is the file's only table, or `states` if that is in the same
+  /// file.
   std::size_t source_without_column(std::size_t file, std::size_t states);
 
-  /// The first of `sources` whose table has the times, or the column.
+  /// The first of `sources` whose table has the times or the column.
   std::size_t first_with_time(const std::vector<std::size_t>& sources, const DataOptions& options) const;
   std::size_t first_with(const std::string& column, const std::vector<std::size_t>& sources) const;
 
-  /// Requests times of a source.
+  /// Requests the times of a source.
   void time(std::size_t source, const DataOptions& options);
-  /// Requests a column of text; returns its index in the request.
+  /// Requests a column of text. Returns the column's index in the request.
   std::size_t text(std::size_t source, const std::string& column);
 
-  /// The source with the column, from the first of `files` that has it.
+  /// The source that has the column, in the first of `files` that has the column.
   std::size_t source_with(const std::string& column, const std::vector<std::size_t>& files);
 
   /// Names and units of the columns.

@@ -72,7 +72,7 @@ namespace {
 
 using Rows = std::vector<std::size_t>;
 
-/// Rows of each run, in order of time.
+/// The rows of each run, in order of time.
 std::vector<Rows> ordered_runs(const Table& table, std::optional<std::size_t> run, const std::vector<double>& time_s) {
   std::vector<Rows> runs;
   if (!run) {
@@ -88,7 +88,7 @@ std::vector<Rows> ordered_runs(const Table& table, std::optional<std::size_t> ru
   return runs;
 }
 
-/// Seconds from the first stamp, because nanoseconds since 1970 would lose precision.
+/// Times are seconds from the first stamp, because nanoseconds since 1970 would lose precision.
 std::vector<double> seconds_of(const Table& table, double rate_hz) {
   std::vector<double> time_s(table.rows());
   std::int64_t first = missing_stamp;
@@ -98,7 +98,7 @@ std::vector<double> seconds_of(const Table& table, double rate_hz) {
     if (table.time_ns.empty())
       time_s[k] = static_cast<double>(k) / (rate_hz > 0.0 ? rate_hz : 1.0);
     else
-      // A row without time is sorted to the end and has no neighbours.
+      // Rows without a time are sorted to the end and have no neighbours.
       time_s[k] = table.time_ns[k] == missing_stamp ? HUGE_VAL : static_cast<double>(table.time_ns[k] - first) / 1e9;
   }
   return time_s;

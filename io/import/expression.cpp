@@ -18,8 +18,8 @@ namespace modebank {
 struct ExpressionToken {
   enum class Kind { number, channel, function, constant, symbol };
   Kind kind = Kind::symbol;
-  std::string text;    ///< for a number its text in muParser's syntax, for a channel its name
-  std::size_t at = 0;  ///< position in the user's text, from 0
+  std::string text;    ///< a number's text in muParser's syntax, or a channel's name
+  std::size_t at = 0;  ///< position in the user's text, counted from 0
 };
 
 namespace {
@@ -28,7 +28,7 @@ constexpr std::size_t longest_text = 2000, deepest = 50;
 
 bool begins_name(char c) { return is_letter(c) || c == '_'; }
 
-/// The operator at the start of a text; empty if there is none.
+/// The operator at the start of a text. Empty if there is none.
 std::string_view symbol_at(std::string_view text) {
   for (const std::string_view two : {"==", "!=", "<=", ">=", "&&", "||"})
     if (text.starts_with(two)) return text.substr(0, 2);
@@ -78,7 +78,7 @@ std::string listed_channel_names(const std::vector<std::string>& names) {
   return result;
 }
 
-/// Turns text into tokens and tokens into steps. The argument of diff or unwrap becomes a step of its own.
+/// Converts the text to tokens, and the tokens to steps. The argument of diff or unwrap becomes a separate step.
 class ExpressionParser {
  public:
   ExpressionParser(Expression& result, std::string_view text) : result_(result), text_(text) {}
@@ -164,7 +164,7 @@ class ExpressionParser {
     if (depth > 0) fail(text_.size(), "a parenthesis is not closed");
   }
 
-  /// Position after the parenthesis that closes the one at `open`.
+  /// Position after the parenthesis that closes the parenthesis at `open`.
   std::size_t after_closing(std::size_t open) const {
     std::size_t depth = 0, i = open;
     do {
@@ -180,11 +180,12 @@ class ExpressionParser {
     return static_cast<std::size_t>(std::find(channels.begin(), channels.end(), name) - channels.begin());
   }
 
-  /// Adds a step that computes tokens `first` to `end`; returns its column.
+  /// Adds a step that computes tokens `first` to `end`. Returns the column of its result.
   std::size_t compile(std::size_t first, std::size_t end, Expression::Step::Then then) {
     Expression::Step step;
     step.then = then;
-    std::vector<std::pair<std::size_t, std::size_t>> places;  // positions in the program and in the user's text
+    std::vector<std::pair<std::size_t, std::size_t>> places;  // positions in the program and the matching positions in
+                                                              // the user's text
     const auto name_of = [&step](std::size_t column) {
       const auto known = std::find(step.columns.begin(), step.columns.end(), column);
       const auto position = static_cast<std::size_t>(known - step.columns.begin());
@@ -208,7 +209,7 @@ class ExpressionParser {
       } else {
         step.program += token.kind == Kind::channel ? name_of(channel_position(token.text)) : token.text;
       }
-      if (token.kind != Kind::function || of_column) step.program += ' ';  // muParser allows no blank before (
+      if (token.kind != Kind::function || of_column) step.program += ' ';  // muParser does not allow a blank before (
     }
     try_out(step, places, end < tokens_.size() ? tokens_[end].at : text_.size());
     result_.steps_.push_back(std::move(step));

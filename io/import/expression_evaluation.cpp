@@ -18,8 +18,8 @@ void differentiate(std::vector<double>& column, std::span<const double> time_s) 
   if (!column.empty()) column[0] = column.size() > 1 ? column[1] : not_a_number;
 }
 
-/// The same with the previous row `before`. Among rows with equal times only the first has a slope, and the next row's
-/// slope starts from that row.
+/// Computes slopes with `before` as the row before the first. Of several rows with equal times, only the first has a
+/// slope. The next row's slope starts from that row.
 void differentiate(std::vector<double>& column, std::span<const double> time_s, Expression::RowBefore& before) {
   for (std::size_t k = 0; k < column.size(); ++k) {
     const double seconds = time_s[k] - before.time_s;
@@ -29,7 +29,7 @@ void differentiate(std::vector<double>& column, std::span<const double> time_s, 
   }
 }
 
-/// Turns are counted from the last row that is not missing.
+/// Turns are counted from the last row that has a value.
 void unwrap(std::vector<double>& column, double& before) {
   constexpr double turn = 2.0 * std::numbers::pi;
   for (double& angle : column) {

@@ -15,7 +15,8 @@ struct Vector {
   double x, y, z;
 };
 
-/// Rz(yaw) Ry(pitch) Rx(roll) v: rotations about fixed axes, x first, as ROS defines roll, pitch and yaw.
+/// Rz(yaw) Ry(pitch) Rx(roll) v. The rotations are about fixed axes, first about x, as in ROS' definition of roll,
+/// pitch and yaw.
 Vector rotated(double roll, double pitch, double yaw, Vector v) {
   v = {v.x, std::cos(roll) * v.y - std::sin(roll) * v.z, std::sin(roll) * v.y + std::cos(roll) * v.z};
   v = {std::cos(pitch) * v.x + std::sin(pitch) * v.z, v.y, -std::sin(pitch) * v.x + std::cos(pitch) * v.z};
@@ -26,7 +27,7 @@ double yaw_of(double x, double y, double z, double w) {
   return std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z);
 }
 
-/// NaN if any value is NaN, which comparisons alone would ignore.
+/// NaN if any value is NaN. Comparisons alone would ignore NaN.
 template <class Better>
 double chosen(const double* values, int count, Better better) {
   double best = values[0];

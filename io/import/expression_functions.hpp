@@ -7,10 +7,10 @@
 
 namespace modebank {
 
-/// Removes muParser's own functions and constants, and defines those of io/import/expression.hpp.
+/// Removes muParser's own functions and constants. Defines the functions and constants of io/import/expression.hpp.
 void define_functions(mu::Parser& parser);
 
-/// Names from define_functions, and of the functions of whole columns.
+/// Names of the functions that define_functions defines, and of the functions that need whole columns.
 const std::vector<std::string>& function_names();
 
 }  // namespace modebank

@@ -11,7 +11,7 @@
 
 namespace modebank {
 
-/// A muParser program with its own variables c0, c1, ....
+/// A muParser program with its own variables c0, c1, ...
 class Program {
  public:
   Program(const std::string& text, std::size_t columns) : values_(columns, 1.0) {

@@ -19,7 +19,7 @@ bool is_there(const Path& path) {
   return std::filesystem::exists(path, ignored);
 }
 
-/// The first part of `path`, from the root, that does not exist.
+/// The first part of `path`, from the root on, that does not exist.
 Path first_missing(const Path& path) {
   Path reached;
   for (const Path& part : path) {

@@ -8,21 +8,21 @@
 namespace modebank {
 
 /// A path with at most one `*`, in the name of the file or of one folder. `*` matches one or more characters of that
-/// name except '/'. As in a shell, a `*` at the start of a name does not match a leading '.'. All other characters are
-/// literal. The matched text names the run; without `*` the file's stem names it.
+/// name, but not '/'. As in a shell, a `*` at the start of a name does not match a leading '.'. All other characters
+/// are literal. The matched text is the run's name; without `*` the name is the file's stem.
 class FilePattern {
  public:
-  /// `key` names the pattern in messages. `root` is put before a relative pattern. Throws ConfigurationError for an
-  /// empty pattern and for more than one `*`.
+  /// `key` names the pattern in messages. A relative pattern starts at `root`. Throws ConfigurationError if the pattern
+  /// is empty or has more than one `*`.
   FilePattern(std::string key, const std::string& root, const std::string& pattern);
 
   const std::string& key() const { return key_; }
   bool has_star() const { return has_star_; }
-  /// The absolute pattern.
+  /// The pattern as an absolute path.
   std::string text() const { return path_of("*").string(); }
   /// The file of one run.
   std::filesystem::path path_of(std::string_view run) const;
-  /// Names of all runs whose file exists, in byte order. If there are none, throws ConfigurationError with the absolute
+  /// Names of all runs whose file exists, in byte order. If no file exists, throws ConfigurationError with the absolute
   /// pattern and the missing folder.
   std::vector<std::string> runs() const;
 
@@ -32,13 +32,13 @@ class FilePattern {
 
   std::string key_;
   bool has_star_ = false;
-  std::filesystem::path folder_;  // part of the path before the name that contains `*`; the whole path without `*`
-  std::string before_, after_;    // parts of this name around `*`
+  std::filesystem::path folder_;  // path before the name that contains `*`; the whole path if there is no `*`
+  std::string before_, after_;    // parts of this name before and after `*`
   std::filesystem::path rest_;    // part of the path after this name
 };
 
-/// Files of a key: one path with at most one *, or several paths without *, one per run ("a.csv, b.csv"). A run's
-/// recording may consist of parts, in the order in which they were written ("a_0.bag + a_1.bag").
+/// The files of a key. The key has one path with at most one `*`, or one path without `*` for each run ("a.csv,
+/// b.csv"). A run's recording may have several parts, in the order of writing ("a_0.bag + a_1.bag").
 class RunFiles {
  public:
   struct File {
@@ -46,15 +46,16 @@ class RunFiles {
     std::vector<std::filesystem::path> parts;  ///< one file, or the parts of a recording
   };
 
-  /// If a file has the whole text as its name, commas included, the text means that file. Throws ConfigurationError as
-  /// FilePattern does, and for a list with a *, with an empty entry or with two files of the same stem.
+  /// If the whole text, commas included, is the name of a file, it means that file. Throws ConfigurationError as
+  /// FilePattern does. Also throws it for a list with a `*`, an empty entry or two files of the same stem.
   RunFiles(const std::string& key, const std::string& root, const std::string& text);
 
   bool one() const { return entries_.size() == 1 && !entries_.front().front().has_star(); }
-  /// Files in byte order of their runs. Throws ConfigurationError for a missing file.
+  /// The files in byte order of their runs. Throws ConfigurationError if a file is missing.
   std::vector<File> files() const;
   /// The file of each of these runs. In a list, it is the file at the run's position in `theirs`. Throws
-  /// ConfigurationError with both names if a file is missing, or if only one of the two is a list or has a *.
+  /// ConfigurationError with both names in two cases: a file is missing, or only one of the two keys is a list or has a
+  /// `*`.
   std::vector<File> partners(const RunFiles& theirs, const std::vector<std::string>& runs) const;
 
  private:
@@ -64,8 +65,8 @@ class RunFiles {
   std::vector<std::vector<FilePattern>> entries_;  // parts of each file
 };
 
-/// The states file of each run. Throws ConfigurationError with both files if one is missing, or if only one of the two
-/// patterns has a `*`.
+/// The states file of each run. Throws ConfigurationError with both files if a file is missing, or if only one of the
+/// two patterns has a `*`.
 std::vector<std::filesystem::path> find_partners(const FilePattern& inputs, const FilePattern& states,
                                                  const std::vector<std::string>& runs);
 

@@ -32,7 +32,7 @@ namespace modebank {
 
 namespace {
 
-/// Sets units from the options, else from the files.
+/// Sets units from the options. Units that the options lack come from the files.
 void check_units(const char* key, const std::vector<std::string>& names, const std::vector<std::string>& units) {
   if (units.size() > 1 && units.size() != names.size())
     throw ConfigurationError(fmt::format(
@@ -46,7 +46,7 @@ std::vector<Channel> with_units(std::vector<Channel> channels, const std::vector
   return channels;
 }
 
-/// A terminal would execute control characters.
+/// Control characters are replaced, because a terminal would execute them.
 void refuse_control_characters(const std::vector<Channel>& channels) {
   for (const Channel& channel : channels)
     if (const std::string text = channel.name + channel.unit; std::any_of(text.begin(), text.end(), is_control))
@@ -55,7 +55,8 @@ void refuse_control_characters(const std::vector<Channel>& channels) {
           printable(channel.name), printable(channel.unit)));
 }
 
-/// Result of reading one plan, or its error. If several plans fail, the error of the first in order is reported.
+/// The content of one plan, or the error of reading it. If several plans fail, the first error in their order is
+/// reported.
 struct Outcome {
   FileContent content;
   std::exception_ptr error;
@@ -76,15 +77,16 @@ Outcome try_read(const FilePlan& plan, const DataOptions& options, bool as_they_
   return outcome;
 }
 
-/// Reads plans in parallel. Results arrive in order, as the hash over all of them requires. After an error no further
-/// plan starts, but running ones end. An exception within the pipeline would cancel the readers' own parallel work and
-/// return only half of it.
+/// Reads plans in parallel. The results keep the order of the plans, because the hash over all results depends on this
+/// order. After an error no further plan starts, but running plans are completed.
+/// An exception must not leave the pipeline: it would cancel the readers' own parallel work, which would then return
+/// partial results.
 std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions& options, ImportedData& data,
                                  bool as_they_stand) {
   std::vector<RunStreams> runs;
   std::vector<FileStamps> forms;
   UnsetRows unset;
-  std::vector<Outcome> outcomes(plans.size());  // the pipeline passes indices
+  std::vector<Outcome> outcomes(plans.size());  // the pipeline's items are indices
   std::size_t next = 0;
   std::exception_ptr error;
   std::map<std::string, std::size_t> missing_words;
@@ -97,7 +99,7 @@ std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions
     outcomes[plan] = try_read(plans[plan], options, as_they_stand);
     return plan;
   };
-  std::optional<WorkCounter> counter;  // for a single file, its reader counts rows
+  std::optional<WorkCounter> counter;  // if there is only one file, its reader reports progress in rows
   if (plans.size() > 1) counter.emplace("files", plans.size());
   const auto collect = [&](std::size_t plan) {
     if (counter) counter->add();
@@ -119,7 +121,7 @@ std::vector<RunStreams> read_all(std::vector<FilePlan>& plans, const DataOptions
   tbb::parallel_pipeline(in_flight, tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, take) &
                                         tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, read) &
                                         tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, collect));
-  if (agree_on_stamps(forms, plans)) {  // even after an error, because wrongly read stamps may have caused it
+  if (agree_on_stamps(forms, plans)) {  // also done after an error, because wrongly read stamps may have caused it
     data.files.clear();
     data.notes.clear();
     return read_all(plans, options, data, as_they_stand);
@@ -149,7 +151,7 @@ void set_roles(std::vector<RunStreams>& runs, const DataOptions& options) {
   runs = std::move(kept);
 }
 
-/// Splits every run into blocks. Blocks have their own roles unless data.train or data.test names runs.
+/// Splits every run into blocks. Blocks have the roles of the split, unless data.train or data.test names runs.
 void split_runs(std::vector<RunStreams>& runs, const DataOptions& options, std::vector<std::string>& notes) {
   std::vector<RunStreams> blocks;
   for (const RunStreams& run : runs) {
@@ -162,14 +164,14 @@ void split_runs(std::vector<RunStreams>& runs, const DataOptions& options, std::
   check_run_names(run_names(runs));
 }
 
-/// Counts measured samples of the joined runs, and those that no part contains.
+/// Counts the measured samples of the joined runs, and the measured samples that no part contains.
 class LeftOut {
  public:
   void count(const Trajectory& run, const std::vector<Trajectory>& parts) {
     measured_ += measured(run);
     for (const Trajectory& part : parts) kept_ += measured(part);
   }
-  /// Empty if no sample is left out.
+  /// Empty if every sample is used.
   std::string note(const DataOptions& options) const {
     if (kept_ == measured_) return "";
     std::vector<std::string> reasons;
@@ -187,7 +189,7 @@ class LeftOut {
   static Index measured(const Trajectory& run) { return run.state.array().isFinite().colwise().any().count(); }
 };
 
-/// Must be called after roles are set: data.train and data.test name whole runs, or blocks of runs.
+/// Call this after the roles are set. data.train and data.test may name whole runs or blocks of runs.
 std::vector<Trajectory> without_missing_values(const Trajectory& run, const std::vector<bool>& kept, Missing missing,
                                                std::vector<std::string>& notes) {
   const bool predict = missing == Missing::predict;
@@ -268,7 +270,7 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory,
 std::vector<RunStreams> read_streams(const DataOptions& options) {
   ImportedData unused;
   DataOptions lenient = options;
-  lenient.disorder = Disorder::sort;  // for streams from several tables; a single table is checked later
+  lenient.disorder = Disorder::sort;  // done for streams from several tables; a single table is checked later
   std::vector<FilePlan> plans = plan_import(lenient);
   refuse_control_characters(plans.front().states);
   refuse_control_characters(plans.front().inputs);

@@ -50,7 +50,8 @@ void check_options(const DataOptions& options) {
     throw ConfigurationError("data.lag_s = auto needs inputs; name them in data.input");
 }
 
-/// Requests the times of all sources. If rows correspond, one source is enough: the first with a time column.
+/// Requests the times of all sources. If the sources' rows correspond, one source is enough, namely the first with a
+/// time column.
 void plan_times(FilePlan& plan, ColumnFinder& find, const DataOptions& options) {
   if (options.join == Join::time) {
     for (std::size_t source = 0; source < plan.sources.size(); ++source) {
@@ -85,7 +86,7 @@ void plan_columns(FilePlan& plan, const DataOptions& options, const std::shared_
       options.label.empty() ? std::nullopt : std::optional(find.source_with(options.label, states_first));
   plan_times(plan, find, options);
   if (labels) plan.label = {*labels, find.text(*labels, options.label)};
-  // A sample without time has no position. A missing weight must not be guessed.
+  // A sample without a time has no position, and a missing weight must not be guessed.
   for (SourcePlan& source : plan.sources)
     source.request.may_miss.assign(source.request.numbers.size(), options.missing != Missing::error);
   for (const ColumnRef where : plan.where)

@@ -18,11 +18,12 @@ namespace modebank {
 struct SourcePlan {
   std::size_t path = 0;  ///< index in FilePlan::paths
   TableRequest request;
-  std::vector<DerivedColumn> derived;  ///< channels derived from columns of this table only, in order of position
-  std::optional<std::size_t> run;      ///< index in TableRequest::texts of the column of run names
+  std::vector<DerivedColumn> derived;  ///< channels derived only from columns of this table, in order of position
+  std::optional<std::size_t> run;      ///< index of the column of run names in TableRequest::texts
 };
 
-/// Source of a channel that is derived from several sources, after their columns were brought to the same times.
+/// Source of a channel that is derived from several sources. The columns of these sources are first brought to the same
+/// times.
 inline constexpr auto joint_source = static_cast<std::size_t>(-1);
 
 /// Location of a requested column.
@@ -36,30 +37,31 @@ struct JointColumn {
   std::vector<ColumnRef> operands;
 };
 
-/// The data to read from one inputs file and its states file. The headers alone determine the plan.
+/// The data to read from one inputs file and its states file. Only the files' headers are needed to make the plan.
 struct FilePlan {
-  std::string name;                                         ///< text that * matched, or the file's stem
-  bool starred = false;                                     ///< whether the pattern had a *
-  std::vector<std::filesystem::path> paths;                 ///< inputs file, then the states file if there is one
-  std::vector<std::shared_ptr<const TableReader>> readers;  ///< one per path
+  std::string name;                                         ///< the text that `*` matched, or the file's stem
+  bool starred = false;                                     ///< whether the pattern had a `*`
+  std::vector<std::filesystem::path> paths;                 ///< the inputs file, then the states file, if any
+  std::vector<std::shared_ptr<const TableReader>> readers;  ///< one for each path
   std::vector<SourcePlan> sources;                          ///< the tables with requested columns
   std::vector<ColumnRef> state, input, truth;
   std::vector<ColumnRef> weight;  ///< at most one channel
   std::vector<ColumnRef> where;   ///< at most one channel
   std::vector<JointColumn> joint;
-  std::vector<Channel> states, inputs;  ///< names of the channels, and units if the files state them
+  std::vector<Channel> states, inputs;  ///< names of the channels; units if the files state them
   bool by_row = false;                  ///< Join::row
   /// Sources of the times of states and of inputs. They are equal where rows correspond, or where the first state and
   /// the first input are in one table. Columns of other sources are brought to these times.
   std::size_t states_clock = 0, inputs_clock = 0;
-  std::size_t runs_source = 0;  ///< if rows correspond: the source whose text column has the run names, if there is one
-  std::optional<ColumnRef> label;  ///< column of labels, in TableRequest::texts
+  std::size_t runs_source = 0;     ///< if rows correspond: the source whose text column contains the run names, if any
+  std::optional<ColumnRef> label;  ///< index of the column of labels in TableRequest::texts
   std::vector<std::string> notes;
 
-  /// Whether row i of every source corresponds to row i of the others: one table, or Join::row.
+  /// Whether row i of a source corresponds to row i of every other source. This holds for a single table and for
+  /// Join::row.
   bool rows_correspond() const { return by_row || sources.size() == 1; }
 
-  /// Requests for one file, and the `sources` from which they come.
+  /// The requests for one file. `sources` lists where they come from.
   struct FileRequests {
     std::vector<std::size_t> sources;
     std::vector<TableRequest> requests;
@@ -67,9 +69,9 @@ struct FilePlan {
   FileRequests requests_of(std::size_t path) const;
 };
 
-/// Checks options, finds the files and reads their headers. Plans are in order of `name`. Without a column of run
-/// names, runs that are neither in data.train nor in data.test are left out. Throws ConfigurationError
-/// (io/import/import.hpp). With `memory` these tables are the runs, and no files are read.
+/// Checks options, finds the files and reads their headers. Plans are in the order of `name`. Unless a column contains
+/// run names, runs that are neither in data.train nor in data.test are skipped. Throws ConfigurationError
+/// (io/import/import.hpp). If `memory` is given, its tables are the runs, and no files are read.
 std::vector<FilePlan> plan_import(const DataOptions& options, const MemoryTables* memory = nullptr);
 
 }  // namespace modebank

@@ -12,7 +12,7 @@
 namespace modebank {
 
 void LabelHolder::hold(const LabelStream& source, const std::vector<Trajectory>& parts) {
-  std::vector<std::size_t> order;  // indices of the labels with a time, in order of time
+  std::vector<std::size_t> order;  // indices of the labels that have a time, in order of time
   for (std::size_t k = 0; k < source.text.size(); ++k)
     if (!std::isnan(source.time_s(static_cast<Index>(k))) && !source.text[k].empty()) order.push_back(k);
   const auto time = [&](std::size_t k) { return source.time_s(static_cast<Index>(k)); };

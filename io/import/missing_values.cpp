@@ -20,7 +20,7 @@ bool known(const Trajectory& run, Index k) { return run.state.col(k).allFinite()
 
 std::vector<Trajectory> split_at_gaps(const Trajectory& run, bool predict, const std::vector<bool>& kept) {
   const auto usable = [&](Index k) {
-    // `kept` ends with the run, but its first samples may have been dropped.
+    // The last entry of `kept` belongs to the run's last sample, but the run's first samples may have been dropped.
     const std::size_t dropped = kept.empty() ? 0 : kept.size() - static_cast<std::size_t>(run.samples());
     return (kept.empty() || kept[dropped + static_cast<std::size_t>(k)]) && (predict || known(run, k));
   };

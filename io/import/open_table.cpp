@@ -25,13 +25,13 @@ using namespace std::string_view_literals;
 
 constexpr std::size_t magic_bytes = 4096;
 
-/// A readable format: the test of a file by its first bytes (none for a folder), and its reader.
+/// A readable format: a test of the file's first bytes (no test for a folder), and the reader.
 struct Format {
   bool (*probe)(const Path& path, std::string_view first);
   std::shared_ptr<const TableReader> (*open)(const Path& path, const FormatOptions& options);
 };
 
-/// In the order of the tests. Any other file is read as text.
+/// The formats in the order of their tests. Any other file is read as text.
 constexpr std::array formats{
     Format{is_ros_log,
            [](const Path& path, const FormatOptions& options) -> std::shared_ptr<const TableReader> {
@@ -49,7 +49,8 @@ constexpr std::array formats{
            }},
 };
 
-/// Lines of Python that read a file into frames and run the chain. docs/howto/any_reader.md contains the same lines.
+/// Lines of Python that read a file into data frames and run modebank. docs/howto/any_reader.md contains the same
+/// lines.
 constexpr std::string_view px4_lines = R"(
 from pyulog import ULog
 import pandas, modebank
@@ -80,7 +81,8 @@ import pandas, modebank
 frame = pandas.read_feather("FILE")
 archive = modebank.run({"drive": frame}, state="wz", input=["left", "right"], time="time", **{"data.split": "blocks 10"}))";
 
-/// A format that the program does not read, by its first bytes; without these a telemetry log (is_telemetry).
+/// A format that the program cannot read. It is recognised by its first bytes; a telemetry log, which has no fixed
+/// first bytes, by is_telemetry.
 struct Foreign {
   std::string_view magic, name, advice, python = {};
 };
@@ -122,7 +124,7 @@ constexpr std::array foreign{
             "a program", "name the data"},
 };
 
-/// Octave's default format of `save FILE`. A file with a single matrix is readable as text.
+/// The default format of Octave's `save FILE`. A file with a single matrix can be read as text.
 void refuse_octave_text(const Path& path, std::string_view first) {
   if (!first.starts_with("# Created by Octave")) return;
   const std::string content = read_file(path);
@@ -136,7 +138,8 @@ void refuse_octave_text(const Path& path, std::string_view first) {
                   path.string(), (path.parent_path() / (path.stem().string() + "_v7.mat")).string()));
 }
 
-/// A MAVLink telemetry log has no magic bytes: eight bytes of time, then a packet of version 1 or 2.
+/// A MAVLink telemetry log has no magic bytes. It begins with eight bytes of time, followed by a packet of version 1 or
+/// 2.
 bool is_telemetry(const Path& path, std::string_view first) {
   constexpr std::size_t time_bytes = 8;
   return path.extension() == ".tlog" && first.size() > time_bytes &&
@@ -153,7 +156,7 @@ std::string first_bytes(const Path& path) {
   return first;
 }
 
-/// A command that converts the file, and lines of Python, with example columns, that read it.
+/// Advice for a file: a command that converts the file, and lines of Python that read it, with example columns.
 std::string advice_of(const Foreign& other, const std::string& path) {
   std::string advice = fmt::format(fmt::runtime(other.advice), path);
   if (other.python.empty()) return advice;

@@ -8,11 +8,11 @@
 
 namespace modebank {
 
-/// The reader for a file, chosen by its first bytes. Throws ConfigurationError if the file cannot be read. For known
-/// formats without a reader, the message contains advice.
+/// The reader for a file, chosen by the file's first bytes. Throws ConfigurationError if the file cannot be read. If
+/// the format is known but has no reader, the message contains advice.
 std::shared_ptr<const TableReader> open_table(const std::filesystem::path& path, const FormatOptions& options);
-/// The same for one file, or for a recording's parts in the order in which they were written. Throws ConfigurationError
-/// also for several files that are not recordings.
+/// The reader for one file, or for a recording's parts in the order of writing. Also throws ConfigurationError for
+/// several files that are not recordings.
 std::shared_ptr<const TableReader> open_table(const std::vector<std::filesystem::path>& parts,
                                               const FormatOptions& options);
 

@@ -15,11 +15,11 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// With a step below this share of the residuals' standard deviation, rounding adds less than a hundredth to their
-/// variance.
+/// Smallest step that matters, as a share of the residuals' standard deviation. Rounding to a smaller step adds less
+/// than a hundredth to the residuals' variance.
 constexpr double least_share = 1.0 / 3.0;
 
-/// All training values of a state, missing ones left out.
+/// All values of a state in the training runs, without missing values.
 VectorXd training_values(const Recording& recording, Index state) {
   std::vector<double> values;
   for (const Trajectory& run : recording.runs)
@@ -28,7 +28,7 @@ VectorXd training_values(const Recording& recording, Index state) {
   return VectorXd::Map(values.data(), std::ssize(values));
 }
 
-/// Standard deviation of a state's increments about their regression on states, inputs and 1, over the training runs.
+/// Standard deviation of a state's increments in the training runs, after regression on states, inputs and a constant.
 double residual_deviation(const Recording& recording, Index state) {
   const Index n = recording.state_count(), m = recording.input_count(), p = n + m + 1;
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p + 1, p + 1);

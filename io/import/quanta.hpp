@@ -10,7 +10,7 @@
 
 namespace modebank {
 
-/// Whether a run's states were interpolated between samples (join_run does this), and not taken from samples.
+/// Whether a run's states were interpolated between samples by join_run. False if they were taken from samples.
 bool is_interpolated(const Stream& states, const Trajectory& joined);
 
 /// Finds the rounding steps of states.
@@ -18,19 +18,20 @@ class Quanta {
  public:
   explicit Quanta(const DataOptions& options) : options_(options) {}
 
-  /// Call it while the streams exist. `joined`: the run made of them.
+  /// Call it while the streams exist. `joined`: the run that was made from the streams.
   void look_at(const RunStreams& run, const Trajectory& joined);
 
-  /// data.quantum by state, as in Recording::quantum. With `auto` it is the step that check_channel finds in the
-  /// training runs, if this step is at least a third of the standard deviation of their residuals about one linear
-  /// model. Finer steps do not affect a filter. States that were interpolated in any run get no step. Adds the decision
-  /// to `notes`. Throws ConfigurationError for a wrong number of values.
+  /// data.quantum of each state, as in Recording::quantum. Adds the decision to `notes`. Throws ConfigurationError for
+  /// a wrong number of values.
+  /// With `auto` it is the step that check_channel finds in the training runs. A step below a third of the standard
+  /// deviation of the residuals about one linear model is ignored, because such a step does not affect a filter. States
+  /// that were interpolated in any run get no step.
   Eigen::VectorXd decide(const Recording& recording, std::vector<std::string>& notes) const;
 
  private:
   const DataOptions& options_;
-  bool interpolated_ = false;  ///< for any run
-  bool rounded_ = false;       ///< for samples of any interpolated run
+  bool interpolated_ = false;  ///< true for any run
+  bool rounded_ = false;       ///< true for samples of any interpolated run
 };
 
 }  // namespace modebank

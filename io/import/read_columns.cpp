@@ -11,7 +11,8 @@ namespace modebank {
 
 namespace {
 
-/// Columns requested from a table at once, and their destination: numbers, or one of the other types.
+/// Columns that are requested from a table at once, and where their values go: to numbers, or to one of the other
+/// types.
 struct AskedColumns {
   TableRequest request;
   std::vector<std::size_t> columns;
@@ -21,7 +22,7 @@ struct AskedColumns {
     for (std::size_t i = 0; i < request.numbers.size(); ++i) of_table[columns[i]] = std::move(table.numbers[i]);
     if (!request.texts.empty()) of_table[columns.front()] = std::move(table.texts.front());
     if (!request.time.column.empty()) of_table[columns.front()] = std::move(table.time_ns);
-    for (const auto& [word, count] : table.missing_words)  // counted per column
+    for (const auto& [word, count] : table.missing_words)  // the counts are per column, so the note states none
       table.notes.push_back(fmt::format("\"{}\" is read as a missing value (data.na)", word));
     if (!table.alternation.empty()) result.alternation[request.table] = std::move(table.alternation);
     for (std::string& note : table.notes)
@@ -51,14 +52,14 @@ AskedColumns stamp_piece(std::size_t table, std::size_t column, const std::strin
   return piece;
 }
 
-/// Number of columns by name. A name that occurs twice cannot be requested.
+/// Number of columns for each name. A name that occurs twice cannot be requested.
 std::map<std::string, int> name_counts(const TableInfo& table) {
   std::map<std::string, int> counts;
   for (const ColumnInfo& column : table.columns) ++counts[column.name];
   return counts;
 }
 
-/// Pieces to read: stamps and texts one by one, all other columns together as numbers.
+/// The pieces to read. A column of stamps or texts is one piece; all other columns together are one piece of numbers.
 std::vector<AskedColumns> pieces_of(const std::vector<TableInfo>& tables, const ColumnChoice& wanted) {
   std::vector<AskedColumns> pieces;
   for (std::size_t t = 0; t < tables.size(); ++t) {
@@ -80,7 +81,7 @@ std::vector<AskedColumns> pieces_of(const std::vector<TableInfo>& tables, const 
   return pieces;
 }
 
-/// Whether the columns could be read with these types; then `result` has them.
+/// Tries to read the columns with these types. Returns whether this worked; `result` then contains the columns.
 bool try_read(const TableReader& reader, const std::vector<AskedColumns>& pieces, FileColumns& result) {
   std::vector<TableRequest> requests;
   for (const AskedColumns& piece : pieces) requests.push_back(piece.request);
@@ -93,8 +94,8 @@ bool try_read(const TableReader& reader, const std::vector<AskedColumns>& pieces
   }
 }
 
-/// Columns [first, end) of a piece of numbers. If these cannot be read as numbers, they are halved until each column
-/// that is not numeric is alone; such a column becomes text.
+/// Reads columns [first, end) of a piece of numbers. If this fails, reads each half separately. A single column that
+/// cannot be read as numbers becomes text.
 void read_numbers(const TableReader& reader, const AskedColumns& piece, std::size_t first, std::size_t end,
                   FileColumns& result) {
   AskedColumns part;
@@ -113,7 +114,8 @@ void read_numbers(const TableReader& reader, const AskedColumns& piece, std::siz
 void read_apart(const TableReader& reader, const AskedColumns& piece, FileColumns& result) {
   if (!piece.request.numbers.empty()) {
     read_numbers(reader, piece, 0, piece.columns.size(), result);
-  } else if (!piece.request.time.column.empty()) {  // a column with the name of times, but without valid times
+  } else if (!piece.request.time.column.empty()) {  // the column's name is usual for times, but its values are not
+                                                    // valid times
     AskedColumns number;
     number.request.table = piece.request.table;
     number.add_number(piece.columns.front(), piece.request.time.column);
@@ -122,7 +124,7 @@ void read_apart(const TableReader& reader, const AskedColumns& piece, FileColumn
   const std::vector<FileColumn>& found = result.tables[piece.request.table];
   const auto unread = [&](std::size_t column) { return std::holds_alternative<std::monostate>(found[column]); };
   if (std::all_of(piece.columns.begin(), piece.columns.end(), unread))
-    reader.read({piece.request}, nullptr);  // throws if all columns are unreadable
+    reader.read({piece.request}, nullptr);  // throws if no column can be read
 }
 
 }  // namespace
@@ -137,11 +139,11 @@ ColumnChoice choice_of(const std::string& file, const std::vector<TableInfo>& ta
   }
   for (const std::string& name : chosen)
     if (std::find(all.begin(), all.end(), name) == all.end())
-      column_position(file, all, name);  // throws for an unknown name
+      column_position(file, all, name);  // throws if the name is unknown
   for (const TableInfo& table : tables)
     for (const auto& [name, count] : name_counts(table))
       if (count > 1 && std::find(chosen.begin(), chosen.end(), name) != chosen.end())
-        column_position(file, column_names(table), name);  // throws for an unknown name
+        column_position(file, column_names(table), name);  // throws if the name is unknown
   return [chosen](const TableInfo& table, const ColumnInfo& column) {
     const auto has = [&](const std::string& name) {
       return !name.empty() && std::find(chosen.begin(), chosen.end(), name) != chosen.end();

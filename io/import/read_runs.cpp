@@ -13,7 +13,7 @@ namespace modebank {
 
 namespace {
 
-/// Times of day of several tables count from one midnight, even if midnight lies between their first rows.
+/// Times of day in several tables are counted from the same midnight, even if midnight lies between their first rows.
 void align_clocks(std::vector<Table>& tables) {
   constexpr std::int64_t day_ns = 86'400'000'000'000;
   std::optional<std::int64_t> reference;
@@ -57,7 +57,7 @@ std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent
 void check_row_counts(const FilePlan& plan, const std::vector<Table>& tables) {
   if (!plan.rows_correspond()) return;
   const auto name = [&](std::size_t source) { return plan.paths[plan.sources[source].path].string(); };
-  std::size_t first = 0;  // the inputs' file is the first
+  std::size_t first = 0;  // the first path is the inputs file
   for (std::size_t source = 0; source < plan.sources.size(); ++source)
     if (plan.sources[source].path < plan.sources[first].path) first = source;
   for (std::size_t source = 0; source < plan.sources.size(); ++source)
@@ -66,7 +66,7 @@ void check_row_counts(const FilePlan& plan, const std::vector<Table>& tables) {
                                   name(source), tables[source].rows()));
 }
 
-/// The rows of every run in every source, without rows stamped before the clock was set.
+/// The rows of every run in every source. Rows that were stamped before the clock was set are removed.
 std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader& reader, UnsetRows& unset) {
   std::vector<RunRows> by_source;
   for (std::size_t source = 0; source < plan.sources.size(); ++source)
@@ -93,14 +93,14 @@ std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader&
   return slices;
 }
 
-/// Name of a run by its column's value. The frame names of ROS 1, such as "/base", lose their slash.
+/// Name of a run, made from its column's value. The slash of ROS 1 frame names, such as "/base", is removed.
 std::string run_name(const FilePlan& plan, std::string value, const DataOptions& options) {
   if (options.run.empty()) return plan.name;
   if (value.starts_with('/')) value.erase(0, 1);
   return plan.starred ? plan.name + "_" + value : value;
 }
 
-/// States or inputs, with their companions as further rows.
+/// States or inputs. Their companions are further rows.
 struct Gathered {
   std::vector<ColumnRef> refs;
   std::vector<RunStreams::Companion*> companions;

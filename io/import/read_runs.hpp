@@ -15,7 +15,7 @@ namespace modebank {
 
 /// The content of one plan's files.
 struct FileContent {
-  std::vector<RunStreams> runs;   ///< sorted by name; without roles, samples unsorted
+  std::vector<RunStreams> runs;   ///< runs sorted by name; roles are not set and samples are not sorted
   std::vector<InputFile> files;   ///< inputs before states
   std::vector<FileStamps> forms;  ///< formats of the stamps
   UnsetRows unset;
@@ -23,10 +23,11 @@ struct FileContent {
   std::map<std::string, std::size_t> missing_words;  ///< sum of Table::missing_words
 };
 
-/// Reads one plan's files into streams, run by run. If it throws, `result` still has the formats of the stamps. If a
-/// run's states (or inputs) come from several tables, the first table gives the times: other states are interpolated to
-/// these times, other inputs held. options.disorder puts these streams in order. Throws DataError
-/// (io/import/import.hpp).
+/// Reads one plan's files into streams, run by run. Throws DataError (io/import/import.hpp). Even then `result`
+/// contains the formats of the stamps.
+/// If a run's states (or inputs) come from several tables, they have the times of the first table. The other tables'
+/// states are interpolated to these times, and their inputs are held. options.disorder determines how these streams are
+/// sorted.
 void read_runs(const FilePlan& plan, const DataOptions& options, FileContent& result);
 
 }  // namespace modebank

@@ -18,7 +18,8 @@ namespace modebank {
 
 namespace {
 
-constexpr std::int64_t large_origin_ns = 100'000'000'000'000'000;  // three years; smaller origins cost no precision
+constexpr std::int64_t large_origin_ns = 100'000'000'000'000'000;  // three years; times that start earlier than this
+                                                                   // lose no precision
 
 bool is_same(ColumnRef a, ColumnRef b) { return a.source == b.source && a.column == b.column; }
 
@@ -179,7 +180,8 @@ std::string RowReader::place(std::size_t source, std::size_t row) const {
 
 namespace {
 
-/// Works even for stamps whose difference overflows; import reports these later.
+/// Stamps may be so far apart that their difference overflows. This function accepts such stamps; import reports them
+/// later.
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   constexpr double ns_per_s = 1e9;
   std::int64_t difference_ns = 0;

@@ -13,27 +13,27 @@
 namespace modebank {
 
 using Rows = std::vector<std::size_t>;
-using RunRows = std::map<std::string, Rows>;  // sorted by run name, byte order
+using RunRows = std::map<std::string, Rows>;  // sorted by run name in byte order
 
-/// The rows of one run, per source, and the origin of its times.
+/// The rows of one run in each source, and the origin of the run's times.
 struct RunSlice {
   std::vector<Rows> rows;
   std::int64_t origin_ns = 0;
 };
 
-/// Rows that were left out, stamped before the clock was set.
+/// Rows that were removed because they were stamped before the clock was set.
 struct UnsetRows {
   std::size_t count = 0;
-  std::string example = {};  ///< text on the first of these rows, with the stamps of its neighbours
+  std::string example = {};  ///< text about the first of these rows, with its neighbours' stamps
 
   void add(const UnsetRows& other) {
     if (count == 0) example = other.example;
     count += other.count;
   }
-  std::string note() const;  ///< empty if there are none
+  std::string note() const;  ///< empty if no rows were removed
 };
 
-/// Rows of tables by run, with access to their values. Keeps references to its arguments.
+/// The rows of tables, by run, and access to their values. Keeps references to the constructor's arguments.
 class RowReader {
  public:
   RowReader(const FilePlan& plan, const std::vector<Table>& tables, const DataOptions& options)
@@ -41,27 +41,27 @@ class RowReader {
 
   RunRows rows_by_run(std::size_t source) const;
 
-  /// Origin of the run's times: 0, or its first sample if that is long after 0.
+  /// Origin of the run's times. It is 0, or the time of the first sample if this time is far above 0.
   std::int64_t origin_ns(const std::vector<Rows>& rows) const;
 
-  /// The samples of `clock` with the columns `refs`. The values of other sources' columns are computed at the times of
-  /// `clock`, and so are channels derived from several sources.
+  /// The samples of `clock` with the columns `refs`. Columns of other sources, and channels derived from several
+  /// sources, are computed at the times of `clock`.
   FileStream stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run, Bring bring) const;
 
-  /// Removes rows of the run that were stamped before the clock was set.
+  /// Removes the run's rows that were stamped before the clock was set.
   UnsetRows leave_out_unset(RunSlice& run) const;
 
-  /// Throws DataError for stamps that differ from their neighbours by orders of magnitude.
+  /// Throws DataError if a stamp differs from its neighbours by orders of magnitude.
   void check_stamps(const RunSlice& run) const;
 
-  /// Labels of the run, at the times of their own table.
+  /// The run's labels, at the times of the table with the labels.
   LabelStream labels(const RunSlice& run) const;
 
   /// Throws unless all weights are at least 0.
   void check_weights(ColumnRef ref, const Rows& rows) const;
 
  private:
-  /// Adds the columns of tables from which `ref` is made.
+  /// Adds the table columns from which `ref` is computed.
   void gather_columns(ColumnRef ref, std::vector<ColumnRef>& read) const;
 
   Eigen::VectorXd derived(ColumnRef ref, const std::vector<ColumnRef>& read, const Stream& from) const;
@@ -72,8 +72,8 @@ class RowReader {
 
   Eigen::VectorXd times(std::size_t source, const RunSlice& run) const;
 
-  /// Times of a source with its own columns. Rows of other sources' columns stay empty. If rows correspond, all columns
-  /// are the source's own.
+  /// The times and columns of one source. The rows of other sources' columns stay empty. If the sources' rows
+  /// correspond, all columns count as the source's own.
   FileStream own_stream(std::size_t clock, const std::vector<ColumnRef>& refs, const RunSlice& run) const;
 
   Eigen::VectorXd column(ColumnRef ref, const Rows& rows) const;

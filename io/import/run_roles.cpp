@@ -13,7 +13,7 @@ namespace modebank {
 
 namespace {
 
-/// In natural order: run_2 before run_10.
+/// Natural order: run_2 comes before run_10.
 std::string listed(const std::vector<std::string>& runs) {
   std::vector<std::string> names;
   for (const std::size_t i : natural_order(runs)) names.push_back(runs[i]);

@@ -30,7 +30,7 @@ void check_order(const FileStream& source) {
                                   source.time_text(k - 1), disorder_hint(source, k)));
 }
 
-/// Indices of the samples in order of time. Samples with equal times keep the order of the file.
+/// Indices of the samples in order of time. Samples with equal times stay in the order of the file.
 std::vector<Index> order_of(const VectorXd& time_s) {
   std::vector<Index> order(static_cast<std::size_t>(time_s.size()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -110,7 +110,7 @@ Trajectory join_run(const RunStreams& run, const DataOptions& options, const Log
       joint_times(states.time_s, inputs.time_s, {sampling.rate_hz, applied.lag_s, applied.drift, applied.reference_s});
   const AveragedColumns& averaged = sampling.averaged;
   const double step_s = sampling.rate_hz > 0.0 ? 1.0 / sampling.rate_hz : 0.0;
-  if (averaged.any() && joined.time_s.size() > 0)  // no whole step ends at the first time
+  if (averaged.any() && joined.time_s.size() > 0)  // the first time is not the end of a whole step
     joined.time_s = joined.time_s.tail(joined.time_s.size() - 1).eval();
   check_samples(run, joined.time_s.size(), options, clock);
   joined.state = interpolate(states, joined.time_s);

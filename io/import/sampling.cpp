@@ -12,8 +12,8 @@ namespace {
 
 using Times = std::vector<const Eigen::VectorXd*>;
 
-/// Whether a column that changes does so at every sample. A value that is held for several samples, as from a slower
-/// sensor or a test signal, rarely changes twice in a row. Missing values count as held.
+/// Whether a column that changes does so at every sample. False for values that are held for several samples, such as
+/// those of a slower sensor or a test signal: these rarely change twice in a row. A missing value counts as held.
 bool moves_at_each_sample(const std::vector<const Stream*>& streams, Index row) {
   Index changes = 0, again = 0;
   for (const Stream* stream : streams) {
@@ -66,7 +66,8 @@ LogSampling sampling_of(const std::vector<RunStreams>& runs, const DataOptions& 
     inputs.push_back(&run.inputs.stream);
     times.push_back(&run.inputs.stream.time_s);
   }
-  constexpr double many_steps = 20.0;  // if one step contains this many steps of the log, the scatter of these is small
+  constexpr double many_steps = 20.0;  // if one model step contains this number of the log's steps, their scatter
+                                       // hardly matters
   LogSampling sampling{options.rate_hz, step_scatter(times)};
   const double period_s = median_period_s(times);
   if (!(sampling.rate_hz > 0.0)) return sampling;

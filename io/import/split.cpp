@@ -21,7 +21,7 @@ struct Interval {
 double least(const VectorXd& time_s) { return time_s.array().isFinite().select(time_s, HUGE_VAL).minCoeff(); }
 double largest(const VectorXd& time_s) { return time_s.array().isFinite().select(time_s, -HUGE_VAL).maxCoeff(); }
 
-/// Median of the steps that go forward.
+/// Median of all positive steps.
 double period_s(const VectorXd& time_s) {
   std::vector<double> steps;
   for (Index k = 1; k < time_s.size(); ++k)
@@ -32,7 +32,7 @@ double period_s(const VectorXd& time_s) {
   return *middle;
 }
 
-/// Time intervals of the blocks, without the gaps between blocks. The last interval has no end.
+/// Time intervals of the blocks. The gaps between blocks belong to no interval. The last interval has no end.
 std::vector<Interval> intervals(const RunStreams& run, const SplitOptions& options, double rate_hz) {
   const VectorXd &states = run.states.stream.time_s, &inputs = run.inputs.stream.time_s;
   const double first = std::max(least(states), least(inputs)), last = std::min(largest(states), largest(inputs));

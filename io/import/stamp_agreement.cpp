@@ -27,8 +27,8 @@ std::string read_by(const std::string& pattern, const std::string& value) {
   return fmt::format("{} by {}", by.has_date() ? text : text.substr(text.find('T') + 1), pattern);
 }
 
-/// The finest unit that any file's spacing indicates. It then holds for all files of a logger, because with this unit
-/// no file is sampled too slowly for a robot.
+/// The finest time unit that the spacing in any file indicates. It then holds for all files of a logger, because all
+/// files must be sampled fast enough for a robot.
 TimeUnit agreed_unit(const Pool& pool) {
   TimeUnit finest = pool.front()->form.unit;
   for (const FileStamps* of : pool) {
@@ -43,7 +43,7 @@ TimeUnit agreed_unit(const Pool& pool) {
   return finest;
 }
 
-/// The patterns that fit all files. Of several patterns that read all files alike, only one is kept.
+/// The patterns that fit all files. If several patterns give the same times in all files, only one is kept.
 std::vector<std::string> common_patterns(const Pool& pool) {
   StampForm common = pool.front()->form;
   for (const FileStamps* of : pool)
@@ -54,7 +54,7 @@ std::vector<std::string> common_patterns(const Pool& pool) {
   return common.patterns;
 }
 
-/// Throws; the message names the first file in which the readings differ.
+/// Throws DataError. The message names the first file for which the patterns give different times.
 [[noreturn]] void refuse_ambiguous(const Pool& pool, const std::vector<std::string>& patterns) {
   const auto differing =
       std::find_if(pool.begin(), pool.end(), [](const FileStamps* f) { return f->form.patterns.size() > 1; });
@@ -64,7 +64,8 @@ std::vector<std::string> common_patterns(const Pool& pool) {
                               patterns[1]));
 }
 
-/// Files whose format was found, grouped by pattern; files with numbers and with texts are in separate groups.
+/// Files whose format was found, in groups of equal pattern. Files with numbers and files with texts are in separate
+/// groups.
 std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools_of(const std::vector<FileStamps>& forms) {
   std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools;
   for (const FileStamps& of : forms)
@@ -77,7 +78,7 @@ std::map<std::tuple<bool, std::size_t, std::string>, Pool> pools_of(const std::v
 
 bool agree_on_stamps(const std::vector<FileStamps>& forms, std::vector<FilePlan>& plans) {
   bool changed = false;
-  std::vector<std::string> decided;  // patterns that the values determine
+  std::vector<std::string> decided;  // patterns that follow from the values
   const auto pools = pools_of(forms);
   std::map<const Pool*, std::vector<std::string>> common;
   for (const auto& [key, pool] : pools)

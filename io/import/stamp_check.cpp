@@ -11,7 +11,7 @@ namespace modebank {
 
 namespace {
 
-/// Difference of the largest and the smallest stamp, from either end up to each index.
+/// Range of the stamps (largest minus smallest) up to each index, counted from one end.
 std::vector<double> spans(const std::vector<double>& times, bool from_the_end) {
   std::vector<double> result(times.size());
   double least = 0.0, largest = 0.0;
@@ -34,7 +34,7 @@ double median_step(const std::vector<double>& times) {
   return *middle;
 }
 
-/// Name of the nanoseconds: header.stamp.nsecs for header.stamp.secs, stamp.nanosec for stamp.sec (ROS 2).
+/// Name of the column of nanoseconds: header.stamp.nsecs for header.stamp.secs, stamp.nanosec for stamp.sec (ROS 2).
 std::string nanoseconds_beside(const std::string& seconds) {
   const auto ends = [&](std::string_view word) { return seconds.ends_with(word); };
   if (ends("secs")) return seconds.substr(0, seconds.size() - 4) + "nsecs";
@@ -50,7 +50,7 @@ std::optional<std::size_t> stamp_far_out(const std::vector<std::int64_t>& stamps
   const std::size_t N = stamps_ns.size();
   if (N < fewest) return std::nullopt;
   const std::vector<double> times(stamps_ns.begin(),
-                                  stamps_ns.end());  // rounded to 256 ns, which is precise enough here
+                                  stamps_ns.end());  // rounded to 256 ns; this is precise enough here
   const std::vector<double> before = spans(times, false), after = spans(times, true);
   const double period = median_step(times);
   const auto apart = [&](std::size_t a, std::size_t b) { return std::abs(times[a] - times[b]); };

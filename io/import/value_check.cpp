@@ -21,7 +21,7 @@ std::string place(const FileStream& source, Index k) {
 
 void check_row(const RunStreams& run, const FileStream& source, const Eigen::Ref<const Eigen::RowVectorXd>& values,
                const std::string& name) {
-  // Checks all rows in one vectorised pass; the comparison is false for NaN.
+  // Checks all rows in one vectorised pass. NaN is accepted, because comparisons with NaN are false.
   if (!(values.array().abs() >= largest_value).any()) return;
   for (Index k = 0; k < values.size(); ++k)
     if (std::abs(values(k)) >= largest_value)
@@ -31,7 +31,7 @@ void check_row(const RunStreams& run, const FileStream& source, const Eigen::Ref
                       place(source, k), name, values(k), largest_value, run.run));
 }
 
-/// A column, in the runs of one role.
+/// A column and the values that it has in the runs of one role.
 struct Column {
   Role role;
   bool of_states;
@@ -54,14 +54,14 @@ void for_each_value(const std::vector<RunStreams>& runs, const Column& column, V
   }
 }
 
-/// The values with the largest distance from a column's median.
+/// The values of a column that are farthest from its median.
 struct Furthest {
-  double median = 0.0, largest = 0.0, held = 0.0;  ///< held: the share of these values in the sum of squared distances
+  double median = 0.0, largest = 0.0, held = 0.0;  ///< the share that these values have in the sum of squared distances
   std::ptrdiff_t count = 0;
 };
 
-/// The smallest set of values with more than half of the sum of squares, far from all others. If this set is not small,
-/// count is 0.
+/// The smallest set of values that make up more than half of the sum of squares and are far from all others. If this
+/// set is not small, `count` is 0.
 Furthest furthest_of(const VectorXd& values) {
   constexpr Index fewest = 50, one_in = 1000, few = 5, one_in_short = 25;
   constexpr double half = 0.5, beyond = 10.0;
@@ -84,7 +84,7 @@ Furthest furthest_of(const VectorXd& values) {
   return found;
 }
 
-/// The remark on one column; empty if no few values dominate the column.
+/// The remark on one column. Empty unless a few values dominate the column.
 std::string dominating_in(const std::vector<RunStreams>& runs, const Column& column) {
   std::vector<double> all;
   for_each_value(runs, column,
@@ -121,7 +121,7 @@ void check_values(const RunStreams& run, const DataOptions& options) {
 std::vector<std::string> columns_without_value(const RunStreams& run, const DataOptions& options) {
   std::vector<std::string> lines;
   const auto look = [&](const std::vector<std::string>& names, const FileStream& source, bool needed) {
-    if (source.stream.values.cols() == 0) return;  // too few samples are reported elsewhere
+    if (source.stream.values.cols() == 0) return;  // other code reports that there are too few samples
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (source.stream.values.row(static_cast<Index>(i)).array().isFinite().any()) continue;
       lines.push_back(fmt::format("{}: run \"{}\": column {} has no value in any of its {} samples", source.file,

@@ -8,22 +8,23 @@
 
 namespace modebank {
 
-/// Values of at least this magnitude are not valid: filters treat them as missing, and the largest have no square in a
-/// double.
+/// Values of this magnitude or above are invalid. Filters treat such values as missing, and the square of the largest
+/// ones overflows a double.
 inline constexpr double largest_value = 1e30;
 
-/// Throws DataError with file, line, run, column and value for a state, an input or a true state of at least
-/// `largest_value`.
+/// Throws DataError if a state, an input or a true state is at least `largest_value` in magnitude. The message contains
+/// file, line, run, column and value.
 void check_values(const RunStreams& run, const DataOptions& options);
 
-/// Adds a remark for every state without a value in a run, if data.missing = predict. Throws DataError with file, run
-/// and column for such a state with another data.missing, and for an input without values.
+/// If data.missing = predict, adds a remark for every state that has no value in a run. With any other data.missing,
+/// throws DataError for such a state. Throws it for every input without values. The message contains file, run and
+/// column.
 std::vector<std::string> columns_without_value(const RunStreams& run, const DataOptions& options);
 
-/// A remark for every column in which a few values have more than half of the squared distance from the median, in the
-/// training or in the held-out runs. Least squares would follow only these values. "A few" means at most five; at most
-/// one in 25 of few samples, or one in a thousand of many. The remark states the largest value, with file, line and
-/// run.
+/// Adds a remark for every column in which a few values have more than half of the squared distance from the median.
+/// Training runs and held-out runs are checked separately. Least squares would fit only these values.
+/// "A few" means at most five values. It also means at most one in 25 of few samples, or one in a thousand of many
+/// samples. The remark contains the largest value, with file, line and run.
 std::vector<std::string> dominating_values(const std::vector<RunStreams>& runs, const DataOptions& options);
 
 }  // namespace modebank

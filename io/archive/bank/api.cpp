@@ -10,7 +10,7 @@ namespace modebank::archive {
 filter::Bank load_bank(const std::string& path, const std::string& which) {
   try {
     return filter::Bank(std::make_shared<const modebank::Bank>(modebank::load_bank(path, which)));
-  } catch (const ConfigurationError& error) {  // a wrong path is a DataError in the installed interface
+  } catch (const ConfigurationError& error) {  // the installed interface throws DataError for a wrong path
     throw DataError(error.what());
   }
 }

@@ -11,7 +11,7 @@
 /// The layout of banks; see io/archive/layout.hpp.
 namespace modebank::layout {
 
-/// A part in a std::optional.
+/// Reads or writes a part that is a std::optional.
 template <class Io, class T, class Body>
 void exchange_part(Io& io, const std::string& name, T& part, const Sizes& known, Body body) {
   io.optional_group(name, part.has_value(), known, [&](auto& member) {

@@ -8,12 +8,12 @@
 
 namespace modebank {
 
-/// One bank of an archive: "bank" or the competitor "baseline", "noise_only", "one_motion", "drifting" or "nonlinear".
-/// The other parts of the file are not decoded. Throws DataError if the archive has no such bank.
+/// Reads one bank of an archive: "bank" or the competitor "baseline", "noise_only", "one_motion", "drifting" or
+/// "nonlinear". The other parts of the file are not decoded. Throws DataError if the archive has no such bank.
 Bank load_bank(const OpenArchive& archive, const std::string& which = "bank");
 
 class GroupReader;
-/// Calls `body` with the root of an archive. Error messages contain the archive's path.
+/// Calls `body` with the root group of an archive. Error messages contain the archive's path.
 void read_root(const OpenArchive& archive, const std::function<void(GroupReader&)>& body);
 
 /// The resolved configuration from which an archive was made.

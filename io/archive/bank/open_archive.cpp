@@ -65,7 +65,7 @@ std::string content_hash(int descriptor) {
   return hash.hex();
 }
 
-/// The file descriptor of HDF5's own driver.
+/// The file descriptor that HDF5's own driver uses.
 int descriptor_of(const hdf5::Handle& file) {
   void* descriptor = nullptr;
   hdf5::check(H5Fget_vfd_handle(file.id(), H5P_DEFAULT, &descriptor), "find the open file");
@@ -81,8 +81,8 @@ void require_readable(const fs::path& path) {
   if (!fs::is_regular_file(status)) throw DataError("is not a regular file");
 }
 
-/// Throws with the reason why HDF5 does not open a file. The reason comes from the first bytes and the hash, else from
-/// HDF5.
+/// Throws an error that says why HDF5 cannot open the file. The reason comes from the first bytes and the hash,
+/// otherwise from HDF5.
 [[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
   std::string bytes(user_block_bytes + hdf5_signature.size(), '\0');
   std::ifstream stream = open_file(path);
@@ -105,7 +105,7 @@ hdf5::Handle open_checked(const fs::path& path) {
   }
 }
 
-/// Returns the hash. Throws DataError if it does not match.
+/// Returns the hash. Throws DataError if the hash does not match the content.
 std::string checked_hash(const hdf5::Handle& file) {
   const int descriptor = descriptor_of(file);
   UserBlock block{};
@@ -124,7 +124,7 @@ std::string root_text(const hdf5::Handle& root, const std::string& name) {
   return attribute.elements() == 1 ? attribute.texts().front() : std::string();
 }
 
-/// The number before the first dot; -1 when there is none.
+/// The number before the first dot; -1 if the text has no such number.
 int major_version(const std::string& version) {
   int major = -1;
   const auto [end, error] = std::from_chars(version.data(), version.data() + version.size(), major);

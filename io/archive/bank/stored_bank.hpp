@@ -52,11 +52,11 @@ LinearStructure restore_structure(LinearStructure stored, Eigen::Index dimension
 void check_lags(const LinearStructure& structure, Eigen::Index dimension);
 [[noreturn]] void parameters_do_not_fit(Eigen::Index parameters, Eigen::Index states);
 
-/// A bank's K modes as columns. Matrices are transposed, so that their memory is row-major.
+/// The K modes of a bank, one per column. Matrices are transposed, so their memory is row-major.
 struct StoredBank {
   std::string model;
   LinearStructure structure;
-  Eigen::MatrixXd motion_parameters;          ///< p_motion x K, empty for linear models
+  Eigen::MatrixXd motion_parameters;          ///< p_motion x K; empty for linear models
   Eigen::MatrixXd motion_standard_error;      ///< p_motion x K
   Eigen::VectorXd weight;                     ///< K
   Eigen::MatrixXd c;                          ///< n x K
@@ -64,27 +64,27 @@ struct StoredBank {
   Eigen::MatrixXd B;                          ///< n*m x K
   Eigen::MatrixXd Q;                          ///< n*n x K
   Eigen::MatrixXd parameters;                 ///< p x K
-  Eigen::MatrixXd parameter_covariance;       ///< p*p x K, empty without
-  Eigen::MatrixXd standard_error;             ///< p x K, empty without
-  Eigen::MatrixXd Q_standard_error;           ///< n*n x K, empty without
-  Eigen::MatrixXd R_standard_error;           ///< transposed, empty without
-  Eigen::MatrixXd transition_standard_error;  ///< transposed, empty without
-  Eigen::MatrixXd transition_weights;         ///< K*d x K, equal for every previous mode; empty without
-  Eigen::VectorXd transition_reference;       ///< d, empty without
-  Eigen::MatrixXd transition_weight_error;    ///< d x K, empty without
+  Eigen::MatrixXd parameter_covariance;       ///< p*p x K; may be empty
+  Eigen::MatrixXd standard_error;             ///< p x K; may be empty
+  Eigen::MatrixXd Q_standard_error;           ///< n*n x K; may be empty
+  Eigen::MatrixXd R_standard_error;           ///< transposed; may be empty
+  Eigen::MatrixXd transition_standard_error;  ///< transposed; may be empty
+  Eigen::MatrixXd transition_weights;         ///< K*d x K; equal for every previous mode; may be empty
+  Eigen::VectorXd transition_reference;       ///< d; may be empty
+  Eigen::MatrixXd transition_weight_error;    ///< d x K; may be empty
   Eigen::MatrixXd C;                          ///< transposed
   Eigen::MatrixXd R;                          ///< transposed
-  Eigen::VectorXd quantum;                    ///< n_y, empty without
+  Eigen::VectorXd quantum;                    ///< n_y; may be empty
   Eigen::MatrixXd transition;                 ///< transposed
   Eigen::VectorXd initial_probability;
-  Eigen::VectorXd drift_scale;       ///< r, empty unless modes drift
+  Eigen::VectorXd drift_scale;       ///< r; empty unless modes drift
   Eigen::VectorXd drift_rates;       ///< q, p0, leak; empty unless modes drift
-  Eigen::MatrixXd noise_directions;  ///< (n+m) x d; empty unless noise follows state and input
+  Eigen::MatrixXd noise_directions;  ///< (n+m) x d; empty unless the noise depends on state and input
   Eigen::VectorXd noise_weights;     ///< d
   double noise_offset = 0.0;
-  // Terms; all arrays are empty without terms.
+  // Nonlinear terms. All arrays are empty if the bank has no terms.
   std::vector<std::string> term_kinds;             ///< T
-  Eigen::MatrixXd term_variables;                  ///< 3 x T positions, -1 where there is none
+  Eigen::MatrixXd term_variables;                  ///< 3 x T positions; -1: no variable
   Eigen::VectorXd term_knots;                      ///< T
   Eigen::MatrixXd term_directions;                 ///< q x V
   Eigen::VectorXd term_low, term_high, term_unit;  ///< V
@@ -92,10 +92,10 @@ struct StoredBank {
   Eigen::MatrixXd bend_standard_error;             ///< n_y*T x K
 };
 StoredBank store_bank(const Bank& bank);
-/// Reads or writes the members of StoredBank. Names, dt_s and screened modes are not included.
+/// Reads or writes the members of StoredBank, except names, `dt_s` and screened modes.
 Bank restore_bank(const StoredBank& stored, Bank named);
 
-/// The arrays of /drifting: a bank of one mode with adaptive noise. Other banks have other arrays.
+/// The arrays of /drifting, a bank of one mode with adaptive noise. Other banks have other arrays.
 struct StoredDrifting {
   LinearStructure structure;
   Eigen::VectorXd parameters;       ///< p

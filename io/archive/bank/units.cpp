@@ -105,7 +105,7 @@ Unit feature_units(const std::vector<std::string>& names, const WindowFits& fits
 Unit parameter_units(const LinearStructure& structure, const Unit& states, const Unit& inputs) {
   Unit result;
   for (Eigen::Index i = 0; i < structure.states; ++i) {
-    // A diagonal entry of A has unit 1 for any unit of the state.
+    // A diagonal entry of A has the unit 1, whatever the state's unit is.
     for (Eigen::Index j = 0; j < structure.dimension(); ++j) {
       const Eigen::Index state = j % structure.states;
       result.push_back(i == state ? "1" : unit_ratio(at(states, i), at(states, state)));

@@ -11,21 +11,22 @@
 
 namespace modebank {
 
-/// "(a)^2" or "(a)*(b)"; unknown if one unit is unknown.
+/// Unit of a product: "(a)^2" or "(a)*(b)". Unknown if one unit is unknown.
 std::string unit_product(const std::string& a, const std::string& b);
-/// "a/b", "1" for equal units; unknown if one unit is unknown.
+/// Unit of a quotient: "a/b", or "1" for equal units. Unknown if one unit is unknown.
 std::string unit_ratio(const std::string& a, const std::string& b);
 
-/// Units of variances, entry by entry.
+/// Units of variances, one for each entry.
 Unit squared(const Unit& unit);
 /// Row-major units of a covariance matrix.
 Unit outer(const Unit& unit);
 /// Row-major units of a matrix that maps `from` to `to`.
 Unit ratios(const Unit& to, const Unit& from);
-/// One text for a table's array column: the common unit, or all units with commas. Empty if a unit is unknown.
+/// The units of a table's array column as one text. This is the common unit, or all units with commas. Empty if a unit
+/// is unknown.
 std::string joined(const Unit& unit);
 
-/// Units of the recorded channels, and those of a model's arrays that follow from them.
+/// Units of the recorded channels. The units of a model's arrays follow from these.
 class Units {
  public:
   Units() = default;
@@ -48,11 +49,11 @@ class Units {
 /// Units of a motion model's parameters.
 Unit unit_of(const std::vector<ModelParameter>& parameters);
 
-/// Units of a mixture's features by name: those of the windows' parameters or of their one-lag fits, "1" for
-/// logarithms.
+/// Units of a mixture's features by name. A feature is a parameter of the windows or of their one-lag fits, or a
+/// logarithm (unit "1").
 Unit feature_units(const std::vector<std::string>& names, const WindowFits& fits, const Units& units);
 
-/// Units of theta, the row-major vec of [A B (c)].
+/// Units of theta, which contains the rows of [A B (c)] one after another.
 Unit parameter_units(const LinearStructure& structure, const Unit& states, const Unit& inputs);
 
 }  // namespace modebank

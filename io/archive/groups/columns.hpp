@@ -11,13 +11,13 @@
 
 namespace modebank {
 
-/// A member of a row struct as a column of a table.
+/// A member of a row struct, stored as a column of a table.
 template <class Row, class T>
 struct Column {
   std::string name;
   T Row::*member;
   std::string unit = {};
-  bool optional = false;  ///< archives of earlier minor versions lack this column; their rows keep the member's default
+  bool optional = false;  ///< archives of earlier minor versions lack this column; the member then keeps its default
   Rule rule = rule::any;  ///< rule for the column's values
 
   Column obeying(const Rule& other) const {
@@ -32,13 +32,13 @@ Column<Row, T> column(std::string name, T Row::*member, std::string unit = {}) {
   return {std::move(name), member, std::move(unit)};
 }
 
-/// Column of shares or probabilities.
+/// A column of shares or probabilities.
 template <class Row, class T>
 Column<Row, T> share_column(std::string name, T Row::*member, std::string unit = {}) {
   return column(std::move(name), member, std::move(unit)).obeying(rule::share_or_missing);
 }
 
-/// Column of values >= 0: errors, distances, lengths.
+/// A column of values >= 0, such as errors, distances or lengths.
 template <class Row, class T>
 Column<Row, T> amount_column(std::string name, T Row::*member, std::string unit = {}) {
   return column(std::move(name), member, std::move(unit)).obeying(rule::not_negative_or_missing);
@@ -49,8 +49,8 @@ Column<Row, T> later_column(std::string name, T Row::*member) {
   return {std::move(name), member, {}, true};
 }
 
-/// The value in the file. Booleans are stored as 8-bit integers, because MATLAB and Octave read HDF5's own booleans as
-/// enumerations. Enumerations are stored as words.
+/// The value as the file stores it. Booleans are 8-bit integers, because MATLAB and Octave read HDF5's own booleans as
+/// enumerations. Enumerations are words.
 template <class T>
 auto to_stored(const T& value) {
   if constexpr (std::is_same_v<T, bool>)
@@ -77,7 +77,8 @@ void from_stored(const Stored& stored, T& value) {
   }
 }
 
-/// All rows' values of one column. A vector per row becomes a column of a matrix; all vectors must have equal lengths.
+/// The values of one column in all rows. If each row has a vector, the vectors form a matrix and must have equal
+/// lengths.
 template <class Row, class T>
 hdf5::TableColumn encode(const std::vector<Row>& rows, const Column<Row, T>& column) {
   if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
@@ -96,7 +97,7 @@ hdf5::TableColumn encode(const std::vector<Row>& rows, const Column<Row, T>& col
   }
 }
 
-/// First fault of a column's stored values by its rule; empty if there is none.
+/// The first fault that the column's rule finds in its stored values. Empty if there is no fault.
 inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::TableColumn& column, hsize_t first_row) {
   return std::visit(
       [&](const auto& values) {
@@ -112,7 +113,8 @@ inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::Tabl
       column.values);
 }
 
-/// Reads one column into the rows and resizes the rows. `judged`: applies all rules, otherwise only rules on positions.
+/// Resizes the rows and reads one column into them. `judged`: applies all rules; otherwise applies only rules on
+/// positions.
 template <class Row, class T>
 void decode(const hdf5::TableRows& read, const Column<Row, T>& column, const Sizes& sizes, bool judged,
             std::vector<Row>& rows) {
@@ -120,7 +122,7 @@ void decode(const hdf5::TableRows& read, const Column<Row, T>& column, const Siz
   hdf5::TableColumn stored = encode(std::vector<Row>(), column);
   hdf5::read_column(read, stored);
   if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
-    // One value per measured signal, for every table. In an empty table the column has the smallest length.
+    // A table column with one value per measured signal. In an empty table the column has the smallest possible length.
     const Eigen::Index length = std::get<Eigen::MatrixXd>(stored.values).rows();
     if (const auto signals = sizes.find("n_y");
         signals && read.rows.count > 0 && *signals != static_cast<hsize_t>(length))

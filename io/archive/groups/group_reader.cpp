@@ -7,7 +7,7 @@ namespace modebank {
 
 namespace {
 
-/// A problem whose text already contains its path, so that enclosing groups do not add their own paths.
+/// A problem whose text already contains its path. Enclosing groups do not add their own paths.
 struct PlacedError : DataError {
   using DataError::DataError;
 };

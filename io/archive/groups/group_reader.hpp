@@ -17,10 +17,10 @@ namespace modebank {
 
 class SampleReader;
 
-/// Parts of an archive that a reader does not read.
+/// Parts of an archive that a reader skips.
 struct LeftOut {
   std::set<std::string> fields;  ///< paths
-  bool evaluations = false;      ///< arrays of filters over the samples
+  bool evaluations = false;      ///< the filters' arrays over samples
 };
 
 /// Reads members as the layout describes them, with the same calls as GroupWriter.
@@ -40,7 +40,7 @@ class GroupReader {
 
   /// Whether all values are checked.
   bool verifies() const { return problems_ != nullptr; }
-  /// Parts that this reader and its member groups skip. `parts` must outlive the readers.
+  /// The reader and the readers of its member groups skip these parts. `parts` must outlive all of these readers.
   void leave_out(const LeftOut& parts) { left_out_ = &parts; }
   bool leaves_evaluations() const { return left_out_ && left_out_->evaluations; }
 
@@ -101,7 +101,7 @@ class GroupReader {
       check_values(rule, array.shape(), values, 0);
     });
   }
-  /// An array that was written block by block.
+  /// Reads an array that was written block by block.
   template <class Source>
   void through_rows(const std::string& name, Source& values, const Letters& letters, const Rule& rule = rule::any) {
     Eigen::MatrixXd all;
@@ -136,7 +136,7 @@ class GroupReader {
   void optional_table(const std::string& name, std::vector<Row>& rows, const Column<Row, T>&... columns) {
     if (has(name)) table(name, rows, columns...);
   }
-  /// A long table: calls take(row) for each row.
+  /// Reads a long table. Calls take(row) for each row.
   template <class Make, class Take, class Row, class... T>
   void table_rows(const std::string& name, const Make& /*make*/, Take take, const Column<Row, T>&... columns) {
     constexpr hsize_t rows_at_once = 16384;
@@ -151,35 +151,36 @@ class GroupReader {
     });
   }
 
-  /// Reads a value through its stored form: `body` reads the form, `from` makes the value unless there was a problem.
+  /// Reads a value through its stored form. `body` reads the form. `from` makes the value, unless `body` found a
+  /// problem.
   template <class Value, class To, class From, class Body>
   void through(Value& value, To, From from, Body body) {
     std::invoke_result_t<To, const Value&> stored{};
     body(stored);
     finish([&] { value = from(stored); });
   }
-  /// Runs `step`, which uses members read from this group, unless these members had problems.
+  /// Runs `step`, which uses members read from this group. Skips it if these members had problems.
   void finish(const std::function<void()>& step);
-  /// The same for a step that only checks.
+  /// Runs `step`, which only checks members. Skips it if these members had problems.
   void judge(const std::function<void()>& step) {
     if (verifies()) finish(step);
   }
 
-  /// Binds a letter to an extent that no array of the group states.
+  /// Binds a letter to an extent. For an extent that no array of the group has.
   void set_size(const std::string& letter, std::size_t extent) { sizes_.set(letter, extent); }
-  /// Extent of a letter; 0 if no array has bound this letter.
+  /// Extent of a letter. 0 if no array has bound the letter.
   Eigen::Index size(const std::string& letter) const {
     return static_cast<Eigen::Index>(sizes_.find(letter).value_or(0));
   }
 
-  /// Extents bound so far, for a member group.
+  /// The bound extents, for the reader of a member group.
   Sizes known(const Letters& letters) const { return sizes_.only(letters); }
 
  private:
   friend class SampleReader;
 
   static constexpr hsize_t most_at_once = hsize_t{1}
-                                          << 20;  ///< number of elements of an array that verification reads at a time
+                                          << 20;  ///< verification reads an array in blocks of this many elements
 
   template <class Derived>
   using StoredOf = decltype(to_stored(std::declval<typename Derived::Scalar>()));
@@ -195,12 +196,12 @@ class GroupReader {
     else
       values.resize(static_cast<Eigen::Index>(hdf5::element_count({shape.begin() + 1, shape.end()})), rows);
   }
-  /// `shape`: shape of these values, which begin with row `first` of the array.
+  /// `shape`: shape of `values`. `first`: row of the array with which `values` begin.
   template <class Derived>
   void check_values(const Rule& rule, const hdf5::Shape& shape, const Eigen::PlainObjectBase<Derived>& values,
                     hsize_t first) const {
     if (!verifies() && !rule.index) return;
-    // Eigen's 64-bit integers are stored as std::int64_t.
+    // The file stores Eigen's 64-bit integers as std::int64_t.
     const auto* stored = reinterpret_cast<const StoredOf<Derived>*>(values.data());
     if (const std::string problem = broken(rule, sizes_, shape, stored, first); !problem.empty())
       throw DataError(problem);
@@ -231,7 +232,7 @@ class GroupReader {
   void guarded(const std::string& name, const std::function<void()>& step);
   GroupReader open_member(const std::string& name) const;
   hdf5::StoredArray open_array(const std::string& name) const;
-  /// Throws DataError for values of another type and for extents that disagree.
+  /// Throws DataError if the values have another type or the extents disagree.
   void check_numbers(const hdf5::StoredArray& array, const Letters& letters, H5T_class_t kind);
   hdf5::StoredArray open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const;
   void read_attribute(const std::string& name, std::string& value) const;

@@ -61,8 +61,8 @@ bool all_equal(const Unit& unit) {
   return std::all_of(unit.begin(), unit.end(), [&](const std::string& u) { return u == unit.front(); });
 }
 
-/// The trailing dimensions for which there is one unit per entry, for example (p, p) of an (M, p, p) covariance. Empty
-/// if none fit.
+/// The trailing dimensions whose entries correspond to the units one by one, such as (p, p) of an (M, p, p) covariance.
+/// Empty if no dimensions fit.
 hdf5::Shape trailing_shape(const hdf5::Shape& shape, std::size_t count) {
   for (auto begin = shape.end(); begin != shape.begin();) {
     const hdf5::Shape tail(--begin, shape.end());

@@ -27,18 +27,18 @@ hdf5::Shape shape_of(Sizes& sizes, const std::string& place, const Letters& lett
                   Derived::IsVectorAtCompileTime, all);
 }
 
-/// The attribute `units`: one unit for all entries, or one for each entry of the trailing extents.
+/// The attribute `units`. It has one unit for all entries, or one unit for each entry of the trailing extents.
 void write_unit(const hdf5::Handle& dataset, const Unit& unit, const hdf5::Shape& shape);
 
-/// Writes members as the layout describes them (io/archive/layout.hpp), in one group of a file. Arrays have one sample,
-/// window or mode per column, so that their memory is the row-major (count, ...) dataset.
+/// Writes members into one group of a file, as the layout describes them (io/archive/layout.hpp). Arrays have one
+/// sample, window or mode per column, so their memory is the row-major (count, ...) dataset.
 class GroupWriter {
  public:
   static constexpr bool reads = false;
 
   explicit GroupWriter(hdf5::Handle group, std::string path = {}) : group_(std::move(group)), path_(std::move(path)) {}
 
-  /// Makes a member group, or reopens an existing one, and calls `body(writer)` with this group.
+  /// Makes or reopens a member group. Calls `body(writer)` with the writer of this group.
   template <class Body>
   void group(const std::string& name, const Sizes& known, Body body) {
     if (!complete()) return;
@@ -46,14 +46,14 @@ class GroupWriter {
     member.sizes_ = known;
     body(member);
   }
-  /// Writes nothing for an absent part.
+  /// Writes a part. Writes nothing if the part is absent.
   template <class Body>
   void optional_group(const std::string& name, bool present, const Sizes& known, Body body) {
     if (present) group(name, known, body);
   }
 
-  /// Later calls write windows first .. first + count - 1 of `total`. Arrays over windows (letter M) are written into
-  /// these rows, all other arrays with the last part. `texts`: all values that texts may have.
+  /// Later calls write windows `first` to `first + count - 1` of `total`. Arrays over windows (letter M) are written
+  /// into these rows. All other arrays are written with the last part. `texts`: all values that texts may have.
   void windows_from(hsize_t first, hsize_t count, hsize_t total, std::vector<std::string> texts) {
     part_ = Part{first, count, total, std::move(texts)};
   }
@@ -62,12 +62,12 @@ class GroupWriter {
   void attribute(const std::string& name, const T& value, const Rule& = rule::any) {
     if (complete()) write_attribute(name, to_stored(value));
   }
-  /// A member that older archives lack.
+  /// Writes a member that older archives lack.
   template <class T>
   void optional_attribute(const std::string& name, const T& value, const Rule& = rule::any) {
     attribute(name, value);
   }
-  /// Leaves out a value that equals the default.
+  /// Writes a value unless it equals the default.
   template <class T>
   void attribute_unless(const T& absent, const std::string& name, const T& value, const Rule& = rule::any) {
     if (value != absent) attribute(name, value);
@@ -96,8 +96,8 @@ class GroupWriter {
     hdf5::write_texts(group_.id(), hdf5::Place::dataset, name, values, {values.size()});
   }
 
-  /// A vector has one letter. A matrix has two, or three if each column is itself a matrix; then the middle extent must
-  /// be bound.
+  /// A vector has one letter. A matrix has two letters, or three if each column is itself a matrix. The middle extent
+  /// must then be bound.
   template <class Derived>
   void field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
              const Unit& unit = {}, const Rule& = rule::any) {
@@ -115,7 +115,7 @@ class GroupWriter {
                                                    hdf5::memory_type<Stored>(), shape, values.data());
     write_unit(dataset, unit, shape);
   }
-  /// An array whose columns are computed as they are written: `values` has windows(), components() and block(first,
+  /// Writes an array whose columns are computed during writing. `values` has windows(), components() and block(first,
   /// count).
   template <class Source>
   void through_rows(const std::string& name, const Source& values, const Letters& letters, const Rule& = rule::any) {
@@ -129,19 +129,19 @@ class GroupWriter {
                        {{static_cast<hsize_t>(first), static_cast<hsize_t>(block.cols())}}, block.data());
     }
   }
-  /// An array that is computed from others, for users of the file. modebank's readers ignore it.
+  /// Writes an array that is computed from other arrays. It serves users of the file; modebank's readers ignore it.
   template <class Derived>
   void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                      const Unit& unit = {}, const Rule& = rule::any) {
     field(name, values, letters, unit);
   }
-  /// A derived array that older files lack; `make` computes it only for writing.
+  /// Writes a derived array that older files lack. `make` computes the array only for writing.
   template <class Make>
   void optional_derived_field(const std::string& name, Make make, const Letters& letters, const Unit& unit = {},
                               const Rule& = rule::any) {
     optional_field(name, make(), letters, unit);
   }
-  /// Leaves out an empty array.
+  /// Writes an array unless it is empty.
   template <class Derived>
   void optional_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                       const Unit& unit = {}, const Rule& = rule::any) {
@@ -154,14 +154,14 @@ class GroupWriter {
                        {columns.unit...});
   }
 
-  /// Leaves out an empty table.
+  /// Writes a table unless it is empty.
   template <class Row, class... T>
   void optional_table(const std::string& name, const std::vector<Row>& rows, const Column<Row, T>&... columns) {
     if (!rows.empty()) table(name, rows, columns...);
   }
 
-  /// A long table: make(append) calls append(rows) for each part of the rows, because rows take several times as much
-  /// memory as columns.
+  /// Writes a long table. make(append) calls append(rows) for each part of the rows. Rows need several times the memory
+  /// of columns, so memory holds only one part.
   template <class Make, class Take, class Row, class... T>
   void table_rows(const std::string& name, Make make, const Take& /*take*/, const Column<Row, T>&... columns) {
     std::vector<hdf5::TableColumn> encoded{encode(std::vector<Row>(), columns)...};
@@ -173,16 +173,16 @@ class GroupWriter {
     write_column_units(hdf5::write_table(group_.id(), name, std::move(encoded), count), {columns.unit...});
   }
 
-  /// Writes a value through its stored form: `to` makes the form, `body` writes it.
+  /// Writes a value through its stored form. `to` makes the form, and `body` writes it.
   template <class Value, class To, class From, class Body>
   void through(const Value& value, To to, From, Body body) {
     const auto stored = to(value);
     body(stored);
   }
 
-  /// Binds a letter to an extent that no array of the group states.
+  /// Binds a letter to an extent. For an extent that no array of the group has.
   void set_size(const std::string& letter, std::size_t extent) { sizes_.set(letter, extent); }
-  /// Extents bound so far, for a member group.
+  /// The bound extents, for the writer of a member group.
   Sizes known(const Letters& letters) const { return sizes_.only(letters); }
 
  private:
@@ -197,7 +197,7 @@ class GroupWriter {
     hdf5::write_array(group_.id(), hdf5::Place::attribute, name, hdf5::file_type<Number>(), hdf5::memory_type<Number>(),
                       {}, &value);
   }
-  /// The dataset for parts of windows; the first part creates it.
+  /// The dataset that receives the parts of windows. The first part creates it.
   hdf5::Handle rows_of(const std::string& name, hid_t file_type, const hdf5::Shape& shape) const;
   void write_column_units(const hdf5::Handle& table, const std::vector<std::string>& units);
 

@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// Arrays of a group over the samples of all runs, one run after another. `runs`: rows of each run; `body(samples, i)`
-/// reads or writes the arrays of run i.
+/// Reads or writes arrays of a group over the samples of all runs, one run after another. `runs`: rows of each run.
+/// `body(samples, i)` reads or writes the arrays of run i.
 template <class Io, class Body>
 void over_runs(Io& io, const std::vector<hdf5::Rows>& runs, Body body) {
   const hsize_t total = runs.empty() ? 0 : runs.back().end();

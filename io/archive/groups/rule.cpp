@@ -24,13 +24,13 @@ std::string number_text(double value) {
   return text.str();
 }
 
-/// Some rows of an array, and the index of the first.
+/// Some rows of an array, and the index of the first of these rows.
 struct RowRange {
   const hdf5::Shape& shape;
   hsize_t first_row;
 };
 
-/// Position of the i-th value: "(3, 0)"; empty for a scalar.
+/// Position of the i-th value, for example "(3, 0)". Empty for a scalar.
 std::string place(const RowRange& rows, std::size_t i) {
   const hdf5::Shape& shape = rows.shape;
   if (shape.empty()) return {};
@@ -43,7 +43,7 @@ std::string place(const RowRange& rows, std::size_t i) {
   return " at (" + text + ")";
 }
 
-/// The rule with its bound for positions below the letter's extent.
+/// The rule, with the letter's extent as the bound for positions.
 Rule bound(Rule rule, const Sizes& sizes) {
   if (rule.below.empty()) return rule;
   if (const auto extent = sizes.find(rule.below)) rule.most = static_cast<double>(*extent) - 1.0 + rule.beyond;
@@ -68,7 +68,7 @@ std::string demand(const Rule& rule) {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Number of values in one matrix or row, whose extents are the last `dimensions`.
+/// Number of values in one matrix or row. Its extents are the last `dimensions` extents of the array.
 std::size_t values_in(const hdf5::Shape& shape, std::size_t dimensions) {
   std::size_t count = 1;
   for (std::size_t d = shape.size() - std::min(dimensions, shape.size()); d < shape.size(); ++d)
@@ -90,7 +90,7 @@ std::string broken_sums(Rule::Form form, const RowRange& rows, std::span<const d
   for (std::size_t begin = 0; row > 0 && begin < values.size(); begin += row) {
     double sum = 0.0;
     for (std::size_t i = begin; i < begin + row; ++i) sum += values[i];
-    const bool above = sum > 1.0 + tolerance, below = sum < 1.0 - tolerance;  // no verdict if a value is missing
+    const bool above = sum > 1.0 + tolerance, below = sum < 1.0 - tolerance;  // not judged if a value is missing
     if (above || (below && form == Rule::Form::probabilities))
       return "holds probabilities that sum to " + number_text(sum) + place(rows, begin);
   }
@@ -99,8 +99,8 @@ std::string broken_sums(Rule::Form form, const RowRange& rows, std::span<const d
 
 using MatrixOfFile = Eigen::Map<const RowMajor>;
 
-/// Whether a matrix may be a covariance, up to rounding and missing entries. Used for computed values that are only
-/// shown.
+/// Whether a matrix can be a covariance, except for rounding errors and missing entries. Used for computed values that
+/// are only shown.
 bool is_computed_covariance(const MatrixOfFile& matrix) {
   constexpr double rounding = 1e-6;
   double largest = 0.0;

@@ -10,13 +10,13 @@
 
 namespace modebank {
 
-/// Allowed values of a member, beside its type and extents. The layout names a rule if some values are not allowed, and
-/// readers enforce the rule.
+/// Allowed values of a member, in addition to its type and extents. The layout gives a rule to each member that has
+/// forbidden values. Readers enforce the rule.
 struct Rule {
-  /// Rules on all numbers of a member together.
+  /// Rules that concern all numbers of a member together.
   enum class Form {
     none,
-    increasing,           ///< each value is above the one before
+    increasing,           ///< each value is greater than the previous value
     probabilities,        ///< each slice along the last extent sums to 1, unless a value is missing
     parts,                ///< each slice along the last extent sums to at most 1
     covariances,          ///< each slice along the last two extents is a symmetric, positive semidefinite matrix
@@ -24,29 +24,29 @@ struct Rule {
   };
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
-  bool above_least = false;     ///< excludes `least` itself
-  bool finite = true;           ///< false: allows infinities within the bounds
+  bool above_least = false;     ///< the value `least` itself is not allowed
+  bool finite = true;           ///< false: infinite values within the bounds are allowed
   bool may_be_missing = false;  ///< NaN marks an unknown value
-  std::string below = {};       ///< a letter: values are positions below this letter's extent
-  double beyond = 0.0;          ///< by how much values may exceed the last position; 1: counts
+  std::string below = {};       ///< a letter: the values are positions below this letter's extent
+  double beyond = 0.0;          ///< values may exceed the last position by this number; 1 for counts
   Form form = Form::none;
-  bool index = false;  ///< values become positions or sizes, so that every reader checks them, not only verification
+  bool index = false;  ///< values are used as positions or sizes, so every reader checks them, not only verification
 };
 
 /// The rules that the layout uses.
 namespace rule {
 
-/// Any value, including NaN and infinities: for computed values that are only shown.
+/// Any value, including NaN and infinities. For computed values that are only shown.
 inline const Rule any{.finite = false, .may_be_missing = true};
 inline const Rule finite{};
 inline const Rule finite_or_missing{.may_be_missing = true};
 inline const Rule positive{.least = 0.0, .above_least = true};
 inline const Rule not_negative{.least = 0.0};
 inline const Rule not_negative_or_missing{.least = 0.0, .finite = false, .may_be_missing = true};
-inline constexpr double one = 1.0 + 1e-9;  ///< with room for rounding
+inline constexpr double one = 1.0 + 1e-9;  ///< allows for rounding errors
 inline const Rule share{.least = 0.0, .most = one};
 inline const Rule share_or_missing{.least = 0.0, .most = one, .may_be_missing = true};
-/// May be infinite, because the divisor may be zero.
+/// Infinite values are allowed, because the divisor may be zero.
 inline const Rule at_most_one{.most = one, .finite = false, .may_be_missing = true};
 inline const Rule at_least_one{.least = 1.0, .index = true};
 inline const Rule increasing{.form = Rule::Form::increasing};
@@ -58,30 +58,30 @@ inline const Rule covariances{.form = Rule::Form::covariances};
 inline const Rule computed_covariances{
     .finite = false, .may_be_missing = true, .form = Rule::Form::computed_covariances};
 
-/// Numbers of lags and channels. The limit is far above any use, but small enough that products of sizes do not
-/// overflow.
+/// Numbers of lags and channels. The limit is far above any real number, but products of such sizes cannot overflow.
 inline const Rule lags{.least = 1.0, .most = 1000.0, .index = true};
 inline const Rule delay{.least = 0.0, .most = 1000.0, .index = true};
 inline const Rule channels{.least = 0.0, .most = 1e5, .index = true};
 
 inline Rule between(double least, double most) { return {.least = least, .most = most, .index = true}; }
-/// Positions below the letter's extent; any position if no array has bound the letter.
+/// Positions below the letter's extent. Any position if no array has bound the letter.
 inline Rule position(std::string letter) { return {.least = 0.0, .below = std::move(letter), .index = true}; }
-/// The same, or -1 for no position.
+/// Positions below the letter's extent, or -1 for no position.
 inline Rule position_or_none(std::string letter) { return {.least = -1.0, .below = std::move(letter), .index = true}; }
-/// A count of the letter's items: 0 to its extent.
+/// A number of the letter's items, from 0 to the letter's extent.
 inline Rule count_of(std::string letter) { return {.least = 0.0, .below = std::move(letter), .beyond = 1.0}; }
 
 }  // namespace rule
 
-/// The first value that breaks the rule, for example "holds 255 at (3), must lie in 0 .. 3"; empty if there is none.
-/// `shape` is in row-major order. `first_row`: index of the first of these rows in the whole array.
+/// Describes the first value that breaks the rule, for example "holds 255 at (3), must lie in 0 .. 3". Empty if all
+/// values obey the rule. `shape` is in row-major order. `first_row`: index of the first of these rows in the whole
+/// array.
 template <class Number>
 std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::Shape& shape, const Number* values,
                    hsize_t first_row = 0);
 
-/// The first control character in the texts; empty if there is none. A terminal would execute it when names are
-/// printed. `whole`: the text is not a name, so that line breaks and tabs are allowed.
+/// Describes the first control character in the texts; empty if the texts have none. When names are printed, a terminal
+/// would execute such a character. `whole`: the text is not a name, so line breaks and tabs are allowed.
 std::string broken_text(const std::vector<std::string>& texts, bool whole = false);
 
 }  // namespace modebank

@@ -10,22 +10,22 @@
 
 namespace modebank {
 
-/// Reads arrays over the samples of all runs (letter S). Returns the rows of one run; short runs are read in blocks of
-/// several runs.
+/// Reads arrays over the samples of all runs (letter S). Returns the rows of one run. If runs are short, one read
+/// covers several runs.
 class SampleReader {
  public:
   static constexpr bool reads = true;
 
-  /// Reads arrays of the group, which must outlive this. `total`: samples of all runs.
+  /// Reads arrays of `group`, which must outlive this reader. `total`: number of samples of all runs.
   SampleReader(GroupReader& group, hsize_t total);
 
-  /// Selects a run for the next fields, by its rows. `wanted`: the fields to read; null: all.
+  /// Selects the run whose fields are read next, by its rows. `wanted`: the fields to read; null: all fields.
   void begin_run(const hdf5::Rows& rows, const std::set<std::string>* wanted = nullptr) {
     run_ = rows;
     wanted_ = wanted;
   }
 
-  /// An array that every run has.
+  /// Reads an array that every run has.
   template <class Derived>
   void field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters, const Unit& = {},
              const Rule& rule = rule::any) {
@@ -42,7 +42,8 @@ class SampleReader {
       column.has_problem = false;
     });
   }
-  /// Left empty if no run has the array, or if all its rows of this run are NaN or -1.
+  /// Reads an array that a run may lack. The result is empty if no run has the array, or if all rows of this run are
+  /// NaN or -1.
   template <class Derived>
   void optional_field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                       const Unit& unit = {}, const Rule& rule = rule::any) {
@@ -58,7 +59,7 @@ class SampleReader {
   void finish(const std::function<void()>& step) { group_.finish(step); }
 
  private:
-  /// One array, with some rows already read.
+  /// One array and those of its rows that are already in memory.
   struct Column {
     std::optional<hdf5::StoredArray> array;
     bool has_problem = false;  ///< already reported
@@ -66,7 +67,7 @@ class SampleReader {
     std::string cells = {};
   };
   Column& column_of(const std::string& name);
-  /// The run's rows in their memory form, with `cell_bytes` per number.
+  /// The run's rows as they are in memory, with `cell_bytes` per number.
   void read_rows(Column& column, hid_t memory_type, std::size_t cell_bytes, void* values) const;
   template <class Derived>
   void read_run(Column& column, const Letters& letters, Eigen::PlainObjectBase<Derived>& values) {

@@ -9,7 +9,7 @@ namespace modebank {
 namespace {
 
 constexpr hsize_t block_rows = 65536;
-/// The time that HDF5 needs to join the parts of a selection grows with the square of their number.
+/// HDF5 joins the parts of a selection. The time for this grows with the square of the number of parts.
 constexpr std::size_t most_stretches = 256;
 
 }  // namespace

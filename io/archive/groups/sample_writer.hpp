@@ -20,14 +20,14 @@ class SampleWriter {
   /// Writes arrays into the group; `total`: samples of all runs.
   SampleWriter(const GroupWriter& group, hsize_t total);
 
-  /// Selects a run for the next fields, by its rows.
+  /// Selects the run whose fields are written next, by its rows.
   void begin_run(const hdf5::Rows& rows);
   /// Writes the collected rows.
   void flush();
-  /// Flushes; throws std::invalid_argument unless all rows were written.
+  /// Flushes. Throws std::invalid_argument unless all rows were written.
   void finish();
 
-  /// An array that every run has.
+  /// Writes an array that every run has.
   template <class Derived>
   void field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
              const Unit& unit = {}, const Rule& = rule::any) {
@@ -38,7 +38,7 @@ class SampleWriter {
     shape.front() = total_;
     put(column_of<Number>(name, shape, unit), values.data());
   }
-  /// Leaves out an empty array.
+  /// Writes an array unless it is empty.
   template <class Derived>
   void optional_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
                       const Unit& unit = {}, const Rule& = rule::any) {
@@ -46,7 +46,7 @@ class SampleWriter {
   }
 
  private:
-  /// One array, with its waiting rows in their memory form.
+  /// One array and its rows that wait to be written, as they are in memory.
   struct Column {
     std::string name;
     hdf5::Handle dataset;
@@ -70,21 +70,21 @@ class SampleWriter {
   }
   Column& column_of(const std::string& name, hid_t file_type, hid_t memory_type, const std::string& missing,
                     const hdf5::Shape& shape, const Unit& unit);
-  /// Adds the run's rows of an array.
+  /// Adds the run's rows to an array.
   void put(Column& column, const void* values);
   static void fill(Column& column, hsize_t rows);
   void write_missing(const Column& column) const;
-  /// Fills the arrays that the run lacks.
+  /// Writes missing values into the arrays that the run lacks.
   void end_run();
 
   const hdf5::Handle group_;
   std::string path_;
   Sizes sizes_;
-  hsize_t total_, came_ = 0;  ///< number of rows in all, and of rows from runs so far
+  hsize_t total_, came_ = 0;  ///< total number of rows, and number of rows from the runs so far
   hdf5::Rows run_;
-  bool at_once_ = false;  ///< the run is written directly from the caller's memory
+  bool at_once_ = false;  ///< the run's rows are written directly from the caller's memory
   std::vector<Column> columns_;
-  std::vector<hdf5::Rows> waiting_;  ///< rows of the arrays' waiting values
+  std::vector<hdf5::Rows> waiting_;  ///< the rows whose values wait to be written
   hsize_t waiting_rows_ = 0;
 };
 

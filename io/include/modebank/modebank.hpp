@@ -1,7 +1,7 @@
 #pragma once
 
-/// All installed headers. A program may include this and link only some components; functions of the others are
-/// declared, but cannot be called.
+/// All installed headers. A program may include this header and link only some components. The functions of other
+/// components are then declared, but cannot be linked.
 
 #include "modebank/archive/load_bank.hpp"
 #include "modebank/base/dual.hpp"
