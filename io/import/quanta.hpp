@@ -30,8 +30,8 @@ class Quanta {
 
  private:
   const DataOptions& options_;
-  bool interpolated_ = false;  ///< true for any run
-  bool rounded_ = false;       ///< true for samples of any interpolated run
+  bool interpolated_ = false;  ///< true if any run was interpolated
+  bool rounded_ = false;       ///< true if samples of any interpolated run are rounded
 };
 
 }  // namespace modebank

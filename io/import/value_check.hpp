@@ -23,8 +23,8 @@ std::vector<std::string> columns_without_value(const RunStreams& run, const Data
 
 /// Adds a remark for every column in which a few values have more than half of the squared distance from the median.
 /// Training runs and held-out runs are checked separately. Least squares would fit only these values.
-/// "A few" means at most five values. It also means at most one in 25 of few samples, or one in a thousand of many
-/// samples. The remark contains the largest value, with file, line and run.
+/// "A few" means at most five values, or one in a thousand if that is more. Below 125 values it means at most one in
+/// 25. The remark contains the largest value, with file, line and run.
 std::vector<std::string> dominating_values(const std::vector<RunStreams>& runs, const DataOptions& options);
 
 }  // namespace modebank

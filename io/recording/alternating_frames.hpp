@@ -7,13 +7,13 @@
 
 namespace modebank {
 
-/// Text columns of a topic that name the frame of a message, the child's frame before its parent's. For an array, the
-/// columns of its first element.
+/// Text columns of a topic that contain the frame of a message. The child's frame comes before its parent's frame. For
+/// an array, these are the columns of the first element.
 std::vector<std::string> frame_columns(const LogTopic& topic);
 
-/// A sentence on the frames between which a topic's messages alternate, with the key that separates these frames. Empty
-/// if messages do not alternate: after a restart in another frame, a recorder never returns to an earlier frame.
-/// `frames`: one value per message.
+/// A sentence about the frames between which a topic's messages alternate, with the key that separates these frames.
+/// `frames`: one value per message. Empty if a frame never returns after another frame, as when a recorder restarts in
+/// another frame.
 std::string alternation_text(const LogTopic& topic, const std::string& column, const std::vector<std::string>& frames);
 
 }  // namespace modebank

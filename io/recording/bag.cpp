@@ -23,7 +23,7 @@ class Bag : public PieceFile {
     return read_head(bytes, at, end);
   }
 
-  /// The publisher's description of the connection: fields in the form of a record's header.
+  /// The publisher's description of the connection. Its fields have the form of a record's header.
   static std::string publisher_fields(const RecordHead& head, ByteSource& bytes) {
     if (head.payload_bytes > most_definition_bytes)
       throw Damage(head.payload_at, fmt::format("a definition of {} bytes is larger than {}", head.payload_bytes,
@@ -35,8 +35,8 @@ class Bag : public PieceFile {
     return std::string(find_field(fields, name, head.payload_at).value_or(""));
   }
 
-  /// The recorded topic is in the record's header. Publishers need not repeat it (publishers in C++ do not), and a
-  /// publisher whose topic was remapped repeats another topic.
+  /// The recorded topic is in the record's header. The publisher's description is not used: publishers in C++ omit the
+  /// topic there, and a publisher whose topic was remapped states another topic.
   ConnectionName name_of(const RecordHead& head, ByteSource& bytes) const override {
     const std::string header = read_record(bytes, head.at, head.end).header, fields = publisher_fields(head, bytes);
     const auto topic = find_field(header, "topic", head.at);
@@ -92,7 +92,7 @@ class Bag : public PieceFile {
     return piece;
   }
 
-  /// Reads the index at the end. False unless all of it agrees with its chunks.
+  /// Reads the index at the end of the file. Returns false unless the whole index agrees with its chunks.
   bool try_index(const Record& header) {
     try {
       const auto index_at = header.number<std::uint64_t>("index_pos");
@@ -123,7 +123,8 @@ class Bag : public PieceFile {
     return chunks;
   }
 
-  /// Adds a chunk of the index. The chunk's own index, which follows the chunk, must have the same numbers of messages.
+  /// Adds a chunk that the index lists. After the chunk comes the chunk's own index, which must contain the same
+  /// numbers of messages.
   std::uint64_t check_chunk(const Record& info, std::uint64_t least_at) {
     const auto at = info.number<std::uint64_t>("chunk_pos");
     if (at < least_at || at >= info.at) throw Damage(info.at, "chunks are not in order");
@@ -154,7 +155,7 @@ class Bag : public PieceFile {
     return next;
   }
 
-  /// Reads every record, if the index is unusable.
+  /// Reads every record. Used if the index is unusable.
   void scan() {
     note(
         fmt::format("{}: its index is missing or damaged (the recording was cut off, or `rosbag reindex` was not run), "
@@ -183,7 +184,7 @@ class Bag : public PieceFile {
     }
   }
 
-  /// A chunk that the end of the file cuts off may still have complete messages.
+  /// A chunk that is cut off by the end of the file may still contain complete messages.
   void scan_cut_chunk(std::uint64_t at) try {
     const auto rest = file_.size() - std::min(at, file_.size());
     if (rest < 8) return;

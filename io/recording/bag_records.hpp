@@ -9,7 +9,7 @@ namespace modebank::bag {
 
 inline constexpr std::string_view magic = "#ROSBAG V2.0\n";
 
-/// Type of a record, in its field `op`.
+/// Type of a record; the record's field `op` contains it.
 enum class Op : std::uint8_t {
   message = 0x02,
   header = 0x03,
@@ -19,14 +19,14 @@ enum class Op : std::uint8_t {
   connection = 0x07
 };
 
-/// A record: a header of named fields, then data.
+/// A record: a header of named fields, followed by data.
 struct Record {
   Op op{};
-  std::string header;  ///< fields name=value, each after its length in four bytes
+  std::string header;  ///< fields name=value, each preceded by its length in four bytes
   std::uint64_t at = 0, data_at = 0, data_bytes = 0;
 
   std::uint64_t end() const { return data_at + data_bytes; }
-  /// Value of a field. Throws Damage when it is missing.
+  /// Value of a field. Throws Damage if the field is missing.
   std::string_view field(std::string_view name) const;
   template <class T>
   T number(std::string_view name) const {
@@ -35,17 +35,17 @@ struct Record {
       throw Damage(at, "a record's field \"" + std::string(name) + "\" has the wrong size");
     return little_endian<T>(value);
   }
-  /// A time field: seconds and nanoseconds.
+  /// A field with a time, in seconds and nanoseconds.
   std::int64_t time_ns(std::string_view name) const;
 };
 
-/// The record at `at`. Throws Damage unless it ends by `end`.
+/// The record at position `at`. Throws Damage unless the record ends at or before `end`.
 Record read_record(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
 
-/// The same in a short form: records are skipped by the million.
+/// The type and the positions of a record without its content, because readers skip millions of records.
 RecordHead read_head(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
 
-/// One of several named fields; nullopt if it is missing.
+/// The value of one of several named fields. Nullopt if the field is missing.
 std::optional<std::string_view> find_field(std::string_view fields, std::string_view name, std::uint64_t at);
 
 }  // namespace modebank::bag

@@ -20,7 +20,7 @@ namespace {
                            std::error_code(error, std::generic_category()).message());
 }
 
-constexpr std::size_t window_bytes = 1 << 16;  // small, so that only a sixteenth of a file of images is read
+constexpr std::size_t window_bytes = 1 << 16;  // small, so that only a sixteenth of a file with images is read
 
 }  // namespace
 

@@ -10,13 +10,13 @@
 
 namespace modebank {
 
-/// A recording is damaged from byte `at` on; the bytes before are usable.
+/// Thrown if a recording is damaged from byte `at` on. The bytes before `at` are usable.
 struct Damage : std::runtime_error {
   Damage(std::uint64_t at_byte, const std::string& what) : std::runtime_error(what), at(at_byte) {}
   std::uint64_t at = 0;
 };
 
-/// The little-endian number at the start of `bytes`, which has at least sizeof(T) bytes.
+/// The little-endian number at the start of `bytes`. There must be at least sizeof(T) bytes.
 template <class T>
 T little_endian(std::string_view bytes) {
   static_assert(std::is_unsigned_v<T>);
@@ -31,7 +31,7 @@ class ByteSource {
  public:
   virtual ~ByteSource() = default;
   virtual std::uint64_t size() const = 0;
-  /// The bytes from `at`, valid until the next call. Throws Damage when there are fewer.
+  /// The bytes from position `at`, valid until the next call. Throws Damage if there are fewer bytes.
   std::string_view view(std::uint64_t at, std::uint64_t bytes) {
     if (at > size() || bytes > size() - at) throw Damage(at, "it ends within a record");
     return viewed(at, static_cast<std::size_t>(bytes));
@@ -51,20 +51,21 @@ class MemoryBytes : public ByteSource {
   std::string_view bytes_;
 };
 
-/// A file, read through a window: skipped parts are not read.
+/// A file that is read through a window. Skipped parts are not read.
 class FileBytes : public ByteSource {
  public:
-  /// Opens it. Throws ConfigurationError, naming path and reason, when the file cannot be read.
+  /// Opens the file. Throws ConfigurationError with path and reason if the file cannot be read.
   explicit FileBytes(std::filesystem::path path);
   ~FileBytes() override;
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
 
   std::uint64_t size() const override { return size_; }
-  /// Closes the file until the next `open`, because a pattern may match thousands of files.
+  /// Closes the file until `open` is called again, because a pattern may match thousands of files.
   void close();
   void open();
-  /// Copies up to `bytes` bytes without the window and returns their number. Threads may call it at the same time.
+  /// Copies up to `bytes` bytes without using the window. Returns the number of copied bytes. Threads may call this
+  /// function at the same time.
   std::size_t read(std::uint64_t at, std::size_t bytes, char* to) const;
 
  private:
@@ -78,10 +79,10 @@ class FileBytes : public ByteSource {
   std::vector<char> window_;
 };
 
-/// Reads a record's fields one by one.
+/// Reads the fields of a record one by one.
 class FieldReader {
  public:
-  /// `at`: position of the bytes, for messages.
+  /// `at`: position of the bytes in the file, for messages.
   explicit FieldReader(std::string_view bytes, std::uint64_t at = 0) : bytes_(bytes), at_(at) {}
 
   bool done() const { return bytes_.empty(); }
@@ -96,7 +97,7 @@ class FieldReader {
   T number() {
     return little_endian<T>(take(sizeof(T)));
   }
-  /// A text after its length in four bytes.
+  /// Reads a length of four bytes, then a text of this length.
   std::string_view text() { return take(number<std::uint32_t>()); }
 
  private:

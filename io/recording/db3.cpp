@@ -19,7 +19,7 @@ struct SqlError : std::runtime_error {
 
 class Database {
  public:
-  /// `immutable`: SQLite uses no locks and no journal, and writes nothing beside the file.
+  /// With `immutable`, SQLite uses no locks and no journal and writes no other files.
   Database(const std::filesystem::path& path, bool immutable) {
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE;
     const int status = sqlite3_open_v2(uri(path, immutable).c_str(), &handle_, flags, nullptr);
@@ -86,13 +86,14 @@ class Query {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-/// Whether a journal with messages is beside the file, as a killed recorder leaves it.
+/// Whether there is a journal with messages beside the file. A recorder that was killed leaves such a journal.
 bool has_journal(const std::filesystem::path& path) {
   std::error_code error;
   return std::filesystem::file_size(path.string() + "-wal", error) > 0 && !error;
 }
 
-/// Opens the database with its journal, if there is a readable one. SQLite then needs a third file, FILE-shm.
+/// Opens the database, together with its journal if that is readable. With a journal, SQLite needs a third file,
+/// FILE-shm.
 std::unique_ptr<Database> open_database(const std::filesystem::path& path, std::vector<std::string>& notes) {
   if (!has_journal(path)) return std::make_unique<Database>(path, true);
   try {
@@ -139,7 +140,7 @@ class Db3 : public Container {
     return fmt::format("{}: SQLite: {}", path_.string(), error.what());
   }
 
-  /// Accepts tables only: rosbag2 writes neither views nor virtual tables, whose modules could run code.
+  /// Accepts only tables. rosbag2 writes no views or virtual tables, and modules of virtual tables could execute code.
   void check_tables() {
     for (const char* name : {"topics", "messages"}) {
       Query query(
@@ -163,7 +164,7 @@ class Db3 : public Container {
     }
   }
 
-  /// Newer recordings have the definitions that the recorder found.
+  /// Newer recordings contain the definitions that the recorder found.
   void read_definitions() {
     Query table(*database_,
                 "SELECT 1 FROM sqlite_schema WHERE name = 'message_definitions' AND type = 'table' AND rootpage > 0");
@@ -184,7 +185,8 @@ class Db3 : public Container {
     std::unordered_map<std::size_t, std::pair<std::int64_t, std::int64_t>> ends;
     std::size_t of_no_topic = 0;
     try {
-      // Row by row, so that rows before any damage count. The payload, which comes after these columns, is not read.
+      // Reads row by row, so that rows before any damage count. Does not read the payload, which comes after these
+      // columns.
       Query query(*database_, "SELECT rowid, topic_id FROM messages ORDER BY rowid");
       while (query.next()) {
         const auto found = by_id_.find(query.integer(1));
@@ -222,7 +224,8 @@ class Db3 : public Container {
     return {};
   }
 
-  /// rosbag2 may compress each message with zstd. No CDR encapsulation begins as a zstd frame does.
+  /// rosbag2 may compress each message with zstd. The first bytes of a zstd frame are not those of any CDR
+  /// encapsulation.
   std::string_view plain(std::string_view payload) {
     constexpr std::string_view zstd_magic = "\x28\xb5\x2f\xfd";
     if (payload.substr(0, zstd_magic.size()) != zstd_magic) return payload;

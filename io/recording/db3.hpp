@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// Opens a rosbag2 recording in SQLite for reading only, and does not trust its schema. A journal beside the file is
-/// not applied. Throws DataError for a database with other tables.
+/// Opens a rosbag2 recording in SQLite for reading only. The database's schema is not trusted. A journal beside the
+/// file is not applied. Throws DataError if the database has other tables.
 std::unique_ptr<Container> open_db3(const std::filesystem::path& path);
 
 }  // namespace modebank

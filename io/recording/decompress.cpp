@@ -14,7 +14,7 @@ namespace modebank {
 
 namespace {
 
-/// One step in decompressing a stream: the bytes done, and whether the stream has ended.
+/// Result of one step in decompressing a stream: the number of bytes done, and whether the stream has ended.
 struct Step {
   std::size_t taken = 0, made = 0;
   bool ended = false;
@@ -91,7 +91,7 @@ class ZstdStream {
 
 template <class Stream>
 Unpacked unpack_stream(std::string_view packed, std::size_t declared, Buffer& buffer) {
-  // Images have smaller ratios of compression; for a higher ratio more rounds follow.
+  // Compressed images are not much smaller than images. If the compression ratio is higher, more rounds follow.
   constexpr std::size_t usual_ratio = 8, least = 1 << 16;
   Stream stream;
   std::size_t made = 0;
@@ -144,7 +144,7 @@ Unpacked unpack(Compression compression, std::string_view packed, std::uint64_t 
 }
 
 std::uint64_t zstd_content_bytes(std::string_view packed) {
-  return ZSTD_getFrameContentSize(packed.data(), packed.size());  // zstd's two error codes are the largest numbers
+  return ZSTD_getFrameContentSize(packed.data(), packed.size());  // zstd uses the two largest numbers as error codes
 }
 
 }  // namespace modebank

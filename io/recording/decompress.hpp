@@ -9,10 +9,10 @@ namespace modebank {
 
 enum class Compression { none, bz2, lz4, zstd };
 
-/// Memory that is reused from chunk to chunk.
+/// Memory that is used again for each chunk.
 class Buffer {
  public:
-  /// Makes room for `bytes`; the first `kept` bytes keep their content.
+  /// Makes room for `bytes` bytes. The first `kept` bytes keep their content.
   char* reserve(std::size_t bytes, std::size_t kept);
   char* data() { return bytes_.get(); }
   std::size_t capacity() const { return capacity_; }
@@ -23,15 +23,15 @@ class Buffer {
 };
 
 struct Unpacked {
-  std::string_view bytes;  ///< bytes in the buffer: all, or those before the error
-  std::string failure;     ///< reason of an error, else empty
+  std::string_view bytes;  ///< number of bytes in the buffer: all bytes, or those before the error
+  std::string failure;     ///< reason of an error; empty if there is none
 };
 
-/// Decompresses a chunk that declares `declared` bytes. Memory grows with the actual output, so a false size costs no
-/// memory. More bytes than declared are an error.
+/// Decompresses a chunk that declares a size of `declared` bytes. Memory grows with the actual output, so a wrong size
+/// costs no memory. Output beyond the declared size is an error.
 Unpacked unpack(Compression compression, std::string_view packed, std::uint64_t declared, Buffer& buffer);
 
-/// Size that a zstd frame declares; if it declares none, more than any message has.
+/// The size that a zstd frame declares. If it declares none, a number larger than any message.
 std::uint64_t zstd_content_bytes(std::string_view packed);
 
 }  // namespace modebank

@@ -17,9 +17,9 @@ namespace modebank {
 namespace {
 
 constexpr int deepest_nesting = 32;
-constexpr std::size_t most_fields = 4096;  // limit for one type
+constexpr std::size_t most_fields = 4096;  // limit for the number of fields of one type
 
-/// Removes the first line and returns it without its line end.
+/// Removes the first line from the text. Returns it without its line end.
 std::string_view next_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string_view line = text.substr(0, end);
@@ -93,7 +93,7 @@ void parse_array(std::string_view& type, Field& field) {
     throw DefinitionError(fmt::format("[{}] is not the size of an array", count));
 }
 
-/// The type's name for looking up definitions.
+/// The type's name in the form that is used to find its definition.
 std::string full_name(std::string_view type, const std::string& package, Dialect dialect) {
   if (type.find('/') != std::string_view::npos) return short_type(type);
   if (type == "Header" && dialect == Dialect::ros1) return "std_msgs/Header";
@@ -155,7 +155,7 @@ Field Schema::parse_field(std::string_view type, std::string_view name, const st
   Field field;
   field.name = name;
   parse_array(type, field);
-  const std::size_t bound = type.find("<=");  // bound of a string's length
+  const std::size_t bound = type.find("<=");  // largest length of a string
   if (bound != std::string_view::npos) type = type.substr(0, bound);
   if (const auto kind = primitive(type, dialect_)) {
     field.kind = *kind;
@@ -193,13 +193,15 @@ const MessageType* Schema::resolve(const std::string& type, const Lookup& lookup
     const std::string_view name = line.substr(0, std::min(line.find_first_of(" \t="), line.size()));
     if (!is_identifier(name)) throw DefinitionError(fmt::format("{}: \"{}\" is not a field", type, written));
     const std::string_view rest = without_blanks(line.substr(name.size()));
-    if (!rest.empty() && rest.front() == '=') continue;  // skips a constant; other text after a name is its default
+    if (!rest.empty() && rest.front() == '=')
+      continue;  // a constant is skipped; any other text after a name is the
+                 // field's default
     if (message->fields.size() == most_fields)
       throw DefinitionError(fmt::format("{} has more than {} fields", type, most_fields));
     if (!names.insert(name).second) throw DefinitionError(fmt::format("{} has two fields \"{}\"", type, name));
     Field field = parse_field(word, name, package, lookup, depth);
     const std::uint64_t bytes = least_bytes(field);
-    if (bytes == 0) continue;  // the field takes no bytes in a message, so readers need not visit it
+    if (bytes == 0) continue;  // the field has no bytes in a message, so readers skip it
     message->fields.push_back(std::move(field));
     message->least_bytes = std::min(message->least_bytes + bytes, std::numeric_limits<std::uint64_t>::max() / 2);
   }

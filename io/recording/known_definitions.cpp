@@ -20,7 +20,7 @@ std::optional<std::string_view> find_built_in(const std::string& type) {
   return found == built_in().end() ? std::nullopt : std::optional(found->second);
 }
 
-/// Whether a name, as part of a path, stays inside its folder.
+/// Whether a name that is used in a path leads to no other folder.
 bool is_plain(std::string_view name) {
   return !name.empty() &&
          std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });

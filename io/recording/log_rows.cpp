@@ -15,7 +15,8 @@ namespace {
 
 using Form = LogWant::Form;
 
-constexpr std::size_t receive_time = ~std::size_t{0};  // a slot of its own, because it is not part of the message
+constexpr std::size_t receive_time = ~std::size_t{0};  // the receive time has its own slot, because it is not part of
+                                                       // the message
 
 std::string written_out(const Value& value) {
   switch (value.form) {
@@ -44,7 +45,7 @@ Value time_value(std::int64_t nanoseconds) {
 }
 
 bool is_rounded(const Value& value) {
-  constexpr double exact_to = 9007199254740992.0;  // 2^53, the limit of exact integers
+  constexpr double exact_to = 9007199254740992.0;  // 2^53: all integers up to this are exact in a double
   return (value.form == Value::Form::integer || value.form == Value::Form::natural) &&
          std::abs(value.number) > exact_to;
 }

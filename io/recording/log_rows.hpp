@@ -9,16 +9,16 @@
 
 namespace modebank {
 
-/// Collects the rows of one requested topic over all its connections.
+/// Collects the rows of one requested topic. The topic may have several connections.
 class RowCollector {
  public:
   RowCollector(const LogTopic& topic, const LogRequest& request);
 
   /// Adds a reader for messages of a connection with this decoder. Returns the reader's number for `take`. Throws
-  /// DataError without a definition, and ConfigurationError if the definition lacks a requested column.
+  /// DataError if there is no definition. Throws ConfigurationError if the definition lacks a requested column.
   std::size_t add_reader(const TopicDecoder& decoder);
 
-  /// Adds a message. Throws DataError when it does not fit its definition.
+  /// Adds a message. Throws DataError if the message does not fit its definition.
   void take(std::size_t reader, const RecordedMessage& message, const std::string& file);
 
   /// The rows in order of receive time.
@@ -27,7 +27,7 @@ class RowCollector {
  private:
   struct Reader {
     MessageReader messages;
-    std::vector<std::size_t> slots;  ///< per requested column
+    std::vector<std::size_t> slots;  ///< one for each requested column
   };
 
   void append(LogColumn& column, const LogWant& want, const Value& value, const std::string& file);
@@ -37,7 +37,8 @@ class RowCollector {
   std::vector<Reader> readers_;
   std::vector<Value> row_;
   std::vector<std::int64_t> receive_ns_;
-  std::vector<std::size_t> rounded_;  ///< per requested column: number of values that a double rounds
+  std::vector<std::size_t> rounded_;  ///< number of values that a double cannot represent exactly, for each requested
+                                      ///< column
   LogRows rows_;
 };
 

@@ -25,7 +25,7 @@ class Mcap : public PieceFile {
     return read_head(bytes, at, end);
   }
 
-  /// Schemas and channels are defined before their first message and repeated in the summary.
+  /// A file defines schemas and channels before their first message. The summary repeats the definitions.
   void define(const RecordHead& head, ByteSource& bytes) override {
     auto [number, schema] = read_schema(bytes, read_record(bytes, head.at, head.end));
     schemas_.insert_or_assign(number, std::move(schema));
@@ -57,7 +57,7 @@ class Mcap : public PieceFile {
     std::uint32_t crc = 0;
   };
 
-  /// Reads the position of the summary from the footer at the end. Throws Damage without a footer.
+  /// Reads the position of the summary from the footer at the end of the file. Throws Damage if there is no footer.
   Footer read_footer() {
     constexpr std::uint64_t footer_bytes = 9 + 20;
     if (file_.size() < footer_bytes + 2 * magic.size()) throw Damage(file_.size(), "it ends too soon");
@@ -89,8 +89,8 @@ class Mcap : public PieceFile {
     if (crc != footer.crc) throw Damage(footer.at, "the summary has another checksum");
   }
 
-  /// Reads the summary. False unless the summary covers every message: all messages are in chunks, and each chunk's
-  /// channels are indexed.
+  /// Reads the summary. Returns false unless the summary covers every message. It does so if all messages are in chunks
+  /// and the index lists the channels of every chunk.
   bool try_summary() {
     try {
       const Footer footer = read_footer();
@@ -120,7 +120,7 @@ class Mcap : public PieceFile {
     return false;
   }
 
-  /// Adds a chunk by its index entry; returns its end.
+  /// Adds a chunk that the index lists. Returns the position of the chunk's end.
   std::uint64_t add_chunk(const ChunkIndex& index, std::uint64_t least_at, std::uint64_t& found) {
     if (index.chunk_at < least_at) throw Damage(index.chunk_at, "chunks are not in order");
     if (index.chunk_at >= file_.size()) throw Damage(index.chunk_at, "a chunk is beyond the end");
@@ -145,10 +145,10 @@ class Mcap : public PieceFile {
     return chunk.end();
   }
 
-  /// Reads every record, if the summary is incomplete.
+  /// Reads every record. Used if the summary is incomplete.
   void scan() {
     std::uint64_t at = magic.size();
-    Piece loose;  // collects messages outside chunks
+    Piece loose;  // collects the messages that are in no chunk
     const auto close = [&] {
       if (loose.end > loose.begin) add_piece(loose);
       loose = {at, at, Compression::none, 0, 0, {}, 0, {}};
@@ -181,7 +181,7 @@ class Mcap : public PieceFile {
     }
   }
 
-  /// A chunk that the end of the file cuts off still has complete messages.
+  /// A chunk that is cut off by the end of the file still contains complete messages.
   void scan_cut_chunk(std::uint64_t at) try {
     constexpr std::uint64_t front_bytes = 9;
     if (at >= file_.size() || file_.size() - at < front_bytes) return;

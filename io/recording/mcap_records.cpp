@@ -6,7 +6,7 @@ namespace modebank::mcap {
 
 namespace {
 
-/// A copy of a record's content, because later views invalidate the content.
+/// A copy of a record's content, because reading on invalidates the content.
 std::string content_of(ByteSource& bytes, const Record& record) {
   constexpr std::uint64_t most_bytes = 16 * most_definition_bytes;
   if (record.content_bytes > most_bytes)
@@ -64,7 +64,7 @@ RecordHead read_head(ByteSource& bytes, std::uint64_t at, std::uint64_t end) {
 
 namespace {
 
-/// A chunk's fields before its content. `packed_bytes`: the declared length of the content.
+/// The fields of a chunk that come before its content. `packed_bytes`: the declared length of the content.
 Piece chunk_front(ByteSource& bytes, std::uint64_t at, std::uint64_t end, std::uint64_t& packed_bytes) {
   constexpr std::uint64_t longest_front = 64;  // times, size, checksum, compression, length
   FieldReader fields(bytes.view(at, std::min(end - at, longest_front)), at);

@@ -19,22 +19,23 @@ enum class Op : std::uint8_t {
   data_end = 0x0f
 };
 
-/// A record: its type, its length in eight bytes, its content.
+/// A record: its type, its length in eight bytes, and its content.
 struct Record {
   Op op{};
   std::uint64_t at = 0, content_at = 0, content_bytes = 0;
   std::uint64_t end() const { return content_at + content_bytes; }
 };
 
-/// The record at `at`. Throws Damage unless it ends by `end`.
+/// The record at position `at`. Throws Damage unless the record ends at or before `end`.
 Record read_record(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
 
 RecordHead read_head(ByteSource& bytes, std::uint64_t at, std::uint64_t end);
 
-/// The content of a chunk, from its first fields. Throws Damage for an unknown compression and for impossible sizes.
+/// The content of a chunk, found from the fields at its beginning. Throws Damage for an unknown compression and for
+/// impossible sizes.
 Piece read_chunk(ByteSource& bytes, const Record& record);
 
-/// The same for a chunk whose content is cut off by the end of the file.
+/// The content of a chunk that is cut off by the end of the file.
 Piece read_cut_chunk(ByteSource& bytes, std::uint64_t content_at);
 
 struct Schema {
@@ -51,11 +52,11 @@ struct ChunkIndex {
   std::map<std::uint16_t, std::uint64_t> message_indexes;  ///< position of each channel's index
 };
 
-/// The number of a schema, and the schema.
+/// A schema and its number.
 std::pair<std::uint16_t, Schema> read_schema(ByteSource& bytes, const Record& record);
 Channel read_channel(ByteSource& bytes, const Record& record);
 ChunkIndex read_chunk_index(ByteSource& bytes, const Record& record);
-/// Number of messages in the file, from its statistics record.
+/// Number of messages in the file, as its statistics record states.
 std::uint64_t read_message_count(ByteSource& bytes, const Record& record);
 
 }  // namespace modebank::mcap

@@ -68,7 +68,7 @@ class Listing {
     skip_elements(field, count - listed, payload_);
   }
 
-  /// Names that are not unique are useless; then no names are returned.
+  /// If a name occurs twice, names cannot identify elements. Then no names are returned.
   std::vector<std::string> list_names(const std::string& path, std::uint64_t count) {
     std::vector<std::string> names;
     Value value;
@@ -104,7 +104,7 @@ std::vector<MessageColumn> columns_of(const Schema& schema, std::string_view pay
 void merge_columns(std::vector<MessageColumn>& columns, const std::vector<MessageColumn>& more) {
   std::set<std::string> known;
   for (const MessageColumn& column : columns) known.insert(column.path);
-  std::size_t place = 0;  // after the previous column, so that an array's elements stay together
+  std::size_t place = 0;  // placed after the previous column, so that the elements of an array stay together
   for (const MessageColumn& column : more) {
     if (known.count(column.path) > 0) {
       const auto at =

@@ -15,7 +15,7 @@ namespace {
   throw DefinitionError(fmt::format("{} has no value \"{}\"", type.name, path));
 }
 
-/// The array field whose elements are named by the strings of the neighbouring array `name`.
+/// The array field whose elements have the names in the neighbouring array `name`.
 const Field* names_field(const MessageType& type) {
   for (const Field& field : type.fields)
     if (field.name == "name" && field.kind == Kind::string && field.many != Many::one) return &field;
@@ -53,7 +53,7 @@ std::uint64_t length_of(const Field& field, PayloadReader& payload) {
 
 void skip_elements(const Field& field, std::uint64_t count, PayloadReader& payload) {
   if (field.kind != Kind::message) return payload.skip(field.kind, count);
-  if (field.type->least_bytes == 0) return;  // its elements take no bytes
+  if (field.type->least_bytes == 0) return;  // the elements have no bytes
   for (std::uint64_t i = 0; i < count; ++i) {
     if (field.type->fields.empty()) payload.empty_type();
     for (const Field& inner : field.type->fields) skip_field(inner, payload);
@@ -144,7 +144,7 @@ void MessageReader::read_array(const Field& field, const Want& want, const std::
                                PayloadReader& payload, std::vector<Value>& row) {
   std::uint64_t next = 0;
   const std::uint64_t count = length_of(field, payload);
-  // If an element is requested both by index and by name, it is read twice.
+  // An element that is requested both by index and by name is read twice.
   std::multimap<std::uint64_t, const Want*> wanted;
   for (const auto& [index, element] : want.elements)
     if (index < count) wanted.emplace(index, &element);

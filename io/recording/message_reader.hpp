@@ -10,25 +10,25 @@
 
 namespace modebank {
 
-/// Reads chosen columns (MessageColumn::path) from messages of one schema and skips the rest.
+/// Reads chosen columns (MessageColumn::path) from messages of one schema. Skips all other values.
 class MessageReader {
  public:
   explicit MessageReader(std::shared_ptr<const Schema> schema, unsigned wide_bytes);
 
-  /// Requests a column; returns its index in the rows, equal for equal paths. Throws DefinitionError for an unknown
-  /// column.
+  /// Requests a column and returns its index in the rows. Equal paths get the same index. Throws DefinitionError if the
+  /// column is unknown.
   std::size_t add(std::string_view path);
 
-  /// Fills `row` with one value per requested column. A value is missing if its array is too short. Throws PayloadError
-  /// as columns_of does.
+  /// Fills `row` with one value for each requested column. A value is missing if its array is too short. Throws
+  /// PayloadError in the same cases as columns_of.
   void read(std::string_view payload, std::vector<Value>& row) const;
 
  private:
-  /// Requests on one field, or on one element of it.
+  /// The requests for one field, or for one element of a field.
   struct Want {
-    std::size_t slot = none;                 ///< for the value itself
-    std::map<std::size_t, Want> fields;      ///< for a message
-    std::map<std::uint64_t, Want> elements;  ///< for an array
+    std::size_t slot = none;                 ///< requests for the value itself
+    std::map<std::size_t, Want> fields;      ///< requests for the fields of a message
+    std::map<std::uint64_t, Want> elements;  ///< requests for the elements of an array
     std::map<std::string, Want, std::less<>> keyed;
     static constexpr std::size_t none = ~std::size_t{0};
   };

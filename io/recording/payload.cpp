@@ -88,7 +88,7 @@ void PayloadReader::read(Kind kind, Value& value) {
       return;
     case Kind::time:
     case Kind::duration: {
-      // In ROS 1 the seconds of a time are unsigned. The seconds of a duration are signed, and so are only its
+      // In ROS 1, a time has unsigned seconds and unsigned nanoseconds. A duration has signed seconds and signed
       // nanoseconds.
       const auto seconds = static_cast<std::uint32_t>(bits(4)), nanoseconds = static_cast<std::uint32_t>(bits(4));
       const bool natural = !cdr_ && kind == Kind::time;
@@ -171,7 +171,7 @@ void PayloadReader::empty_type() {
 }
 
 bool PayloadReader::consumed() const {
-  // CDR may be padded to a whole word.
+  // The end of a CDR message may be padded to a whole word.
   const std::size_t left = bytes_.size() - at_;
   return left == 0 || (cdr_ && left < 4 && bytes_.size() % 4 == 0);
 }

@@ -9,19 +9,19 @@
 
 namespace modebank {
 
-/// A message that does not fit its definition.
+/// Thrown if a message does not fit its definition.
 struct PayloadError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One value of a message; may be missing.
+/// One value of a message. It may be missing.
 struct Value {
   enum class Form : std::uint8_t {
     missing,
     real,     ///< a number
-    integer,  ///< a number, also as an exact integer
-    natural,  ///< a number, also as an exact unsigned integer
-    time,     ///< a number in seconds, also exact in nanoseconds
+    integer,  ///< a number, also stored as an exact integer
+    natural,  ///< a number, also stored as an exact unsigned integer
+    time,     ///< a number in seconds, also stored exactly in nanoseconds
     text
   };
   Form form = Form::missing;
@@ -30,23 +30,23 @@ struct Value {
   std::string text;
 };
 
-/// Reads a message in the order of its definition. ROS 1 has contiguous little-endian values. ROS 2 has CDR (XCDR1):
-/// every value is at a multiple of its size, and strings end with a zero byte.
+/// Reads a message in the order of its definition. In ROS 1, values are little-endian and contiguous. ROS 2 uses CDR
+/// (XCDR1): each value is at a multiple of its size, and strings end with a zero byte.
 class PayloadReader {
  public:
-  /// `wide_bytes`: size of a wstring's character; 4 in eProsima's CDR up to ROS 2 Humble, else 2.
+  /// `wide_bytes`: size of a character of a wstring. It is 4 in eProsima's CDR up to ROS 2 Humble, otherwise 2.
   PayloadReader(std::string_view payload, Dialect dialect, unsigned wide_bytes);
 
   void read(Kind kind, Value& value);
   void skip(Kind kind, std::uint64_t count);
-  /// The length of a sequence whose elements have at least `least_bytes` each.
+  /// The length of a sequence. Each element has at least `least_bytes` bytes.
   std::uint64_t sequence_length(std::uint64_t least_bytes);
-  /// Throws unless the message has room for `count` elements of at least `least_bytes` each.
+  /// Throws if the message is too short for `count` elements of at least `least_bytes` bytes.
   void check_room(std::uint64_t least_bytes, std::uint64_t count) const;
-  /// Reads the byte of a type without fields.
+  /// Reads the single byte that stands for a type without fields.
   void empty_type();
 
-  /// Whether only padding of the last word is left.
+  /// Whether nothing but the padding of the last word remains.
   bool consumed() const;
   std::size_t at() const { return at_; }
 

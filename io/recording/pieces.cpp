@@ -10,7 +10,7 @@
 namespace modebank {
 
 bool PieceFile::learn(const RecordHead& head, ByteSource& bytes) {
-  constexpr std::size_t most_given_again = 4096;  // limit, because every message searches these
+  constexpr std::size_t most_given_again = 4096;  // upper limit, because every message searches this list
   const auto known = position(head.connection);
   if (known) {
     const Connection& other = connections_[*known];
@@ -112,7 +112,7 @@ void PieceFile::scan_piece(Piece piece) {
 }
 
 std::string PieceFile::visit_pieces(const std::vector<const Piece*>& pieces, const HeadSink& sink) {
-  // Compressed pieces are unpacked in parallel in batches of this size; their content is read in order.
+  // Compressed pieces are decompressed in parallel, in batches of this size. Their content is then read in order.
   constexpr std::uint64_t batch_bytes = 16 << 20;
   constexpr std::size_t batch_pieces = 8;
   std::vector<Unpacking> unpackings(batch_pieces);
@@ -150,7 +150,7 @@ std::string PieceFile::visit_pieces(const std::vector<const Piece*>& pieces, con
 
 void PieceFile::check_name(const RecordHead& head, ByteSource& bytes) {
   const auto connection = position(head.connection, visited_given_again_);
-  if (!connection) return;  // the index leaves out connections without messages
+  if (!connection) return;  // the index does not list connections without messages
   const Connection& told = connections_[*connection];
   const ConnectionName name = name_of(head, bytes);
   names_differ_ = name != ConnectionName{told.topic, told.type};
@@ -185,7 +185,7 @@ std::string PieceFile::visit(const std::vector<bool>& wanted, const MessageSink&
 }
 
 std::map<std::size_t, std::set<std::size_t>> PieceFile::sampled_pieces() const {
-  // For each connection, the pieces with its first and last message.
+  // The pieces that contain the first or the last message of a connection, for each connection.
   std::vector<std::size_t> first(connections_.size(), pieces_.size()), last(connections_.size(), pieces_.size());
   for (std::size_t p = 0; p < pieces_.size(); ++p)
     for (const auto& [connection, messages] : pieces_[p].messages) {

@@ -16,25 +16,26 @@
 
 namespace modebank {
 
-/// A part of a file with records: a chunk, or records outside chunks.
+/// A part of a file with records. It is a chunk, or a sequence of records outside chunks.
 struct Piece {
-  std::uint64_t begin = 0, end = 0;  ///< begin and end of the content in the file
+  std::uint64_t begin = 0, end = 0;  ///< positions in the file where the content begins and ends
   Compression compression = Compression::none;
   std::uint64_t unpacked_bytes = 0;
-  std::uint32_t crc = 0;                          ///< checksum of the unpacked content; 0: none
-  std::map<std::size_t, std::uint64_t> messages;  ///< number of messages by connection
-  std::size_t given_again = 0;                    ///< number of reassignments before this piece
-  std::vector<std::uint64_t> gives_again;         ///< positions (RecordHead::at) that reassign a number
+  std::uint32_t crc = 0;                          ///< checksum of the decompressed content; 0: no checksum
+  std::map<std::size_t, std::uint64_t> messages;  ///< number of messages of each connection
+  std::size_t given_again = 0;                    ///< number of reassigned connection numbers before this piece
+  std::vector<std::uint64_t> gives_again;         ///< positions (RecordHead::at) of records that reassign a connection
+                                                  ///< number
 };
 
-/// Position and type of one record of a piece.
+/// Position and type of a record in a piece.
 struct RecordHead {
   enum class Kind { message, connection, definition, other };
   Kind kind = Kind::other;
-  std::uint32_t connection = 0;  ///< number by the file
+  std::uint32_t connection = 0;  ///< the connection's number in the file
   std::int64_t receive_ns = 0;
-  std::uint64_t payload_at = 0, payload_bytes = 0;  ///< payload of a message, or of a connection's description
-  std::uint64_t at = 0, end = 0;                    ///< of the record
+  std::uint64_t payload_at = 0, payload_bytes = 0;  ///< payload of a message or of a connection's description
+  std::uint64_t at = 0, end = 0;                    ///< end of the record
 };
 
 struct ConnectionName {
@@ -42,7 +43,7 @@ struct ConnectionName {
   bool operator==(const ConnectionName&) const = default;
 };
 
-/// A bag or MCAP file: pieces of records, and an index to them if it is valid.
+/// A bag or MCAP file: pieces of records, and an index of these pieces if it is valid.
 class PieceFile : public Container {
  public:
   std::string visit(const std::vector<bool>& wanted, const MessageSink& sink) override;
@@ -52,7 +53,8 @@ class PieceFile : public Container {
  protected:
   explicit PieceFile(const std::filesystem::path& path) : path_(path), file_(path) {}
 
-  /// Starts reading; damage at the beginning makes the file unreadable. Throws DataError, with file and byte.
+  /// Starts reading. Throws DataError with file and byte if the beginning is damaged, because the file is then
+  /// unreadable.
   template <class Open>
   void begin(Open&& open) {
     try {
@@ -62,36 +64,38 @@ class PieceFile : public Container {
     }
   }
 
-  /// The record at `at`, ending by `end`. Throws Damage.
+  /// The record at position `at`. It must end at or before `end`. Throws Damage.
   virtual RecordHead head_at(ByteSource& bytes, std::uint64_t at, std::uint64_t end) const = 0;
-  /// Topic and type from a record of Kind::connection.
+  /// Topic and type in a record of Kind::connection.
   virtual ConnectionName name_of(const RecordHead& head, ByteSource& bytes) const = 0;
-  /// The complete connection of this record.
+  /// The complete connection that this record describes.
   virtual Connection describe(const RecordHead& head, ByteSource& bytes) const = 0;
-  /// Reads a record of Kind::definition, to which later connections refer.
+  /// Reads a record of Kind::definition. Later connections refer to this definition.
   virtual void define(const RecordHead& /*head*/, ByteSource& /*bytes*/) {}
 
-  /// Reads a record of Kind::connection. A connection's number may be repeated for the same connection. It may also be
-  /// reassigned to another connection, to which later messages then belong; in this case returns true.
+  /// Reads a record of Kind::connection. The record may repeat a connection under the same number. It may also reassign
+  /// the number to another connection. Later messages with this number then belong to the new connection, and the
+  /// function returns true.
   bool learn(const RecordHead& head, ByteSource& bytes);
-  /// The connection of a number at the current position.
+  /// The connection that has this number at the current position.
   std::optional<std::size_t> position(std::uint32_t number) const { return position(number, given_again_.size()); }
-  /// Uses the connections and counts of an index. Records of connections in the pieces are compared with the index.
+  /// Uses the connections and message numbers of an index. Records of connections in the pieces are compared with the
+  /// index.
   void trust_index() { from_index_ = true; }
-  /// Compares the connections in the pieces that `sample` reads. Throws Damage if they differ from the index.
+  /// Compares the index with the connections in the pieces that `sample` reads. Throws Damage if they differ.
   void check_names();
 
-  /// Reads a piece for its connections and message counts, and adds the part before any damage. Then throws Damage if
-  /// there is any.
+  /// Reads a piece to find its connections and numbers of messages. Adds the piece, or its part before any damage. Then
+  /// throws Damage if the piece is damaged.
   void scan_piece(Piece piece);
-  /// Counts one record of a piece that is being read.
+  /// Counts one record of the piece that is being read.
   void count(Piece& piece, const RecordHead& head, ByteSource& bytes);
-  /// Adds a piece with known messages. Throws Damage when there are too many.
+  /// Adds a piece whose messages are known. Throws Damage if there are too many.
   void add_piece(Piece piece);
   void forget_all();
 
   void note(std::string text) { notes_.push_back(std::move(text)); }
-  /// Stores the position of damage. Visits end there without another message.
+  /// Stores the position of the damage. Visits end at this position without another message.
   void note_damage(const Damage& damage);
   std::string damage_text(std::uint64_t at, const std::string& what) const;
 
@@ -117,10 +121,11 @@ class PieceFile : public Container {
 
   std::vector<Piece> pieces_;
   bool damage_noted_ = false, from_index_ = false, names_differ_ = false;
-  std::unordered_map<std::uint32_t, std::size_t> by_number_;        ///< for each number its first connection
-  std::vector<std::pair<std::uint32_t, std::size_t>> given_again_;  ///< reassigned numbers, in the file's order
+  std::unordered_map<std::uint32_t, std::size_t> by_number_;        ///< the first connection of each number
+  std::vector<std::pair<std::uint32_t, std::size_t>> given_again_;  ///< reassigned numbers, in the order of the file
   const Piece* visited_ = nullptr;                                  ///< the piece that is being visited
-  std::size_t visited_given_again_ = 0;                             ///< number of reassignments before this position
+  std::size_t visited_given_again_ = 0;                             ///< number of reassignments before the current
+                                                                    ///< position
 };
 
 }  // namespace modebank

@@ -23,7 +23,7 @@ std::string type_name(MessageColumn::Form form) {
   return form == MessageColumn::Form::time ? "time" : form == MessageColumn::Form::text ? "text" : "number";
 }
 
-/// Order of columns: numbers, texts, stamps and their nanoseconds.
+/// The order of columns: numbers, then texts, then stamps and their nanoseconds.
 LogRequest log_request(const TableRequest& request) {
   LogRequest wanted{request.table, {}};
   for (const std::string& number : request.numbers) wanted.columns.push_back({number, Form::number});
@@ -33,7 +33,8 @@ LogRequest log_request(const TableRequest& request) {
   return wanted;
 }
 
-/// Columns that show whether the rows of a request belong to one motion; empty if data.run already separates them.
+/// Columns that show whether all rows of a request belong to the same motion. Empty if data.run already separates
+/// motions.
 std::vector<std::string> looked_at_frames(const LogTopic& topic, const TableRequest& request) {
   std::vector<std::string> columns = frame_columns(topic);
   const bool told_apart = std::any_of(columns.begin(), columns.end(), [&](const std::string& column) {
@@ -55,7 +56,7 @@ const std::filesystem::path& checked(const std::filesystem::path& definitions) {
   throw DataError(fmt::format("{}:{}: column {}: {}", file, message, column, why));
 }
 
-/// Values that are not numbers become NaN, or are errors.
+/// Values that are not numbers become NaN if they may be missing; otherwise they are errors.
 void check_numbers(const std::string& file, const TableRequest& request, Table& table) {
   for (std::size_t i = 0; i < table.numbers.size(); ++i) {
     const bool may_miss = !request.may_miss.empty() && request.may_miss[i];
@@ -68,8 +69,8 @@ void check_numbers(const std::string& file, const TableRequest& request, Table& 
   }
 }
 
-/// Stamps are exact. Other columns of times have the unit of TimeRequest::unit, or a unit that is found as for any
-/// file.
+/// Stamps are exact. Other columns of times have the unit TimeRequest::unit. If that is automatic, the unit is found in
+/// the same way as for any file.
 void set_times(const std::string& file, const TimeRequest& request, bool is_stamp, LogColumn& column,
                const LogColumn* second, Table& table) {
   if (!request.may_miss) {
@@ -101,7 +102,7 @@ void set_times(const std::string& file, const TimeRequest& request, bool is_stam
   stamps.finish(file, table);
 }
 
-/// Lines of Python that read Protobuf messages into a frame; docs/howto/any_reader.md contains the same lines.
+/// Lines of Python that read Protobuf messages into a data frame. docs/howto/any_reader.md contains the same lines.
 std::string protobuf_lines(const std::string& path) {
   return fmt::format(R"( (topics and columns are examples):
 from mcap.reader import make_reader

@@ -20,7 +20,7 @@ namespace {
 
 using Opener = std::unique_ptr<Container> (*)(const std::filesystem::path&);
 
-/// The reader for files with these first bytes; null if there is none.
+/// The reader for files that begin with these bytes. Null if there is none.
 Opener opener_of(std::string_view first_bytes) {
   struct Magic {
     std::string_view bytes;

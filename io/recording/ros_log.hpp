@@ -15,21 +15,20 @@
 
 namespace modebank {
 
-/// One topic as a table: a row per message, in order of receive time.
+/// One topic as a table. Each message is a row, in order of receive time.
 struct LogTopic {
   std::string name;
   std::string type;
-  std::vector<MessageColumn> columns;  ///< full names, "/topic.field"; "/topic.receive_time" is the last
+  std::vector<MessageColumn> columns;  ///< full names "/topic.field"; the last one is "/topic.receive_time"
   std::uint64_t messages = 0;
-  std::string
-      problem;  ///< reason why the messages are unreadable, so that the receive time is the only column; else empty
+  std::string problem;  ///< reason why messages are unreadable and only the receive time is a column; otherwise empty
 };
 
-/// A requested column, and the form of its values.
+/// A requested column and the form in which its values are returned.
 struct LogWant {
   enum class Form {
-    number,  ///< numbers, times in seconds; NaN where a message lacks the element
-    text,    ///< texts, numbers as text; empty where a message lacks the element
+    number,  ///< numbers, and times in seconds; NaN if a message lacks the element
+    text,    ///< texts, and numbers as text; empty if a message lacks the element
     exact  ///< times in nanoseconds, whole numbers exact, other numbers as doubles; the smallest integer where missing
   };
   std::string column;
@@ -43,7 +42,7 @@ struct LogRequest {
   std::vector<LogWant> columns;
 };
 
-/// Values of a requested column, in the requested form; the other forms stay empty.
+/// The values of a requested column in the requested form. The vectors of the other forms stay empty.
 struct LogColumn {
   std::vector<double> numbers;
   std::vector<std::string> text;
@@ -51,18 +50,18 @@ struct LogColumn {
 };
 
 struct LogRows {
-  std::vector<LogColumn> columns;      ///< in the order of the request
-  std::vector<std::uint64_t> message;  ///< per row its index in the topic's messages, from 1
+  std::vector<LogColumn> columns;      ///< columns in the order of the request
+  std::vector<std::uint64_t> message;  ///< for each row, its number among the topic's messages, counted from 1
 };
 
-/// A recording of ROS: bag, MCAP or db3, in one file or several, in the order in which they were written. Messages are
+/// A recording of ROS (bag, MCAP or db3) in one file, or in several files in the order of writing. Messages are
 /// flattened to columns.
 class RosLog {
  public:
-  /// Reads the index and a few messages. Throws ConfigurationError if a file cannot be read, and DataError if it has
-  /// another format or is damaged from the beginning.
+  /// Reads the index and a few messages. Throws ConfigurationError if a file cannot be read. Throws DataError if a file
+  /// has another format or its beginning is damaged.
   RosLog(std::vector<std::filesystem::path> files, const KnownDefinitions& known);
-  /// The same for recording_files(path).
+  /// Opens the files that recording_files(path) returns.
   RosLog(const std::filesystem::path& path, const KnownDefinitions& known);
   ~RosLog();
 
@@ -71,9 +70,10 @@ class RosLog {
   /// Remarks on the recording for the user.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Reads the requested columns in one pass; `notes` receives remarks on the values. Throws ConfigurationError for an
-  /// unknown column. Throws DataError with topic, type and message for a message that does not fit its definition.
-  /// `used`, unless null, receives all messages of these topics.
+  /// Reads the requested columns in one pass. `notes` receives remarks on the values. `used`, unless null, receives all
+  /// messages of these topics.
+  /// Throws ConfigurationError for an unknown column. Throws DataError with topic, type and message if a message does
+  /// not fit its definition.
   std::vector<LogRows> read(const std::vector<LogRequest>& requests, std::vector<std::string>& notes,
                             UsedMessages* used = nullptr) const;
 
@@ -82,7 +82,7 @@ class RosLog {
   struct Part {
     std::unique_ptr<Container> container;
     std::vector<TopicDecoder> decoders;  ///< per connection
-    std::vector<std::size_t> topic;      ///< per connection; no_topic: not read
+    std::vector<std::size_t> topic;      ///< the topic of each connection; no_topic: the connection is not read
   };
 
   void open_part(const std::filesystem::path& path, const KnownDefinitions& known);
@@ -94,7 +94,7 @@ class RosLog {
   std::vector<std::string> notes_;
 };
 
-/// Whether RosLog reads files with these first bytes; true for folders.
+/// Whether RosLog reads files that begin with these bytes. True for folders.
 bool is_ros_log(const std::filesystem::path& path, std::string_view first_bytes);
 
 }  // namespace modebank

@@ -4,10 +4,10 @@
 
 namespace modebank {
 
-/// Number of elements of an array; for a sequence it is read from the message.
+/// Number of elements of an array. For a sequence, the number is read from the message.
 std::uint64_t length_of(const Field& field, PayloadReader& payload);
 
-/// Skip elements of an array, or a whole field.
+/// These functions skip elements of an array, or a whole field.
 void skip_elements(const Field& field, std::uint64_t count, PayloadReader& payload);
 void skip_field(const Field& field, PayloadReader& payload);
 

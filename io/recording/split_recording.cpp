@@ -22,7 +22,7 @@ std::string unquoted(std::string text) {
   return text;
 }
 
-/// The entries of `relative_file_paths` in rosbag2's YAML: lines "- NAME" below the key.
+/// The entries of `relative_file_paths` in rosbag2's YAML. They are the lines "- NAME" below this key.
 std::vector<Path> listed_files(const Path& folder, const Path& list) {
   std::istringstream lines(read_file(list));
   std::vector<Path> files;

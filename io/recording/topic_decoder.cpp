@@ -8,7 +8,7 @@ namespace {
 
 using Schemas = std::vector<std::shared_ptr<const Schema>>;
 
-/// Adds the definition in the recording.
+/// Adds the definition that the recording contains.
 void add_embedded(const Connection& connection, Schemas& candidates, std::string& problem) {
   const bool ros1 = connection.encoding == Connection::Encoding::ros1;
   if (connection.definition.empty()) return;
@@ -33,7 +33,8 @@ void add_embedded(const Connection& connection, Schemas& candidates, std::string
   }
 }
 
-/// The columns of the samples by this definition. Nullopt with the reason if the definition does not fit.
+/// The columns that this definition gives for the samples. If the definition does not fit, returns nullopt and sets the
+/// reason.
 std::optional<std::vector<MessageColumn>> try_schema(const Schema& schema, unsigned wide_bytes,
                                                      const std::vector<std::string>& samples, std::string& problem) {
   try {

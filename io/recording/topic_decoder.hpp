@@ -11,16 +11,16 @@
 
 namespace modebank {
 
-/// The definition for the messages of one connection: the first candidate that fits the first and the last message
-/// without leftover bytes.
+/// The definition for the messages of one connection. It is the first candidate that fits the first and the last
+/// message without leftover bytes.
 struct TopicDecoder {
-  std::shared_ptr<const Schema> schema;  ///< null: `problem` states the reason
+  std::shared_ptr<const Schema> schema;  ///< null if there is none; `problem` then states the reason
   unsigned wide_bytes = 4;
-  std::vector<MessageColumn> columns;  ///< columns of its first and its last message
+  std::vector<MessageColumn> columns;  ///< columns of the connection's first and last message
   std::string problem;
 };
 
-/// `samples`: messages of the connection; may be empty.
+/// `samples`: messages of the connection. May be empty.
 TopicDecoder choose_decoder(const Connection& connection, const KnownDefinitions& known,
                             const std::vector<std::string>& samples);
 

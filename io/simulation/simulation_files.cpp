@@ -54,7 +54,7 @@ void refuse_other_runs(const fs::path& folder, const std::set<std::string>& ours
   }
 }
 
-/// The names in a file's first line; empty if the file does not exist.
+/// The column names in a file's first line. Empty if the file does not exist.
 std::set<std::string> columns_of(const fs::path& path) {
   constexpr std::size_t longest = 1 << 16;
   if (!fs::is_regular_file(path)) return {};
@@ -81,8 +81,8 @@ bool has_truth(const std::set<std::string>& columns) {
          std::any_of(columns.begin(), columns.end(), [](const auto& name) { return name.starts_with("true_"); });
 }
 
-/// Whether a run's files are simulated: one file has truth columns, and the other has the columns to which these
-/// belong.
+/// Whether a run's two files come from a simulation. One file must have truth columns, and the other file the columns
+/// to which these belong.
 bool is_simulated(const fs::path& path) {
   const std::set<std::string> columns = columns_of(path);
   if (has_truth(columns)) return true;
@@ -93,13 +93,13 @@ bool is_simulated(const fs::path& path) {
          });
 }
 
-/// A folder inside the target, on the same file system. The destructor removes this folder. It also removes the target
-/// if this object created the target and it is empty.
+/// A folder inside the target, on the same file system. The destructor removes this folder. If this object also created
+/// the target and the target is empty, it removes the target too.
 class StagingFolder {
  public:
   explicit StagingFolder(const fs::path& target) : target_(target) {
     std::error_code error;
-    made_target_ = fs::create_directory(target, error);  // no error when it exists
+    made_target_ = fs::create_directory(target, error);  // not an error if the folder exists
     if (!error && !fs::is_directory(target)) error = std::make_error_code(std::errc::not_a_directory);
     remove_leftovers(target);
     path_ = temporary_path(target / "simulation");
@@ -120,7 +120,7 @@ class StagingFolder {
   void remove() const {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
-    if (made_target_) fs::remove(target_, ignored);  // succeeds only for an empty folder
+    if (made_target_) fs::remove(target_, ignored);  // removes the folder only if it is empty
   }
 
   fs::path target_, path_;
@@ -134,7 +134,8 @@ void check_targets(const fs::path& folder, const std::vector<std::string>& names
       check_output({"simulate.output", folder / name, {"a simulated run", is_simulated}}, {});
 }
 
-/// Moves the files to their places. Old files are kept until all files are moved, and restored if a move fails.
+/// Moves the files to their final paths. Old files are kept until all files are moved. If a move fails, they are
+/// restored.
 void move_all(const fs::path& from, const fs::path& to, const std::vector<std::string>& names) {
   const auto kept = [&](const std::string& name) { return from / (name + ".before"); };
   std::size_t moved = 0;

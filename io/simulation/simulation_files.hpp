@@ -9,11 +9,11 @@
 
 namespace modebank {
 
-/// One CSV file: its name, and a row of values per column.
+/// One CSV file: its name, its columns' names, and a row of values for each column.
 struct SimulationTable {
   std::vector<std::string> names;
   Eigen::MatrixXd values;                            ///< columns x samples
-  std::vector<std::vector<std::string>> texts = {};  ///< text columns, with the last of the names
+  std::vector<std::vector<std::string>> texts = {};  ///< columns of text; they have the last names
 };
 
 /// The two files of a run.
@@ -25,13 +25,13 @@ struct SimulationTables {
 /// Throws ConfigurationError if a column's name is empty or occurs twice.
 void check_column_names(const std::vector<std::string>& names);
 
-/// Whether a file name is one of a run: pro_*.csv or imu_*.csv.
+/// Whether a file name is that of a run's file: pro_*.csv or imu_*.csv.
 bool is_run_file(const std::string& name);
 
-/// Writes pro_NN.csv and imu_NN.csv of `runs` runs, with numbers in the shortest form that reads back exactly. Either
-/// all files are written or none: they are complete in a folder beside the old files before they are moved. The folder
-/// is created if its parent exists. Throws ConfigurationError if the folder cannot be created, or contains other pro_
-/// or imu_ files, which `run` would read as further runs.
+/// Writes pro_NN.csv and imu_NN.csv for `runs` runs. Numbers have the shortest form that is read back exactly. Either
+/// all files are written or none: they are completed in a temporary folder and then moved.
+/// The folder is created if its parent exists. Throws ConfigurationError if the folder cannot be created. Also throws
+/// it if the folder contains other pro_ or imu_ files, because `run` would read these as further runs.
 void write_simulation_files(const std::filesystem::path& folder, std::size_t runs,
                             const std::function<SimulationTables(std::size_t)>& tables_of);
 

@@ -46,7 +46,7 @@ SimulationTable inputs_table(const SimulatedRun& run, const SimulationLayout& la
   return table;
 }
 
-/// Times to one period after the end of the run, so that rounding does not lose the last sample.
+/// The times extend to one period after the end of the run, so that rounding does not remove the last sample.
 VectorXd states_times(const VectorXd& time_s, double rate_hz) {
   const double duration_s = time_s(time_s.size() - 1) - time_s(0);
   VectorXd result(static_cast<Index>(std::ceil(duration_s * rate_hz)) + 2);

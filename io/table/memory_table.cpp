@@ -24,7 +24,7 @@ std::string text_of(const MemoryColumn& column, std::size_t row) {
   return std::visit([&](const auto& values) { return fmt::format("{}", values[row]); }, column.values);
 }
 
-/// Adds the column's name and values to the hash. The length of each text comes first, so that different columns have
+/// Adds the column's name and values to the hash. The length of each text precedes it, so different columns give
 /// different bytes.
 void add_to_hash(const MemoryColumn& column, Sha256& hash, std::uint64_t& bytes) {
   const auto add = [&](const void* data, std::size_t size) {
@@ -141,7 +141,7 @@ void MemoryTable::stamps(const TimeRequest& request, Table& table) const {
     if (!request.second.empty())
       status = stamps.add(first[row], second[row]);
     else if (const auto* whole = std::get_if<std::span<const std::int64_t>>(&source.values))
-      status = (*whole)[row] == missing_stamp ? status : stamps.add((*whole)[row]);  // NaT of numpy
+      status = (*whole)[row] == missing_stamp ? status : stamps.add((*whole)[row]);  // numpy's NaT
     else
       std::visit([&](const auto& values) { status = stamps.add(values[row]); }, source.values);
     if (status == NumberStatus::missing && request.may_miss)

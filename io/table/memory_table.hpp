@@ -10,17 +10,17 @@
 
 namespace modebank {
 
-/// A column of numbers that the caller owns, or of texts.
+/// A column of texts, or of numbers that the caller owns.
 struct MemoryColumn {
   ColumnInfo info;
   std::variant<std::span<const double>, std::span<const std::int64_t>, std::vector<std::string>> values;
 };
 
-/// A table in memory that a program passes in place of a file. Its hash is that of the names and values of the columns
-/// that are read. Messages name a value as name:row, with rows from 0.
+/// A table in memory that a program passes instead of a file. Its hash covers the names and values of the columns that
+/// are read. Messages refer to a value as name:row, with rows counted from 0.
 class MemoryTable final : public TableReader {
  public:
-  /// Throws std::invalid_argument unless all columns have equal lengths.
+  /// Throws std::invalid_argument if columns have different lengths.
   MemoryTable(std::string name, std::vector<MemoryColumn> columns);
 
   std::vector<TableInfo> tables() const override;

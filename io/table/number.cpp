@@ -12,8 +12,8 @@ namespace modebank {
 
 namespace {
 
-/// from_chars reports underflow and overflow alike, so a wider type distinguishes them (strtod would depend on the
-/// locale).
+/// from_chars reports underflow and overflow in the same way. A wider type distinguishes them. strtod would depend on
+/// the locale.
 ParsedNumber parse_extreme(std::string_view number) {
   long double wide = 0.0L;
   const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), wide);
@@ -21,7 +21,7 @@ ParsedNumber parse_extreme(std::string_view number) {
   return {value, error != std::errc() || std::isinf(value) ? NumberStatus::out_of_range : NumberStatus::ok};
 }
 
-/// Fast path for a field that contains only a finite number, as nearly all fields do.
+/// A fast path for fields that contain only a finite number. Nearly all fields do.
 bool parse_plain(std::string_view field, double& value) {
   const auto [stop, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   return error == std::errc() && stop == field.data() + field.size() && std::isfinite(value);

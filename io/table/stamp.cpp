@@ -14,7 +14,7 @@ namespace modebank {
 
 namespace {
 
-/// Removes leading digits from `text` and returns them; nullopt without any.
+/// Removes leading digits from `text` and returns them. Nullopt if there are none.
 std::optional<std::string_view> take_digits(std::string_view& text) {
   std::size_t count = 0;
   while (count < text.size() && is_digit(text[count])) ++count;

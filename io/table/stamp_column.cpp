@@ -14,10 +14,10 @@ namespace modebank {
 
 namespace {
 
-constexpr double largest_whole = 9.2e18;  // limit of 64 bits
-constexpr double exact_below = 1e6;       // smaller numbers have exact billionths in a double
+constexpr double largest_whole = 9.2e18;  // limit of 64-bit integers
+constexpr double exact_below = 1e6;       // below this, a double represents billionths exactly
 
-/// Whether a billionth of the unit is coarser than a double's precision.
+/// Whether a billionth of the unit is coarser than the precision of a double.
 bool is_long(TimeUnit unit) { return ns_per(unit) > billion; }
 
 std::optional<std::int64_t> nanoseconds_in(std::string_view text) {
@@ -66,7 +66,9 @@ NumberStatus StampColumn::add(std::string_view text, std::string_view second) {
     const std::optional<std::int64_t> fine = nanoseconds_in(second);
     if (!fine) return NumberStatus::text;
     if (const NumberStatus status = add(text); status != NumberStatus::ok) return status;
-    if (stamps_.back().billionths != 0) return NumberStatus::text;  // an error: the seconds already have a fraction
+    if (stamps_.back().billionths != 0)
+      return NumberStatus::text;  // this is an error, because the seconds already
+                                  // have a fraction
     stamps_.back().billionths = static_cast<std::int32_t>(*fine);
     return NumberStatus::ok;
   }
@@ -162,7 +164,7 @@ std::string StampColumn::complaint(NumberStatus status, std::string_view text) c
       shown);
 }
 
-/// A stated unit, or a unit in the name, takes precedence over a unit that the numbers indicate.
+/// A stated unit, or a unit in the column's name, takes precedence over the unit that the numbers indicate.
 StampForm StampColumn::found_form(std::vector<std::string>& notes) const {
   using Ground = StampForm::Ground;
   if (!request_.second.empty()) return {Ground::stated, TimeUnit::s};
@@ -187,7 +189,7 @@ std::int64_t StampColumn::nanoseconds(std::size_t row, const StampForm& form) co
   return stamps_[row].whole * scale + stamps_[row].billionths / (billion / scale);
 }
 
-/// Prefers patterns whose stamps advance evenly. Several patterns that read all stamps alike count as one.
+/// Prefers patterns whose stamps advance evenly. Patterns that give the same time for every stamp count as one.
 void StampColumn::decide_reading(Table& table) {
   const auto uneven = [&](const Reading& reading) { return !reading.is_even(as_written_); };
   if (readings_.size() > 1 && !std::all_of(readings_.begin(), readings_.end(), uneven))

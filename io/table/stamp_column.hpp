@@ -13,37 +13,40 @@
 
 namespace modebank {
 
-/// A column of stamps, read row by row. The unit of numbers is found at the end. Texts are read by several patterns;
-/// only patterns that fit every text remain. All formats use this class, so that all read stamps alike.
+/// A column of stamps, which is read row by row. All formats use this class, so all read stamps in the same way. The
+/// unit of numbers is found at the end. Texts are tried with several patterns; a pattern that does not fit a text is
+/// dropped.
 class StampColumn {
  public:
-  /// `stated_unit`: unit in the format ("ms"), else empty. Throws std::invalid_argument for a request with an invalid
-  /// StampPattern.
+  /// `stated_unit`: the unit that the format states ("ms"); empty if it states none. Throws std::invalid_argument if
+  /// the request has an invalid StampPattern.
   StampColumn(const TimeRequest& request, std::string_view stated_unit);
 
   void reserve(std::size_t rows);
-  /// Adds the next row's stamp. Adds nothing unless the result is `ok`.
+  /// Adds the stamp of the next row. If the result is not `ok`, nothing was added.
   NumberStatus add(std::string_view text);
-  /// Adds the next row's stamp from two columns: whole seconds and nanoseconds, or a date and a time of day.
+  /// Adds the stamp of the next row from two columns. These are whole seconds and nanoseconds, or a date and a time of
+  /// day.
   NumberStatus add(std::string_view text, std::string_view second);
   NumberStatus add(double value);
   NumberStatus add(std::int64_t value);
   /// Adds a missing stamp.
   void add_missing();
 
-  /// The end of a message on a text, by the status that `add` returned for it.
+  /// Text that completes a message about a stamp, given the status that `add` returned.
   std::string complaint(NumberStatus status, std::string_view text) const;
 
-  /// Finds the format and sets time_ns, time_s, form and notes of `table`, whose lines are set. Throws DataError with
-  /// `file` for a stamp that overflows 64 bits of nanoseconds. Call it only once, after all stamps were added.
+  /// Finds the format. Sets `time_ns`, `time_s`, `form` and `notes` of `table`; `table` must already contain lines.
+  /// Throws DataError with `file` if a stamp overflows 64 bits of nanoseconds. Call this function only once, after all
+  /// stamps were added.
   void finish(std::string_view file, Table& table);
 
  private:
-  /// The texts so far, read by one pattern.
+  /// All texts so far, converted by one pattern.
   struct Reading {
     StampPattern pattern;
     std::vector<Stamp> stamps;
-    DayCount days{};  ///< for times of day
+    DayCount days{};  ///< used for times of day
     bool fits = true;
 
     void push(Stamp stamp);
@@ -60,11 +63,11 @@ class StampColumn {
 
   TimeRequest request_;
   std::string stated_unit_;
-  std::vector<StampPattern> patterns_;  // one pattern if the user states it, else several
+  std::vector<StampPattern> patterns_;  // one pattern if the user states one, otherwise several
   enum class Kind { unknown, number, text } kind_ = Kind::unknown;
-  std::vector<Stamp> stamps_;       // stamps from numbers
+  std::vector<Stamp> stamps_;       // stamps that are numbers
   std::vector<double> as_written_;  // NaN: missing
-  std::vector<Reading> readings_;   // stamps from texts
+  std::vector<Reading> readings_;   // stamps that are texts
   std::string first_value_;
   std::size_t first_row_ = 0;
   bool whole_numbers_ = true;

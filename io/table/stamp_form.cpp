@@ -15,7 +15,7 @@ constexpr double minute_s = 60.0, hour_s = 3600.0, day_s = 86400.0;
 
 struct Numbers {
   double size = 0.0;     ///< median of the numbers
-  double spacing = 0.0;  ///< median of the increments above 0; 0: there are none
+  double spacing = 0.0;  ///< median of the positive increments; 0 if there are none
   std::vector<double> first;
 };
 
@@ -39,15 +39,16 @@ Numbers first_numbers(const std::vector<double>& values) {
 
 bool is_multiple(double value, double of) { return std::fmod(value, of) == 0.0; }
 
-/// Whether this is a sampling interval of a logger that stamps in whole units since an epoch: at most a minute, or a
-/// full minute, hour or day.
+/// Whether this interval is typical of a logger that writes whole units since an epoch. Typical are intervals up to a
+/// minute, and a full minute, hour or day.
 bool is_logging_interval(double seconds) {
   if (seconds <= minute_s) return true;
   if (seconds <= hour_s) return is_multiple(seconds, minute_s);
   return seconds <= day_s ? is_multiple(seconds, hour_s) && is_multiple(day_s, seconds) : is_multiple(seconds, day_s);
 }
 
-/// The unit for which the numbers are an epoch of robots: 1998 to 2103 in seconds.
+/// The unit in which the numbers lie between 1998 and 2103, counted from 1970 in that unit. Robots are used in this
+/// time.
 std::optional<TimeUnit> unit_of_epoch(const Numbers& numbers, bool whole) {
   constexpr double first_s = 9e8, last_s = 4.2e9;
   double scale = 1.0;
@@ -60,8 +61,10 @@ std::optional<TimeUnit> unit_of_epoch(const Numbers& numbers, bool whole) {
   return std::nullopt;
 }
 
-/// The unit of whole numbers. A robot samples at 0.1 Hz or faster, so numbers more than ten apart are not seconds,
-/// unless they are full minutes. A robot runs for less than ten days, unless the sampling rate would then exceed 2 kHz.
+/// The unit of whole numbers. A robot samples at 0.1 Hz or faster, so numbers that differ by more than ten are not
+/// seconds, unless they are full minutes.
+/// A robot runs for less than ten days. A unit that gives more days is therefore rejected, unless the finer unit gives
+/// a sampling rate above 2 kHz.
 TimeUnit unit_of_spacing(const Numbers& numbers) {
   constexpr double slowest_s = 10.0, longest_s = 9e5, fastest_s = 5e-4;
   if (numbers.spacing <= slowest_s || (numbers.spacing <= hour_s && is_multiple(numbers.spacing, minute_s)))
@@ -75,10 +78,10 @@ TimeUnit unit_of_spacing(const Numbers& numbers) {
   return TimeUnit::ns;
 }
 
-/// Whether numbers, read as days, lie at full seconds or minutes at which loggers write: every 5 or 10 s, every minute,
-/// every quarter of an hour.
+/// Whether numbers, read as days, lie at full seconds or minutes that are usual for loggers: every 5 or 10 s, every
+/// minute, every quarter of an hour.
 bool are_at_logging_intervals(const Numbers& numbers) {
-  constexpr double rounding_s = 0.1;  // rounding of days with six decimals
+  constexpr double rounding_s = 0.1;  // rounding error of days with six decimals
   const double interval_s = std::round(numbers.spacing * day_s);
   if (interval_s < 2.0 || !is_logging_interval(interval_s)) return false;
   const double grid_s = std::min(interval_s, minute_s);
@@ -87,8 +90,8 @@ bool are_at_logging_intervals(const Numbers& numbers) {
   });
 }
 
-/// Whether numbers are days since an epoch with the time of day as fraction. They are if, read as seconds, they would
-/// be sampled faster than 20 kHz, or faster than 1 kHz and are at full seconds of days.
+/// Whether numbers are days since an epoch, with the time of day as a fraction. They are if, read as seconds, their
+/// rate would be above 20 kHz. They also are if the rate would be above 1 kHz and they lie at full seconds of days.
 bool are_serial_days(const Numbers& numbers) {
   constexpr double fastest_s = 5e-5, fast_s = 1e-3;
   return first_day_of(numbers.size) != 0 && numbers.spacing > 0.0 &&

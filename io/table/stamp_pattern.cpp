@@ -19,13 +19,13 @@ namespace {
 
 constexpr int seconds_per_day = 86400;
 
-/// The program that uses this library may have set another locale.
+/// The C locale is set here, because the program that uses this library may have set another locale.
 locale_t c_locale() {
   static const locale_t locale = newlocale(LC_ALL_MASK, "C", nullptr);
   return locale;
 }
 
-/// The text after the part that fits; null if no part fits.
+/// The text that follows the matching part. Null if nothing matches.
 const char* parse(const char* text, const std::string& pattern, tm& time) {
   return strptime_l(text, pattern.c_str(), &time, c_locale());
 }
@@ -49,7 +49,8 @@ void check_letters(std::string_view pattern) {
     throw std::invalid_argument("names no part of a time (as %H:%M:%S or %d.%m.%Y %H:%M:%S does)");
 }
 
-/// Seconds since 1970, or since midnight. Nullopt for an impossible day, or a year beyond 64 bits of nanoseconds.
+/// Seconds since 1970, or since midnight. Nullopt if the day is impossible, or the year is too large for 64 bits of
+/// nanoseconds.
 std::optional<std::int64_t> seconds_of(const tm& time, bool has_date) {
   constexpr int first_year = 1678, last_year = 2261;
   std::int64_t days = 0;
@@ -66,7 +67,7 @@ std::optional<std::int64_t> seconds_of(const tm& time, bool has_date) {
   return seconds_per_day * days + 3600 * time.tm_hour + 60 * time.tm_min + time.tm_sec - time.tm_gmtoff;
 }
 
-/// Removes whole days from the hours of an elapsed time: 26:10:00 becomes 02:10:00 and one day.
+/// Removes whole days from the hours of an elapsed time. 26:10:00 becomes 02:10:00 plus one day.
 std::int64_t take_days(std::string& text) {
   int hours = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), hours);
@@ -112,7 +113,7 @@ std::optional<Stamp> StampPattern::read(std::string_view value) const {
   }
   const std::int64_t billionths = billionths_of(digits);
   const bool lacks_zone = tail_ == "%z" && *rest == '\0';
-  if (has_letter(tail_, "p")) {  // AM or PM changes the hour, so both are read at once
+  if (has_letter(tail_, "p")) {  // AM or PM changes the hour, so both are parsed together
     text.erase(static_cast<std::size_t>(head_end - text.c_str()), static_cast<std::size_t>(rest - head_end));
     time = {};
     rest = parse(text.c_str(), head_ + tail_, time);

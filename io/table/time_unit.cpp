@@ -16,7 +16,7 @@ struct Unit {
   TimeUnit unit;
   std::int64_t ns;
   std::string_view plural;
-  std::string_view words;  ///< with blanks around each word
+  std::string_view words;  ///< a text of words, with blanks around each word
 };
 
 constexpr std::array units{
@@ -45,14 +45,14 @@ std::optional<TimeUnit> unit_of_word(std::string_view word) {
   return found == units.end() ? std::nullopt : std::optional(found->unit);
 }
 
-/// The part from the last capital letter that follows a small letter: US of TimeUS.
+/// The part of a name from the last capital letter after a small letter: US in TimeUS.
 std::string_view last_capitalised(std::string_view word) {
   for (std::size_t i = word.size(); i-- > 1;)
     if (is_upper(word[i]) && is_lower(word[i - 1])) return word.substr(i);
   return {};
 }
 
-/// The part after a word that means time: ns of timestampns.
+/// The part of a name after a word that means time: ns in timestampns.
 std::string_view behind_time(std::string_view word) {
   for (const std::string_view time : {"timestamp", "time", "stamp", "clock"})
     if (word.size() > time.size() + 1 && word.starts_with(time)) return word.substr(time.size());
@@ -75,7 +75,7 @@ std::optional<TimeUnit> named_time_unit(std::string_view name) {
   while (!name.empty() && std::string_view(")] ").find(name.back()) != std::string_view::npos) name.remove_suffix(1);
   const std::size_t separator = name.find_last_of("_[( ./");
   const std::string_view word = separator == std::string_view::npos ? name : name.substr(separator + 1);
-  if (name.size() < 2) return std::nullopt;  // a column with the name "s" may mean anything
+  if (name.size() < 2) return std::nullopt;  // a column with the name "s" may contain anything
   for (const std::string_view part : {word, last_capitalised(word), behind_time(word)})
     if (const auto unit = unit_of_word(part)) return unit;
   return std::nullopt;

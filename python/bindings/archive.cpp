@@ -29,7 +29,7 @@ std::string summary(const std::string& path, int width) {
   return app::summary_text(read_archive(path, Evaluations::in_file), width);
 }
 
-/// A dictionary per family, the most used first.
+/// One dictionary for each family of modes. The most used family comes first.
 py::list families(const std::string& path) {
   std::vector<app::ModeFamily> all;
   {

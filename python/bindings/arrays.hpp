@@ -10,17 +10,17 @@
 
 #include "modebank/base/matrix.hpp"
 
-/// Conversion between numpy's arrays and Eigen's. A matrix here has one sample, window or mode per column, in
-/// column-major order. In memory that is numpy's row-major (count, ...) array, so no copy is needed.
+/// Conversion between numpy's arrays and Eigen's matrices. A matrix here has one sample, window or mode per column, in
+/// column-major order. In memory this equals numpy's row-major (count, ...) array, so no copy is needed.
 namespace modebank::python {
 
 namespace py = pybind11;
 
-/// An array of doubles from Python: used in place if it is row-major, else a copy.
+/// An array of doubles from Python. A row-major array is used in place; any other array is copied.
 using Samples = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Shape = std::vector<py::ssize_t>;
 
-/// A read-only array of numbers that `owner` has, without a copy; it keeps the owner alive.
+/// A read-only array of numbers that belong to `owner`. Nothing is copied. The array keeps the owner alive.
 template <class T>
 py::array_t<T> view(const T* numbers, Shape shape, py::handle owner) {
   py::array_t<T> array(std::move(shape), numbers, owner);
@@ -28,7 +28,7 @@ py::array_t<T> view(const T* numbers, Shape shape, py::handle owner) {
   return array;
 }
 
-/// One row per column of `matrix`, as a copy.
+/// A copy of `matrix` in which each column becomes a row.
 template <class Derived>
 py::array_t<typename Derived::Scalar> view(const Eigen::PlainObjectBase<Derived>& values, py::handle owner) {
   if constexpr (Derived::IsVectorAtCompileTime)
@@ -37,7 +37,7 @@ py::array_t<typename Derived::Scalar> view(const Eigen::PlainObjectBase<Derived>
     return view(values.data(), {values.cols(), values.rows()}, owner);
 }
 
-/// A copy with its own memory.
+/// A copy that owns its memory.
 template <class T>
 py::array_t<T> copied(const T* numbers, Shape shape) {
   return py::array_t<T>(std::move(shape), numbers);
@@ -45,7 +45,7 @@ py::array_t<T> copied(const T* numbers, Shape shape) {
 inline py::array_t<double> copied(const std::vector<double>& values) {
   return copied(values.data(), {static_cast<py::ssize_t>(values.size())});
 }
-/// The same, with rows as rows.
+/// A copy of a matrix in which rows stay rows.
 inline py::array_t<double> copied(const Matrix& matrix) {
   py::array_t<double> array(Shape{matrix.rows, matrix.cols});
   for (py::ssize_t i = 0; i < matrix.rows; ++i)
@@ -53,7 +53,7 @@ inline py::array_t<double> copied(const Matrix& matrix) {
   return array;
 }
 
-/// numpy's (N, n) as an n x N matrix; a vector counts as (N, 1).
+/// A numpy array (N, n) as an n x N matrix. A vector counts as (N, 1).
 inline Eigen::Map<const Eigen::MatrixXd> columns(const Samples& samples) {
   return {samples.data(), samples.ndim() < 2 ? 1 : samples.shape(1), samples.ndim() < 1 ? 1 : samples.shape(0)};
 }

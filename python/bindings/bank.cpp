@@ -13,7 +13,7 @@ namespace modebank::python {
 
 namespace {
 
-/// One matrix per mode as an array (K, rows, cols).
+/// One matrix per mode, as an array (K, rows, cols).
 py::array_t<double> stacked(const filter::Bank& bank, const std::function<Matrix(const filter::Mode&)>& part) {
   const filter::BankDescription all = bank.description();
   const Matrix first = part(all.modes.front());

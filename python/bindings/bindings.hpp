@@ -2,7 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
-/// Parts of the module; each is in a file of its name.
+/// The parts of the module. Each part is in a file of the same name.
 namespace modebank::python {
 
 void bind_archive(pybind11::module_& module);

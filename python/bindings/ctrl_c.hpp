@@ -8,14 +8,14 @@
 
 namespace modebank::python {
 
-/// Releases the interpreter's lock, and lets Ctrl-C end the computation: it throws KeyboardInterrupt, or the exception
-/// of the signal's handler.
+/// Releases the interpreter's lock. Ctrl-C ends the computation with KeyboardInterrupt, or with the exception of the
+/// signal's handler.
 class Unlocked {
  public:
   Unlocked() : hook_([this] { look(); }) {}
 
  private:
-  /// Takes the lock to check for signals; rarely enough to cost no time.
+  /// Takes the lock and checks for signals. This happens so rarely that it costs no time.
   void look() {
     using std::chrono::steady_clock;
     constexpr std::chrono::milliseconds pause(50);

@@ -21,7 +21,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Copies a sample's numbers from Python into a vector of fixed size. Usual types are read without making an array,
-/// since a step takes only microseconds.
+/// because a filter step takes only microseconds.
 void take(const char* name, py::handle given, std::vector<double>& numbers) {
   const auto size = static_cast<py::ssize_t>(numbers.size());
   const auto require_size = [&](py::ssize_t found) {
@@ -48,7 +48,7 @@ void take(const char* name, py::handle given, std::vector<double>& numbers) {
   }
 }
 
-/// A running filter of a bank.
+/// A running filter that uses a bank.
 class Filter {
  public:
   Filter(const filter::Bank& bank, const FilterOptions& options)
@@ -84,8 +84,8 @@ class Filter {
   std::vector<double> input_, measurement_;
 };
 
-/// A filter of a Bank with the options in `keys`, or of an archive with the options of its own evaluation; `keys`
-/// override these.
+/// A filter of a Bank, with the options in `keys`. Or a filter of an archive, with the options of the archive's
+/// evaluation; `keys` override these.
 Filter make_filter(const py::object& bank, const std::string& which, const py::kwargs& keys) {
   if (py::isinstance<filter::Bank>(bank)) return {bank.cast<const filter::Bank&>(), config_of(keys, "filter.").filter};
   const std::string path = path_of(bank);
@@ -95,7 +95,7 @@ Filter make_filter(const py::object& bank, const std::string& which, const py::k
   return {archive::load_bank(path, single ? "baseline" : which), options};
 }
 
-/// Forecasts as arrays over the samples ahead.
+/// Forecasts as arrays with one row for each sample ahead.
 struct ForecastArrays {
   py::array_t<double> state, covariance, mode_probability;
 
@@ -107,7 +107,7 @@ struct ForecastArrays {
     for (const filter::Forecast& sample : ahead) {
       x = std::ranges::copy(sample.state, x).out;
       P = std::ranges::copy(sample.covariance.values, P)
-              .out;  // symmetric, so the order of rows and columns does not matter
+              .out;  // the matrix is symmetric, so rows and columns may be exchanged
       mu = std::ranges::copy(sample.mode_probability, mu).out;
     }
   }

@@ -37,7 +37,8 @@ FreeRun predict(const Bank& bank, const app::Config& config, const Samples& time
   return std::move(free_runs(bank, {run}, config.filter, how).front());
 }
 
-/// A free run of a Bank with the options in `keys`, or of an archive with its own options; `keys` override these.
+/// A free run of a Bank, with the options in `keys`. Or a free run of an archive, with the archive's own options;
+/// `keys` override these.
 FreeRun simulate(const py::object& bank, const Samples& time_s, const Samples& states, const Samples& inputs,
                  const py::dict& keys) {
   if (py::isinstance<filter::Bank>(bank))

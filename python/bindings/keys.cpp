@@ -16,7 +16,7 @@ bool is_list(py::handle value) {
   return !py::isinstance<py::str>(value) && !py::isinstance<py::bytes>(value) && py::hasattr(value, "__iter__");
 }
 
-/// The elements of a list that has only texts; nullopt for other lists.
+/// The elements of a list that contains only texts. Nullopt for other lists.
 std::optional<std::vector<std::string>> texts_in(const py::list& list) {
   std::vector<std::string> texts;
   for (const py::handle part : list) {
@@ -26,7 +26,7 @@ std::optional<std::vector<std::string>> texts_in(const py::list& list) {
   return texts;
 }
 
-/// As in a configuration: names in a list are quoted if they contain commas.
+/// A configuration has names in quotes if a list's names contain commas. The same is done here.
 std::string text_of(py::handle value) {
   if (value.is_none()) return "";
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";

@@ -18,7 +18,7 @@ py::array_t<double> covariances(const GaussianMixture& mixture) {
   return array;
 }
 
-/// Points (N, F) in the form of the mixture's functions.
+/// Points (N, F) in the form that the mixture's functions use.
 Eigen::MatrixXd points_of(const Samples& points) {
   require_samples("points", points);
   return columns(points);

@@ -13,7 +13,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// Passes progress and warnings to Python; Ctrl-C can end the run at each of them.
+/// Passes progress and warnings to Python. Ctrl-C can end the run at each of these calls.
 class Callbacks : public app::Adviser {
  public:
   Callbacks(py::object progress, py::object warning) : progress_(std::move(progress)), warning_(std::move(warning)) {}
@@ -48,7 +48,7 @@ std::string run_file(const std::string& file, const py::dict& keys, const py::ob
   return config.archive.output;
 }
 
-/// The same for runs in memory; `keys` must contain archive.output.
+/// Processes runs in memory and returns the path of the archive. `keys` must contain archive.output.
 std::string run_tables(const py::dict& tables, const py::dict& keys, const py::object& progress,
                        const py::object& warning) {
   app::Config config = config_of(keys, "");

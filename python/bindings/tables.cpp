@@ -40,8 +40,8 @@ py::object array_of(FileColumn&& column) {
   return copied(stamps.data(), {std::ssize(stamps)}).attr("view")("datetime64[ns]");
 }
 
-/// {table: ({column: values}, {column: unit})} of any readable log; only the tables and columns in `chosen`, unless it
-/// is empty.
+/// The tables of any readable log, as {table: ({column: values}, {column: unit})}. Returns only the tables and columns
+/// in `chosen`, or all if `chosen` is empty.
 py::dict read_log(const std::string& path, const std::vector<std::string>& chosen, const py::dict& keys) {
   const app::Config config = config_of(keys, "data.");
   std::vector<TableInfo> tables;

@@ -16,7 +16,7 @@ namespace modebank::python {
 
 namespace {
 
-/// Fits of windows, with the run and place of each.
+/// Fits of windows, with the run and the position of each window.
 struct Windows {
   WindowFits fits;
   std::vector<std::string> labels;
@@ -32,7 +32,7 @@ std::vector<Channel> channels(const std::vector<std::string>& names, Index count
   return result;
 }
 
-/// A run; the arrays are not copied if `in_place`.
+/// A run. With `in_place`, its arrays are not copied.
 Trajectory run_of(std::size_t number, const Samples& states, const Samples& inputs, double dt_s, bool in_place) {
   require_samples("states", states);
   require_samples("inputs", inputs);
@@ -57,7 +57,9 @@ Windows identify(const std::vector<Samples>& states, const std::vector<Samples>&
     throw std::invalid_argument("states and inputs must have equally many runs");
   if (!(dt_s > 0.0) || !std::isfinite(dt_s)) throw std::invalid_argument("dt must be a positive number of seconds");
   app::Config config = config_of(keys, "window.");
-  if (!keys.contains("model")) config.structure.automatic_model = false;  // Windows alone use the lags in the options.
+  if (!keys.contains("model"))
+    config.structure.automatic_model = false;  // For windows alone, the lags come from the
+                                               // options.
   if (app::searched_lags_of(config).any())
     throw ConfigurationError("lags and delay = auto, and window.model = auto, are found by run; give numbers here");
   const bool in_place = is_linear(config.window);
@@ -94,7 +96,7 @@ std::vector<std::string> statuses(const Windows& windows) {
   return result;
 }
 
-/// An array for `member`, a member of WindowFits, with the same name.
+/// An array with the values of `member`, a member of WindowFits with the same name.
 #define MODEBANK_WINDOWS_ARRAY(name, member, text) \
   .def_property_readonly(                          \
       name, [](const py::object& self) { return view(self.cast<const Windows&>().member, self); }, text)

@@ -1,4 +1,4 @@
-// Text logs, in the detected dialect and in stated ones.
+// Reads text logs, both in the detected dialect and in stated dialects.
 #include "tests/fuzz/entry.hpp"
 #include "tests/fuzz/read_log.hpp"
 
@@ -6,7 +6,7 @@ namespace modebank::fuzz {
 
 namespace {
 
-/// The length of the input selects the stated dialect, so that an input always has the same one.
+/// The stated dialect depends on the input's length, so the same input always gets the same dialect.
 void read_csv(std::string_view text) {
   const std::filesystem::path file = scratch_file("fuzz.csv", text);
   FormatOptions format;

@@ -1,4 +1,4 @@
-// Definitions of ROS messages.
+// Reads definitions of ROS messages.
 #include "io/recording/message_columns.hpp"
 #include "io/recording/topic_decoder.hpp"
 #include "tests/fuzz/entry.hpp"
@@ -7,7 +7,7 @@ namespace modebank::fuzz {
 
 namespace {
 
-/// A definition of p/T as in .msg files and recordings, in both dialects, with a message of zeros.
+/// A definition of p/T as it is in .msg files and recordings, read in both dialects, together with a message of zeros.
 void read_definition(std::string_view text) {
   for (const Dialect dialect : {Dialect::ros1, Dialect::ros2}) {
     const auto parts = split_definitions("p/T", text);
@@ -17,7 +17,7 @@ void read_definition(std::string_view text) {
         return found == parts.end() ? std::nullopt : std::optional(found->second);
       });
       columns_of(schema, std::string(200, '\0'), 4);
-    } catch (const DefinitionError&) {  // callers report both as the reason why a topic cannot be read
+    } catch (const DefinitionError&) {  // callers report either exception as the reason why a topic cannot be read
     } catch (const PayloadError&) {
     }
   }

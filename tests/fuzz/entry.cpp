@@ -1,4 +1,5 @@
-// libFuzzer's functions for one reader, named by MODEBANK_FUZZ. Without libFuzzer: a main that runs every corpus.
+// libFuzzer's functions for the reader that MODEBANK_FUZZ names. Without libFuzzer, a main function that runs every
+// corpus.
 #include "tests/fuzz/entry.hpp"
 
 #include <unistd.h>
@@ -65,7 +66,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 #else
 
-/// fuzz [NAME FILE...]: runs all corpora, or one reader on these files.
+/// fuzz [NAME FILE...]: runs all corpora, or the reader NAME on these files.
 int main(int argc, char** argv) {
   const auto run_file = [](const std::string& name, const std::filesystem::path& path) {
     std::printf("%s %s\n", name.c_str(), path.c_str());

@@ -1,4 +1,4 @@
-// Expressions of data.derive and data.where.
+// Reads expressions of data.derive and data.where.
 #include <cmath>
 #include <limits>
 
@@ -9,7 +9,8 @@ namespace modebank::fuzz {
 
 namespace {
 
-/// Lines of data.derive; a line that begins with "where " is data.where. Columns have typical values of logs.
+/// The input contains lines of data.derive. A line that begins with "where " is data.where. Columns contain typical
+/// values of logs.
 void compute_channels(std::string_view text) {
   DataOptions options;
   for (std::size_t begin = 0; begin < text.size();) {

@@ -1,4 +1,4 @@
-// Configurations, and the points of their studies.
+// Reads configurations, and the points of their studies.
 #include "app/config/config_file.hpp"
 #include "app/study/space/study_space.hpp"
 #include "tests/fuzz/entry.hpp"
@@ -7,7 +7,8 @@ namespace modebank::fuzz {
 
 namespace {
 
-/// Reads a configuration file as commands do. The resolved text must be a configuration of the same meaning.
+/// Reads a configuration file in the same way as the commands. The resolved text must be a configuration with the same
+/// meaning.
 void read_configuration(std::string_view text) {
   const app::Config config = app::load_config(scratch_file("fuzz.ini", text), {});
   const std::string resolved = app::resolved_text(config);

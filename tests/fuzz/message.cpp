@@ -1,4 +1,4 @@
-// Messages in the encodings of ROS 1 and of ROS 2 (CDR).
+// Reads messages in the encodings of ROS 1 and of ROS 2 (CDR).
 #include "io/recording/message_columns.hpp"
 #include "io/recording/message_reader.hpp"
 #include "io/recording/topic_decoder.hpp"
@@ -8,7 +8,7 @@ namespace modebank::fuzz {
 
 namespace {
 
-/// Input: the encoding, the definition up to a line "%%", a message.
+/// The input contains the encoding, the definition up to a line "%%", and a message.
 void read_message(std::string_view input) {
   Connection connection;
   connection.topic = "/t";
@@ -33,7 +33,7 @@ void read_message(std::string_view input) {
     }
   };
   read(message);
-  read(std::string_view(message).substr(0, message.size() / 2));  // later messages, shorter or longer
+  read(std::string_view(message).substr(0, message.size() / 2));  // later messages are shorter or longer
   read(message + message);
 }
 

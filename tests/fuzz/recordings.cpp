@@ -1,4 +1,4 @@
-// ROS recordings: bags, MCAP files, payloads in SQLite, and the list of a recording's parts.
+// Reads ROS recordings: bags, MCAP files, payloads in SQLite, and the list of a recording's parts.
 #include "tests/fuzz/entry.hpp"
 #include "tests/fuzz/read_log.hpp"
 #include "tests/support/paths.hpp"
@@ -15,7 +15,7 @@ void read_bag(std::string_view bytes) { read_recording("fuzz.bag", bytes); }
 void read_mcap(std::string_view bytes) { read_recording("fuzz.mcap", bytes); }
 void read_db3(std::string_view bytes) { read_recording("fuzz.db3", bytes); }
 
-/// metadata.yaml of a folder with two parts.
+/// The metadata.yaml of a folder with two parts.
 void read_parts(std::string_view text) {
   const std::filesystem::path file = scratch_file("metadata.yaml", text),
                               part = test::project_dir() / "tests/fuzz/corpus/mcap/plain.mcap";

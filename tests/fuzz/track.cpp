@@ -1,4 +1,4 @@
-// Input of `track`: lines of samples, and checkpoints.
+// Reads input of `track`: lines of samples, and checkpoints.
 #include <cmath>
 
 #include "app/cli/track_input.hpp"
@@ -38,7 +38,7 @@ void track_lines(std::string_view text) {
   }
 }
 
-/// Continues from a checkpoint for a few samples. Finite samples must not give an infinite estimate.
+/// Continues from a checkpoint for a few samples. If samples are finite, estimates must be finite too.
 void resume(std::string_view text) {
   BankFilter filter = new_filter(text.size() % 2 == 0);
   try {

@@ -8,7 +8,7 @@ namespace modebank::test {
 
 namespace {
 
-using test::expect_same;  // in addition to the overloads in this file
+using test::expect_same;  // needed in addition to the overloads in this file
 
 void expect_same(const SummaryRow& a, const SummaryRow& e) {
   EXPECT_EQ(a.filter, e.filter);

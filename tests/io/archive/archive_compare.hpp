@@ -4,7 +4,7 @@
 
 namespace modebank::test {
 
-/// Compares the results of the stages before a bank, field by field.
+/// Compares, field by field, the results of the stages that run before the bank is made.
 void expect_same(const Recording& actual, const Recording& expected);
 void expect_same(const LagReport& actual, const LagReport& expected);
 void expect_same(const WindowFits& actual, const WindowFits& expected);

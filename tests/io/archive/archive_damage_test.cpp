@@ -11,7 +11,7 @@
 #include "tests/io/archive/archive_patch.hpp"
 #include "tests/support/effort.hpp"
 
-// HDF5 1.10 leaks at a wrong metadata checksum. The sanitizer build must still report leaks of modebank.
+// HDF5 1.10 leaks memory at a wrong metadata checksum. The sanitizer build must still report leaks in modebank.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }     // NOLINT
 extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }  // NOLINT
 
@@ -151,7 +151,7 @@ TEST_F(ArchiveDamage, HostileContentIsAnErrorAndNeverMore) {
   refuses("/bank/weight", {3}, test::Kind::text, "another type");
 }
 
-/// Invalid weights of transitions in an archive never become a bank.
+/// Archives with invalid weights of transitions must never give a bank.
 TEST(StoredSwitches, OfOtherSizesOrNoNumbersAreRefused) {
   const Bank bank = *test::full_archive(2, 1).bank;
   const auto refuses = [&](void (*change)(StoredBank&), const std::string& reason) {
@@ -173,7 +173,7 @@ TEST(StoredSwitches, OfOtherSizesOrNoNumbersAreRefused) {
       "weights of the transition");
   refuses([](StoredBank& s) { s.transition_weights(0, 1) += 1.0; }, "depend on the previous mode");
   refuses([](StoredBank& s) { s.transition_weights.resize(0, 0); }, "no transition weights");
-  StoredBank huge = store_bank(bank);  // accepted because it is finite: log odds are bounded elsewhere
+  StoredBank huge = store_bank(bank);  // any finite value is accepted, because other code bounds the log odds
   huge.transition_weights.setConstant(1e300);
   EXPECT_NO_THROW(restore_bank(huge, Bank()));
 }
@@ -183,9 +183,9 @@ TEST_F(ArchiveDamage, ContentElsewhereIsRefused) {
   expect_unreadable("has its content in another file");
 }
 
-/// Reads, inspects and verifies the archive, with one part of its metadata damaged after the other.
+/// Damages the metadata in one place after another. Each time, reads, inspects and verifies the archive.
 void use_with_damaged_metadata(const fs::path& path) {
-  constexpr int stride = test::in_release(4, 15);  // only some parts, because each needs a whole verification
+  constexpr int stride = test::in_release(4, 15);  // only some places, because each needs a full verification
   int piece = 0;
   const std::string bytes = read_file(path);
   for (const char* signature : {"OHDR", "OCHK", "FRHP", "FHDB", "BTHD", "BTLF"})

@@ -15,7 +15,7 @@
 
 namespace modebank::test {
 
-/// An archive's path in an empty folder.
+/// The path of an archive in an empty folder.
 class ArchiveFile : public ::testing::Test {
  protected:
   void SetUp() override { write_archive(path, full_archive(2, 1)); }

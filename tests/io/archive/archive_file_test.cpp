@@ -42,7 +42,8 @@ TEST_F(ArchiveFile, IsWrittenByTwoThreadsAtOnce) {
 
 TEST_F(ArchiveFile, EqualContentsGiveEqualBytes) {
   const fs::path other = folder.path() / "other.h5";
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // longer than the resolution of HDF5's time stamps
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // longer than the smallest difference in HDF5's time
+                                                                 // stamps
   write_archive(other, test::full_archive(2, 1));
   EXPECT_EQ(read_file(path), read_file(other));
   write_archive(other, read_archive(path));
@@ -68,7 +69,7 @@ TEST_F(ArchiveFile, NothingIsLeftWhenTheFolderIsMissing) {
   EXPECT_NO_THROW(check(path));
 }
 
-/// Root may write everywhere, so the test changes to user nobody for a while.
+/// Root may write everywhere, so the test temporarily becomes user nobody.
 class AsNobody {
  public:
   AsNobody() : was_(geteuid()) {
@@ -99,7 +100,7 @@ TEST_F(ArchiveFile, NothingIsLeftWhenTheFolderIsNotWritable) {
   EXPECT_EQ(read_file(path), before);
 }
 
-/// Limits file sizes for this process: writes beyond the limit fail, as on a full disk.
+/// Limits file sizes for this process. Writes beyond the limit fail in the same way as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

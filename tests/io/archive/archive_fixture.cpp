@@ -17,7 +17,7 @@ Recording make_recording(Index n, Index m) {
   const char* input_units[] = {"m/s", "", "V"};
   for (Index i = 0; i < n; ++i) recording.states.push_back({"x" + std::to_string(i), state_units[i % 2]});
   for (Index i = 0; i < m; ++i) recording.inputs.push_back({"u" + std::to_string(i), input_units[i % 3]});
-  // Names that are unusual in files but printable; they are not in byte order.
+  // Printable names that are unusual in files. They are not in byte order.
   const char* names[] = {"run 2", "Gelände.ä", "10"};
   for (Index r = 0; r < 3; ++r) {
     const Index samples = 12 + r;
@@ -88,7 +88,7 @@ WindowFits make_windows_fits(const LinearStructure& structure) {
   return fits;
 }
 
-/// base + 101 i + 1/3 on the diagonal, 1/3 elsewhere.
+/// base + 101 i + 1/3 on the diagonal, 1/3 in all other entries.
 Eigen::MatrixXd covariance_pattern(Index side, double base) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Constant(side, side, 1.0 / 3.0);
   for (Index i = 0; i < side; ++i) result(i, i) = base + 101.0 * static_cast<double>(i) + 1.0 / 3.0;
@@ -117,7 +117,7 @@ MixtureResult make_mixture(const WindowFits& fits) {
   return result;
 }
 
-/// A valid bank: weakly coupled states, positive definite noise. A(k)(i, j) = -0.1 - (k + (i+2j)/8)/64.
+/// A valid bank with weakly coupled states and positive definite noise. A(k)(i, j) = -0.1 - (k + (i+2j)/8)/64.
 Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
   const Index n = structure.states, m = structure.inputs, p = structure.parameters();
   Bank bank;
@@ -206,7 +206,7 @@ Bank make_drifting(const LinearStructure& structure) {
 
 namespace {
 
-/// Labels every second sample. Stamps begin at a time that is not exact in a double.
+/// Every second sample has a label. Stamps begin at a time that a double cannot represent exactly.
 void add_labels(Archive& archive) {
   archive.labels = RunLabels{{"ice", "a, b"}, {}};
   for (Trajectory& run : archive.recording->runs) {

@@ -1,4 +1,4 @@
-// The part of archive_fixture.cpp with evaluations and scores.
+// The part of archive_fixture.cpp that fills evaluations and scores.
 #include "ident/base/not_a_number.hpp"
 #include "tests/io/archive/archive_fixture.hpp"
 

@@ -59,7 +59,7 @@ void write_foreign_hdf5(const std::filesystem::path& path, unsigned long long us
 
 namespace {
 
-/// `space`: of the attribute; closed here.
+/// `space`: the attribute's dataspace, which this function closes.
 void replace_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
                        const std::string& value, hid_t space) {
   const hid_t file = open_for_change(path);
@@ -124,7 +124,7 @@ void keep_columns(const std::filesystem::path& path, const std::string& table, u
 void replace_by_zeros(const std::filesystem::path& path, const std::string& member,
                       const std::vector<unsigned long long>& shape, Kind kind) {
   const hid_t creation = must(H5Pcreate(H5P_DATASET_CREATE));
-  // Chunks that were never written take no space, for any declared shape.
+  // Chunks that were never written take no space, whatever the declared shape is.
   must(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_LATE));
   replace(path, member, kind, shape, creation);
   H5Pclose(creation);
@@ -144,7 +144,7 @@ void patch_text_in_list(const std::filesystem::path& path, const std::string& ob
     texts.replace(index * bytes, bytes, text);
     H5Aclose(attribute);
     must(H5Adelete_by_name(file, object.c_str(), name.c_str(),
-                           H5P_DEFAULT));  // an object with many attributes does not overwrite one
+                           H5P_DEFAULT));  // HDF5 cannot overwrite an attribute of an object that has many attributes
     const hid_t made =
         must(H5Acreate_by_name(file, object.c_str(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     must(H5Awrite(made, type, texts.data()));
@@ -181,7 +181,7 @@ void craft(const std::filesystem::path& path, const std::function<void(hid_t fil
 
 namespace {
 
-/// Changes one element of a dataset, read and written as `type`.
+/// Changes one element of a dataset. The element is read and written as `type`.
 void patch_element(hid_t file, const std::string& dataset, hid_t type, std::size_t index, double value) {
   const hid_t data = must(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT)), space = must(H5Dget_space(data));
   std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
@@ -211,7 +211,7 @@ void patch_cell(const std::filesystem::path& path, const std::string& table, con
 void patch_number_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
                             double value) {
   craft(path, [&](hid_t file) {
-    // Deletes and recreates the attribute, because HDF5 1.10 does not find attributes in dense storage for writing.
+    // Deletes and recreates the attribute, because HDF5 1.10 cannot find attributes in dense storage for writing.
     const hid_t holder = must(H5Oopen(file, object.c_str(), H5P_DEFAULT));
     const hid_t old = must(H5Aopen(holder, name.c_str(), H5P_DEFAULT)), type = must(H5Aget_type(old));
     H5Aclose(old);

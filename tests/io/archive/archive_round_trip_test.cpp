@@ -51,7 +51,7 @@ TEST(ArchiveRoundTrip, KeepsANoiseComponent) {
   expect_same(round_trip(archive), archive);
 }
 
-/// Features of one-lag fits, and the number of windows on which candidates were compared.
+/// Fills the features of one-lag fits, and the number of windows on which candidates were compared.
 TEST(ArchiveRoundTrip, KeepsFeaturesThatAreNotTheWindowsOwn) {
   Archive archive = full_archive(2, 1);
   MixtureResult& mixture = *archive.mixture;
@@ -156,7 +156,7 @@ TEST(ArchiveRoundTrip, LargeArchivesAreMadeInTheFileSystem) {
   expect_same(read_archive(folder.path() / "a.h5"), archive);
 }
 
-/// A run of the linear system, with a name beyond ASCII and 300 samples.
+/// A run of the linear system with 300 samples. Its name contains characters that are not ASCII.
 Recording streamed_recording() {
   Recording recording;
   recording.states = {{"wz", "rad/s"}};
@@ -257,7 +257,7 @@ TEST(ArchiveRoundTrip, TextsOfAnyLength) {
   for (int i = 0; i < 300; ++i) {
     Trajectory run;
     run.run =
-        std::string(250, 'r') + std::to_string(1000 + i);  // 75 kB of names, above HDF5's 64 kB for small attributes
+        std::string(250, 'r') + std::to_string(1000 + i);  // 75 kB of names; HDF5's limit for small attributes is 64 kB
     run.time_s.resize(0);
     run.state.resize(1, 0);
     run.input.resize(0, 0);

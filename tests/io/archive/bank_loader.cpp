@@ -1,4 +1,4 @@
-// bank_loader ARCHIVE: links only what a robot needs to load a bank.
+// bank_loader ARCHIVE: links only the code that a robot needs to load a bank.
 #include <cstdio>
 #include <exception>
 

@@ -1,5 +1,5 @@
-// Archives that another program changed and signed. Every reader refuses wrong shapes and positions; verification finds
-// wrong values.
+// Archives that another program changed and gave a valid hash. Every reader refuses wrong shapes and positions.
+// Verification finds wrong values.
 #include <cmath>
 #include <limits>
 
@@ -22,7 +22,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std:
 
 class Robustness : public ArchiveFile {
  protected:
-  /// Expects verification to find the change, then restores the archive.
+  /// Expects that verification finds the change, then restores the archive.
   void finds(const std::function<void()>& change, const std::string& reason) {
     change();
     EXPECT_THAT(verify_archive(path).problems, Contains(HasSubstr(reason)));
@@ -34,7 +34,7 @@ class Robustness : public ArchiveFile {
   void finds_attribute(const std::string& object, const std::string& name, double value) {
     finds([&] { patch_number_attribute(path, object, name, value); }, object + "/" + name + ": holds");
   }
-  /// Expects readers to refuse it, too.
+  /// Expects that readers refuse the changed archive, too.
   void refuses(const std::function<void()>& change, const std::string& reason) {
     change();
     expect_unreadable(reason);
@@ -209,7 +209,7 @@ TEST_F(Robustness, OnlyVerificationJudgesValues) {
   EXPECT_NO_THROW(read_archive(path, Evaluations::in_file));
 }
 
-/// The layout of h5repack.
+/// The layout that h5repack makes.
 TEST_F(Robustness, ArraysInChunksAreRead) {
   replace_by_chunks(path, "/bank/A", {3, 2, 2});
   EXPECT_THAT(verify_archive(path).problems, ::testing::IsEmpty());

@@ -1,4 +1,4 @@
-// Archives whose evaluations are written as they are made, or stay in the file when read.
+// Archives whose evaluations are written as soon as they are made, or stay in the file during reading.
 #include <gmock/gmock.h>
 
 #include "io/archive/archive.hpp"
@@ -13,7 +13,7 @@ using test::full_archive;
 
 class StreamedArchive : public ::testing::Test {
  protected:
-  /// Passes all evaluations of `archive` to the sink, training runs first, and returns the rest.
+  /// Passes all evaluations of `archive` to the sink, training runs first. Returns the other parts of the archive.
   void write_streamed(const Archive& archive) {
     Archive rest = archive;
     write_archive(path, *archive.recording, [&](const EvaluationSink& sink) -> const Archive& {
@@ -51,7 +51,7 @@ TEST_F(StreamedArchive, ThrowsWhatItsMakerThrowsAndLeavesNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-/// Samples of three runs; the middle one exceeds a block of the writer.
+/// The numbers of samples of three runs. The middle run is longer than a block of the writer.
 Archive long_archive() {
   Archive archive = full_archive(1, 1);
   Recording recording = *archive.recording;
@@ -83,7 +83,7 @@ Archive long_archive() {
 
 TEST_F(StreamedArchive, BlocksOfRowsMeetWhateverTheOrderOfRuns) {
   Archive archive = long_archive();
-  archive.evaluations.front().runs[1].spread_share = Eigen::VectorXd::Constant(70'000, 0.25);  // only this run has it
+  archive.evaluations.front().runs[1].spread_share = Eigen::VectorXd::Constant(70'000, 0.25);  // only this run has one
   write_streamed(archive);
   EXPECT_EQ(verify_archive(path).problems, std::vector<std::string>());
   test::expect_same(read_archive(path), archive);

@@ -1,4 +1,4 @@
-// Files of h5py as runs, with the values in tests/io/arrays/h5py_files.py.
+// Reads files of h5py as runs. tests/io/arrays/h5py_files.py contains their values.
 #include <cstdlib>
 
 #include "io/arrays/array_reader.hpp"
@@ -26,7 +26,7 @@ class H5pyFiles : public test::ImportFixture {
 
   static int python(const std::string& arguments) { return std::system(("/usr/bin/python3 " + arguments).c_str()); }
 
-  /// Reads a file and expects the 20 samples.
+  /// Reads a file and expects its 20 samples.
   ImportedData expect_samples(const std::string& name) {
     options.inputs = name;
     ImportedData data = import();
@@ -86,7 +86,7 @@ TEST_F(H5pyFiles, LackValuesWhereNaNIsTheFillValue) {
   EXPECT_THAT(expect_samples("nans.h5").notes, Contains(HasSubstr("rows 21 to 40 of wz, a, time")));
 }
 
-/// The command in the message makes a readable file.
+/// The command in the message must make a readable file.
 TEST_F(H5pyFiles, OfAFilterThatIsAbsentAreCopiedByTheLineOfTheMessage) {
   options.inputs = "lzf.h5";
   const std::string message = error<DataError>();

@@ -1,4 +1,4 @@
-// Files of arrays as runs, through the interface of tables.
+// Reads files of arrays as runs, through the interface of tables.
 #include <cmath>
 
 #include "io/arrays/array_reader.hpp"
@@ -106,7 +106,7 @@ TEST_F(ImportArrays, ReadPandasDatesExactly) {
   EXPECT_EQ(data.files[0].bytes, std::filesystem::file_size(test::golden_dir() / "pandas_stamped.h5"));
 }
 
-/// The extreme whole numbers are stamps 584 years apart, whose difference overflows 64 bits.
+/// The smallest and the largest whole number are stamps 584 years apart. Their difference overflows 64 bits.
 TEST_F(ImportArrays, RefuseStampsFarApart) {
   for (const std::vector<std::int64_t>& stamps :
        {std::vector<std::int64_t>{INT64_MIN, 0, 1, 2}, {INT64_MIN + 1, 0, 1, INT64_MAX}, {0, 1, 2, INT64_MAX}}) {

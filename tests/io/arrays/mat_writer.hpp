@@ -18,7 +18,7 @@ class MatWriter {
   MatWriter(const MatWriter&) = delete;
   MatWriter& operator=(const MatWriter&) = delete;
 
-  /// A matrix, its columns one after another.
+  /// A matrix, given as its columns one after another.
   static matvar_t* matrix(const char* name, std::vector<double> values, std::size_t rows) {
     std::array<std::size_t, 2> shape{rows, values.size() / rows};
     return Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, shape.data(), values.data(), 0);
@@ -31,7 +31,7 @@ class MatWriter {
     std::array<std::size_t, 2> shape{1, value.size()};
     return Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF8, 2, shape.data(), value.data(), 0);
   }
-  /// `elements`: fields of each struct in the array.
+  /// `elements`: the fields of each struct in the array.
   static matvar_t* structure(const char* name, std::vector<const char*> fields,
                              const std::vector<std::vector<matvar_t*>>& elements) {
     std::array<std::size_t, 2> shape{1, elements.size()};

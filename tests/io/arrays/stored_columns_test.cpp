@@ -40,7 +40,7 @@ std::vector<double> numbers(const ColumnStore& store, const std::string& path) {
   return store.numbers(position(store, path));
 }
 
-/// Version of the file, and whether it is compressed.
+/// The version of the file, and whether it is compressed.
 class MatFiles : public ::testing::TestWithParam<std::pair<mat_ft, matio_compression>> {
  protected:
   MatWriter writer() const { return {file, GetParam().first, GetParam().second}; }
@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Versions, MatFiles,
                                            std::pair(MAT_FT_MAT73, MAT_COMPRESSION_ZLIB)));
 
 TEST_P(MatFiles, GiveVectorsMatricesAndNestedStructs) {
-  writer().write(MatWriter::matrix("t", {0.0, 0.5, 1.0}, 1));  // closed before the next opens
+  writer().write(MatWriter::matrix("t", {0.0, 0.5, 1.0}, 1));  // the file must be closed before the next one opens
   {
     MatWriter all = writer();
     all.write(MatWriter::matrix("t", {0.0, 0.5, 1.0}, 1));
@@ -79,7 +79,7 @@ TEST_P(MatFiles, GiveVectorsMatricesAndNestedStructs) {
   EXPECT_EQ(store->columns()[position(*store, "log.imu.wz")].group, "log.imu");
 }
 
-/// `out.ScopeData` of To Workspace and Scope blocks: a time, and signals with values and labels.
+/// The variable `out.ScopeData` of To Workspace and Scope blocks. It has a time, and signals with values and labels.
 TEST_P(MatFiles, NameSignalsOfSimulinksStructureWithTime) {
   const auto signal = [](const char* label, std::vector<double> values, std::size_t rows) {
     return std::vector<matvar_t*>{MatWriter::matrix("values", std::move(values), rows),
@@ -111,7 +111,8 @@ TEST(MatObjects, AreNamedWithTheLineThatConvertsThem) {
   EXPECT_THAT(matlab_object("", "a.b", "log.mat"), HasSubstr("a.b is a MATLAB object"));
 }
 
-/// From tests/golden/generate/mat_objects.py: written by scipy, and one in the form of MATLAB's own class system.
+/// tests/golden/generate/mat_objects.py made these files. scipy wrote them; one has the form of MATLAB's own class
+/// system.
 TEST(MatObjects, AreNamedAsFarAsMatioDoes) {
   const auto message = [](const char* name) {
     return message_of<ConfigurationError>([&] { open_mat_columns(test::golden_dir() / name); });

@@ -78,7 +78,7 @@ TEST(Csv, ReadsEveryDoubleBack) {
 
 TEST(Csv, ReadsMoreThanOneChunk) {
   std::string content = "a,text,b\n";
-  const int rows = 60000;  // about 1.4 MB in several chunks, with quoted fields across their borders
+  const int rows = 60000;  // about 1.4 MB, which is several chunks, with quoted fields across the chunks' borders
   for (int i = 0; i < rows; ++i) content += std::to_string(i) + ",\"x,\ny\"," + std::to_string(2 * i) + ".5\n";
   const Table table = parse(content);
   ASSERT_EQ(table.rows(), rows);

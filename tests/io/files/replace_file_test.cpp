@@ -43,7 +43,7 @@ TEST(TemporaryFile, StandsBesideItsTargetUnderANewName) {
 TEST(Robustness, D16TheNextRunTakesAwayWhatAKilledOneLeft) {
   const TemporaryFolder folder;
   const fs::path left = leave_behind(folder.path() / "k.h5"), other_target = leave_behind(folder.path() / "x.csv");
-  // A file that is being written stays, and so does one with another name.
+  // A file that is being written must stay. A file with another name must stay, too.
   const fs::path living = temporary_path(folder.path() / "k.h5"), old = folder.path() / ".k.h5.1-0.tmp",
                  other = folder.path() / ".k.modebank-0123456789ag.tmp";
   for (const fs::path& path : {living, old, other}) std::ofstream(path) << "half";
@@ -57,7 +57,7 @@ TEST(Robustness, D16TheNextRunTakesAwayWhatAKilledOneLeft) {
   EXPECT_EQ(text_of(folder.path() / "k.h5"), "whole");
 }
 
-/// After a kill between any two writes the target is absent or complete.
+/// If the process is killed between any two writes, the target is either absent or complete.
 TEST(Robustness, AKilledWriterLeavesTheTargetAsItWas) {
   const TemporaryFolder folder;
   const fs::path target = folder.path() / "k.h5";
@@ -82,7 +82,7 @@ TEST(Robustness, D16SymbolicLinksThatAUserNamesAreWrittenThrough) {
   fs::create_directory(folder.path() / "far");
   fs::create_symlink("far/target.h5", folder.path() / "relative");
   fs::create_symlink(folder.path() / "relative", folder.path() / "absolute");
-  for (const char* text : {"made", "replaced"}) {  // at first the link leads to nothing
+  for (const char* text : {"made", "replaced"}) {  // at first the link's target does not exist
     replace_file(final_target(folder.path() / "absolute"), {text});
     EXPECT_EQ(text_of(folder.path() / "far/target.h5"), text);
     EXPECT_TRUE(fs::is_symlink(folder.path() / "absolute"));
@@ -105,7 +105,7 @@ TEST(Robustness, D16ALinkToItselfOrToADeviceIsRefused) {
   refused(device, "not a regular file");
 }
 
-/// In a folder from somebody else, a new file replaces a link of its name.
+/// If the folder belongs to somebody else, a new file replaces a link of the same name.
 TEST(OwnFiles, TakeThePlaceOfLinks) {
   const TemporaryFolder folder;
   const fs::path theirs = folder.path() / "theirs", own = folder.path() / "own";

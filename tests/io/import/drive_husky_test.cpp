@@ -10,7 +10,7 @@
 #include "modebank/ident/auto_diff_motion_model.hpp"
 #include "tests/support/paths.hpp"
 
-// The DRIVE data (a Husky under random commands), compared with ../shared/data/drive_husky/README.md and
+// The DRIVE data: a Husky under random commands. They are compared with ../shared/data/drive_husky/README.md and
 // tests/golden/generate/drive_husky.py.
 namespace modebank {
 namespace {
@@ -31,7 +31,7 @@ Recording all_training(Recording recording) {
   return recording;
 }
 
-/// y = c + g (right - left), a static model.
+/// The static model y = c + g (right - left).
 struct YawRegression {
   template <class T>
   void operator()(const T* b, const T*, const T* u, double, T* next) const {
@@ -44,8 +44,8 @@ struct LineFit {
   double r_squared;
 };
 
-/// Regression of state `i` over all samples without an ICP jump. `steady_only`: only windows at constant speed. The
-/// truth columns are the two flags.
+/// Regression of state `i` over all samples without an ICP jump. `steady_only`: only windows at constant speed are
+/// used. The truth columns contain the flags for these two conditions.
 LineFit regress(const Recording& recording, Index i, bool steady_only) {
   std::vector<double> y, left, right;
   for (const Trajectory& run : recording.runs)
@@ -56,7 +56,7 @@ LineFit regress(const Recording& recording, Index i, bool steady_only) {
       right.push_back(run.input(1, k));
     }
   const auto N = std::ssize(y);
-  Trajectory line;  // sample k + 1 is the response to input k
+  Trajectory line;  // sample k + 1 responds to input k
   line.time_s = Eigen::VectorXd::LinSpaced(N + 1, 0.0, static_cast<double>(N));
   line.state = Eigen::MatrixXd::Zero(1, N + 1);
   line.input = Eigen::MatrixXd::Zero(2, N + 1);
@@ -103,7 +103,7 @@ TEST(DriveHusky, ThreeStatesAsNumpyHasThem) {
   EXPECT_LT((global.theta - expected).cwiseAbs().maxCoeff(), 1e-11);
 }
 
-// The wheel columns are 0.3 s late. At the nominal wheel radius the data set's effective track is 1.43 to 1.46 m.
+// The wheel columns are 0.3 s late. With the nominal wheel radius, the effective track in these data is 1.43 to 1.46 m.
 TEST(DriveHusky, SlipModelFindsTheEffectiveTrack) {
   MODEBANK_NEEDS_SHARED_DATA();
   DataOptions options = drive_options({"gyro_z"});

@@ -7,7 +7,7 @@
 
 namespace modebank::test {
 
-/// The message of the `Error` that `action` throws; a test failure for another exception or none.
+/// The message of the `Error` that `action` throws. The test fails if `action` throws another exception or none.
 template <class Error, class Action>
 std::string message_of(Action&& action) {
   try {

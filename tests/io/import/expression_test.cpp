@@ -23,7 +23,7 @@ using ::testing::NanSensitiveDoubleEq;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 using Columns = std::map<std::string, std::vector<double>>;
 
-/// Values at 0, 0.5, 1, ... seconds, one per row of the columns (one row without columns).
+/// Values of a formula at 0, 0.5, 1, ... seconds, one for each row of the columns. Without columns there is one row.
 std::vector<double> values(const std::string& text, const Columns& columns = {}) {
   const Expression expression("data.derive", text);
   std::vector<std::span<const double>> operands;
@@ -82,7 +82,8 @@ TEST(Expression, NamesChannelsThatAreNoIdentifiersInQuotes) {
 
 TEST(Expression, TakesYawFromAQuaternion) {
   for (const double yaw : {-3.0, -0.4, 0.0, 1.2, 3.1}) {
-    const double pitch = 0.3, roll = -0.7;  // rotation Rz(yaw) Ry(pitch) Rx(roll), composed by the half-angle formula
+    const double pitch = 0.3, roll = -0.7;  // the rotation Rz(yaw) Ry(pitch) Rx(roll), computed by the half-angle
+                                            // formula
     const double cy = std::cos(yaw / 2), sy = std::sin(yaw / 2), cp = std::cos(pitch / 2), sp = std::sin(pitch / 2),
                  cr = std::cos(roll / 2), sr = std::sin(roll / 2);
     EXPECT_NEAR(value("yaw(x, y, z, w)", {{"x", {sr * cp * cy - cr * sp * sy}},
@@ -94,7 +95,7 @@ TEST(Expression, TakesYawFromAQuaternion) {
 }
 
 TEST(Expression, RotatesVectors) {
-  // A gyro on its side: a quarter turn about x moves gravity from +y to +z.
+  // The IMU lies on its side. A quarter turn about x moves gravity from +y to +z.
   EXPECT_NEAR(value("rotate_z(pi/2, 0, 0, 0.1, 9.8, 0.2)"), 9.8, 1e-12);
   EXPECT_NEAR(value("rotate_y(pi/2, 0, 0, 0.1, 9.8, 0.2)"), -0.2, 1e-12);
   EXPECT_NEAR(value("rotate_x(0, pi/2, 0, 1, 2, 3)"), 3.0, 1e-12);
@@ -159,7 +160,7 @@ TEST(Expression, BoundsWhatIsHostile) {
   EXPECT_EQ(value(sum), 900.0);
 }
 
-/// Any text is a formula or a ConfigurationError.
+/// Any text must be a valid formula or cause a ConfigurationError.
 TEST(Expression, SurvivesRandomText) {
   std::mt19937_64 generator(1);
   const std::vector<std::string> pieces{"a",       "'b c'", "1", ".5e3", "+",    "-",    "*",  "/",    "^",     "(",

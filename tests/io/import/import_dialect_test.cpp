@@ -1,4 +1,4 @@
-// The same table in other dialects, or with other stamps, gives the same recording.
+// If a table has another dialect or other stamps, the recording must stay the same.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,12 +20,12 @@ using ::testing::IsEmpty;
 constexpr int log_rows = 40;
 constexpr std::int64_t epoch_ns = 1'714'557'600'000'000'000;  // 2024-05-01T10:00:00Z
 
-/// 50 Hz with a jitter of microseconds; every stamp is a whole number of microseconds.
+/// Stamps at 50 Hz with a jitter of microseconds. Every stamp is a whole number of microseconds.
 std::int64_t stamp_ns(int k) { return 20'000'000LL * k + 1'000LL * (k * 7 % 13); }
 double x_of(int k) { return 0.25 * k - 0.0625 * (k % 5); }
 double u_of(int k) { return 1.5 - 0.125 * (k % 7); }
 
-/// A table of time, x, u whose rows are written by `text(k)`.
+/// A table of time, x and u. `text(k)` writes row k.
 std::string table(const std::string& head, const std::function<std::string(int)>& text) {
   std::string content = head;
   for (int k = 0; k < log_rows; ++k) content += text(k) + "\n";
@@ -64,7 +64,7 @@ class ImportDialect : public test::ImportFixture {
     return table("time,x,u\n", [](int k) { return fmt::format("{},{},{}", seconds(k), x_of(k), u_of(k)); });
   }
 
-  /// Expects `content` to give the values of plain(), with times from its first sample on.
+  /// Expects that `content` gives the values of plain(). Times count from the first sample.
   void expect_plain(const std::string& content, std::int64_t origin_ns = 0) {
     const Trajectory run = read(content).recording.runs.at(0);
     ASSERT_EQ(run.samples(), log_rows);
@@ -118,8 +118,8 @@ TEST_F(ImportDialect, UnitsThatSpacingNameOrOptionSay) {
     return table(name + ",x,u\n",
                  [&](int k) { return fmt::format("{},{},{}", start + stamp_ns(k) / ns_per_unit, x_of(k), u_of(k)); });
   };
-  expect_plain(written("time", 1000, 0));  // 20000 apart: microseconds
-  expect_plain(written("time", 1, 0));     // 20000000 apart: nanoseconds
+  expect_plain(written("time", 1000, 0));  // stamps are 20000 apart, so they are microseconds
+  expect_plain(written("time", 1, 0));     // stamps are 20000000 apart, so they are nanoseconds
   options.time = {"stamp_us"};
   expect_plain(written("stamp_us", 1000, 0));
   options.time = {"t"};
@@ -293,7 +293,7 @@ TEST_F(ImportDialect, TheTableIsFoundBehindItsTitle) {
                   numbers("1,2\n") + numbers("1,2\n")),
             60U);
   for (const std::string& none : {plain(), numbers("1,2\n"), "t,x,note\n" + numbers("1,2,\"a, b\"\n"), std::string(),
-                                  "\"time\" \"wz\"\n" + numbers("\"1\" 0.1 2\n"),  // R's header, which lacks one name
+                                  "\"time\" \"wz\"\n" + numbers("\"1\" 0.1 2\n"),  // R's header lacks one name
                                   std::string("only a title\nand another line\n")})
     EXPECT_EQ(lines(none), 0U) << none;
 }

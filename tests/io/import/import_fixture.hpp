@@ -10,7 +10,7 @@
 
 namespace modebank::test {
 
-/// A folder of small files, with options that read pro_*.csv (time, u) and imu_*.csv (time, x).
+/// A folder of small files, and options that read pro_*.csv (time, u) and imu_*.csv (time, x).
 class ImportFixture : public ::testing::Test {
  protected:
   ImportFixture() {
@@ -24,7 +24,7 @@ class ImportFixture : public ::testing::Test {
   void write(const std::string& name, const std::string& content) const { write_file(folder.path() / name, content); }
   std::string path(const std::string& name) const { return (folder.path() / name).string(); }
 
-  /// A run with inputs 10 20 30 at 0 1 2 s, and states 0 to 4 every half second.
+  /// A run with the inputs 10, 20, 30 at 0, 1, 2 s, and the states 0 to 4 at every half second.
   void write_run(const std::string& name) const {
     write("pro_" + name + ".csv", "time,u\n0,10\n1,20\n2,30\n");
     write("imu_" + name + ".csv", "time,x\n0,0\n0.5,1\n1,2\n1.5,3\n2,4\n");
@@ -51,7 +51,7 @@ class ImportFixture : public ::testing::Test {
   DataOptions options;
 };
 
-/// A row of numbers, as the signals of one channel.
+/// A row of numbers that are the signal of one channel.
 inline Eigen::MatrixXd row(std::initializer_list<double> values) {
   return Eigen::Map<const Eigen::RowVectorXd>(values.begin(), static_cast<Eigen::Index>(values.size()));
 }

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double lag_tolerance_s = 0.05;
 
-/// Runs of a first-order response with 10 Hz commands and 50 Hz states; commands are stamped `early_s` too early.
+/// Runs of a first-order response with commands at 10 Hz and states at 50 Hz. The commands' stamps are `early_s` too
+/// early.
 class ImportLag : public ImportFixture {
  protected:
   void write_runs(double early_s, int count = 4, int seconds = 60) const {

@@ -18,7 +18,8 @@ class ImportQuantum : public test::ImportFixture {
  protected:
   ImportQuantum() { options.states.clear(); }
 
-  /// Writes a noisy signal with standard deviation near one in multiples of `quantum`, at the inputs' times or between.
+  /// Writes a noisy signal in multiples of `quantum`. Its standard deviation is near one. Its times are those of the
+  /// inputs, or lie between them.
   void write_noisy(double quantum) const {
     for (const std::string name : {"a", "b"}) {
       std::string text = "time,x,u\n";

@@ -10,7 +10,8 @@
 namespace modebank {
 namespace {
 
-constexpr double mean_tolerance = 1e-12;  // summation order over at most 1590 values below one
+constexpr double mean_tolerance = 1e-12;  // rounding error of sums of up to 1590 values below one, which may be added
+                                          // in any order
 
 DataOptions ice_options() {
   DataOptions options;
@@ -67,7 +68,7 @@ TEST(ImportRealData, DriveBlocksAreRuns) {
   options.run = "block";
   const Recording recording = import_data(options).recording;
   ASSERT_EQ(recording.runs.size(), 201);   // the data's README: 201 blocks of 3 x 40 samples at 20 Hz
-  EXPECT_EQ(recording.runs[2].run, "10");  // byte order: 0, 1, 10, 100, ...
+  EXPECT_EQ(recording.runs[2].run, "10");  // names in byte order: 0, 1, 10, 100, ...
   for (const Trajectory& run : recording.runs) {
     EXPECT_EQ(run.samples(), 120);
     EXPECT_EQ(run.truth.cols(), 120);

@@ -1,4 +1,4 @@
-// Logs faster than data.rate_hz, and logs whose steps scatter.
+// Logs that are faster than data.rate_hz, and logs whose time steps scatter.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -51,7 +51,7 @@ TEST_F(ImportSampling, VibrationAboveHalfTheNewRateIsAveragedAway) {
   for (Index k = 0; k < run.samples(); ++k) {
     const double t = run.time_s(k);
     EXPECT_NEAR(t, 0.1 * static_cast<double>(k + 1), 1e-9);
-    const double mean = (std::cos(0.8 * (t - 0.1)) - std::cos(0.8 * t)) / 0.08;  // mean of the slow part over the step
+    const double mean = (std::cos(0.8 * (t - 0.1)) - std::cos(0.8 * t)) / 0.08;  // mean of the slow part over one step
     EXPECT_NEAR(run.state(0, k), mean, 0.12) << t;
     EXPECT_NEAR(run.input(0, k), 2.0 * mean, 0.12) << t;
   }
@@ -83,7 +83,7 @@ TEST_F(ImportSampling, HeldColumnsArePickedAndSoIsARateNearTheLogs) {
   EXPECT_NEAR(read(at_100_hz, slow, held).state(0, 45), slow(0.5), 1e-5);
 }
 
-/// Values of a slower sensor in a table with a faster one's rows.
+/// The values of a slower sensor, in a table whose rows come from a faster sensor.
 TEST_F(ImportSampling, ColumnsWithValuesInFewRowsArePicked) {
   std::string content = "time,x,u\n";
   for (int k = 0; k < 1000; ++k)
@@ -96,7 +96,7 @@ TEST_F(ImportSampling, ColumnsWithValuesInFewRowsArePicked) {
   for (Index k = 0; k < run.samples(); ++k) EXPECT_NEAR(run.input(0, k), slow(run.time_s(k)), 1e-8) << k;
 }
 
-/// A bank's own data determine how new data are read.
+/// The data from which a bank was learned determine how new data are read.
 TEST_F(ImportSampling, ColumnsOfABankAreAveragedAsItsOwnDataWere) {
   options.rate_hz = 10.0;
   const auto x = [](double t) { return std::cos(91.0 * t * t); };
@@ -126,7 +126,7 @@ TEST_F(ImportSampling, MissingStatesMakeTheirOwnMeansMissing) {
   for (Index k = 0; k < run.samples(); ++k) EXPECT_EQ(std::isnan(run.state(0, k)), k == 45) << k;
 }
 
-/// Times with steps of 0.2 s, alternately longer and shorter by a share.
+/// Times with a mean step of 0.2 s. The steps are alternately longer and shorter by `share`.
 std::function<double(int)> alternating(double share) {
   return [share](int k) { return 0.2 * k + (k % 2 == 0 ? 0.0 : 0.2 * share); };
 }
@@ -137,9 +137,9 @@ TEST_F(ImportSampling, EvenStepsKeepTheirTimes) {
   EXPECT_THAT(data.notes, IsEmpty());
 }
 
-/// Uneven steps stay uneven at any rate near the log's. Only the sum of many steps is an even step.
+/// If the rate is near the log's rate, uneven steps stay uneven. Only the sum of many steps is an even step.
 TEST_F(ImportSampling, StepsThatScatterAreKeptAndSaid) {
-  const auto uneven = alternating(0.2);  // alternately 0.24 and 0.16 s; the median is one of them
+  const auto uneven = alternating(0.2);  // steps are alternately 0.24 and 0.16 s; the median is one of these
   for (const double rate_hz : {0.0, 5.0, 1.25}) {
     options.rate_hz = rate_hz;
     const Trajectory run = read(uneven, slow, held);

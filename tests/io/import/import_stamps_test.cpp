@@ -1,4 +1,4 @@
-// Times from typical loggers: units by name, size and spacing, calendars and clocks, one format for all files.
+// Times from typical loggers: units by name, size and spacing; calendars and clocks; one format for all files.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,14 +23,14 @@ class ImportStamps : public test::ImportFixture {
     options.inputs = "log.csv";
   }
 
-  /// A table with this column of times, x and u.
+  /// A table with this column of times, and with x and u.
   static std::string table(const std::string& time, const std::function<std::string(int)>& stamp) {
     std::string content = time + ",x,u\n";
     for (int k = 0; k < stamped_rows; ++k) content += fmt::format("{},{},{}\n", stamp(k), 0.25 * (k % 17), k % 3);
     return content;
   }
 
-  /// Expects steps of `step_s` +- `tolerance_s` in the run that is read with this column.
+  /// Reads the run with this column of times. Expects steps of `step_s` +- `tolerance_s`.
   void expect_even(const std::string& time, double step_s, const std::function<std::string(int)>& stamp,
                    double tolerance_s = 1e-9) {
     write("log.csv", table(time, stamp));
@@ -82,7 +82,7 @@ TEST_F(ImportStamps, StampsSinceBootAreNoEpoch) {
   expect_even("timestamp", 0.001, counted(3'000'000'000'000, 1'000'000));   // ns
   expect_even("timestamp", 1.0, counted(1'700'000'000, 1));                 // s since 1970
   expect_even("timestamp", 30.0, counted(1'700'000'000, 30));               // s since 1970
-  expect_even("timestamp", 900.0, counted(1'700'000'100, 900));             // s since 1970, each quarter of an hour
+  expect_even("timestamp", 900.0, counted(1'700'000'100, 900));             // s since 1970, every quarter of an hour
   expect_even("timestamp", 86400.0, counted(1'700'006'400, 86'400));        // s since 1970, daily
   expect_even("timestamp", 0.15, counted(1'700'000'000'000, 150));          // ms since 1970
 }
@@ -98,8 +98,8 @@ TEST_F(ImportStamps, SerialDaysOfSpreadsheetsAndMatlab) {
       "Time", 60.0, [](int k) { return fmt::format("{:.6f}", 45764.5 + k / 1440.0); }, 0.1);
   expect_even(
       "Timestamp", 10.0, [](int k) { return fmt::format("{:.9f}", 45764.25 + k / 8640.0); }, 1e-3);
-  // Read as seconds, the first would be at 1,440 Hz and not at full seconds of days. The second would be at 288 Hz,
-  // which is doubtful, because read as days its steps are 5 minutes.
+  // If the first column is read as seconds, its rate is 1,440 Hz, but its times are not at full seconds of days. The
+  // second column would have 288 Hz as seconds. This is doubtful, because as days its steps are 5 minutes.
   expect_even(
       "Time", 1.0 / 1440.0, [](int k) { return fmt::format("{:.9f}", 45764.51234 + k / 1440.0); }, 1e-8);
   expect_even(
@@ -110,7 +110,7 @@ TEST_F(ImportStamps, SerialDaysOfSpreadsheetsAndMatlab) {
 TEST_F(ImportStamps, OneUnitForAllFilesOfAPattern) {
   options.inputs = "px4_*.csv";
   options.time = {"timestamp"};
-  for (const auto& [early, late] : {std::pair{9'990, 9'990}, {9'990, 10'010}}) {  // alone the first is read as ms
+  for (const auto& [early, late] : {std::pair{9'990, 9'990}, {9'990, 10'010}}) {  // px4_early.csv alone would be in ms
     write("px4_early.csv",
           table("timestamp", [&, step = early](int k) { return fmt::to_string(500'000'000 + step * k); }));
     write("px4_late.csv",
@@ -124,10 +124,10 @@ TEST_F(ImportStamps, OneUnitForAllFilesOfAPattern) {
                                         HasSubstr("px4_late.csv:2"), HasSubstr("data.time_unit = UNIT")));
 }
 
-/// 2017-07-30T23:58:00Z in seconds since 1970.
+/// 2017-07-30T23:58:00Z, in seconds since 1970.
 constexpr std::int64_t start_s = 1'501'459'080;
 
-/// Second k after 23:58:00 on the 30th of July, with fmt's arguments day, hour, minute, second.
+/// The time k seconds after 23:58:00 on the 30th of July. The format's arguments are day, hour, minute and second.
 std::string late_evening(const std::string& form, int k) {
   const int second = 23 * 3600 + 58 * 60 + k;
   return fmt::format(fmt::runtime(form), fmt::arg("d", 30 + second / 86400), fmt::arg("H", second / 3600 % 24),
@@ -204,7 +204,7 @@ TEST_F(ImportStamps, OneFileDecidesForTheOthers) {
                                         HasSubstr("data.time_format = PATTERN")));
 }
 
-/// A date that both readings take for the same day does not decide how dates of other files are read.
+/// If a date means the same day in both readings, it does not decide how the dates of other files are read.
 TEST_F(ImportStamps, AFileOfOneReadingAloneDoesNotDecide) {
   options.inputs = "run_*.csv";
   const auto dated = [&](const std::string& name, const std::string& date) {
@@ -244,7 +244,7 @@ TEST_F(ImportStamps, DateAndTimeOfDayInTwoColumns) {
 }
 
 TEST_F(ImportStamps, RowsFromBeforeTheClockWasSetAreLeftOut) {
-  for (const bool runs_on : {false, true}) {  // a clock that stays at 0, or runs from it
+  for (const bool runs_on : {false, true}) {  // a clock that stays at 0, or starts at 0
     write("log.csv", table("time", [&](int k) {
             return fmt::format("{:.1f}", k < 5 ? (runs_on ? 0.1 * k : 0.0) : 1.7e9 + 0.1 * k);
           }));

@@ -1,4 +1,4 @@
-// States and inputs from several tables of one file, as in recordings, and runs split into blocks.
+// States and inputs from several tables of one file, as in recordings. Also runs that are split into blocks.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -118,7 +118,7 @@ TEST_F(ImportLabel, MustBeThere) {
   EXPECT_THAT(error<ConfigurationError>(), HasSubstr("no column \"ground\""));
 }
 
-/// The first state and the input are in one topic, the second state is in another, with other times.
+/// The first state and the input are in one topic. The second state is in another topic, at other times.
 TEST(ImportTopics, AStateOfAnotherTopicIsBroughtToTheOthersTimes) {
   MODEBANK_NEEDS_SHARED_DATA();
   const auto imported = [](std::vector<std::string> states) {
@@ -131,7 +131,7 @@ TEST(ImportTopics, AStateOfAnotherTopicIsBroughtToTheOthersTimes) {
   };
   const std::string gyro = "/imu/data.angular_velocity.y";
   const Trajectory both = imported({"/husky_velocity_controller/odom.twist.twist.linear.x", gyro});
-  const Trajectory alone = imported({gyro});  // input and state in two topics
+  const Trajectory alone = imported({gyro});  // the input and the state are in two topics
   ASSERT_GT(both.samples(), 3900);
   EXPECT_EQ(both.input, alone.input);
   EXPECT_TRUE(near(both.state.row(1), alone.state.row(0), 1e-12));

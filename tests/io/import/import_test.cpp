@@ -13,7 +13,7 @@ using test::near;
 using test::row;
 using ::testing::ElementsAre;
 
-constexpr double tolerance = 1e-12;  // rounding errors of interpolating small numbers
+constexpr double tolerance = 1e-12;  // rounding error of interpolation between small numbers
 
 class Import : public test::ImportFixture {};
 
@@ -219,8 +219,8 @@ TEST_F(Import, DoesNotDependOnThreads) {
   EXPECT_EQ(names(parallel), names(serial));
 }
 
-// The two-file layout of the recordings of Salvi et al. (2025). Rows correspond; the filtered gyro file has a relative
-// `time`, the joint file an epoch `Time` and a quoted column with commas.
+// The two-file layout of the recordings of Salvi et al. (2025). The rows of both files correspond. The filtered gyro
+// file has a relative `time`. The joint file has an epoch `Time`, and a quoted column that contains commas.
 TEST_F(Import, ReadsThePapersLayout) {
   write("TSyn_00.csv",
         ",time,IMU_raw_AngZ,IMU_fil_AngZ\n0,0.0,0.1,0.011\n1,0.0199,0.2,0.012\n2,0.0401,0.3,0.013\n3,0.06,0.4,0.014\n");

@@ -1,4 +1,5 @@
-// Bytes as text: UTF-8 or, line by line, Windows-1252. Expected characters are those of Python's codecs.
+// Bytes that are read as text. Each line is UTF-8 or Windows-1252. The expected characters are those of Python's
+// codecs.
 #include "ident/base/utf8.hpp"
 
 #include <gmock/gmock.h>
@@ -16,7 +17,8 @@ TEST(Utf8, IsToldFromOtherBytes) {
   for (const char* text : {"", "plain, and longer than eight bytes", "größe", "wheel_µ 速度 \xF0\x9F\x9A\x97",
                            "\xED\x9F\xBF", "\xEE\x80\x80", "\xF4\x8F\xBF\xBF"})
     EXPECT_TRUE(is_utf8(text)) << text;
-  // RFC 3629, sections 4 and 10: overlong forms, surrogates, beyond U+10FFFF, truncated and stray bytes.
+  // Invalid sequences by RFC 3629, sections 4 and 10: overlong forms, surrogates, values beyond U+10FFFF, truncated and
+  // stray bytes.
   for (const char* text :
        {"gr\xF6\xDF"
         "e",

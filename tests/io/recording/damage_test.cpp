@@ -1,4 +1,4 @@
-// Messages on damaged recordings; tests/fuzz covers other damage.
+// Messages about damaged recordings. tests/fuzz covers other damage.
 #include "tests/io/recording/recording_fixture.hpp"
 
 namespace modebank::test {
@@ -35,7 +35,7 @@ TEST(DamagedRecordings, AreNamed) {
               HasSubstr("encrypted (rosbag/AesCbcEncryptor)"));
 }
 
-/// Views of a malicious database could compute for ever, or call arbitrary functions.
+/// Views of a malicious database could compute for ever or call any function.
 TEST(DamagedRecordings, DatabasesOfOtherTablesAreRefused) {
   const TemporaryFolder folder;
   const auto database = [&](const std::string& name, const std::string& sql) {

@@ -2,8 +2,8 @@
 
 namespace modebank::test {
 
-/// Files written by the reference implementation in TypeScript (tests/golden/generate/mcap_core.mjs), compared with the
-/// numbers in that script.
+/// Files that the reference implementation in TypeScript wrote (tests/golden/generate/mcap_core.mjs). Expected values
+/// are the numbers in that script.
 class McapCore : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(McapCore, IsReadWhole) {

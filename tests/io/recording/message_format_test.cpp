@@ -49,7 +49,7 @@ const std::string little = bytes({0, 1, 0, 0}), big = bytes({0, 0, 0, 0});
 
 TEST(MessageFormat, CdrPutsEveryValueAtAMultipleOfItsSize) {
   const std::string definition = "uint8 a\nint16 b\nuint8 c\nint32 d\nuint8 e\nfloat64 f\n";
-  // Offsets after the header: a at 0, b at 2, c at 4, d at 8, e at 12, f at 16.
+  // Positions after the header: a at 0, b at 2, c at 4, d at 8, e at 12, f at 16.
   const std::string payload =
       little + bytes({1, 9, 2, 0, 3, 9, 9, 9, 4, 0, 0, 0, 5, 9, 9, 9, 0, 0, 0, 0, 0, 0, 0xf8, 0x3f});
   EXPECT_EQ(value_of(definition, payload, "a").number, 1.0);
@@ -95,7 +95,7 @@ TEST(MessageFormat, NestedTypesTakeTheirPackageFromWhereTheyAreNamed) {
   EXPECT_EQ(value_of(definition, little + bytes({1, 2, 3}), "inner[1].x").number, 2.0);
 }
 
-/// With two fields of the same name a column is ambiguous.
+/// If two fields have the same name, a column is ambiguous.
 TEST(MessageFormat, OneNameIsOfOneField) {
   EXPECT_THAT(message_of<DefinitionError>([] { schema_of("uint8 x\nfloat64[2] x\n"); }), HasSubstr("two fields \"x\""));
 }
@@ -120,7 +120,7 @@ TEST(MessageFormat, WideStringsAreFourOrTwoBytesPerCharacter) {
   const std::string two = little + bytes({3, 0, 0, 0, 'a', 0, 0xac, 0x20, 'b', 0});
   EXPECT_EQ(value_of("wstring s\n", four, "s").text, "a\u20ac");
   EXPECT_EQ(value_of("wstring s\n", two, "s", Dialect::ros2, 2).text, "a\u20acb");
-  // The messages determine which definition is right.
+  // The messages decide which of the definitions is right.
   Connection connection{"/t", "p/msg/T", Connection::Encoding::cdr, "cdr", "wstring s\n", "ros2msg", 1};
   EXPECT_EQ(choose_decoder(connection, KnownDefinitions(), {four}).wide_bytes, 4u);
   EXPECT_EQ(choose_decoder(connection, KnownDefinitions(), {two}).wide_bytes, 2u);
@@ -188,7 +188,7 @@ TEST(MessageFormat, NothingIsWalkedThroughThatHasNoBytes) {
 }
 
 TEST(MessageFormat, ATypeBetweenReleasesIsReadByTheOneThatFits) {
-  // sensor_msgs/Range without the variance that ROS 2 Iron added, and with it.
+  // sensor_msgs/Range with and without the variance, which ROS 2 Iron added.
   const std::string header = little + bytes({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0});
   const std::string range = header + bytes({1, 9, 9}) + std::string(16, '\0');
   Connection connection{"/r", "sensor_msgs/msg/Range", Connection::Encoding::cdr, "cdr", "", "", 1};

@@ -32,7 +32,7 @@ std::map<std::string, std::vector<double>> read_numbers(const std::filesystem::p
 
 struct Extract {
   std::string file, topic;
-  std::map<std::string, std::string> columns;  ///< columns of the extract, by column of the message
+  std::map<std::string, std::string> columns;  ///< the extract's columns, by the message's column
 };
 
 const std::vector<Extract> extracts{
@@ -77,13 +77,13 @@ TEST(RealRecordings, TheHuskyBagHasTheNumbersOfItsExtracts) {
     for (const auto& [name, field] : extract.columns) {
       const std::vector<double>& read = topic.column(field).numbers;
       ASSERT_EQ(read.size(), expected.at(name).size());
-      // Printed with nine decimals.
+      // The values are printed with nine decimals.
       for (std::size_t k = 0; k < read.size(); ++k) ASSERT_NEAR(read[k], expected.at(name)[k], 0.5000001e-9) << field;
     }
     for (const auto& [name, field] : {std::pair{"t", "header.stamp"}, std::pair{"t_rec", "receive_time"}}) {
       const std::vector<std::int64_t>& read = topic.column(field).exact;
       ASSERT_EQ(read.size(), expected.at(name).size());
-      // Stamps there are doubles; whole seconds and the rest apart are exact.
+      // Stamps in the extract are doubles. Whole seconds and fractions are compared separately, so both are exact.
       for (std::size_t k = 0; k < read.size(); ++k)
         ASSERT_NEAR(static_cast<double>(read[k] % 1'000'000'000'000) / 1e9, std::fmod(expected.at(name)[k], 1000.0),
                     2.4e-7)
@@ -121,7 +121,7 @@ TEST(RealRecordings, TheHuskyBagIsWhatRosbagReads) {
   }
 }
 
-/// Both containers have the same messages.
+/// Both containers must have the same messages.
 class BothContainers : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(BothContainers, Agree) {
@@ -143,7 +143,8 @@ TEST(RealRecordings, EveryPrimitiveOfCdrHasItsValue) {
   const RosLog log(shared_data_dir() / "ros2" / "cdr_test_0.mcap", KnownDefinitions());
   const LogTopic& arrays = log.topics()[topic_position(log, "/array_topic")];
   EXPECT_EQ(arrays.messages, 4u);
-  // The definition's defaults are the values in the recorder's fixture: the largest and the smallest of each type.
+  // The definition's default values are the values in the recorder's fixture: the largest and the smallest value of
+  // each type.
   const auto values = [&](const std::string& field, std::size_t i) {
     return read_column(log, "/array_topic", "/array_topic." + field + "[" + std::to_string(i) + "]").numbers.front();
   };
@@ -175,7 +176,7 @@ TEST(RealRecordings, WhatADoubleDoesNotHoldIsSaid) {
 
 TEST(RealRecordings, TypesThatNobodyDefinesAreReadByAFolder) {
   MODEBANK_NEEDS_SHARED_DATA();
-  // A copy without definitions, as if they were missing.
+  // A copy of the recording from which the definitions were removed.
   const TemporaryFolder folder;
   const std::string copy = (folder.path() / "copy.db3").string();
   std::filesystem::copy_file(shared_data_dir() / "ros2" / "cdr_test_0.db3", copy);

@@ -2,7 +2,7 @@
 
 namespace modebank::test {
 
-/// The same drive gives the same run in any container.
+/// The same drive must give the same run in any container.
 TEST(RecordingChain, IsTheSameFromDataToEvaluation) {
   MODEBANK_NEEDS_SHARED_DATA();
   MODEBANK_NEEDS_ROSBAG();

@@ -17,7 +17,7 @@ namespace modebank::test {
 
 inline constexpr const char* python = "/usr/bin/python3";
 
-/// Runs recordings.py, and fails if it fails.
+/// Runs recordings.py. The test fails if the script fails.
 inline void run_recordings_script(std::vector<std::string> arguments) {
   const std::string script = (project_dir() / "tests" / "io" / "recording" / "recordings.py").string();
   arguments.insert(arguments.begin(), {python, "-B", script});
@@ -36,7 +36,7 @@ inline std::size_t topic_position(const RosLog& log, const std::string& name) {
   return 0;
 }
 
-/// All columns of one topic, each in its own form.
+/// All columns of one topic. Each column is requested in its own form.
 struct WholeTopic {
   LogTopic topic;
   LogRows rows;
@@ -65,7 +65,7 @@ inline LogColumn read_column(const RosLog& log, const std::string& topic, const 
   return log.read({{topic_position(log, topic), {{column, form}}}}, notes).front().columns.front();
 }
 
-/// Expects the same numbers, including NaN and signs of zeros.
+/// Expects the same numbers, including NaN and the signs of zeros.
 inline void expect_same_bits(const std::vector<double>& a, const std::vector<double>& b, const std::string& what) {
   ASSERT_EQ(a.size(), b.size()) << what;
   for (std::size_t k = 0; k < a.size(); ++k)
@@ -73,7 +73,7 @@ inline void expect_same_bits(const std::vector<double>& a, const std::vector<dou
         << what << ", row " << k << ": " << a[k] << " and " << b[k];
 }
 
-/// Expects every column of `a` in `b`, with the same values in the same rows.
+/// Expects that `b` has every column of `a`, with the same values in the same rows.
 inline void expect_same_topic(const WholeTopic& a, const WholeTopic& b) {
   ASSERT_EQ(a.rows.message.size(), b.rows.message.size()) << a.topic.name;
   ASSERT_EQ(a.topic.columns.size(), b.topic.columns.size()) << a.topic.name;

@@ -51,7 +51,7 @@ TEST(RecordingReader, StatesAndInputsOfTwoTopicsAreJoined) {
   MODEBANK_NEEDS_SHARED_DATA();
   const ImportedData data = import_data(husky_options());
   ASSERT_EQ(data.recording.runs.size(), 1u);
-  // If both exist, the odometry gives the samples.
+  // If both topics exist, the samples are those of the odometry.
   EXPECT_GT(data.recording.runs.front().time_s.size(), 3900);
   EXPECT_LE(data.recording.runs.front().time_s.size(), 3952);
 }

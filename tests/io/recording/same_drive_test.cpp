@@ -7,7 +7,7 @@
 
 namespace modebank::test {
 
-/// A minute of the Husky's drive, written by python3-rosbag and by writers for MCAP and db3 in this folder.
+/// A minute of the Husky's drive. python3-rosbag wrote the bag; writers in this folder wrote the MCAP and db3 files.
 class SameDrive : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -51,7 +51,7 @@ TEST_F(SameDrive, IsTheSameAsRos1WritesIt) {
     EXPECT_TRUE(log.notes().empty());
     for (const LogTopic& topic : reference.topics()) {
       WholeTopic ros1 = read_topic(log, topic.name);
-      // Only ROS 1 numbers its headers.
+      // Only ROS 1 has sequence numbers in headers.
       const auto seq = std::find_if(ros1.topic.columns.begin(), ros1.topic.columns.end(),
                                     [&](const MessageColumn& c) { return c.path == topic.name + ".header.seq"; });
       ASSERT_NE(seq, ros1.topic.columns.end());
@@ -62,7 +62,7 @@ TEST_F(SameDrive, IsTheSameAsRos1WritesIt) {
   }
 }
 
-/// The hash covers the messages that are read and their definitions, not the container.
+/// The hash covers the messages that are read, and their definitions. It does not cover the container.
 TEST_F(SameDrive, HasTheSameHashHoweverItIsStored) {
   MODEBANK_NEEDS_DRIVE();
   const auto hash = [](const std::string& name, const std::vector<std::string>& topics) {
@@ -84,7 +84,7 @@ TEST_F(SameDrive, HasTheSameHashHoweverItIsStored) {
   EXPECT_NE(hash("drive_none.bag", used), hash("drive_none.bag", {"/imu/data"}));
 }
 
-/// A truncated recording gives the first part of the whole recording.
+/// A truncated recording must give the first part of the whole recording.
 TEST_F(SameDrive, CutOffGivesTheMessagesBefore) {
   MODEBANK_NEEDS_DRIVE();
   const TemporaryFolder cut;
@@ -106,7 +106,7 @@ TEST_F(SameDrive, CutOffGivesTheMessagesBefore) {
   }
 }
 
-/// A bag that was not closed has no index; its header has 0.
+/// A bag that was not closed has no index. Its header then contains 0 as the index position.
 TEST_F(SameDrive, WithoutIndexIsReadWhole) {
   MODEBANK_NEEDS_DRIVE();
   const RosLog whole(file("drive_lz4.bag"), KnownDefinitions());

@@ -1,4 +1,4 @@
-// Topics with reassigned connection numbers, compared with other readers (topics.py).
+// Topics with reassigned connection numbers. The results are compared with those of other readers (topics.py).
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -28,7 +28,7 @@ class Topics : public ::testing::Test {
   }
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
 
-  /// Messages of a file, from the other reader.
+  /// The messages of a file, as the other reader returns them.
   json reference(const std::filesystem::path& path) const {
     const ProgramResult read = topics_script({"read", path.string(), file("reference.json").string()});
     EXPECT_EQ(read.status, 0) << path << read.err;
@@ -38,7 +38,7 @@ class Topics : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Compares every topic, its stamps in nanoseconds and the values of std_msgs/Float64.
+/// Compares every topic, its stamps in nanoseconds, and the values of std_msgs/Float64.
 void expect_reference(const RosLog& log, const json& reference, const std::string& name) {
   std::size_t with_messages = 0;
   for (const LogTopic& topic : log.topics()) with_messages += topic.messages > 0;
@@ -57,12 +57,13 @@ void expect_reference(const RosLog& log, const json& reference, const std::strin
   }
 }
 
-/// The topic is in the connection record's header; only publishers in Python repeat it in the data.
+/// The topic is in the header of the connection record. Only publishers in Python repeat the topic in the record's
+/// data.
 TEST_F(Topics, OfBagsAreThoseThatRosbagReads) {
   MODEBANK_NEEDS_ROSBAG();
   for (const char* name : {"header_only.bag", "repeated_in_data.bag", "remapped.bag"})
     expect_reference(RosLog(file(name), KnownDefinitions()), reference(file(name)), name);
-  const json same = reference(file("header_only.bag"));  // rosbag needs the index
+  const json same = reference(file("header_only.bag"));  // rosbag cannot read a bag without the index
   ASSERT_EQ(same.at("/cmd").size(), 80u) << "of two publishers";
   ASSERT_EQ(same.at("/speed").size(), 60u);
   expect_reference(RosLog(file("no_index.bag"), KnownDefinitions()), same, "no_index.bag");
@@ -85,7 +86,7 @@ TEST_F(Topics, OfADb3WithItsJournalAreThoseOfBoth) {
               HasSubstr("not a recording of rosbag2"));
 }
 
-/// A reassigned number belongs to another channel from there on, whatever the summary contains.
+/// From the record that reassigns a number, the number belongs to another channel. The summary does not change this.
 TEST_F(Topics, AChannelsNumberMayBeGivenAgain) {
   for (const char* name : {"reused.mcap", "reused_no_summary.mcap", "reused_loose.mcap"}) {
     const json expected = reference(file(name));
@@ -115,7 +116,7 @@ TEST_F(Topics, ARecordingWithoutMessagesIsNamed) {
     return text;
   };
   for (const std::uint64_t index_at :
-       {std::uint64_t{4117}, std::uint64_t{0}}) {  // complete; stopped in the first second
+       {std::uint64_t{4117}, std::uint64_t{0}}) {  // a complete file, and a file that ends in the first second
     const std::string header = field("op=\x03") + field("index_pos=" + number(index_at, 8)) +
                                field("conn_count=" + number(0, 4)) + field("chunk_count=" + number(0, 4));
     const std::size_t padding = 4096 - header.size();

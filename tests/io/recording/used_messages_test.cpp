@@ -40,7 +40,7 @@ TEST(UsedMessages, OtherFieldsMakeAnotherHash) {
 
 TEST(UsedMessages, EveryPartOfAMessageCounts) {
   const std::string definition = "float64 v", hash = hash_of(definition, messages);
-  EXPECT_EQ(hash_of(definition, {{"/b", 2, "z"}, {"/a", 1, "xy"}, {"/a", 3, ""}}), hash);  // another order of topics
+  EXPECT_EQ(hash_of(definition, {{"/b", 2, "z"}, {"/a", 1, "xy"}, {"/a", 3, ""}}), hash);  // topics in another order
   EXPECT_NE(hash_of(definition, {{"/a", 3, ""}, {"/a", 1, "xy"}, {"/b", 2, "z"}}), hash);
   EXPECT_NE(hash_of(definition, {{"/a", 1, "x"}, {"/b", 2, "z"}, {"/a", 3, "y"}}), hash);
   EXPECT_NE(hash_of(definition, {{"/a", 1, "xy"}, {"/b", 5, "z"}, {"/a", 3, ""}}), hash);

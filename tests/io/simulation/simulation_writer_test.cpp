@@ -14,11 +14,12 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// Interpolation in both directions changes a value by its slope times the rounding of a time.
+// A time is rounded when it is written. Interpolation then changes a value by the slope times this rounding error, in
+// both directions.
 constexpr double round_trip_tolerance = 1e-12;
 constexpr double dt_s = 1.0 / 6.5;
 
-/// Irregular signals with all digits: two states, two inputs.
+/// Two states and two inputs: irregular signals whose numbers use all digits.
 SimulatedRun make_run(Index samples, std::uint64_t index) {
   std::mt19937_64 generator = make_generator(7, "simulation_writer_test", index);
   const auto noise = [&](Index rows) {

@@ -58,7 +58,7 @@ TEST_F(VehicleWriter, ImportGivesTheSameSamples) {
   }
 }
 
-// The inputs' stamps are early by lag_s; the same data.lag_s moves every set-point to its true time.
+// The inputs' stamps are early by lag_s. If data.lag_s has the same value, it moves every set-point to its true time.
 TEST_F(VehicleWriter, TheSameLagAtImportUndoesTheSimulatedOne) {
   for (const double lag_s : {0.34, -0.26}) {
     simulation.sensors.lag_s = lag_s;
