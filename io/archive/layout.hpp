@@ -10,16 +10,19 @@
 #include "io/archive/layout_evaluation.hpp"
 #include "io/archive/stored.hpp"
 
-/// The one description of the archive's layout. Its other parts are layout_data.hpp, layout_evaluation.hpp and, for
-/// programs that only load banks, bank/layout_bank.hpp. Every function names members once. `Io` is GroupWriter or
-/// GroupReader, for arrays over samples SampleWriter or SampleReader, so writing, reading and verification agree. Above
-/// a function, `/// - NAME: text` describes a member or a column and `/// /PATH: text` its group;
-/// docs/_ext/archive_layout.py makes the reference page from these. Letters: M windows, K modes, n states, m inputs,
-/// n_y outputs, p parameters, S samples of all runs, F features.
+/// The only description of the archive's layout. Other parts of it are in layout_data.hpp, layout_evaluation.hpp and,
+/// for programs that only load banks, in bank/layout_bank.hpp.
+///
+/// Every function names members once. `Io` is GroupWriter or GroupReader; for arrays over samples it is SampleWriter or
+/// SampleReader. Writing, reading and verification therefore agree. Above a function, `/// - NAME: text` describes a
+/// member or a column, and `/// /PATH: text` describes its group. docs/_ext/archive_layout.py makes the reference page
+/// from these comments.
+///
+/// Letters: M windows, K modes, n states, m inputs, n_y outputs, p parameters, S samples of all runs, F features.
 namespace modebank::layout {
 
 /// /windows/global: one model of all training runs.
-/// - residual_covariance: covariance of its residuals
+/// - residual_covariance: covariance of the model's residuals
 template <class Io, class G>
 void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& states) {
   io.attribute("transitions", global.transitions, rule::count_of("samples"));
@@ -36,7 +39,7 @@ inline Unit window_units(const WindowFits& fits, const Units& units) {
 }
 
 /// - audit_checked: windows that Ceres solved again
-/// - audit_cost_difference: largest relative difference of the cost
+/// - audit_cost_difference: largest relative difference between the cost of a window and its cost by Ceres
 template <class Io, class A>
 void exchange_audit(Io& io, A& audit) {
   io.optional_attribute("audit_batch_windows", audit.batch, rule::not_negative);
@@ -66,8 +69,8 @@ void exchange_audit(Io& io, A& audit) {
 /// - status: 0: converged, 1: iteration limit, 2: rank deficient, 3: failed
 /// - aic: Akaike's criterion
 /// - transitions: number of transitions in the fit
-/// - weighed_information: the data's information by which theta was weighed against the prior; it serves to take
-///   the prior's share off
+/// - weighed_information: information of the data, which weighed theta against the prior. The prior's share of
+///   theta can be removed with it.
 /// - prior_sd: standard deviations of the prior
 /// - parameter_labels: output and regressor of each parameter, `wz <- velL`
 template <class Io, class W>
@@ -119,11 +122,11 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
 
 /// - candidates: one row for each number of components that was compared
 /// - parameters: free parameters
-/// - effective_samples: number of independent samples to which the windows amount
-/// - heldout: log likelihood of windows that were left out
-/// - heldout_error: standard error of its difference from the selected row's
+/// - effective_samples: number of independent samples that contain as much information as the windows
+/// - heldout: log likelihood of windows that were not used for the fit
+/// - heldout_error: standard error of the difference between this `heldout` and that of the selected row
 /// - agreeing_restarts: random starts that reached the best likelihood
-/// - floor_active: 1: the covariance floor holds a component
+/// - floor_active: 1: the covariance of a component is at the covariance floor
 /// - failed: reason of a failure
 /// - selected: 1: the mixture has this row's components
 template <class Io, class C>
@@ -146,13 +149,13 @@ void exchange_candidates(Io& io, C& candidates) {
 
 /// `features`: units of the features.
 /// - labels: component of each window; -1: not clustered, or noise
-/// - weights: sum to one, or to 1 - `noise_weight`
-/// - features: the clustered features, where these are not `/windows/parameters`; NaN where a window has none
-/// - compared_windows: number of windows for the comparison of candidates, where these are not all
-/// - responsibilities: NaN where not clustered; rows sum to one, or to one minus the probability of noise
+/// - weights: weights of the components; their sum is 1, or 1 - `noise_weight`
+/// - features: the clustered features, if these are not `/windows/parameters`; NaN for a window without features
+/// - compared_windows: number of windows for the comparison of candidates, if not all windows were used
+/// - responsibilities: NaN: not clustered. The sum of a row is 1, or 1 minus the probability of noise.
 /// - noise_weight: weight of the noise component
-/// - noise_lower: lower corner of its box
-/// - noise_upper: upper corner of its box
+/// - noise_lower: lower corner of the noise component's box
+/// - noise_upper: upper corner of the noise component's box
 template <class Io, class X>
 void exchange_mixture(Io& io, X& result, const Unit& features) {
   exchange_candidates(io, result.candidates);
@@ -181,13 +184,13 @@ void exchange_mixture(Io& io, X& result, const Unit& features) {
 /// /bank: the modes.
 /// /baseline: one Kalman filter.
 /// /noise_only: one model with switching noise.
-/// /one_motion: one motion, learned as the bank is.
-/// /nonlinear: one motion with nonlinear terms, where these gain on training runs.
+/// /one_motion: one motion, learned in the same way as the bank.
+/// /nonlinear: one motion with nonlinear terms, if these terms predict the training runs better.
 /// /bank/unrefined: the bank from which refinement started.
 /// /residual_tests: correlations of the residuals, and of residuals with inputs.
-/// - measured_fit: stage with measurement noise: `none`, `converged`, `iteration_limit` or `stalled`
-/// - learned_transitions: number of training transitions for learning, where these are not all
-/// - mode_names: names of the modes; empty where a mode has none
+/// - measured_fit: result of the stage with measurement noise: `none`, `converged`, `iteration_limit` or `stalled`
+/// - learned_transitions: number of training transitions for learning, if not all were used
+/// - mode_names: names of the modes; empty for a mode without a name
 template <class Io, class A>
 void exchange_archive(Io& io, A& archive) {
   exchange_origin(io, archive);

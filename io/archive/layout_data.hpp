@@ -17,7 +17,7 @@ namespace modebank::layout {
 /// /provenance: versions of libraries and compiler as attributes.
 /// - inputs: files that were read
 /// - path: path of the file
-/// - sha256: SHA-256 of its content
+/// - sha256: SHA-256 of the file's content
 template <class Io, class P>
 void exchange_provenance(Io& io, P& provenance) {
   io.attributes(provenance.versions);
@@ -46,7 +46,7 @@ void exchange_origin(Io& io, A& archive) {
 }
 
 /// - state_averaged: names of the states that were averaged at data.rate_hz; all others are picked
-/// - input_averaged: the same for inputs
+/// - input_averaged: names of the inputs that were averaged at data.rate_hz; all others are picked
 template <class Io, class R>
 void exchange_channels(Io& io, R& recording) {
   const auto channels = [&](auto& list, const std::string& kind) {
@@ -64,7 +64,7 @@ void exchange_channels(Io& io, R& recording) {
 /// - time: [s], from the run's time origin
 /// - state: measured states; NaN: missing
 /// - input: input that acts from this sample on
-/// - truth: true states, where the data have them
+/// - truth: true states, if the data have them
 /// - weight: weight of the transition that ends in the sample
 /// - label: position in `label_names`; -1: unknown
 template <class Io, class T, class L>
@@ -77,16 +77,16 @@ void exchange_run(Io& samples, T& run, L& label, const Units& units) {
   samples.optional_field("label", label, {"S"});  // positions in `label_names`
 }
 
-/// `labels`: with data.label.
-/// /data: all samples of all runs, one run after the other.
+/// `labels`: whether data.label is set.
+/// /data: all samples of all runs, one run after another.
 /// - runs: the rows of each run
 /// - role: `train` or `test`
 /// - first: row of the run's first sample
 /// - lag_s: lag that was applied to the run's inputs
-/// - time_origin_ns: time zero, since 1970; 0: no stamps
-/// - step_scatter: scatter of the log's time steps over their median, above 0.1
-/// - label_names: names of the numbers in `label`
-/// - quantum: step of the values of each state; 0: continuous
+/// - time_origin_ns: the run's time 0, in nanoseconds since 1970; 0: no stamps
+/// - step_scatter: scatter of the log's time steps divided by their median, if above 0.1
+/// - label_names: the names that the numbers in `label` mean
+/// - quantum: rounding step of each state's values; 0: continuous
 template <class Io, class R, class L, class S>
 void exchange_recording(Io& io, R& recording, L& labels, S& step_scatter) {
   exchange_channels(io, recording);
@@ -125,12 +125,12 @@ void exchange_pooled(Io& io, const std::string& name, P& pooled) {
   io.attribute(name + "_runs", pooled.count, rule::not_negative);
 }
 
-/// /lag: delays between inputs and states that `data.lag_s = auto` estimated: of all runs, and of each run.
+/// /lag: delays between inputs and states that `data.lag_s = auto` estimated, for all runs and for each run.
 /// - correction: the correction that was applied
 /// - scores: one row for each correction that was compared
-/// - runs: estimates of each run, and what was applied to it
-/// - gain: log score gained over no correction
-/// - match_s: delay of best match, median over windows
+/// - runs: estimates of each run, and the lag that was applied to the run
+/// - gain: log score minus the log score without correction
+/// - match_s: delay with the best match, as the median over windows
 /// - applied_lag_s: lag that was applied
 template <class Io, class L>
 void exchange_lag(Io& io, L& lag) {
@@ -161,23 +161,23 @@ void exchange_lag(Io& io, L& lag) {
 }
 
 /// /structure: lags and delay that `window.model = auto` or lags of `auto` chose.
-/// - state_lags: of windows and bank
-/// - input_lags: of windows and bank
-/// - input_delay: of windows and bank [samples]
+/// - state_lags: state lags of windows and bank
+/// - input_lags: input lags of windows and bank
+/// - input_delay: input delay of windows and bank [samples]
 /// - samples: transitions that the comparison used
-/// - parts: training runs, or stretches of them, that were left out in turn
+/// - parts: number of training runs, or of stretches of these runs, that were held out in turn
 /// - by_runs: 1: parts are runs; 0: parts are stretches
 /// - structures: number of structures that were compared
-/// - feedback_t: largest |t| of past innovations in a regression of the inputs on their own lags
-/// - same_sample_t: largest |t| of the innovation of the same sample
+/// - feedback_t: largest |t| of past innovations, when inputs are regressed on their own lags and these innovations
+/// - same_sample_t: largest |t| of the same sample's innovation in that regression
 /// - scores: one row for each structure that was compared
-/// - chosen: 1: windows and bank take it
-/// - linear: 1: the one-lag structure
-/// - one_motion: 1: `one_motion` takes it
-/// - drifting: 1: `drifting` takes it
-/// - drifting_score: NaN where it was not computed
-/// - modes_score: NaN where it was not computed
-/// - one_motion_score: NaN where it was not computed
+/// - chosen: 1: windows and bank use this structure
+/// - linear: 1: this is the structure with one lag
+/// - one_motion: 1: `one_motion` uses this structure
+/// - drifting: 1: `drifting` uses this structure
+/// - drifting_score: log score of `drifting`; NaN: not computed
+/// - modes_score: log score of a bank of modes; NaN: not computed
+/// - one_motion_score: log score of `one_motion`; NaN: not computed
 template <class Io, class F>
 void exchange_structure(Io& io, F& found) {
   io.attribute("state_lags", found.state_lags, rule::lags);

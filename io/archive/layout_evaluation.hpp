@@ -12,7 +12,8 @@
 #include "io/archive/groups/over_runs.hpp"
 #include "io/archive/stored.hpp"
 
-/// Layout of evaluations by filters and models; see io/archive/layout.hpp. T lags, from 0 on.
+/// Layout of evaluations by filters and models; see io/archive/layout.hpp. The letter T is the number of lags, which
+/// count from 0.
 namespace modebank::layout {
 
 /// - merged: cost of the limit `bank.modes`
@@ -27,7 +28,7 @@ void exchange_merging(Io& io, R& rows) {
                     column("log_score", &MergingCost::log_score, "nat"), column("loss", &MergingCost::loss, "nat"));
 }
 
-/// - left_out: scores on training runs, by filters that were learned without them
+/// - left_out: scores on training runs; each filter was learned without the run that it predicts
 /// - start: weight at the start of a run
 template <class Io, class R>
 void exchange_left_out(Io& io, R& rows, const Unit& states) {
@@ -43,16 +44,16 @@ void exchange_left_out(Io& io, R& rows, const Unit& states) {
 /// - innovation: measurement minus prediction
 /// - innovation_covariance: covariance of the combined prediction
 /// - state: estimate after the measurement
-/// - covariance: its covariance after the measurement
+/// - covariance: covariance of `state`
 /// - nis: normalised innovation squared
 /// - pit: probability integral transform, uniform where the filter is consistent
 /// - log_density: log density of the measurement
 /// - mode_probability_predicted: probabilities before the measurement
 /// - mode_probability: probabilities after the measurement
-/// - spread_share: share of the modes' differences in the trace of `innovation_covariance`
+/// - spread_share: share of `innovation_covariance` (of its trace) that comes from differences between the modes
 /// - smoothed_state: estimate given the whole run, with `filter.smooth`
-/// - smoothed_covariance: covariance given the whole run
-/// - viterbi_mode: most probable sequence of modes; -1: not started
+/// - smoothed_covariance: covariance of `smoothed_state`
+/// - viterbi_mode: the mode in the most probable sequence of modes; -1: before the filter's start
 template <class Io, class E>
 void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("prediction", evaluation.prediction, {"S", "n_y"}, states);
@@ -80,7 +81,7 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
 }
 
 /// - free_run_mean: prediction without measurements after the run's start, with `filter.simulate`
-/// - free_run_sd: standard deviation
+/// - free_run_sd: standard deviation of this prediction
 /// - free_run_lower: lower end of the 95 % band
 /// - free_run_upper: upper end of the 95 % band
 /// - free_run_mode: most probable mode
@@ -108,7 +109,7 @@ void exchange_filter_run(Io& samples, E& evaluation, F& free_run, const Unit& st
 /// One filter's evaluation of every run of the recording.
 /// /evaluation/FILTER: one group for each filter: `bank`, `baseline`, `noise_only`, `one_motion`, `drifting`,
 ///   `nonlinear`, `combined`. Scores of the first sample of a run are NaN. States and covariances are those of the
-///   sample itself: a bank with lags has the earlier samples of its state in earlier rows.
+///   sample itself. If a bank has lags, the earlier samples of its state are in earlier rows.
 template <class Io, class F>
 void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Unit& states) {
   const std::vector<hdf5::Rows> rows = rows_of(recording.runs);
@@ -139,9 +140,9 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Un
 /// - nis_above: share of samples whose NIS is above the 97.5 % quantile of chi-square
 /// - nis_below: share of samples whose NIS is below the 2.5 % quantile
 /// - coverage_95: share of samples inside the 95 % band
-/// - too_far: share of samples whose z^2 is above its 97.5 % quantile
-/// - too_close: share of samples whose z^2 is below its 2.5 % quantile
-/// - pit_distance: Kolmogorov distance of `pit` from uniform
+/// - too_far: share of samples whose z^2 is above the 97.5 % quantile of z^2
+/// - too_close: share of samples whose z^2 is below the 2.5 % quantile of z^2
+/// - pit_distance: Kolmogorov distance of `pit` from the uniform distribution
 /// - whiteness_p: p-value of the Ljung-Box test on the standardised innovations
 template <class Io, class S>
 void exchange_summary(Io& io, S& summary, const Unit& states) {
@@ -157,7 +158,7 @@ void exchange_summary(Io& io, S& summary, const Unit& states) {
       share_column("whiteness_p", &SummaryRow::whiteness_p));
 }
 
-/// - horizon: scores that many samples ahead, with `filter.horizon`
+/// - horizon: scores of predictions this number of samples ahead, with `filter.horizon`
 /// - run: `*`: all runs of the role
 template <class Io, class R>
 void exchange_horizon(Io& io, R& rows, const Unit& states) {
@@ -170,7 +171,7 @@ void exchange_horizon(Io& io, R& rows, const Unit& states) {
 
 /// - combination: weights of the filters in the combined forecasts
 /// - horizon: 0: free run
-/// - weight: mean over the role's runs
+/// - weight: mean weight over the role's runs
 /// - start: weight at the start of a run
 template <class Io, class R>
 void exchange_combination(Io& io, R& rows) {
@@ -182,7 +183,7 @@ void exchange_combination(Io& io, R& rows) {
 
 /// - free_run: scores of free runs, with `filter.simulate`
 /// - method: `moments` or `paths`
-/// - start: measured samples at the start of a run
+/// - start: number of measured samples at the start of a run
 /// - run: `*`: all runs of the role
 template <class Io, class R>
 void exchange_free_runs(Io& io, R& rows, const Unit& states) {
@@ -201,9 +202,9 @@ void exchange_free_runs(Io& io, R& rows, const Unit& states) {
 /// - diagnostics: consistency of each filter and mode, with intervals
 /// - mode: -1: all modes
 /// - dwell: mean length of a visit, by `viterbi_mode` or the most probable mode
-/// - dwell_model: the same by the transition matrix
-/// - nis_lower: interval of the mean of a consistent filter, to `nis_upper`
-/// - nees_lower: interval of the mean of a consistent filter, to `nees_upper`
+/// - dwell_model: mean length of a visit that the transition matrix gives
+/// - nis_lower: for a consistent filter the mean NIS lies between `nis_lower` and `nis_upper`
+/// - nees_lower: for a consistent filter the mean NEES lies between `nees_lower` and `nees_upper`
 /// - autocorrelation: largest autocorrelation of the standardised innovations
 /// - autocorrelation_lag: lag of the largest autocorrelation
 template <class Io, class R>
@@ -237,18 +238,18 @@ void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
 
 /// /evaluation/evidence: whether held-out runs show evidence for modes.
 /// - answer: `evidence`, `cannot tell`, `no evidence`, `one mode`, `not yet`, `not comparable`
-/// - without_noise: 1: one linear model leaves only rounding errors
+/// - without_noise: 1: the errors of one linear model are only rounding errors
 /// - gain: gain of the bank over `best_competitor` [nat] per sample
 /// - description: `several modes`, `one linear motion`, `one drifting motion`, `one nonlinear motion`, `none`
 /// - stay: harmonic mean length of a visit to a mode [samples]
-/// - stay_asked: least length that counts as a mode [samples]
+/// - stay_asked: shortest mean visit that counts as a mode [samples]
 /// - terms_asked: 1: terms of one nonlinear motion were compared
 /// - pattern_gain: gain of predicting the bank's errors from past errors and inputs [nat] per sample on training
 ///   runs; NaN: not computed
 /// - text: the finding as a sentence
-/// - equations: lines of one nonlinear motion
+/// - equations: equations of one nonlinear motion, line by line
 /// - gains: gains of the bank over each competitor
-/// - better_means: competitors whose mean errors are smaller
+/// - better_means: competitors with smaller mean errors than the bank
 template <class Io, class F>
 void exchange_finding(Io& io, F& finding) {
   io.attribute("answer", finding.answer);
@@ -283,8 +284,8 @@ void exchange_finding(Io& io, F& finding) {
 }
 
 /// - confusion: labels against modes, with `data.label`
-/// - samples: number of samples of the label with this most probable mode
-/// - share: share of the label's samples
+/// - samples: number of samples that have this label and this most probable mode
+/// - share: `samples` as a share of all samples with this label
 template <class Io, class R>
 void exchange_confusion(Io& io, R& rows) {
   using Row = ConfusionRow;
@@ -326,12 +327,12 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   }
 }
 
-/// /residual_tests: tables of all models and runs. Lags are below T of their run.
+/// /residual_tests: tables of all models and runs. Lags are below the number T of their run.
 /// - runs: tests of each model's residuals, by run
 /// - model: `global`, `bank` or a competitor
-/// - lags: one row for each lag; in `runs` their number T
-/// - ljung_box_p: one for each state
-/// - cross_correlation_band: one for each state and input
+/// - lags: one row for each lag; in `runs`: the number T of lags
+/// - ljung_box_p: one p-value for each state
+/// - cross_correlation_band: one band for each state and input
 /// - lag: 0, 1, ... T - 1
 template <class Io, class S>
 void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {

@@ -32,13 +32,13 @@ struct CsvDialect {
 /// - Separator: the character that splits rows into equally many fields, most of them numbers.
 /// - Decimal mark: a comma if some numbers contain a decimal comma and no number has a decimal point
 /// (io/csv/csv_number.hpp).
-/// - Header: none if the first row has numbers in the columns in which the second row has numbers.
+/// - Header: absent if the first row has numbers in the columns in which the second row has numbers.
 /// - Row of units: the second row, if it has no numbers and the third row has numbers.
-/// - Comments begin with # or %. If there is no header, the last comment before the rows names the columns. It must
-/// have the same number of fields as a row.
+/// - Comments begin with # or %. Without a header, the last comment before the rows names the columns. It must have the
+/// same number of fields as a row.
 CsvDialect find_dialect(std::string_view text, bool complete, const FormatOptions& options);
 
-/// Number of title lines above the table. 0 if there is no title or no table. The table begins where five rows in
+/// Number of title lines above the table. 0 without a title or without a table. The table begins where five rows in
 /// sequence (or all remaining rows, if fewer) have the most frequent width. From the third of these rows on, rows must
 /// have values.
 std::size_t lines_above_table(std::string_view text, bool complete, const FormatOptions& options);

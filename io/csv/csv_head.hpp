@@ -16,7 +16,7 @@ struct CsvHead {
 };
 
 /// The head of a text, or of its beginning unless it is `complete`. `file`: name for error messages. Throws
-/// ConfigurationError if there is no header. Throws DataError if the header's quotes are malformed.
+/// ConfigurationError if the header is missing. Throws DataError if the header's quotes are malformed.
 CsvHead read_csv_head(std::string_view file, std::string_view text, bool complete, const FormatOptions& options);
 
 /// The head of a file. Reads the file only as far as needed.

@@ -15,7 +15,7 @@ std::filesystem::path temporary_path(const std::filesystem::path& target);
 /// A living process writes more often. Machines that share a folder have clocks that differ by less than a day.
 bool is_leftover(const std::filesystem::path& path);
 
-/// Removes the leftovers in a folder. Files that cannot be read or removed stay; there is no message.
+/// Removes the leftovers in a folder. Files that cannot be read or removed stay, without a message.
 void remove_leftovers(const std::filesystem::path& folder);
 
 }  // namespace modebank

@@ -12,8 +12,8 @@ namespace modebank {
 std::vector<std::string> frame_columns(const LogTopic& topic);
 
 /// A sentence about the frames between which a topic's messages alternate, with the key that separates these frames.
-/// `frames`: one value per message. Empty if a frame never returns after another frame, as when a recorder restarts in
-/// another frame.
+/// `frames`: one value per message. Empty if no frame returns after another frame. (A recorder that restarts in another
+/// frame does not return to the earlier frame.)
 std::string alternation_text(const LogTopic& topic, const std::string& column, const std::vector<std::string>& frames);
 
 }  // namespace modebank

@@ -14,7 +14,7 @@ namespace modebank {
 
 namespace {
 
-/// Result of one step in decompressing a stream: the number of bytes done, and whether the stream has ended.
+/// One step in decompressing a stream: the numbers of bytes taken and made, and whether the stream has ended.
 struct Step {
   std::size_t taken = 0, made = 0;
   bool ended = false;
@@ -91,7 +91,7 @@ class ZstdStream {
 
 template <class Stream>
 Unpacked unpack_stream(std::string_view packed, std::size_t declared, Buffer& buffer) {
-  // Compressed images are not much smaller than images. If the compression ratio is higher, more rounds follow.
+  // Compressed images do not reach `usual_ratio`. A higher compression ratio needs more rounds.
   constexpr std::size_t usual_ratio = 8, least = 1 << 16;
   Stream stream;
   std::size_t made = 0;

@@ -15,7 +15,7 @@ class RowCollector {
   RowCollector(const LogTopic& topic, const LogRequest& request);
 
   /// Adds a reader for messages of a connection with this decoder. Returns the reader's number for `take`. Throws
-  /// DataError if there is no definition. Throws ConfigurationError if the definition lacks a requested column.
+  /// DataError if the definition is missing. Throws ConfigurationError if the definition lacks a requested column.
   std::size_t add_reader(const TopicDecoder& decoder);
 
   /// Adds a message. Throws DataError if the message does not fit its definition.

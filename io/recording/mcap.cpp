@@ -57,7 +57,7 @@ class Mcap : public PieceFile {
     std::uint32_t crc = 0;
   };
 
-  /// Reads the position of the summary from the footer at the end of the file. Throws Damage if there is no footer.
+  /// Reads the position of the summary from the footer at the end of the file. Throws Damage if the footer is missing.
   Footer read_footer() {
     constexpr std::uint64_t footer_bytes = 9 + 20;
     if (file_.size() < footer_bytes + 2 * magic.size()) throw Damage(file_.size(), "it ends too soon");

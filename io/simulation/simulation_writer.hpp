@@ -41,7 +41,7 @@ struct VehicleLayout {
 /// may be wrong. The truth is true_<state> of all three states (vx, vy if not measured), true_<input>, x, y, heading,
 /// friction (mean of the wheels), mode (ground under the centre, from 0) and, if names are given, ground.
 ///
-/// Throws ConfigurationError if the number of names is wrong or the folder cannot be created.
+/// Throws ConfigurationError if names do not match the runs, or if the folder cannot be created.
 void write_simulation(const std::vector<VehicleRun>& runs, const VehicleLayout& layout);
 
 }  // namespace modebank

@@ -39,16 +39,15 @@ Numbers first_numbers(const std::vector<double>& values) {
 
 bool is_multiple(double value, double of) { return std::fmod(value, of) == 0.0; }
 
-/// Whether this interval is typical of a logger that writes whole units since an epoch. Typical are intervals up to a
-/// minute, and a full minute, hour or day.
+/// Whether this interval is typical of a logger that writes whole units since an epoch. Typical are intervals of at
+/// most a minute, and whole minutes, hours or days.
 bool is_logging_interval(double seconds) {
   if (seconds <= minute_s) return true;
   if (seconds <= hour_s) return is_multiple(seconds, minute_s);
   return seconds <= day_s ? is_multiple(seconds, hour_s) && is_multiple(day_s, seconds) : is_multiple(seconds, day_s);
 }
 
-/// The unit in which the numbers lie between 1998 and 2103, counted from 1970 in that unit. Robots are used in this
-/// time.
+/// The unit in which the numbers, counted from 1970, lie in the years 1998 to 2103. Robots log in this time.
 std::optional<TimeUnit> unit_of_epoch(const Numbers& numbers, bool whole) {
   constexpr double first_s = 9e8, last_s = 4.2e9;
   double scale = 1.0;

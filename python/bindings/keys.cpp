@@ -26,7 +26,7 @@ std::optional<std::vector<std::string>> texts_in(const py::list& list) {
   return texts;
 }
 
-/// A configuration has names in quotes if a list's names contain commas. The same is done here.
+/// The text that a configuration has for this value. In a list, names that contain commas are in quotes.
 std::string text_of(py::handle value) {
   if (value.is_none()) return "";
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";

@@ -57,9 +57,7 @@ Windows identify(const std::vector<Samples>& states, const std::vector<Samples>&
     throw std::invalid_argument("states and inputs must have equally many runs");
   if (!(dt_s > 0.0) || !std::isfinite(dt_s)) throw std::invalid_argument("dt must be a positive number of seconds");
   app::Config config = config_of(keys, "window.");
-  if (!keys.contains("model"))
-    config.structure.automatic_model = false;  // For windows alone, the lags come from the
-                                               // options.
+  if (!keys.contains("model")) config.structure.automatic_model = false;  // Windows alone use the lags in the options.
   if (app::searched_lags_of(config).any())
     throw ConfigurationError("lags and delay = auto, and window.model = auto, are found by run; give numbers here");
   const bool in_place = is_linear(config.window);

@@ -20,7 +20,7 @@ void exchange_part(Io& io, const std::string& name, T& part, const Sizes& known,
   });
 }
 
-/// What kind of model it is. Reading leaves the number of states to restore_structure, which knows it from the arrays.
+/// The kind of the model. The number of states is not read here; restore_structure gets it from the arrays.
 /// - model: `linear`, `varx` or the name of a motion model
 /// - form: A and B predict the increment of the state
 /// - intercept: 1: c is estimated
@@ -48,10 +48,10 @@ void exchange_model_parameters(Io& io, P& parameters, const std::string& kind) {
   });
 }
 
-/// Terms that bend the motion: V variables, T terms.
-/// - term_kinds: T: `product`, `magnitude` or `hinge`
+/// Nonlinear terms of the motion. The letter V is the number of variables, T the number of terms.
+/// - term_kinds: kind of each term: `product`, `magnitude` or `hinge`
 /// - term_variables: positions of up to three variables; -1: none
-/// - term_knots: in units of the variable
+/// - term_knots: knots of the terms, in units of the variable
 /// - term_directions: variable = clip(direction' regressors, low, high) / unit
 /// - term_low: lower bound of each variable
 /// - term_high: upper bound of each variable
@@ -71,7 +71,8 @@ void exchange_terms(Io& io, S& stored) {
                     rule::not_negative_or_missing);
 }
 
-/// The filter measures the recorded states, so outputs have the states' units where there are as many.
+/// The filter measures the recorded states. If there are equally many outputs and states, outputs have the states'
+/// units.
 /// - weight: mixture weight of each mode
 /// - c: constant increment of the state
 /// - A: x[k+1] = x[k] + A x[k] + B u[k] + c; n counts lagged states too
@@ -85,14 +86,14 @@ void exchange_terms(Io& io, S& stored) {
 /// - transition: row = from, column = to
 /// - transition_weights: weights of the transition logit on features of state and input
 /// - transition_reference: value of the features at which `transition` holds
-/// - initial_probability: of each mode at the start of a run
+/// - initial_probability: probability of each mode at the start of a run
 /// - drift_scale: root mean square of each regressor, with `bank.drift`
 /// - drift_rates: rate, start and leak
-/// - noise_directions: rows over their root mean square
+/// - noise_directions: directions, one per row, each divided by its root mean square
 /// - noise_weights: every Q is times exp(sum weights log(|directions . (z, v)| + 0.1) - offset), bounded to 0.2 to 5
-/// - noise_offset: offset of that sum
+/// - noise_offset: the offset in the formula of `noise_weights`
 /// - motion_parameters: parameters of a motion model
-/// - motion_standard_error: their standard errors
+/// - motion_standard_error: standard errors of `motion_parameters`
 template <class Io, class S>
 void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, const Unit& motion) {
   const Unit parameters = parameter_units(stored.structure, states, inputs);
@@ -133,15 +134,15 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
     io.finish([&] { stored.structure = restore_structure(stored.structure, io.size("n"), io.size("p")); });
 }
 
-/// Names, period and screened modes, then all members of StoredBank.
+/// Reads or writes names, period and screened modes, then all members of StoredBank.
 /// - parameter_labels: output and regressor of each parameter, `wz <- velL`
-/// - equations: lines of text, where there are terms
+/// - equations: lines of text, if the bank has nonlinear terms
 /// - dt_s: period of a step [s]
 /// - noise_forgetting: forgetting factor of adaptive noise
 /// - noise_prior_samples: prior samples of adaptive noise
 /// - shrunk_modes: modes that were shrunk towards one motion for stability
 /// - shrunk_share: share of the shrinkage
-/// - shrunk_growth: growth of their mean square before shrinkage
+/// - shrunk_growth: growth of the mean square of these modes before shrinkage
 /// - screened: components that did not become modes
 /// - spectral_radius: spectral radius of I + A
 template <class Io, class B>

@@ -5,15 +5,15 @@
 
 #include "io/archive/bank/layout_bank.hpp"
 
-/// The layout of the drifting competitor; see io/archive/layout.hpp. p parameters, r regressors, n_y outputs, H
-/// horizons.
+/// The layout of the drifting competitor; see io/archive/layout.hpp. Letters: p parameters, r regressors, n_y outputs,
+/// H horizons.
 namespace modebank::layout {
 
 /// /drifting: one motion whose coefficients drift.
 /// - states: number of measured states
 /// - q: variance that a step adds to every coefficient
 /// - p0: variance of the coefficients at the start
-/// - leak: factor by which a step multiplies their difference from `parameters`
+/// - leak: factor by which a step multiplies the difference between the coefficients and `parameters`
 /// - wandering: `constant` or `gain` (one factor on the inputs' coefficients); absent: all coefficients
 /// - lam: forgetting factor of the running variance
 /// - nu: degrees of freedom of the noise; 0: Gaussian
@@ -24,8 +24,8 @@ namespace modebank::layout {
 /// - initial_variance: variance of the training residuals
 /// - variance_floor: least noise variance
 /// - quantum: step of the measured values; 0: continuous
-/// - horizon: samples ahead
-/// - horizon_factor: factor on the variance at each horizon
+/// - horizon: number of samples ahead
+/// - horizon_factor: factor that multiplies the variance at each horizon
 template <class Io, class B>
 void exchange_drifting(Io& io, B& bank, const Units& units) {
   io.attribute_texts("state_names", bank.state_names);

@@ -97,7 +97,7 @@ hdf5::TableColumn encode(const std::vector<Row>& rows, const Column<Row, T>& col
   }
 }
 
-/// The first fault that the column's rule finds in its stored values. Empty if there is no fault.
+/// The first fault that the column's rule finds in its stored values. Empty if all values obey the rule.
 inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::TableColumn& column, hsize_t first_row) {
   return std::visit(
       [&](const auto& values) {

@@ -98,8 +98,9 @@ TEST_F(ImportStamps, SerialDaysOfSpreadsheetsAndMatlab) {
       "Time", 60.0, [](int k) { return fmt::format("{:.6f}", 45764.5 + k / 1440.0); }, 0.1);
   expect_even(
       "Timestamp", 10.0, [](int k) { return fmt::format("{:.9f}", 45764.25 + k / 8640.0); }, 1e-3);
-  // If the first column is read as seconds, its rate is 1,440 Hz, but its times are not at full seconds of days. The
-  // second column would have 288 Hz as seconds. This is doubtful, because as days its steps are 5 minutes.
+  // As seconds, the first column has a rate of 1,440 Hz. As days, its times would not be at full seconds, so it
+  // contains seconds. As seconds, the second column has 288 Hz. This is doubtful, because as days its steps are 5
+  // minutes.
   expect_even(
       "Time", 1.0 / 1440.0, [](int k) { return fmt::format("{:.9f}", 45764.51234 + k / 1440.0); }, 1e-8);
   expect_even(
@@ -110,7 +111,7 @@ TEST_F(ImportStamps, SerialDaysOfSpreadsheetsAndMatlab) {
 TEST_F(ImportStamps, OneUnitForAllFilesOfAPattern) {
   options.inputs = "px4_*.csv";
   options.time = {"timestamp"};
-  for (const auto& [early, late] : {std::pair{9'990, 9'990}, {9'990, 10'010}}) {  // px4_early.csv alone would be in ms
+  for (const auto& [early, late] : {std::pair{9'990, 9'990}, {9'990, 10'010}}) {  // alone, px4_early.csv is read as ms
     write("px4_early.csv",
           table("timestamp", [&, step = early](int k) { return fmt::to_string(500'000'000 + step * k); }));
     write("px4_late.csv",
