@@ -13,7 +13,7 @@ namespace modebank {
 struct EmResult {
   GaussianMixture mixture;      ///< ordered by decreasing weight; if the fit began at a given start, in the order of
                                 ///< the start
-  double log_likelihood = 0.0;  ///< weighted sum over points under `mixture`
+  double log_likelihood = 0.0;  ///< log-likelihood: weighted sum over the points under `mixture`
   int iterations = 0;           ///< iterations of the restart that was kept
   bool converged = false;
   /// Number of restarts whose own optimum (before crossing) is within 1e-4 nats per point of the best log-likelihood. 0

@@ -29,7 +29,7 @@ struct UniformNoise {
 struct GaussianMixture {
   Eigen::VectorXd weights;                   ///< K, weights; the sum is 1 - noise.weight
   Eigen::MatrixXd means;                     ///< F x K
-  std::vector<Eigen::MatrixXd> covariances;  ///< K of F x F
+  std::vector<Eigen::MatrixXd> covariances;  ///< K covariances of size F x F
   CovarianceType type = CovarianceType::full;
   UniformNoise noise;
 

@@ -12,7 +12,7 @@ inline const Eigen::MatrixXd no_covariances;
 /// Points to be clustered or evaluated, with weights and errors. Holds references to these parts, which must outlive
 /// it. The compiler rejects temporaries.
 struct PointSet {
-  const Eigen::MatrixXd& points;       ///< F x N
+  const Eigen::MatrixXd& points;       ///< F x N, one point per column
   const Eigen::VectorXd& weights;      ///< N, nonnegative; if empty, all weights are one
   const Eigen::MatrixXd& covariances;  ///< F*F x N, each column the covariance of that point's error; empty without
                                        ///< errors

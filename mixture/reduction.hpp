@@ -59,7 +59,7 @@ class Reduction {
   double loss(Eigen::Index i, Eigen::Index j) const;
 
   GaussianMixture mixture_;
-  Eigen::MatrixXd loss_;  // pairs i < j
+  Eigen::MatrixXd loss_;  // costs of all pairs i < j
   std::vector<double> log_determinants_;
   std::vector<Eigen::Index> alive_;  // positions of the remaining components, in order
 };

@@ -43,7 +43,7 @@ struct RateFacts {
   double jitter = 0.0;           ///< standard deviation of the intervals between input samples, as a share of the
                                  ///< median interval
   double repeated = 0.0;         ///< share of repeated values of a measured input; 0 if the inputs are commands
-  double time_constant_s = 0.0;  ///< time constant of the response; 0 if unknown
+  double time_constant_s = 0.0;  ///< time constant of the response; 0 if it is unknown
 };
 struct RateAdvice {
   double rate_hz = 0.0;  ///< value for data.rate_hz; 0 keeps the inputs' own times

@@ -57,7 +57,7 @@ bool on_lattice(const std::vector<double>& levels, double& spacing) {
 
 /// Largest spacing of a lattice that contains all levels (in increasing order); 0 if no lattice contains them.
 double quantum_of(const std::vector<double>& levels) {
-  constexpr double visible = 1e-3;  // share of the range
+  constexpr double visible = 1e-3;  // smallest visible spacing, as a share of the range
   constexpr int most_divisions = 6;
   const double range = levels.back() - levels.front();
   double closest = range;

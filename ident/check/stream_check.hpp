@@ -11,7 +11,7 @@ namespace modebank {
 struct SamplingCheck {
   Eigen::Index samples = 0;
   double duration_s = 0.0;  ///< largest minus smallest time
-  double rate_hz = 0.0;     ///< 1 / median interval; 0 if unknown
+  double rate_hz = 0.0;     ///< 1 / median interval; 0 if it is unknown
   double jitter = 0.0;      ///< standard deviation of the intervals (without gaps), as a share of the median interval
   Eigen::Index gaps = 0;    ///< intervals longer than gap_periods median intervals
   double longest_gap_s = 0.0;
@@ -19,7 +19,7 @@ struct SamplingCheck {
   Eigen::Index backward_times = 0;
   Eigen::Index missing_times = 0;
   Eigen::Index missing_samples = 0;  ///< samples with at least one missing value
-  double repeated_samples = 0.0;     ///< share of samples whose values all equal the previous ones
+  double repeated_samples = 0.0;     ///< share of samples whose values all equal those of the previous sample
 };
 
 SamplingCheck check_sampling(const Stream& recorded);
@@ -37,7 +37,7 @@ struct ChannelCheck {
   Eigen::Index levels = 0;    ///< distinct values
   bool two_level = false;     ///< see has_two_levels()
   double repeated = 0.0;      ///< share of samples that equal the previous sample
-  Eigen::Index outliers = 0;  ///< isolated samples, see spikes()
+  Eigen::Index outliers = 0;  ///< number of isolated outliers (see `spikes`)
 };
 
 ChannelCheck check_channel(const Eigen::VectorXd& values);
@@ -65,7 +65,7 @@ Eigen::Index spikes(const Eigen::VectorXd& values, double quantum);
 struct SaturationLimits {
   /// Samples at or below low, or at or above high, count as saturated; NaN at an end without a limit.
   double low, high;
-  bool soft = false;  ///< whether a soft limit was found, but no hard limit
+  bool soft = false;  ///< true: no hard limit was found, but a soft one
 };
 SaturationLimits saturation_limits(const std::vector<Eigen::VectorXd>& runs);
 

@@ -14,7 +14,7 @@ using Eigen::Index;
 
 struct Channel {
   std::string name;
-  std::string unit;       ///< empty if unknown
+  std::string unit;       ///< unit of the channel; empty if unknown
   bool averaged = false;  ///< true: the column is reduced to a lower rate by means over the steps (AveragedColumns);
                           ///< false: by single samples
 };

@@ -8,7 +8,7 @@ namespace modebank {
 
 /// `length` consecutive transitions (length + 1 samples) of one run. All windows have the same length.
 struct Window {
-  Index run = 0;    ///< position in Recording::runs
+  Index run = 0;    ///< position of the run in Recording::runs
   Index start = 0;  ///< first sample
 };
 

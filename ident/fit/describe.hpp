@@ -17,7 +17,7 @@ struct SolvedWindow {
   CovarianceKind covariance = CovarianceKind::model;
   const NoiseScale& scale;
   const ParameterPrior* prior = nullptr;
-  double unknowns_per_state = 0.0;  ///< q for a linear model
+  double unknowns_per_state = 0.0;  ///< number of unknowns per state: q for a linear model
   double rank_per_state = 0.0;
 };
 

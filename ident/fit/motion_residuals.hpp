@@ -37,7 +37,7 @@ class ModelResiduals {
   Index rows() const { return samples() * states(); }
   Index unknowns() const { return model_.parameter_count(); }
   double weight(Index sample) const { return weights_.size() > 0 ? weights_(sample) : 1.0; }
-  const Eigen::VectorXd& weights() const { return weights_; }  ///< empty if all weights are one
+  const Eigen::VectorXd& weights() const { return weights_; }  ///< weights of the samples; empty if all weights are one
 
   /// Increments that the model should explain, one row per sample, times the square root of its weight.
   Eigen::MatrixXd responses() const;

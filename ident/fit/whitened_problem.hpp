@@ -20,7 +20,7 @@ struct WhitenedProblem {
   Index states = 0;   ///< n
   RowMajorMatrix J;
   Eigen::VectorXd b;
-  Eigen::MatrixXd basis;        ///< p x z
+  Eigen::MatrixXd basis;        ///< p rows, one column per unknown z
   Eigen::VectorXd origin;       ///< p, least-squares theta
   Eigen::VectorXd weight = {};  ///< L sample weights of mean one; empty if all are one
 

@@ -11,7 +11,7 @@
 namespace modebank {
 namespace {
 
-constexpr double significance = 0.99;       // level of each of the two tests
+constexpr double significance = 0.99;       // confidence level of each of the two tests
 constexpr double most_changed = 1.0 / 6.0;  // largest share of windows with a change for which windows keep their
                                             // length
 constexpr Index enough_windows = 1000;

@@ -35,7 +35,7 @@ struct LaggedRows {
   Index states = 1, inputs = 0;
   StructureRanges ranges;
   bool intercept = false;
-  Eigen::MatrixXd X;              ///< N x q
+  Eigen::MatrixXd X;              ///< N x q, regressors
   Eigen::MatrixXd Y;              ///< N x n, increments
   Eigen::VectorXd weight;         ///< N sample weights of mean one; empty if all are one
   std::vector<Index> part;        ///< N, index of the row's run or stretch of a run

@@ -41,7 +41,7 @@ class LagObjective {
   struct Fit {
     Eigen::Index first = 0, samples = 0;  ///< the samples with known delayed inputs
     Eigen::MatrixXd inputs;               ///< m x samples, delayed and filtered inputs
-    Eigen::MatrixXd coefficients;         ///< n x m
+    Eigen::MatrixXd coefficients;         ///< n x m, coefficients of the inputs
     Eigen::MatrixXd residuals;            ///< n x samples
     Eigen::VectorXd unexplained;          ///< n, unexplained share 1 - R^2 of each state
     Eigen::VectorXd weights;              ///< samples
@@ -57,7 +57,7 @@ class LagObjective {
   Stream inputs_;
   double period_s_ = 0.0, middle_s_ = 0.0;
   Eigen::VectorXd centres_s_;  // N
-  Eigen::MatrixXd states_;     // n x N averages
+  Eigen::MatrixXd states_;     // averaged states, n x N
   Eigen::VectorXd weights_;    // N
   mutable double response_time_constant_s_ = -1.0;
   mutable AveragedStream response_;

@@ -33,11 +33,11 @@ struct RunLag {
   double drifting_lag_standard_error_s = not_a_number;
   double clock_drift = not_a_number;  ///< [s/s]
   double clock_drift_standard_error = not_a_number;
-  double match_s = not_a_number;  ///< delay of best match: median over windows
+  double match_s = not_a_number;  ///< delay of best match: median over the windows of the run
   double match_least_s = not_a_number;
   double match_largest_s = not_a_number;
   Eigen::Index match_windows = 0;
-  double applied_lag_s = 0.0;  ///< applied lag at applied_reference_s
+  double applied_lag_s = 0.0;  ///< lag that was applied, at the time applied_reference_s
   double applied_clock_drift = 0.0;
   double applied_reference_s = 0.0;
 
@@ -50,7 +50,7 @@ struct LagScore {
   Eigen::Index transitions = 0;
   double log_score = not_a_number;            ///< log score of the global model's one-step prediction [nats per
                                               ///< transition]
-  double rmse = not_a_number;                 ///< root mean square one-step error, over all states
+  double rmse = not_a_number;                 ///< root mean square of the one-step error, over all states
   double gain = 0.0;                          ///< gain of log_score over `none`
   double gain_standard_error = not_a_number;  ///< standard error of the gain, over the left-out runs
 };

@@ -34,11 +34,11 @@ struct StructureScore {
   double loss = 0.0;                 ///< loss relative to the best structure of the table [nats/sample]
   double loss_standard_error = 0.0;  ///< standard error of the loss, over runs or stretches [nats/sample]
   Eigen::VectorXd rmse = {};         ///< n, RMSE of the one-step prediction [state unit]
-  bool chosen = false;               ///< chosen for windows, mixture and bank
-  bool linear = false;               ///< chosen for the single linear models (baseline, noise_only) and the search for
-                                     ///< terms
-  bool one_motion = false;           ///< chosen for one motion whose noise switches
-  bool drifting = false;             ///< chosen for one motion whose coefficients drift
+  bool chosen = false;               ///< whether this structure was chosen for windows, mixture and bank
+  bool linear = false;  ///< whether this structure was chosen for the single linear models (baseline, noise_only) and
+                        ///< the search for terms
+  bool one_motion = false;  ///< whether this structure was chosen for one motion whose noise switches
+  bool drifting = false;    ///< whether this structure was chosen for one motion whose coefficients drift
 
   /// Causal log score of the training runs with drifting coefficients [nats/sample]; NaN if it was not computed.
   double drifting_score = std::numeric_limits<double>::quiet_NaN();
@@ -62,9 +62,9 @@ struct FoundStructure {
   /// Largest |t| of past innovations in a regression of the inputs on their own lags. It is large if the inputs react
   /// to the states. NaN without inputs or with too few samples.
   double feedback_t = 0.0;
-  double same_sample_t = 0.0;               ///< largest |t| of the innovation of the input's own sample
+  double same_sample_t = 0.0;               ///< largest |t| of the innovation of the same sample as the input
   std::string remark = {};                  ///< reason why the search did not use its full range; empty if it did
-  std::vector<StructureScore> scores = {};  ///< scores of the finalists, the best first
+  std::vector<StructureScore> scores = {};  ///< scores of the finalists, in decreasing order
 
   /// If |t| of past innovations is above this limit, the inputs are reported to react to the states.
   static constexpr double feedback_limit = 5.0;

@@ -18,8 +18,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index half_grid = 100;        // number of lags on either side of zero
-constexpr Index most_pairs = 20000;     // longer runs are thinned
+constexpr Index half_grid = 100;        // number of lags on each side of zero
+constexpr Index most_pairs = 20000;     // largest number of samples; longer runs are thinned
 constexpr Index least_pairs = 20;       // smallest number of samples in a window
 constexpr double least_coverage = 0.8;  // smallest share of a window's inputs for which a state is known at the lag
 

@@ -51,7 +51,7 @@ RowVectorXd unexplained_part(const MatrixXd& inputs, const VectorXd& weights, co
 
 /// One state's part of the whitened nonlinear problem: slopes orthogonal to the linear part, residuals, and weights.
 struct StateTerms {
-  MatrixXd J;            // q x samples
+  MatrixXd J;            // slopes, q x samples
   RowVectorXd residual;  // weighted
 };
 

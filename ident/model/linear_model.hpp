@@ -17,7 +17,7 @@ namespace modebank {
 struct LinearStructure {
   Eigen::Index states = 1;       ///< measured states
   Eigen::Index inputs = 0;       ///< input channels
-  bool intercept = false;        ///< whether c is estimated
+  bool intercept = false;        ///< whether the constant c is estimated
   Eigen::Index state_lags = 1;   ///< number of samples x[k], x[k-1], ... that predict x[k+1]; at least 1
   Eigen::Index input_lags = 1;   ///< number of input samples that act on one transition; at least 1
   Eigen::Index input_delay = 1;  ///< number of samples from an input to its first effect; 0: u[k+1] acts on x[k+1]

@@ -23,7 +23,7 @@ struct LocalModel {
   double inlier_fraction = 0.0;  ///< share of samples that keep at least half of their least-squares weight
   FitStatus status = FitStatus::failed;
   Eigen::VectorXd r_squared;  ///< n; defined in ident/fit/describe.hpp; empty if it was not computed
-  double aic = 0.0;           ///< nat, see ident/fit/describe.hpp
+  double aic = 0.0;           ///< Akaike's criterion [nats], see ident/fit/describe.hpp
   Index transitions = 0;      ///< L, transitions that entered the fit: finite and of positive weight
 
   /// n, information of the data (curvature of the loss over sigma^2), in units of the information in `covariance`. With
@@ -53,8 +53,8 @@ struct WindowFits {
   Loss loss = Loss::huber;
   std::vector<Window> windows;          ///< M
   Eigen::MatrixXd parameters;           ///< p x M
-  Eigen::MatrixXd covariance;           ///< p*p x M; each column is a p x p matrix
-  Eigen::MatrixXd noise_variance;       ///< n x M
+  Eigen::MatrixXd covariance;           ///< covariances of theta, p*p x M; each column is a p x p matrix
+  Eigen::MatrixXd noise_variance;       ///< n x M, variances of the one-step residuals
   Eigen::VectorXd condition;            ///< M
   Eigen::VectorXi rank;                 ///< M
   Eigen::MatrixXd information;          ///< p x M

@@ -30,7 +30,7 @@ struct Term {
 /// are the q regressors of LinearStructure. A direction is a single regressor or a direction of the linear fit. The
 /// limits are the training range, because products grow fast beyond it.
 struct MotionTerms {
-  Eigen::MatrixXd direction = {};  ///< q x V
+  Eigen::MatrixXd direction = {};  ///< directions of the variables, q x V
   Eigen::VectorXd low, high = {};  ///< V
   Eigen::VectorXd unit = {};       ///< V, positive
   std::vector<Term> terms = {};    ///< T
@@ -52,7 +52,7 @@ class TermValues {
  public:
   void evaluate(const MotionTerms& terms, const Eigen::Ref<const Eigen::VectorXd>& regressors);
   const Eigen::VectorXd& value() const { return value_; }  ///< T
-  const Eigen::MatrixXd& slope() const { return slope_; }  ///< T x q, derivatives; 0 for a clipped variable
+  const Eigen::MatrixXd& slope() const { return slope_; }  ///< derivatives, T x q; 0 for a clipped variable
   bool is_clipped() const { return clipped_; }             ///< whether some variable is clipped
 
  private:

@@ -9,7 +9,7 @@ namespace modebank {
 
 /// One kind of ground under a tyre.
 struct GroundKind {
-  double friction = 0.6;    ///< mu, above 0
+  double friction = 0.6;    ///< friction coefficient mu, above 0
   double shear_m = 0.005;   ///< shear deformation modulus K [m], above 0; after this slip travel the force is 63 % of
                             ///< mu N
   double resistance = 0.0;  ///< motion resistance divided by the normal load, at least 0

@@ -34,9 +34,10 @@ struct CommandOptions {
 /// A switching linear system x[k+1] = x + A_s x + B_s u (+ c_s) + w, w ~ N(0, Q_s), y = x + v, v ~ N(0, R), s a Markov
 /// chain.
 struct SimulationOptions : CommandOptions {
-  std::vector<Eigen::VectorXd> modes;  ///< theta per mode, p entries each
-  std::vector<double> process_sd;  ///< per mode, or one vector for all modes; sqrt of the diagonal of Q [state unit]
-  double measurement_sd = 0.0;     ///< sqrt of the diagonal of R [state unit]
+  std::vector<Eigen::VectorXd> modes;  ///< theta of each mode, p entries per mode
+  std::vector<double> process_sd;  ///< standard deviation of the process noise w [state unit]; one value per mode, or
+                                   ///< one value for all modes
+  double measurement_sd = 0.0;     ///< standard deviation of the measurement noise v [state unit]
   Eigen::MatrixXd transition;      ///< K x K, row = from; if empty, it follows from dwell_samples, with equal
                                    ///< probabilities off the diagonal
   double dwell_samples = 0.0;     ///< mean number of samples in a mode, at least 1; with 0, run i stays in mode (i / 2)
@@ -51,7 +52,7 @@ struct SimulationOptions : CommandOptions {
 
 /// One simulated run: measurements and truth.
 struct SimulatedRun {
-  Trajectory measured;   ///< state: measurement y; truth: x
+  Trajectory measured;   ///< `state` is the measurement y, and `truth` is x
   Eigen::VectorXi mode;  ///< N, the mode that drives transition k -> k+1
 };
 

@@ -19,7 +19,7 @@ struct SensorOptions {
   double speed_noise_sd = 0.02;  ///< noise of a measured forward or sideways speed, as from satellites or lidar [m/s]
   double wheel_quantum_m_s = 0.005;  ///< quantum of the wheel speeds; 0 means exact speeds
   double lag_s = 0.0;                ///< error of the inputs' stamps; the true time is stamp + lag + drift * stamp
-  double drift = 0.0;                ///< [s/s], above -1
+  double drift = 0.0;                ///< drift of the clock [s/s], above -1
 };
 
 /// A skid-steer robot (ident/simulate/vehicle.hpp) on a plane of square tiles of ground (ident/simulate/ground.hpp).
@@ -51,13 +51,13 @@ struct VehicleRun {
   Eigen::VectorXd inputs_time_s;  ///< N, stamps by the wheels' clock, which has a lag and a drift
   Eigen::MatrixXd wheel_speed;    ///< 2 x N, left and right as measured [m/s]
   Eigen::MatrixXd command;        ///< 2 x N, set-points that act from this sample on [m/s]
-  Eigen::VectorXd time_s;         ///< M times on the true clock
+  Eigen::VectorXd time_s;         ///< M, times on the true clock
   Eigen::MatrixXd measured;       ///< `measured` x M: yaw rate [rad/s], forward and sideways speed [m/s]
   Eigen::MatrixXd truth;          ///< 3 x M: true values of yaw rate, forward and sideways speed
-  Eigen::MatrixXd true_wheel;     ///< 2 x M [m/s]
-  Eigen::MatrixXd pose;           ///< 3 x M: x, y [m], heading [rad]
+  Eigen::MatrixXd true_wheel;     ///< 2 x M, true speeds of the left and right wheels [m/s]
+  Eigen::MatrixXd pose;           ///< 3 x M, pose: x, y [m], heading [rad]
   Eigen::VectorXd friction;       ///< M, mean friction coefficient of the four wheels
-  Eigen::VectorXi kind;           ///< M, ground under the robot's centre: the true mode
+  Eigen::VectorXi kind;           ///< M, kind of ground under the robot's centre: the true mode
 };
 
 /// Simulates runs "00", "01", ... Even runs are training runs, odd runs are held-out runs. A run starts at rest in the

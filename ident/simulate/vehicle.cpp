@@ -11,7 +11,7 @@ namespace modebank {
 namespace {
 
 constexpr double gravity_m_s2 = 9.80665;
-constexpr std::size_t wheel_count = 4;  // front left, rear left, front right, rear right
+constexpr std::size_t wheel_count = 4;  // order of the wheels: front left, rear left, front right, rear right
 
 using VehicleValues = decltype(VehicleState::values);
 using Kinds = std::array<int, wheel_count>;

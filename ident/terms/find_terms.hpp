@@ -21,7 +21,7 @@ struct TriedTerms {
 /// The nonlinear motion, if one was found.
 struct FoundTerms {
   LinearStructure structure;  ///< structure with the lags that were chosen together with the terms
-  MotionTerms terms = {};     ///< empty if no terms were accepted
+  MotionTerms terms = {};     ///< terms of the motion; empty if no terms were accepted
   double gain = 0.0;  ///< gain over the linear model with all lags, on halves that were not used to choose the terms
                       ///< [nats/sample]
   double gain_standard_error = 0.0;

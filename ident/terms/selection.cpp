@@ -21,13 +21,13 @@ using Eigen::VectorXd;
 
 constexpr Index folds = 4;
 constexpr Index most_terms = 16;
-constexpr double clipped_errors = 6.0;  // limit in robust standard deviations
+constexpr double clipped_errors = 6.0;  // limit of an error, in robust standard deviations
 
 // as a share of the errors' standard deviation; needed because more than half of the errors may be zero
 constexpr double least_share = 0.02;
 constexpr double ridge = 1e-6;        // share of the number of rows; columns have unit root mean square
 constexpr double new_share = 1e-3;    // smallest share of a column that must be independent of the previous columns
-constexpr double least_gain = 0.002;  // smallest gain per further term [nats/sample]
+constexpr double least_gain = 0.002;  // smallest gain of each further term [nats/sample]
 constexpr double exact_share = 1e-9;  // as a share of the increments; a smaller error counts as an exact prediction
 constexpr double least_scale = 1e-150;
 constexpr Index patience = 3;  // the search ends after this number of successive steps that gain less than a quarter of

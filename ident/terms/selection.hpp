@@ -12,7 +12,7 @@ namespace modebank {
 /// Terms that a forward selection takes, the most important first.
 struct SelectedTerms {
   LinearStructure structure;
-  MotionTerms terms;              ///< empty if the linear model predicts left-out rows equally well
+  MotionTerms terms;              ///< selected terms; empty if the linear model predicts left-out rows equally well
   Eigen::VectorXd left_out = {};  ///< N, log density of each row, summed over the states; the coefficients are fitted
                                   ///< without the row
   double log_score() const { return left_out.mean(); }

@@ -1,5 +1,6 @@
-// EM of Gaussian mixtures compared with other programs. All have the same points, start and number of iterations, on
-// one thread, in alternating order. Prints medians of CPU time over the rounds, and compares log-likelihoods. Usage:
+// EM of Gaussian mixtures compared with other programs. All programs have the same points, start and number of
+// iterations. They run on one thread, in alternating order. Prints medians of CPU time over the rounds, and compares
+// log-likelihoods. Usage:
 //   compare_em [ROUNDS]           with Armadillo, if the benchmark was built with it
 //   compare_em memory             peak memory of N = 1e7, d = 3, K = 25 from a random start
 //   compare_em serve FOLDER       for em_peers.py: writes the cases to FOLDER, then answers lines on stdin

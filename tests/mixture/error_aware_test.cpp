@@ -258,7 +258,7 @@ TEST(ErrorAware, HugeAndSingularErrorsAreSound) {
     const GaussianMixture truth = any_mixture(features, 2);
     const Eigen::MatrixXd points = draw(truth, 200, 13);
     Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(features * features, 200);
-    errors.row(0).setConstant(1e300);  // one feature is unknown
+    errors.row(0).setConstant(1e300);  // an error so large that one feature is unknown
     errors.rightCols(50) = Eigen::VectorXd::Ones(features * features).replicate(1, 50) * 1e200;  // rank one
     const PointSet set(points, unweighted, errors);
     const EmResult fit = fit_em(set, 2, EmOptions(), 1);

@@ -112,7 +112,7 @@ TEST(NoiseComponent, ItsWindowsGetNoLabel) {
 
 TEST(NoiseComponent, DegenerateCloudsAreSound) {
   Eigen::MatrixXd points = draw(three_clusters(4.0), 300, 5);
-  points.row(1).setConstant(2.0);  // a box without volume
+  points.row(1).setConstant(2.0);  // so the box has no volume
   EmResult fit = fit_em(points, unweighted, 2, with_noise(), 1);
   EXPECT_TRUE(std::isfinite(fit.log_likelihood));
   EXPECT_TRUE(log_density(fit.mixture, points).allFinite());

@@ -146,7 +146,7 @@ TEST_P(Robustness, StarvedComponentKeepsItsPlace) {
 TEST_P(Robustness, SinglePointComponents) {
   Eigen::MatrixXd points(2, 43);
   points.leftCols(40) = draw(three_clusters(1.0), 40, 6);
-  points.rightCols(3) << 1e3, -1e3, 0.0, 1e3, 1e3, -1e3;  // far from all other points
+  points.rightCols(3) << 1e3, -1e3, 0.0, 1e3, 1e3, -1e3;  // three points far from all others
   const EmResult result = fit(points, 4);
   expect_sound(result, points);
   EXPECT_TRUE(result.floor_active);  // a single point has no extent

@@ -88,7 +88,7 @@ TEST(Select, TableRowsAgreeWithTheMixtures) {
   const MixtureResult result = select_mixture(fits_of(cloud, 25, 1), cloud, up_to(3), 1);
   ASSERT_EQ(result.candidates.size(), 3u);
   for (const Candidate& row : result.candidates) {
-    EXPECT_DOUBLE_EQ(row.effective_samples, 24.0);  // 4 runs of 150 windows, L = 25
+    EXPECT_DOUBLE_EQ(row.effective_samples, 24.0);  // 4 runs of 150 windows with L = 25: 4 x 150 / 25
     EXPECT_EQ(row.parameters, row.components - 1 + 5 * row.components);
     const double share = 24.0 / 600.0, q = static_cast<double>(row.parameters);
     EXPECT_NEAR(row.bic, -2.0 * share * row.log_likelihood + q * std::log(24.0), 1e-9);
@@ -129,7 +129,7 @@ TEST(Select, AssignedWindowsGetTheComponentsThatSuitThem) {
   FeatureCloud assigned;
   assigned.points = (Eigen::MatrixXd(2, 2) << 6.0, 0.0, 50.0, 1.0).finished();
   assigned.covariances = Eigen::MatrixXd::Zero(4, 2);
-  assigned.covariances(3, 0) = 1e4;  // this feature is unknown
+  assigned.covariances(3, 0) = 1e4;  // an error so large that this feature is unknown
   assigned.windows = {0, 302};
   assigned.runs = {0, 2};
   WindowFits fits = fits_of(cloud, 25, 1);

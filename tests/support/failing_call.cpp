@@ -130,7 +130,7 @@ std::string text_at(unsigned pid, std::uint64_t address) {
   const int memory = open(fmt::format("/proc/{}/mem", pid).c_str(), O_RDONLY | O_CLOEXEC);
   ssize_t count = -1;
   for (std::size_t room = text.size(); count < 0 && room > 8;
-       room /= 2)  // the text may end before its memory page does
+       room /= 2)  // the text may end before its memory page ends
     count = pread(memory, text.data(), room, static_cast<off_t>(address));
   close(memory);
   return text.c_str();

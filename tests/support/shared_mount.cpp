@@ -1,10 +1,11 @@
-// shared_mount BACKING MOUNT CACHE_S SKEW_S: shows a folder at another path as a machine sees it over a network
-// (libfuse3), until it is unmounted. It has the properties of NFS that trouble programs:
-// - every lock is refused (ENOLCK);
-// - attributes of a name (size, times, absence) are cached for CACHE_S seconds, until the file is opened here, or
-//   for absent names until their folder is listed; content is fresh after opening (close-to-open);
-// - times are SKEW_S seconds later than on the server, as on a machine with a slow clock;
-// - a file that another mount replaced or removed while it is open here is gone (ESTALE).
+// shared_mount BACKING MOUNT CACHE_S SKEW_S: shows a folder at another path, in the way a machine sees it over a
+// network (libfuse3), until it is unmounted. The mount has the properties of NFS that trouble programs:
+// - Every lock is refused (ENOLCK).
+// - Attributes of a name (size, times, absence) are cached for CACHE_S seconds. Opening the file here ends this
+// earlier,
+//   for an absent name listing its folder. The content of a file is fresh after opening (close-to-open).
+// - Times are SKEW_S seconds later than on the server. A machine with a slow clock sees such times.
+// - If another mount replaces or removes a file while it is open here, the file is gone (ESTALE).
 #define FUSE_USE_VERSION 35
 #include <dirent.h>
 #include <fcntl.h>

@@ -26,7 +26,7 @@ HWY_INLINE V reciprocal(V x) {
 #if HWY_TARGET == HWY_AVX3
   V y{_mm512_rcp14_pd(x.raw)};
   const V e = hn::NegMulAdd(x, y, splat(1.0));
-  y = hn::MulAdd(y, hn::MulAdd(e, e, e), y);  // third order: 14 -> 42 bits
+  y = hn::MulAdd(y, hn::MulAdd(e, e, e), y);  // a step of third order: from 14 to 42 correct bits
   return hn::MulAdd(y, hn::NegMulAdd(x, y, splat(1.0)), y);
 #else
   return hn::Div(splat(1.0), x);

@@ -77,7 +77,7 @@ TEST(WindowSummary, HoldsMediansOfWhatIsDefined) {
   fits.structure = {1, 0, false};
   fits.resize(4);
   fits.parameters << 1.0, -6.0, 3.0, 100.0;
-  fits.covariance << 1.0, 4.0, 9.0, std::nan("");  // t values 1, -3, 1
+  fits.covariance << 1.0, 4.0, 9.0, std::nan("");  // the t values are 1, -3, 1
   fits.r_squared << 0.2, 0.4, std::nan(""), 0.9;
   fits.aic << 1.0, 2.0, 3.0, std::nan("");
   const WindowSummary summary = summarize(fits);

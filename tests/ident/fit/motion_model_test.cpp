@@ -60,7 +60,7 @@ TEST(MotionModel, LinearisationKnowsItsDerivativeAtZero) {
   const auto model = make_motion_model("slip", {1, 2, radius});
   const LinearisedMotion motion =
       linearise(*model, Eigen::Vector3d(track, 0.0, tau), {Eigen::VectorXd::Zero(1), Eigen::Vector2d(2.0, 3.0), dt});
-  for (const Index entry : {1, 2})  // order of theta: A, B of left, B of right, c
+  for (const Index entry : {1, 2})  // order of theta: A, B of the left wheel, B of the right wheel, c
     EXPECT_NEAR(motion.by_motion(entry, 1) / (gain * radius / (2.0 * track)), 1.0, 1e-6);
 }
 

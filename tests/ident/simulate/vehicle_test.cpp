@@ -47,7 +47,7 @@ TEST(TyreForce, IsTheMeanShearStressOverThePatch) {
   const Eigen::Vector2d velocity(0.3, 0.04);
   const double wheel = 0.5, load = 100.0;
   const Eigen::Vector2d slip(-0.2, 0.04);
-  constexpr int parts = 20000;  // midpoint rule over the patch, element by element
+  constexpr int parts = 20000;  // integral over the patch by the midpoint rule, element by element
   double stress = 0.0;
   for (int i = 0; i < parts; ++i) {
     const double from_front = (i + 0.5) / parts * vehicle.contact_m;

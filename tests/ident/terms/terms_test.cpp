@@ -32,7 +32,7 @@ MotionTerms example_terms() {
 
 /// The terms are computed by hand at two rows. Units and ranges come from the rows.
 TEST(StatedTerms, AreTheFunctionsThatTheyName) {
-  MatrixXd rows(2, 4);          // v, v[k-1], u[k+1] and the constant
+  MatrixXd rows(2, 4);          // the regressors are v, v[k-1], u[k+1] and the constant
   rows << 2.0, -1.0, 0.5, 1.0,  //
       -3.0, 4.0, -0.25, 1.0;
   const auto stated = read_terms("v * v*u, |v[k-1]|, max(0, v - 1.5), max(0,u + 1)");

@@ -41,7 +41,7 @@ struct Surroundings {
   V mean[Q];
   V square_sum;  // sum y^2
   int max_iterations;
-  Ldl<Q> factors;  // factors of gram
+  Ldl<Q> factors;  // LDL factors of `gram`
 };
 
 /// State of a search.

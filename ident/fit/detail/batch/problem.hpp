@@ -30,7 +30,7 @@ struct Settings {
   Index length = 1;    ///< L
   Index step = 1;      ///< samples between window starts
   Loss loss = Loss::huber;
-  double loss_scale = huber_tuning;   ///< c in units of sigma
+  double loss_scale = huber_tuning;   ///< tuning constant c in units of sigma
   double huber_scale = huber_tuning;  ///< Huber threshold of the first stage; non-convex losses start from its optimum
   double consistency = 1.0;           ///< gaussian_consistency of the loss
   bool own_scale = true;              ///< whether each window has its own sigma; else Chunk::sigma is used

@@ -45,7 +45,7 @@ HWY_INLINE Extremes correlation_extremes(const Symmetric<3>& C, V determinant) {
   const V r = hn::IfThenElseZero(hn::Gt(cube, zero()), hn::Div(product, cube));
   const V angle = hn::Mul(splat(1.0 / 3.0), hn::Acos(D(), hn::Max(hn::Min(r, one), hn::Neg(one))));
   const V largest = hn::MulAdd(hn::Add(p, p), hn::Cos(D(), angle), one);
-  // sum of the other two eigenvalues; product of the other two
+  // sum and product of the other two eigenvalues
   const V sum = hn::Sub(splat(3.0), largest), rest = hn::Div(determinant, largest);
   const V root = hn::Sqrt(hn::Max(hn::NegMulAdd(splat(4.0), rest, hn::Mul(sum, sum)), zero()));
   return {hn::Div(hn::Add(rest, rest), hn::Add(sum, root)), largest};

@@ -23,7 +23,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 struct View {
   const double* regressors[max_regressors];
   const double* increments;
-  const double* present;  // null if all transitions are present
+  const double* present;  // flags of the transitions that are present; null if all are present
   Index stride;
   Index length;
 };

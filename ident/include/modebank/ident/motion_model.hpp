@@ -11,7 +11,7 @@ namespace modebank {
 struct ModelParameter {
   std::string name;                                         ///< name in results
   std::string unit;                                         ///< unit of the parameter; may be empty
-  double start = 0.0;                                       ///< start of a search
+  double start = 0.0;                                       ///< start value of a search
   double lower = -std::numeric_limits<double>::infinity();  ///< lower bound
   double upper = std::numeric_limits<double>::infinity();   ///< upper bound
 };

@@ -72,7 +72,7 @@ struct FitOptions {
   Loss loss = Loss::huber;         ///< loss applied to each sample's residual
   double loss_scale = 0.0;         ///< threshold of the robust loss in units of sigma; 0 gives 95 % efficiency at the
                                    ///< normal distribution
-  ScaleSource scale = ScaleSource::window;  ///< source of sigma
+  ScaleSource scale = ScaleSource::window;  ///< source of the residual scale sigma
   double sigma = 0.0;                       ///< residual standard deviation for ScaleSource::fixed [state unit], > 0
   Prior prior = Prior::global;              ///< prior on a window's parameters
   std::vector<double> prior_sd;  ///< p standard deviations; a single value holds for all parameters; if empty, 3 x the

@@ -14,7 +14,7 @@ namespace modebank::ident {
 /// Local models: the fits of M windows of n states with p parameters each. An element or column belongs to one window.
 struct Windows {
   std::vector<std::string> parameter_names;  ///< p; for linear models A (row by row), B and c of each state in turn
-  std::vector<std::ptrdiff_t> run;           ///< M, position in RecordedRuns::runs
+  std::vector<std::ptrdiff_t> run;           ///< M, position of the window's run in RecordedRuns::runs
   std::vector<std::ptrdiff_t> begin;         ///< M, first sample of the window
   std::vector<std::ptrdiff_t> end;           ///< M, last sample of the window: begin + length
   Matrix theta;                              ///< p x M
@@ -25,7 +25,7 @@ struct Windows {
   std::vector<WindowSolver> solver;  ///< M, solver of the window: ceres or batch
   std::vector<double> prior_sd;      ///< p, standard deviations of the prior; empty without a prior
   std::vector<double> global_theta;  ///< p, least squares over all training runs; also the prior's mean
-  WindowAudit audit;                 ///< number of windows per solver, and its tolerance
+  WindowAudit audit;                 ///< number of windows per solver, and the solver's tolerance
 };
 
 /// The names that FitOptions::model accepts: linear, varx and modebank's motion models.

@@ -35,7 +35,7 @@ struct Candidate {
   int agreeing_restarts = 0;  ///< number of restarts that reached the best likelihood by themselves, without crossing
   bool selected = false;      ///< whether this candidate is the chosen one
   double bic_naive = std::numeric_limits<double>::quiet_NaN();  ///< BIC computed as if the points were independent
-  int restarts = 0;                                             ///< number of independent starts
+  int restarts = 0;                                             ///< number of independent random starts
   bool floor_active = false;  ///< whether the covariance floor acts on any component: a cluster without extent
   CandidateStatus status = CandidateStatus::fitted;  ///< whether the candidate could be fitted
 

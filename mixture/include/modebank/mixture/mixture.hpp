@@ -25,7 +25,7 @@ struct Points {
 struct Mixture {
   std::vector<double> weights;      ///< K weights, decreasing; the sum is 1 - noise_weight
   Matrix means;                     ///< F x K
-  std::vector<Matrix> covariances;  ///< K of F x F
+  std::vector<Matrix> covariances;  ///< K covariances of size F x F
   double noise_weight = 0.0;        ///< weight of the uniform component
   std::vector<double> noise_lower;  ///< F, lower corner of the component's box; empty without a uniform component
   std::vector<double> noise_upper;  ///< F, upper corner of the component's box
