@@ -13,7 +13,7 @@ struct SolvedWindow {
   const RobustTerms& terms;
   const Transitions& transitions;  ///< transitions of the window; only their increments are used
   const RobustLoss& loss;
-  double consistency = 1.0;  ///< gaussian_consistency of the loss
+  double consistency = 1.0;  ///< result of `gaussian_consistency` for the loss
   CovarianceKind covariance = CovarianceKind::model;
   const NoiseScale& scale;
   const ParameterPrior* prior = nullptr;

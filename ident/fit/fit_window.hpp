@@ -35,7 +35,7 @@ LocalModel fit_window(const Trajectory& run, Index start, const LinearStructure&
 struct Estimator {
   LinearStructure structure;
   RobustLoss loss;
-  double consistency = 1.0;  ///< gaussian_consistency of the loss
+  double consistency = 1.0;  ///< result of `gaussian_consistency` for the loss
   CovarianceKind covariance = CovarianceKind::model;
   int max_iterations = 100;
 };

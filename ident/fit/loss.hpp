@@ -23,7 +23,7 @@ struct LossValue {
 };
 
 /// A Ceres loss with its tuning constant c in units of sigma. Immutable; all windows and threads share it. arctan is
-/// rho(s) = c^2 atan(s / c^2). (Ceres' own argument is c^2.) So c is a residual for every loss.
+/// rho(s) = c^2 atan(s / c^2). (Ceres' own argument is c^2.) So c has the unit of a residual for every loss.
 class RobustLoss {
  public:
   /// `scale`: 0 selects default_loss_scale. Throws std::invalid_argument for a negative or non-finite scale.

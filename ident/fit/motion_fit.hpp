@@ -12,7 +12,7 @@ namespace modebank {
 /// The data shared by all windows of one motion-model fit. Immutable, shared by threads.
 struct ModelEstimator {
   RobustLoss loss;
-  double consistency = 1.0;  ///< gaussian_consistency of the loss
+  double consistency = 1.0;  ///< result of `gaussian_consistency` for the loss
   CovarianceKind covariance = CovarianceKind::model;
   int max_iterations = 100;
 };

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 /// Ridge on the diagonal of a Gram matrix of columns with unit root mean square, as a share of the number of rows. It
 /// spreads the effect of collinear columns over these columns. Other coefficients do not change.
 constexpr double collinear_ridge = 1e-11;
-constexpr double exact_share = 1e-9;  // share of the increments; a smaller error counts as an exact prediction
+constexpr double exact_share = 1e-9;  // as a share of the increments; a smaller error counts as an exact prediction
 
 // as a share of the errors' root mean square; needed because more than half of the errors may be zero
 constexpr double least_share_of_rms = 1e-3;

@@ -23,7 +23,7 @@ class FactoredMixture {
   double log_noise() const { return log_noise_; }  ///< log of weight times density of the noise component
 
   /// Converts a component's sums in place into sums of r, r d and r d d' (em::Kernels). Kernels with errors sum in
-  /// units of W. All other kernels sum about the origin for central components.
+  /// units of W. For central components, kernels without errors sum about the origin.
   void to_plain_sums(Eigen::Index component, Eigen::Ref<Eigen::VectorXd> sums) const;
 
  private:

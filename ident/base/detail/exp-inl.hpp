@@ -1,9 +1,9 @@
 // Exponentials and logarithms of vectors. Included once per instruction set (Highway's foreach_target.h).
 //
 // Replaces Highway's hn::Exp (1.0.3), which is slower. On a Zen 4 with AVX-512, hn::Exp takes 0.90 ns per value. This
-// code takes 0.41 ns, or 0.30 ns for four vectors at a time. With AVX2, hn::Exp takes 1.35 ns, and this code takes
-// 0.92 ns, or 0.71 ns for four vectors at a time. The latency of hn::Exp is 16 to 18 ns, that of this code 13 ns. Speed matters: EM computes one
-// exponential per point and component, and every step of a filter waits for one.
+// code takes 0.41 ns, or 0.30 ns for four vectors at a time. With AVX2, hn::Exp takes 1.35 ns. This code takes 0.92 ns,
+// or 0.71 ns for four vectors at a time. The latency of hn::Exp is 16 to 18 ns, that of this code 13 ns. Speed matters:
+// EM computes one exponential per point and component, and every step of a filter waits for one.
 #if defined(MODEBANK_EM_EXP_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_EM_EXP_INL
 #undef MODEBANK_EM_EXP_INL

@@ -32,7 +32,7 @@ struct Settings {
   Loss loss = Loss::huber;
   double loss_scale = huber_tuning;   ///< tuning constant c in units of sigma
   double huber_scale = huber_tuning;  ///< Huber threshold of the first stage; non-convex losses start from its optimum
-  double consistency = 1.0;           ///< gaussian_consistency of the loss
+  double consistency = 1.0;           ///< result of `gaussian_consistency` for the loss
   bool own_scale = true;              ///< whether each window has its own sigma; else Chunk::sigma is used
   double floor = 0.0;                 ///< smallest sigma
   bool prior = false;

@@ -30,7 +30,7 @@ struct Start {
   V theta[Q];             // least squares; undefined if rank deficient
   V square_sum, count, rank, condition, sigma;
   M clear;      // lanes whose rank is known with certainty
-  M deficient;  // lanes of `certain` that are rank deficient
+  M deficient;  // lanes of `clear` that are rank deficient
 };
 
 /// Orthogonalises the columns of regressors and increments one after another by modified Gram-Schmidt, with the

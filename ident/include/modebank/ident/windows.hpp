@@ -17,14 +17,14 @@ struct Windows {
   std::vector<std::ptrdiff_t> run;           ///< M, position of the window's run in RecordedRuns::runs
   std::vector<std::ptrdiff_t> begin;         ///< M, first sample of the window
   std::vector<std::ptrdiff_t> end;           ///< M, last sample of the window: begin + length
-  Matrix theta;                              ///< p x M
+  Matrix theta;                              ///< p x M, estimates of theta
   Matrix covariance;                         ///< p*p x M, covariance of theta; NaN if rank deficient without a prior
   Matrix residual_sd;                        ///< n x M, standard deviation of the one-step residuals [state unit]
   std::vector<int> rank;             ///< M, rank of theta: number of directions that the window's data determine
   std::vector<FitStatus> status;     ///< M, how the fit ended
   std::vector<WindowSolver> solver;  ///< M, solver of the window: ceres or batch
   std::vector<double> prior_sd;      ///< p, standard deviations of the prior; empty without a prior
-  std::vector<double> global_theta;  ///< p, least squares over all training runs; also the prior's mean
+  std::vector<double> global_theta;  ///< p, least-squares estimate over all training runs; also the prior's mean
   WindowAudit audit;                 ///< number of windows per solver, and the solver's tolerance
 };
 
