@@ -29,7 +29,7 @@ DataInformation information_of(const Eigen::MatrixXd& posterior) {
   return {vectors, ((1.0 - variance) / variance).max(0.0)};
 }
 
-/// The part that concerns one state's parameters.
+/// Information about `size` parameters from `first` on: the parameters of one state.
 DataInformation block_of(const DataInformation& all, Index first, Index size) {
   const Eigen::MatrixXd rows = all.directions.middleRows(first, size);
   const auto [values, vectors] = symmetric_eigen(rows * all.along.matrix().asDiagonal() * rows.transpose());

@@ -41,9 +41,9 @@ WindowFits fit_windows(const Recording& recording, const FitOptions& options, co
 /// throws it if the states or inputs differ from those of the recording.
 FitOptions options_for(const MotionModel& model, const Recording& recording, FitOptions options);
 
-/// Throws ConfigurationError unless the options name one model that fits n states and m inputs. It is also thrown for
-/// an unknown model, for lags of a model without lags, and for residuals that the model lacks. Also throws the errors
-/// of make_motion_model.
+/// Throws ConfigurationError unless the options name one model that fits n states and m inputs. ConfigurationError is
+/// also thrown for an unknown model, for lags of a model without lags, and for residuals that the model lacks. Also
+/// throws the errors of make_motion_model.
 void check_model(const FitOptions& options, Index states, Index inputs);
 
 /// All model names that the options accept: linear, varx and the motion models.

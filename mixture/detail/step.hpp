@@ -18,9 +18,9 @@ struct MixtureMoments {
   Eigen::MatrixXd sums;
 };
 
-/// E step. Blocks are summed in fixed groups, and groups in order. So the result does not depend on the number of
-/// threads. Runs in parallel for many points. `background` (block_size x blocks, aligned, may be null) replaces the
-/// noise component: a log density at every point.
+/// E step. Blocks are summed in fixed groups, and the groups are added in order. So the result does not depend on the
+/// number of threads. Runs in parallel for many points. `background` (block_size x blocks, aligned, may be null)
+/// replaces the noise component: a log density at every point.
 MixtureMoments expect(const PointBlocks& points, const GaussianMixture& mixture, const double* background = nullptr);
 
 /// `expect` without the components' sums. Log-likelihood and noise equal those of `expect` to the last bit.

@@ -1,7 +1,7 @@
-// Window fits compared with other programs in one run: CPU time of one thread, programs in alternating order, medians
-// over the rounds. modebank computes its full results: robust scale, prior, rank, condition, information, R^2 and AIC.
-// The peers have a fixed scale and no prior; they compute theta, `model` covariance and status. Usage: compare_windows
-// [ROUNDS]
+// Compares window fits with those of other programs. The programs run on one thread in alternating order. Prints
+// medians of their CPU times over the rounds. modebank computes its full results: robust scale, prior, rank, condition,
+// information, R^2 and AIC. The peers have a fixed scale and no prior; they compute theta, `model` covariance and
+// status. Usage: compare_windows [ROUNDS]
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
