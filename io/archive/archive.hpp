@@ -30,20 +30,20 @@
 
 namespace modebank {
 
-/// Origin of an archive: program, libraries, inputs.
+/// How an archive was made: program, libraries and inputs.
 struct Provenance {
   std::string modebank_version;
-  std::string created;  ///< UTC, ISO 8601
+  std::string created;  ///< time of creation in UTC, ISO 8601
   std::string command_line;
   std::string config_hash;
   std::string data_hash;
-  std::vector<std::pair<std::string, std::string>> versions;  ///< library or tool -> version
+  std::vector<std::pair<std::string, std::string>> versions;  ///< version of each library or tool
   std::vector<InputFile> inputs;
 };
 
-/// One filter over all runs of the recording, in its order.
+/// Evaluations of one filter on all runs, in the order of the recording.
 struct FilterEvaluation {
-  std::string filter;  ///< bank or a competitor
+  std::string filter;  ///< the bank or a competitor
   std::vector<RunEvaluation> runs;
   std::vector<FreeRun> free_runs =
       {};                 ///< only with filter.simulate; the archive leaves out `pit`, `log_density` and `notes`
@@ -64,7 +64,7 @@ struct FilterEvaluation {
 using EvaluationSink =
     std::function<void(const std::string& filter, std::size_t run, const RunEvaluation& said, const FreeRun* free_run)>;
 
-/// Residual tests of one model over all runs of the recording, in its order.
+/// Residual tests of one model on all runs, in the order of the recording.
 struct ResidualTestSet {
   std::string model;  ///< `global` (residuals one step ahead), or a filter: the bank or a competitor (scores z)
   std::vector<ResidualTests> runs;
@@ -80,7 +80,7 @@ struct ConfusionRow {
   double share = 0.0;  ///< this number as a share of all samples with the label
 };
 
-/// The data of an execution.
+/// The recording of an execution, with its labels, its sampling and its lag.
 struct DataPart {
   std::optional<Recording> recording;
   std::optional<RunLabels> labels;  ///< with data.label
@@ -109,9 +109,9 @@ struct Archive : DataPart, Learning {
   bool one_motion_drifts() const { return one_motion && !one_motion->drift.empty(); }
 };
 
-/// Writes the archive under a temporary name in the same folder, flushes, closes, hashes and renames it. Throws
-/// DataError on failure and leaves nothing behind. docs/reference/archive.md describes the layout. Every number is
-/// stored as computed.
+/// Writes the archive under a temporary name in the same folder, flushes and closes it, hashes it and renames it. On
+/// failure throws DataError and leaves no file behind. docs/reference/archive.md describes the layout. Every number is
+/// stored exactly.
 void write_archive(const std::filesystem::path& path, const Archive& archive);
 /// Like the function above, but makes the archive on disk rather than in memory. write_archive does this for
 /// evaluations above 128 MB and responsibilities above 256 MB. Memory then never holds all of them.

@@ -19,7 +19,7 @@ class ArchiveImage {
  public:
   ArchiveImage();
   const hdf5::Handle& file() const { return file_; }
-  /// All bytes after the user block; valid until the next write. Flushes the file.
+  /// Returns all bytes after the user block, valid until the next write. Flushes the file.
   std::string_view content() const;
 
  private:

@@ -8,9 +8,9 @@
 namespace modebank {
 
 /// One object of an archive as JSON.
-/// - A group: {"attributes": {...}, "members": {name: {kind, shape, units}}}.
-/// - A dataset: {"attributes": ..., "shape": ..., "value": nested arrays}. The value of a table is an array of row
-///   objects, and "columns" lists their names in the file's order.
+/// - A group becomes {"attributes": {...}, "members": {name: {kind, shape, units}}}.
+/// - A dataset becomes {"attributes": ..., "shape": ..., "value": nested arrays}.
+/// - In a table, "value" is an array of row objects, and "columns" lists the columns' names in the order of the file.
 /// - NaN becomes null.
 ///
 /// If a run is named, arrays over samples and tables with a column `run` contain only this run's rows. The root becomes

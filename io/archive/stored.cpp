@@ -207,7 +207,7 @@ void check_labels(const Archive& archive) {
     if (!known.contains(row.label)) throw DataError("confusion names the unknown label '" + row.label + "'");
 }
 
-/// Checks the names of competitors in a finding; a name may be empty.
+/// Checks the names of competitors in a finding. A name may be empty.
 void check_competitors(const Finding& finding) {
   const auto known = [](const std::string& name, bool may_be_empty) {
     if ((name.empty() && may_be_empty) || (is_filter(name) && name != combined_name)) return;

@@ -69,7 +69,7 @@ void check_together(const char* what, std::initializer_list<Eigen::Index> sizes)
 void check_modes(const Archive& archive);
 /// Throws unless all runs, labels and filters named in the tables exist.
 void check_score_names(const Archive& archive);
-/// Checks that each of these groups exists exactly once.
+/// Throws DataError if a name occurs twice.
 void check_different(const std::string& what, const std::vector<std::string>& names);
 
 /// Binds the letter for the number of samples of all runs. No number of samples may exceed it.

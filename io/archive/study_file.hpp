@@ -32,7 +32,7 @@ struct StudyFile {
   std::string table;  ///< name of the dataset
   std::vector<NamedColumn> columns;
   std::vector<std::pair<std::string, std::filesystem::path>> archives;  ///< stored as /trials/<name>
-  std::vector<NamedTable> answers;  ///< computed from the table; stored as /answers/<name>
+  std::vector<NamedTable> answers;  ///< computed from the table and stored as /answers/<name>
 };
 
 /// Whether /trials/<name> are external links or copies of the archives' content. Links are relative to the file's

@@ -29,7 +29,7 @@ Index evaluated_numbers(const Archive& archive) {
 /// Whether the archive is made on disk rather than in memory.
 bool is_large(const Archive& archive) {
   constexpr Index most_in_memory = Index{2} << 20;  // doubles
-  constexpr Index numbers_per_parameter = 8;        // numbers per window: value, error and description of the fit
+  constexpr Index numbers_per_parameter = 8;        // values per parameter: estimate, error and description of the fit
   if (evaluated_numbers(archive) > most_in_memory / 2) return true;
   if (archive.windows &&
       numbers_per_parameter * archive.windows->parameters.size() + archive.windows->covariance.size() > most_in_memory)
@@ -39,7 +39,7 @@ bool is_large(const Archive& archive) {
   return responsibilities.windows() * responsibilities.components() > most_in_memory;
 }
 
-/// The unfinished file of an archive; the destructor closes it.
+/// The unfinished file of an archive. The destructor closes the file.
 class FileInTheMaking {
  public:
   explicit FileInTheMaking(const std::filesystem::path& path) {

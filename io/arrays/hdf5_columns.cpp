@@ -101,7 +101,7 @@ class Hdf5Columns : public ColumnStore {
     throw ConfigurationError(fmt::format("{}: no column has numbers in two rows or more{}", path_, why));
   }
 
-  /// Removes the group's name from columns if the file has only one table.
+  /// If the file has only one table, removes the group's name from the columns' names.
   void leave_out_only_group() {
     const std::string group = columns_.front().group;
     for (const StoredColumn& column : columns_)

@@ -59,7 +59,7 @@ std::optional<Grouped> grouped(std::string_view field, char decimal, char mark) 
   }
   const bool has_exponent = rest.find_first_of("eE") != std::string_view::npos;
   if (result.marks > 0 && !result.has_decimals && has_exponent)
-    return std::nullopt;  // the mark in 2.499e3 is a decimal mark
+    return std::nullopt;  // in 2.499e3 the point is a decimal mark
   result.digits += rest;  // only decimals and an exponent may follow; parse_number checks them
   return result;
 }

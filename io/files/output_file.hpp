@@ -18,7 +18,7 @@ struct FileForm {
 /// A form that is recognised by the text `sign` within the first `within` bytes of the file.
 FileForm form_by_front(std::string name, std::string sign, std::size_t within);
 
-/// An output file that a user names.
+/// An output file whose path the user has typed.
 struct OutputFile {
   std::string option;          ///< the option with the file's path: "-o", "track.checkpoint"
   std::filesystem::path path;  ///< the path as the user typed it

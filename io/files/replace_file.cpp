@@ -28,7 +28,7 @@ struct DiskFailure : DataError {
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-/// An open descriptor. Its close() reports errors, unlike a destructor.
+/// An open file descriptor. A call of close() reports errors; the destructor ignores them.
 class Descriptor {
  public:
   Descriptor(const fs::path& path, int flags) : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-struct evp_md_ctx_st;  // type of libcrypto
+struct evp_md_ctx_st;  // a type of libcrypto
 
 namespace modebank {
 

@@ -4,8 +4,8 @@
 
 namespace modebank {
 
-/// Writes text to standard error. Text that cannot be written is dropped, so that a full or closed log does not stop
-/// the program. Returns false if text was dropped.
+/// Writes text to standard error. Returns false if text had to be dropped. A full or closed log thus does not stop the
+/// program.
 bool say(std::string_view text);
 
 /// Writes text without waiting. Text is dropped if the reader has no room for it.

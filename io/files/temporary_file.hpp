@@ -8,7 +8,7 @@ namespace modebank {
 /// Twelve random hexadecimal digits.
 std::string random_word();
 
-/// An unused path in the folder of `target`: .TARGET.modebank-RANDOM.tmp
+/// An unused path in the folder of `target`. Its name is .TARGET.modebank-RANDOM.tmp
 std::filesystem::path temporary_path(const std::filesystem::path& target);
 
 /// Whether a path is a leftover of a killed process. A leftover is a temporary path that was not written to for a day.

@@ -85,7 +85,7 @@ class StoredArray {
   const Shape& shape() const { return shape_; }
   hsize_t elements() const { return elements_; }
   void read(hid_t memory_type, void* data) const;
-  /// A range of rows of a dataset, within its first extent.
+  /// Reads a range of rows of a dataset. The range must lie within its first extent.
   void read_rows(const Rows& rows, hid_t memory_type, void* data) const;
   /// Rows of a table as they are in the file, of type `type()`. Throws DataError if a member is neither a number nor a
   /// text of fixed length.

@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// Finds columns in the tables of a plan's files and adds them to the requests of its sources. Throws
-/// ConfigurationError with the existing names if a column does not exist.
+/// Finds columns in the tables of a plan's files. Adds them to the requests of the plan's sources. If a column does not
+/// exist, throws ConfigurationError with the existing names.
 class ColumnFinder {
  public:
   /// `plan` must have open readers.
@@ -55,7 +55,7 @@ class ColumnFinder {
   FilePlan& plan_;
   std::shared_ptr<const DerivedChannels> derived_;
   std::vector<std::string> names_;              // names of the files
-  std::vector<std::vector<TableInfo>> tables_;  // tables of each file
+  std::vector<std::vector<TableInfo>> tables_;  // the tables of each file
 };
 
 }  // namespace modebank

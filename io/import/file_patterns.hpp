@@ -34,7 +34,7 @@ class FilePattern {
   bool has_star_ = false;
   std::filesystem::path folder_;  // path before the name that contains `*`; the whole path if there is no `*`
   std::string before_, after_;    // parts of this name before and after `*`
-  std::filesystem::path rest_;    // part of the path after this name
+  std::filesystem::path rest_;    // path after this name
 };
 
 /// The files of a key. The key has one path with at most one `*`, or one path without `*` for each run ("a.csv,
@@ -46,8 +46,8 @@ class RunFiles {
     std::vector<std::filesystem::path> parts;  ///< one file, or the parts of a recording
   };
 
-  /// If the whole text, commas included, is the name of a file, it means that file. Throws ConfigurationError as
-  /// FilePattern does. Also throws it for a list with a `*`, an empty entry or two files of the same stem.
+  /// If a file has the whole text, commas included, as its name, the text means this file. Throws ConfigurationError in
+  /// the same cases as FilePattern. Also throws it for a list with a `*`, an empty entry or two files of the same stem.
   RunFiles(const std::string& key, const std::string& root, const std::string& text);
 
   bool one() const { return entries_.size() == 1 && !entries_.front().front().has_star(); }

@@ -29,7 +29,7 @@ inline constexpr auto joint_source = static_cast<std::size_t>(-1);
 /// Location of a requested column.
 struct ColumnRef {
   std::size_t source = 0;  ///< index in FilePlan::sources, or joint_source
-  std::size_t column = 0;  ///< index in that source's TableRequest::numbers, or in FilePlan::joint
+  std::size_t column = 0;  ///< index in TableRequest::numbers of that source, or in FilePlan::joint
 };
 
 struct JointColumn {
@@ -49,9 +49,9 @@ struct FilePlan {
   std::vector<ColumnRef> where;   ///< at most one channel
   std::vector<JointColumn> joint;
   std::vector<Channel> states, inputs;  ///< names of the channels; units if the files state them
-  bool by_row = false;                  ///< Join::row
-  /// Sources of the times of states and of inputs. They are equal where rows correspond, or where the first state and
-  /// the first input are in one table. Columns of other sources are brought to these times.
+  bool by_row = false;                  ///< true for Join::row
+  /// Sources of the times of states and of inputs. They are the same source if rows correspond, or if the first state
+  /// and the first input are in one table. Columns of other sources are computed at these times.
   std::size_t states_clock = 0, inputs_clock = 0;
   std::size_t runs_source = 0;     ///< if rows correspond: the source whose text column contains the run names, if any
   std::optional<ColumnRef> label;  ///< index of the column of labels in TableRequest::texts

@@ -16,11 +16,11 @@ namespace modebank {
 /// The content of one plan's files.
 struct FileContent {
   std::vector<RunStreams> runs;   ///< runs sorted by name; roles are not set and samples are not sorted
-  std::vector<InputFile> files;   ///< inputs before states
+  std::vector<InputFile> files;   ///< the files: inputs before states
   std::vector<FileStamps> forms;  ///< formats of the stamps
   UnsetRows unset;
   std::vector<std::string> notes;
-  std::map<std::string, std::size_t> missing_words;  ///< sum of Table::missing_words
+  std::map<std::string, std::size_t> missing_words;  ///< sum of Table::missing_words over all tables
 };
 
 /// Reads one plan's files into streams, run by run. Throws DataError (io/import/import.hpp). Even then `result`

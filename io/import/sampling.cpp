@@ -28,7 +28,7 @@ bool moves_at_each_sample(const std::vector<const Stream*>& streams, Index row) 
   return 2 * again > changes;
 }
 
-/// Indices of the columns to average.
+/// Indices of the columns whose values are averaged.
 std::vector<Index> averaged_rows(const std::vector<const Stream*>& streams, double rate_hz, std::size_t rows,
                                  const std::vector<Index>* learned) {
   Times times;

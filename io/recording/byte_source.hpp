@@ -26,7 +26,7 @@ T little_endian(std::string_view bytes) {
   return value;
 }
 
-/// Bytes that are read part by part: a file, or a chunk in memory.
+/// Bytes that are read part by part, from a file or from a chunk in memory.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;

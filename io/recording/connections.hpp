@@ -8,14 +8,14 @@
 
 namespace modebank {
 
-/// One stream of messages in a recording. A topic may have several.
+/// One stream of messages in a recording. A topic may have several connections.
 struct Connection {
   std::string topic;
   std::string type;
   enum class Encoding { ros1, cdr, unknown };
   Encoding encoding = Encoding::unknown;
-  std::string encoding_name;    ///< name in the recording
-  std::string definition;       ///< text; may be empty
+  std::string encoding_name;    ///< name of the encoding in the recording
+  std::string definition;       ///< text of the definition; may be empty
   std::string definition_form;  ///< "ros1msg", "ros2msg", or any other word in the recording
   std::uint64_t messages = 0;
 };

@@ -161,7 +161,7 @@ Field Schema::parse_field(std::string_view type, std::string_view name, const st
     field.kind = *kind;
   } else {
     const std::string full = full_name(type, package, dialect_);
-    // A ROS 2 message in MCAP may use the name Time for a type of its own package.
+    // In MCAP, a ROS 2 message may use the name Time for a type of its own package.
     if (const auto known = primitive(full, dialect_))
       field.kind = *known;
     else

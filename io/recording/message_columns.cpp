@@ -27,8 +27,8 @@ class Listing {
 
   void list(const MessageType& type, const std::string& prefix) {
     if (type.fields.empty()) return payload_.empty_type();
-    std::vector<std::string> names;                   // content of the array `name`
-    std::vector<std::pair<std::string, Kind>> keyed;  // arrays with the same number of values
+    std::vector<std::string> names;                   // entries of the array `name`
+    std::vector<std::pair<std::string, Kind>> keyed;  // arrays that have the same number of values as `name`
     for (const Field& field : type.fields) {
       const std::string path = prefix + field.name;
       if (field.many == Many::one) {

@@ -20,7 +20,7 @@ void add_embedded(const Connection& connection, Schemas& candidates, std::string
   const auto parts = split_definitions(root, connection.definition);
   const auto lookup = [&](const std::string& type) -> std::optional<std::string_view> {
     if (const auto found = parts.find(type); found != parts.end()) return found->second;
-    // Some writers omit the package, or write a wrong one.
+    // Some writers omit the package in the type's name, or write a wrong package.
     const std::string ending = type.substr(type.find('/') + 1);
     for (const auto& [name, text] : parts)
       if (name.substr(name.find('/') + 1) == ending) return text;

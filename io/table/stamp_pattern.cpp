@@ -135,7 +135,7 @@ const std::vector<StampPattern>& known_stamp_patterns() {
     std::vector<StampPattern> all;
     const auto add = [&all](const std::string& pattern) {
       const bool known = std::any_of(all.begin(), all.end(), [&](const StampPattern& other) {
-        return other.text() == pattern + "%z";  // the zone may be missing
+        return other.text() == pattern + "%z";  // the value may have no zone
       });
       if (!known) all.emplace_back(pattern);
     };

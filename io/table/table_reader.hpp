@@ -45,8 +45,8 @@ struct TimeRequest {
 /// The requested columns of a table. Other columns are skipped without a check.
 struct TableRequest {
   std::size_t table = 0;                ///< index of the table in TableReader::tables
-  std::vector<std::string> numbers;     ///< columns of finite numbers, each once
-  std::vector<std::string> texts = {};  ///< columns of text, each once
+  std::vector<std::string> numbers;     ///< columns of finite numbers; each column occurs once
+  std::vector<std::string> texts = {};  ///< columns of text; each column occurs once
   std::vector<bool> may_miss = {};      ///< for each column of numbers, whether missing values become NaN; empty:
                                         ///< missing values are errors
   TimeRequest time = {};

@@ -90,7 +90,7 @@ Filter make_filter(const py::object& bank, const std::string& which, const py::k
   if (py::isinstance<filter::Bank>(bank)) return {bank.cast<const filter::Bank&>(), config_of(keys, "filter.").filter};
   const std::string path = path_of(bank);
   const FilterOptions of_bank = app::stored_config(load_configuration(path), key_values(keys, "filter.")).filter;
-  const bool single = which == "bank" && of_bank.variant == FilterVariant::kf;  // the global model, for every bank
+  const bool single = which == "bank" && of_bank.variant == FilterVariant::kf;  // kf uses the global model
   const FilterOptions options = which == "bank" ? of_bank : competitor_filter(which, of_bank);
   return {archive::load_bank(path, single ? "baseline" : which), options};
 }

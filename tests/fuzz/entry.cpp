@@ -15,7 +15,7 @@
 #include "modebank/base/error.hpp"
 #include "tests/support/paths.hpp"
 
-// TBB's threads run until the process ends.
+// LeakSanitizer must ignore TBB, because TBB's threads run until the process ends.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libtbb\n"; }  // NOLINT
 
 namespace modebank::fuzz {

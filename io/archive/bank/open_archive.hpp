@@ -38,9 +38,9 @@ class OpenArchive {
   OpenArchive(const char* path) : OpenArchive(std::filesystem::path(path)) {}         // NOLINT
 
   const std::filesystem::path& path() const;
-  /// SHA-256 of the content, from the user block: identifies the archive.
+  /// SHA-256 of the content, as the user block contains it. It identifies the archive.
   const std::string& digest() const;
-  /// The root group. Calls of HDF5 need a living hdf5::Quiet.
+  /// The root group. Calls of HDF5 functions need an existing hdf5::Quiet.
   hdf5::Handle root() const;
 
  private:

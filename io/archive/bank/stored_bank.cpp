@@ -36,7 +36,7 @@ void check_count(const std::string& what, const std::vector<std::string>& names,
 }
 
 void check_lags(const LinearStructure& s, Index dimension) {
-  constexpr Index most_states = 1'000'000;  // limit, so that products of sizes do not overflow
+  constexpr Index most_states = 1'000'000;  // upper limit, so that products of sizes do not overflow
   if (dimension < 1 || dimension > most_states || s.inputs < 0 || s.state_lags < 1 || s.input_lags < 1 ||
       s.input_delay < 0 || dimension % s.state_lags != 0)
     throw DataError(std::to_string(dimension) + " states, " + std::to_string(s.inputs) + " inputs and lags of " +
@@ -59,8 +59,8 @@ namespace {
 
 enum class Presence { always, if_any };
 
-/// Calls visit for every array of the modes, with these arguments: member of StoredBank, name in messages, rows,
-/// columns, member of a mode, whether a bank may lack the array.
+/// Calls `visit` for every array of the modes. Its arguments are the member of StoredBank, the name in messages, rows,
+/// columns, the member of a mode, and whether a bank may lack the array.
 template <class Visit>
 void for_each_mode_array(const LinearStructure& s, Index p_motion, Index terms, Visit visit) {
   const Index n = s.dimension(), p = s.parameters();
@@ -96,7 +96,7 @@ void for_each_mode_array(const LinearStructure& s, Index p_motion, Index terms, 
       [](auto& mode) -> auto& { return mode.motion_standard_error; }, always);
 }
 
-/// Calls visit(member of StoredBank, member of the bank) for each matrix of the bank itself.
+/// Calls visit(member of StoredBank, member of the bank) for each matrix that belongs to the bank and not to a mode.
 template <class Visit>
 void for_each_bank_matrix(Visit visit) {
   visit(&StoredBank::C, &Bank::C);
@@ -106,8 +106,7 @@ void for_each_bank_matrix(Visit visit) {
   visit(&StoredBank::transition_weight_error, &Bank::transition_weight_error);
 }
 
-/// The layout has room for weights that depend on the previous mode. In this version the weights are equal for all
-/// previous modes.
+/// In the layout, weights may depend on the previous mode. In this version they are equal for all previous modes.
 void store_logit(const Bank& bank, StoredBank& stored) {
   const TransitionLogit& logit = bank.transition_logit;
   if (logit.empty()) return;
@@ -151,7 +150,7 @@ void store_terms(const MotionTerms& terms, StoredBank& stored) {
   stored.term_unit = terms.unit;
 }
 
-/// check_terms reports wrong sizes.
+/// Wrong sizes are reported by check_terms.
 MotionTerms restore_terms(const StoredBank& stored) {
   MotionTerms terms{stored.term_directions, stored.term_low, stored.term_high, stored.term_unit, {}};
   const Index T = std::ssize(stored.term_kinds);

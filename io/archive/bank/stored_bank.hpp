@@ -9,11 +9,13 @@
 
 namespace modebank {
 
-/// Forms in which the archive stores structs of another shape. Each `store_` has a `restore_` that returns the same
-/// bits. Arrays have one window or mode per column; matrices within a column are row-major. store_ throws
-/// std::invalid_argument for sizes that disagree, restore_ throws DataError for invalid content.
+/// Forms in which the archive stores structs whose own form is different. For each `store_` function there is a
+/// `restore_` function that returns the same bits. Arrays have one window or mode per column; matrices within a column
+/// are row-major. `store_` throws std::invalid_argument if sizes disagree. `restore_` throws DataError if content is
+/// invalid.
 
-/// Puts one matrix per mode into the columns of a (rows * cols) x count array. `what`: its name in messages.
+/// Puts the modes' matrices into the columns of a (rows * cols) x count array. `what`: name of the matrices in
+/// messages.
 template <class Get>
 Eigen::MatrixXd side_by_side(std::size_t count, Eigen::Index rows, Eigen::Index cols, const char* what, Get get) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -28,27 +30,27 @@ Eigen::MatrixXd side_by_side(std::size_t count, Eigen::Index rows, Eigen::Index 
   }
   return result;
 }
-/// One of these matrices.
+/// Matrix k from the columns that side_by_side returns.
 Eigen::MatrixXd one_of(const Eigen::MatrixXd& columns, Eigen::Index k, Eigen::Index rows, Eigen::Index cols);
 
 struct StoredChannels {
   std::vector<std::string> names;
   std::vector<std::string> units;
-  std::vector<std::string> averaged = {};  ///< for recorded channels: names of the averaged ones
+  std::vector<std::string> averaged = {};  ///< for recorded channels: names of the averaged channels
 };
 
-/// Names and units of a motion model's parameters; start values of searches are not stored.
+/// Names and units of a motion model's parameters. Start values of searches are not stored.
 StoredChannels store_model_parameters(const std::vector<ModelParameter>& parameters);
 std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored);
 
-/// Throws DataError unless the number of names is 0 or the number of columns.
+/// Throws DataError if there are names, but not one for each column.
 void check_count(const std::string& what, const std::vector<std::string>& names, std::size_t named);
 
-/// The structure with the number of states that follows from its dimension n. Throws DataError if p parameters do not
-/// fit this structure.
+/// Completes a structure with its number of states, which follows from the dimension n. Throws DataError if p
+/// parameters do not fit this structure.
 LinearStructure restore_structure(LinearStructure stored, Eigen::Index dimension, Eigen::Index parameters);
 
-/// Both throw DataError: for lags that do not fit the number of states, or for a wrong number of parameters.
+/// Both functions throw DataError if lags do not fit the number of states, or if the number of parameters is wrong.
 void check_lags(const LinearStructure& structure, Eigen::Index dimension);
 [[noreturn]] void parameters_do_not_fit(Eigen::Index parameters, Eigen::Index states);
 

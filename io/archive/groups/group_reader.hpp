@@ -24,10 +24,10 @@ struct LeftOut {
 };
 
 /// Reads members as the layout describes them, with the same calls as GroupWriter.
-/// - Shapes must agree, and numbers that become positions or sizes must be within bounds. The first problem is thrown
-///   as DataError.
-/// - With a list of problems (verification), all values are checked, problems are listed and reading continues. Large
-///   arrays are checked block by block and left empty.
+/// - Shapes must agree. Numbers that become positions or sizes must be within bounds. The first problem is thrown as
+/// DataError.
+/// - With a list of problems (verification), all values are checked. Problems are added to the list, and reading
+/// continues. Large arrays are checked block by block and left empty.
 class GroupReader {
  public:
   static constexpr bool reads = true;
@@ -81,7 +81,7 @@ class GroupReader {
   void optional_attribute_texts(const std::string& name, std::vector<std::string>& texts) {
     if (hdf5::has_attribute(group_.id(), name)) attribute_texts(name, texts);
   }
-  /// All attributes, in name order.
+  /// Reads all attributes, in order of their names.
   void attributes(std::vector<std::pair<std::string, std::string>>& pairs);
 
   void text(const std::string& name, std::string& value);

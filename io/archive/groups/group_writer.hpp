@@ -16,8 +16,8 @@ namespace modebank {
 /// Binds the letters of an array. Throws std::invalid_argument with the array's path if extents disagree.
 void agree(Sizes& sizes, const std::string& place, const Letters& letters, const hdf5::Shape& shape);
 
-/// Shape of an array with one sample, window or mode per column. For three extents, the middle one must be bound.
-/// `all`: the first extent of the whole array if `values` are only some of its rows, else 0.
+/// Shape of an array with one sample, window or mode per column. If there are three extents, the middle one must be
+/// bound. `all`: first extent of the whole array, if `values` are only some of its rows; otherwise 0.
 hdf5::Shape shape_of(Sizes& sizes, const std::string& place, const Letters& letters, hsize_t rows, hsize_t cols,
                      bool is_vector, hsize_t all);
 template <class Derived>

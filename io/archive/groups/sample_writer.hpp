@@ -9,15 +9,16 @@
 
 namespace modebank {
 
-/// Writes arrays over the samples of all runs (letter S): one array per quantity, in which each run has its rows.
-/// - Rows of several runs are collected into blocks; each block is written by one call per array.
-/// - Runs come in any order, each once.
-/// - An array that no run has is absent. If only some runs have an array, the rows of the others are NaN or -1.
+/// Writes arrays over the samples of all runs (letter S). Each quantity has one array, and each run has its rows in
+/// this array.
+/// - Rows of several runs are collected into blocks. One call per array writes a block.
+/// - Runs may come in any order, but each only once.
+/// - An array that no run has is absent. If only some runs have an array, the rows of all other runs are NaN or -1.
 class SampleWriter {
  public:
   static constexpr bool reads = false;
 
-  /// Writes arrays into the group; `total`: samples of all runs.
+  /// Writes arrays into the group. `total`: number of samples of all runs.
   SampleWriter(const GroupWriter& group, hsize_t total);
 
   /// Selects the run whose fields are written next, by its rows.

@@ -55,7 +55,7 @@ TEST_F(ArchiveDamage, TruncatedFilesAreErrorsAtEveryLength) {
 
 TEST_F(ArchiveDamage, AFileThatHdf5CannotOpenIsCalledDamaged) {
   std::string bytes = read_file(path);
-  bytes[bytes.find("OHDR") + 5] ^= 1;  // object header of the root group
+  bytes[bytes.find("OHDR") + 5] ^= 1;  // the object header of the root group
   test::write_file(path, bytes);
   const auto says = ThrowsMessage<DataError>(AllOf(HasSubstr(path.string()), HasSubstr("damaged")));
   EXPECT_THAT([&] { read_archive(path); }, says);

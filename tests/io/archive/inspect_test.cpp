@@ -113,7 +113,7 @@ TEST_F(Inspect, OfARunThereAreItsRows) {
   EXPECT_EQ(whole["members"]["/evaluation/baseline"]["nis"]["shape"], json({run.samples()}));
   EXPECT_FALSE(whole["members"].contains("/evaluation/evidence"));
   EXPECT_EQ(inspect(path, "/evaluation/summary", "run 2")["value"].size(), 4u);
-  EXPECT_EQ(inspect(path, "/residual_tests/lags", run.run)["value"].size(), 8u);  // 4 lags of 2 models
+  EXPECT_EQ(inspect(path, "/residual_tests/lags", run.run)["value"].size(), 8u);  // 4 lags for each of 2 models
   EXPECT_THAT([&] { inspect(path, "/bank/A", run.run); },
               ThrowsMessage<ConfigurationError>(HasSubstr("/bank/A has nothing by run")));
   EXPECT_THAT([&] { inspect(path, "/bank", run.run); }, ThrowsMessage<ConfigurationError>(HasSubstr("/bank holds")));

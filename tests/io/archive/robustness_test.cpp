@@ -99,7 +99,7 @@ TEST_F(Robustness, D2MatricesThatAreNoCovariances) {
         patch_number(path, "/bank/Q", 5, 50.0);
         patch_number(path, "/bank/Q", 6, 50.0);
       },
-      "/bank/Q: holds a matrix at (1, 0, 0) that is not a covariance");  // not positive semidefinite
+      "/bank/Q: holds a matrix at (1, 0, 0) that is not a covariance");  // this matrix is not positive semidefinite
   finds_number("/mixture/covariances", 1, 1e3, "/mixture/covariances: holds a matrix");
 }
 

@@ -7,8 +7,8 @@
 namespace modebank {
 namespace {
 
-// Examples of FIPS 180-4 (NIST, "Cryptographic Standards and Guidelines: example values", SHA-256), and the long
-// message of FIPS 180-2, appendix B.3.
+// Examples from FIPS 180-4 (NIST, "Cryptographic Standards and Guidelines: example values", SHA-256). The long message
+// is from FIPS 180-2, appendix B.3.
 TEST(Sha256, OfTheEmptyMessage) {
   EXPECT_EQ(sha256_hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }

@@ -360,7 +360,7 @@ TEST_F(ImportDialect, UnitsRowAndComments) {
 TEST_F(ImportDialect, Utf16) {
   expect_plain(utf16(plain(), true));
   expect_plain(utf16(plain(), false));
-  expect_plain(utf16(plain(), true).substr(2));  // without its byte-order mark
+  expect_plain(utf16(plain(), true).substr(2));  // the text without its byte-order mark
 }
 
 TEST_F(ImportDialect, NoHeader) {

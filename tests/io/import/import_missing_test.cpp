@@ -1,4 +1,4 @@
-// data.missing and data.disorder: reading imperfect logs.
+// Reads imperfect logs with data.missing and data.disorder.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

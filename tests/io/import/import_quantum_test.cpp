@@ -1,4 +1,4 @@
-// data.quantum: detection of rounded states.
+// Detects rounded states with data.quantum = auto.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -25,7 +25,7 @@ class ImportSampling : public test::ImportFixture {
 
   using Signal = std::function<double(double)>;
 
-  /// A log of `rows` rows at these times.
+  /// A log with `rows` rows at the given times.
   Trajectory read(const std::function<double(int)>& time, const Signal& x, const Signal& u, int rows = 1000) {
     std::string content = "time,x,u\n";
     for (int k = 0; k < rows; ++k) content += fmt::format("{:.9f},{:.9f},{:.9f}\n", time(k), x(time(k)), u(time(k)));

@@ -1,4 +1,4 @@
-// data.weight: sample weights from a column.
+// Reads sample weights from the column data.weight.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -176,7 +176,7 @@ TEST(MessageFormat, DefinitionsThatCannotBeAreRefused) {
   EXPECT_THAT(error(deep), HasSubstr("nested more than 32 deep"));
 }
 
-/// Sixteen levels of 4,000 empty values each would take too long to visit.
+/// Sixteen nested levels, each with 4,000 empty values, would take too long to visit.
 TEST(MessageFormat, NothingIsWalkedThroughThatHasNoBytes) {
   std::string definition = "A0[4000] x\nuint8 a\n";
   for (int i = 0; i < 16; ++i)
