@@ -33,8 +33,7 @@ struct TableSink {
   struct Target {
     int numbers = skipped, texts = skipped;
   };
-  std::vector<Target> target;                            // for each column of the file: skipped, or its index in the
-                                                         // table
+  std::vector<Target> target;                            // for each column of the file: skipped, or index in the table
   std::size_t time_column = none, second_column = none;  // the columns, if a stamp has two parts in two columns
   std::vector<std::string> header;
   Table table;

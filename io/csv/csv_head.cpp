@@ -15,8 +15,7 @@ namespace modebank {
 
 namespace {
 
-constexpr std::size_t probed_bytes = 1 << 16;  // number of bytes that are read first, to find the file's dialect and
-                                               // header
+constexpr std::size_t probed_bytes = 1 << 16;  // bytes that are read first, to find dialect and header
 constexpr std::size_t most_probed_bytes = 1 << 24;
 
 std::string too_many_columns() { return fmt::format("more than {} columns", most_csv_columns); }

@@ -85,8 +85,8 @@ class CsvPass {
         fmt::format("{}:{}: malformed quotes: a quoted field must end before the next separator", file_, line_));
   }
 
-  static constexpr std::size_t chunk_bytes = 1
-                                             << 18;  // the sink is asked whether it is done after this number of bytes
+  static constexpr std::size_t chunk_bytes =
+      1 << 18;  // bytes that are parsed before the sink is asked again whether it is done
 
   std::string_view file_;
   Sink& sink_;

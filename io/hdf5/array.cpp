@@ -50,8 +50,8 @@ std::size_t longest(const std::vector<std::string>& texts) {
 
 Handle array_text_type(const std::vector<std::string>& texts) {
   Handle type = string_type(longest(texts));
-  // ASCII is valid UTF-8, so readers accept both. But if a dataset such as /windows/run is marked UTF-8, Octave's load
-  // drops its whole group.
+  // ASCII texts are not marked as UTF-8, although they are valid UTF-8. Octave's load drops a whole group if a dataset
+  // such as /windows/run is marked as UTF-8.
   if (is_ascii(texts)) check(H5Tset_cset(type.id(), H5T_CSET_ASCII), "make an ASCII type");
   return type;
 }

@@ -41,8 +41,7 @@ class DerivedChannels {
 struct DerivedColumn {
   std::size_t position = 0;  ///< index in TableRequest::numbers
   std::shared_ptr<const DerivedChannel> channel;
-  std::vector<std::size_t> operands;  ///< indices of the operands in TableRequest::numbers; all are less than
-                                      ///< `position`
+  std::vector<std::size_t> operands;  ///< indices in TableRequest::numbers; all are less than `position`
 };
 
 /// The request without the columns that are computed.

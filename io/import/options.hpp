@@ -59,8 +59,7 @@ struct DataOptions {
   std::vector<std::string> input;
   std::vector<std::string> truth;       ///< true states: one for each state, or none
   std::vector<std::string> derive;      ///< computed channels, each "NAME [unit] = EXPRESSION" (io/import/derived.hpp)
-  std::string where;                    ///< a sample where this expression is false or missing is a gap; empty: no
-                                        ///< condition
+  std::string where;                    ///< a gap is where this expression is false or missing; empty: no condition
   std::vector<std::string> state_unit;  ///< one per state, one for all states, or none
   std::vector<std::string> input_unit;
   /// Column of sample weights >= 0 (Trajectory::weight); empty: no weights. The states file is searched first, as for

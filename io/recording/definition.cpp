@@ -193,9 +193,7 @@ const MessageType* Schema::resolve(const std::string& type, const Lookup& lookup
     const std::string_view name = line.substr(0, std::min(line.find_first_of(" \t="), line.size()));
     if (!is_identifier(name)) throw DefinitionError(fmt::format("{}: \"{}\" is not a field", type, written));
     const std::string_view rest = without_blanks(line.substr(name.size()));
-    if (!rest.empty() && rest.front() == '=')
-      continue;  // a constant is skipped; any other text after a name is the
-                 // field's default
+    if (!rest.empty() && rest.front() == '=') continue;  // skips a constant; other text is the field's default
     if (message->fields.size() == most_fields)
       throw DefinitionError(fmt::format("{} has more than {} fields", type, most_fields));
     if (!names.insert(name).second) throw DefinitionError(fmt::format("{} has two fields \"{}\"", type, name));

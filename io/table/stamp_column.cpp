@@ -66,9 +66,7 @@ NumberStatus StampColumn::add(std::string_view text, std::string_view second) {
     const std::optional<std::int64_t> fine = nanoseconds_in(second);
     if (!fine) return NumberStatus::text;
     if (const NumberStatus status = add(text); status != NumberStatus::ok) return status;
-    if (stamps_.back().billionths != 0)
-      return NumberStatus::text;  // this is an error, because the seconds already
-                                  // have a fraction
+    if (stamps_.back().billionths != 0) return NumberStatus::text;  // error: the seconds already have a fraction
     stamps_.back().billionths = static_cast<std::int32_t>(*fine);
     return NumberStatus::ok;
   }
