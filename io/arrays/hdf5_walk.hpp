@@ -60,7 +60,7 @@ class Hdf5Walk {
 
   void note_foreign(const std::string& path);
 
-  /// A group that Octave's `save -hdf5` wrote for one variable.
+  /// Visits a group that Octave's `save -hdf5` wrote for one variable.
   void octave_variable(hid_t id, const std::string& path, const std::string& name, int depth);
 
   void link(hid_t parent, const std::string& member, const std::string& path, const std::string& group_name, int depth);

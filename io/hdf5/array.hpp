@@ -56,7 +56,7 @@ bool lies_outside(hid_t dataset);
 Handle write_array(hid_t parent, Place place, const std::string& name, hid_t file_type, hid_t memory_type,
                    const Shape& shape, const void* data);
 
-/// Selects `count` rows of a dataset, beginning with row `first`.
+/// Some rows of a dataset: `count` rows, beginning with row `first`.
 struct Rows {
   hsize_t first = 0, count = 0;
   hsize_t end() const { return first + count; }

@@ -9,7 +9,7 @@
 
 namespace modebank {
 
-/// Writes simulated runs as the two files that `import` reads.
+/// Folder and names for simulated runs in the two files that `import` reads.
 /// - pro_NN.csv, at the system's rate: time, inputs, truth columns, mode and, if modes have names, ground.
 /// - imu_NN.csv, at `state_rate_hz`: time and states. The states are y, interpolated linearly between the system's
 /// samples. If `state_rate_hz` is a multiple of the system's rate, the file contains every sample of y exactly.
@@ -26,7 +26,7 @@ struct SimulationLayout {
 /// runs.
 void write_simulation(const std::vector<SimulatedRun>& runs, const SimulationLayout& layout);
 
-/// Names of the measured columns of a simulated vehicle. All other names are fixed.
+/// Names of the measured columns of a simulated vehicle's files. All other names are fixed.
 struct VehicleLayout {
   std::filesystem::path folder;     ///< created if its parent exists
   std::vector<std::string> states;  ///< yaw rate, forward speed and sideways speed, in this order; only the measured

@@ -21,7 +21,7 @@ ParsedNumber parse_extreme(std::string_view number) {
   return {value, error != std::errc() || std::isinf(value) ? NumberStatus::out_of_range : NumberStatus::ok};
 }
 
-/// A fast path for fields that contain only a finite number. Nearly all fields do.
+/// A fast path for fields that contain only a finite number. Nearly all fields are of this kind.
 bool parse_plain(std::string_view field, double& value) {
   const auto [stop, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   return error == std::errc() && stop == field.data() + field.size() && std::isfinite(value);

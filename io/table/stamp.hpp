@@ -17,7 +17,7 @@ struct Stamp {
   bool operator==(const Stamp&) const = default;
 };
 
-/// The billionths that the digits of a fraction mean, rounded. The result is at most one billion.
+/// Converts the digits of a fraction to billionths, rounded. The result is at most one billion.
 std::int64_t billionths_of(std::string_view digits);
 
 /// Carries negative billionths, or one billion, over to the whole number. |billionths| must be at most one billion.

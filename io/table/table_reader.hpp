@@ -61,7 +61,7 @@ struct LineRange {
 std::string rows_text(const std::vector<LineRange>& ranges);
 /// The range that contains the line. The end iterator if there is none.
 std::vector<LineRange>::const_iterator range_of(const std::vector<LineRange>& ranges, std::uint64_t line);
-/// "; rows 3 to 7 were never written" if a range contains the line; otherwise empty.
+/// Returns "; rows 3 to 7 were never written" if a range contains the line; otherwise an empty text.
 std::string unwritten_text(const std::vector<LineRange>& ranges, std::uint64_t line);
 
 inline constexpr std::int64_t missing_stamp = std::numeric_limits<std::int64_t>::min();

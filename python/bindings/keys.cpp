@@ -26,7 +26,7 @@ std::optional<std::vector<std::string>> texts_in(const py::list& list) {
   return texts;
 }
 
-/// The text that a configuration has for this value. In a list, names that contain commas are in quotes.
+/// The value as text, in the form of a configuration. In a list, names that contain commas are in quotes.
 std::string text_of(py::handle value) {
   if (value.is_none()) return "";
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";

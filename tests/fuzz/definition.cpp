@@ -7,7 +7,7 @@ namespace modebank::fuzz {
 
 namespace {
 
-/// A definition of p/T as it is in .msg files and recordings, read in both dialects, together with a message of zeros.
+/// Reads a definition of p/T, as it is in .msg files and recordings, in both dialects. Then reads a message of zeros.
 void read_definition(std::string_view text) {
   for (const Dialect dialect : {Dialect::ros1, Dialect::ros2}) {
     const auto parts = split_definitions("p/T", text);

@@ -24,7 +24,7 @@ class ImportFixture : public ::testing::Test {
   void write(const std::string& name, const std::string& content) const { write_file(folder.path() / name, content); }
   std::string path(const std::string& name) const { return (folder.path() / name).string(); }
 
-  /// A run with the inputs 10, 20, 30 at 0, 1, 2 s, and the states 0 to 4 at every half second.
+  /// Writes a run with the inputs 10, 20, 30 at 0, 1, 2 s, and the states 0 to 4 at every half second.
   void write_run(const std::string& name) const {
     write("pro_" + name + ".csv", "time,u\n0,10\n1,20\n2,30\n");
     write("imu_" + name + ".csv", "time,x\n0,0\n0.5,1\n1,2\n1.5,3\n2,4\n");
