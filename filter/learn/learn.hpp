@@ -20,8 +20,8 @@ struct Baseline {
   Bank bank;                    ///< K = 1
   double log_likelihood = 0.0;  ///< log-likelihood of the training runs, from each run's second sample
   bool converged = false;
-  bool at_bound = false;  ///< whether R is at its lower bound (1e-8 of the residual variance), or 0 because of many
-                          ///< lags
+  bool at_bound = false;  ///< whether R is at its lower bound (1e-8 of the residual variance), or is 0 because there
+                          ///< are many lags
 };
 
 /// theta is the global least-squares estimate; Q (full) and R (diagonal) maximise the exact Gaussian likelihood. For
@@ -29,9 +29,9 @@ struct Baseline {
 /// and Q is the residual covariance.
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure);
 
-/// The competitor with switching noise only: one Huber theta, eight noise scales in geometric steps, and `stay` chosen
-/// on the training runs. For rounded states theta and the scales then maximise the likelihood of their intervals.
-/// `factor`: applies to all scales.
+/// The competitor with switching noise only. It has one theta (Huber's estimate), eight noise scales in geometric
+/// steps, and `stay` chosen on the training runs. If states are rounded, theta and the scales then maximise the
+/// likelihood of their intervals. `factor`: applies to all scales.
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                       const NoiseFactor& factor = {});
 
@@ -39,8 +39,8 @@ Bank learn_noise_only(const Recording& recording, const LinearStructure& structu
 Bank learn_noise_levels(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                         Eigen::Index levels, const NoiseFactor& factor = {});
 
-/// The adaptation of a competitor's noise scale. It is the most likely one on the training runs, among the settings in
-/// a bank's cross-validation. A competitor has so few parameters that it needs no left-out runs.
+/// The adaptation of a competitor's noise scale: the most likely one on the training runs among the settings of a
+/// bank's cross-validation. A competitor has few parameters, so no left-out runs are needed.
 NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& recording, const FilterOptions& filter,
                                        const RefineTuning& tuning);
 

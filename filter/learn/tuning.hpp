@@ -5,105 +5,109 @@
 
 namespace modebank {
 
-/// The constants of refinement, each with its reason. They cannot be configured. Constants that come from experiments
-/// were set inside training runs (docs/explanation/refinement.md).
+/// The constants of refinement, with reasons. They cannot be configured. Constants that come from experiments were set
+/// inside training runs (docs/explanation/refinement.md).
 struct RefineTuning {
   // The cross-validation inside the training runs.
 
-  /// Numbers of iterations after which left-out runs are scored. The iteration limit is another. The first is 10,
-  /// because the start has used all training runs, and the fit needs some iterations to forget the left-out runs.
-  /// Earlier checkpoints made results on ICE worse.
+  /// Left-out runs are scored after these numbers of iterations, and at the iteration limit. The first is 10. The start
+  /// has used all training runs, so a fit needs some iterations to forget the left-out runs. Earlier checkpoints made
+  /// results on ICE worse.
   std::array<std::ptrdiff_t, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
-  /// A start is dropped if its score stays at least least_gain below its best score for this number of checkpoints in a
-  /// row. On ICE, FLOORING and DRIVE (training runs; 13, 13 and 10 starts) no start recovered after two checkpoints,
-  /// but some did after one.
+  /// A start is dropped after this number of checkpoints in a row at least least_gain below its best score. On ICE,
+  /// FLOORING and DRIVE (training runs; 13, 13 and 10 starts) no start recovered after two checkpoints, but some
+  /// recovered after one.
   int falls = 2;
   /// Candidate memories of the noise scale: 20, 50 and 200 samples, and the whole run.
   std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
-  /// Candidate weights of scale one at a run's start, in samples. They range from almost none to the length of most
+  /// Candidate weights of the scale 1 at a run's start, in samples. They range from almost none to the length of most
   /// short runs.
   std::array<double, 4> noise_prior_samples{1.0, 2.0, 5.0, 20.0};
-  std::ptrdiff_t fewest_whole_runs = 3;  ///< fewer runs are cut into stretches, because two folds would train on half
-                                         ///< of the data
-  std::ptrdiff_t shortest_stretch = 20;  ///< samples; shorter stretches would mostly be filter starts
+  std::ptrdiff_t fewest_whole_runs = 3;  ///< with fewer runs, runs are cut into stretches, because two folds would
+                                         ///< train on half of the data
+  std::ptrdiff_t shortest_stretch = 20;  ///< samples; in shorter stretches the filter would mostly be starting
 
   /// Largest loss of a bank with fewer modes against the best, in nats per sample. The loss must also be within one
-  /// standard error. With few runs the standard error is unreliable, and a fifth of the usual gain of modes should not
-  /// be missed.
+  /// standard error. With few runs the standard error is unreliable. Modes with a fifth of the usual gain should still
+  /// not be missed, so this limit is needed.
   double most_loss = 0.02;
 
   // The rule for additions (left_out/rule.hpp).
 
-  /// Probability that any proposal is accepted if there is nothing to be found.
+  /// Probability that any proposal is accepted if the model needs no addition.
   double taken_by_chance = 0.05;
-  /// Number of proposals for one configuration: number of modes, prior, measurement noise, noise by input, transitions
-  /// by state, drift, look-ahead.
+  /// Number of proposals for one configuration. The proposals are: number of modes, prior, measurement noise, noise by
+  /// input, transitions by state, drift, look-ahead.
   int proposals = 7;
 
   // The prior.
   double Q_transitions = 4.0;                            ///< weight of the prior on Q while starts are compared, in
                                                          ///< transitions
-  std::array<double, 2> other_Q_transitions{1.0, 16.0};  ///< also tried for the best start; each is a factor of four
-                                                         ///< away
-  double Q_transitions_unvalidated = 1.0;                ///< used if no run can be left out: unit information
-  double Q_transitions_with_R = 1.0;  ///< additional transitions of the modes' own harmonic mean, for unknown states
+  std::array<double, 2> other_Q_transitions{1.0, 16.0};  ///< also tried for the best start; one is a quarter of the
+                                                         ///< value above, the other four times
+  double Q_transitions_unvalidated = 1.0;                ///< used if no run can be left out; one transition is unit
+                                                         ///< information
+  double Q_transitions_with_R = 1.0;  ///< number of additional transitions with the harmonic mean of the modes' Q, for
+                                      ///< unknown states
 
-  /// Share of the largest information that is added in every direction of theta, so that unit information is definite.
+  /// Share of the largest information that is added in every direction of theta, so that the information of one
+  /// transition is definite.
   double least_information = 1e-8;
 
   // Expectation-maximisation and its starts.
-  int alternations = 3;  ///< alternations between theta and Q in one maximisation; each raises the objective, and more
-                         ///< than three gain little
+  int alternations = 3;  ///< alternations between theta and Q in one maximisation. Each raises the objective; more than
+                         ///< three gain little
   double start_stay = 0.95;  ///< diagonal of T of a start from stretches, equal to BankOptions::stay
-  double modes_kept = 0.75;  ///< share of the modes kept in each smaller start from the mixture
+  double modes_kept = 0.75;  ///< number of modes of a smaller start from the mixture, as a share of the next larger one
 
   // Screening of fitted modes.
   double duplicate_significance = 0.95;  ///< level of the likelihood-ratio test that separates two modes
 
-  /// Tolerance above 1. The mean-square growth of double integrators cannot be computed more accurately, and
-  /// integrators must be kept.
+  /// Tolerance for a mean-square growth above 1. The growth of double integrators cannot be computed more accurately,
+  /// and integrators must be kept.
   double growth_slack = 1e-4;
   std::ptrdiff_t iterations_after_screening =
-      10;  ///< equal to the first checkpoint; the other modes adapt to the removal
+      10;  ///< number of iterations after a removal, in which the other modes adapt; equal to the first checkpoint
 
   // Look-ahead learning.
 
-  /// Weights of the prior towards one motion that are tried for the best start, in transitions.
+  /// Weights of the prior towards one motion, in transitions. All are tried for the best start.
   std::array<double, 5> theta_transitions{3.0, 30.0, 300.0, 3e3, 3e5};
-  std::ptrdiff_t one_motion_iterations = 20;  ///< iterations with one theta, which give the target of shrinking
+  std::ptrdiff_t one_motion_iterations = 20;  ///< iterations with one theta, towards which modes are shrunk
   double shrinkage_digits = 1e-3;             ///< accuracy of the share at which a shrunk bank is stable
 
   // Switching by state and input.
-  double weight_width = 30.0;  ///< prior sd of the weights in units of the regressors' standard deviation; the largest
-                               ///< gives a border a thirtieth wide
+  double weight_width = 30.0;  ///< prior sd of the weights in units of the regressors' standard deviation. With the
+                               ///< largest, a border is a thirtieth of a standard deviation wide
   std::array<double, 2> other_weight_widths{3.0, 300.0};  ///< tried for the chosen number of modes
-  double little_memory_sd = 0.1;  ///< sd of log odds, tried with the chosen width; with a small value the previous mode
-                                  ///< hardly matters
+  double little_memory_sd = 0.1;  ///< prior sd of log odds, tried with the chosen width; with a small value the
+                                  ///< previous mode hardly matters
 
   // Modes that drift: values to try, the middle ones first.
   std::array<double, 5> drift_rates{1e-5, 1e-4, 1e-3, 1e-2, 1e-1};       ///< variance added per step
   std::array<double, 6> drift_starts{0.0, 0.01, 0.1, 1.0, 10.0, 100.0};  ///< variance at a run's start
-  std::array<double, 3> drift_leaks{1.0, 0.97, 0.9};                     ///< factor per step on the deviation
+  std::array<double, 3> drift_leaks{1.0, 0.97, 0.9};                     ///< factor per step on a coefficient's
+                                                                         ///< difference from the mode's coefficient
 
   /// With drifting coefficients the noise scale can use few samples (DART: 0.9; banks without drift: 0.98).
   std::array<double, 8> drift_forgettings{0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0};
   std::array<double, 5> drift_noise_prior_samples{1e-3, 1e-2, 0.1, 1.0,
-                                                  5.0};  ///< weight of scale one at a run's start, in samples
+                                                  5.0};  ///< weight of the scale 1 at a run's start, in samples
 
   // Measurement noise.
-  double least_R_share = 1e-9;  ///< share of the global residual variance: the smallest R in refinement, which is
+  double least_R_share = 1e-9;  ///< smallest R in refinement, as a share of the global residual variance; it is
                                 ///< negligible
 
-  /// Starts of the searches for R, as shares of the mean Q. They are below a half, because R counts twice in Q. With 5
-  /// % alone, an R of 1 % of Q or of many times Q could be missed.
+  /// Starting values for the searches for R, as shares of the mean Q. They are below a half, because R enters Q twice.
+  /// A single start at 5 % could miss an R of 1 % of Q, or of many times Q.
   std::array<double, 4> R_start_shares{0.05, 0.005, 0.2, 0.45};
-  /// Start of the search for R together with theta. The search runs if R = 0 is most likely with the theta of exact
-  /// states.
+  /// Starting value for the search for R together with theta. This search runs if R = 0 is most likely with the theta
+  /// of exact states.
   double R_start_share_with_theta = 0.2;
-  /// Nats per sample. Smaller gains do not hold on other runs (seeds change held-out scores by 0.03 to 0.07).
+  /// Nats per sample. Smaller gains do not hold on other runs. (Other seeds change held-out scores by 0.03 to 0.07.)
   double least_gain = 1e-3;
 };
 
-inline constexpr RefineTuning refine_tuning{};  ///< the values of the constants in use
+inline constexpr RefineTuning refine_tuning{};  ///< the constants that are used
 
 }  // namespace modebank

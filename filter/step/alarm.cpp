@@ -8,7 +8,7 @@ namespace modebank {
 
 namespace {
 
-constexpr double alarm_tail = 0.0005;  // per side; one in 1000 samples of a correct model
+constexpr double alarm_tail = 0.0005;  // tail probability on each side; a correct model has one such sample in 1000
 
 }  // namespace
 

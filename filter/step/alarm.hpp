@@ -10,12 +10,12 @@ namespace modebank {
 struct LiveVerdict {
   Eigen::VectorXd predicted;     ///< n_y, predicted measurement
   Eigen::VectorXd lower, upper;  ///< n_y, predicted interval: +- quantile * sqrt(S_ii), by the moments of the mixture
-  bool alarm = false;            ///< whether some signal lies in the outermost `alarm` share of the prediction
+  bool alarm = false;            ///< whether some signal lies in one of the tails, whose total probability is `alarm`
 };
 
-/// Judges samples by the filter's own uncertainty. The alarm uses the probability transform, whose meaning is the same
-/// for every mixture, unlike that of NIS. If the model is correct and has one signal, a share `alarm` of the samples
-/// gives an alarm.
+/// Judges samples by the filter's own uncertainty. The alarm uses the probability transform, which has the same
+/// distribution for every mixture; the NIS does not. If the model is correct and has one signal, the expected share of
+/// samples with an alarm is `alarm`.
 class LiveJudge {
  public:
   explicit LiveJudge(const Bank& bank);

@@ -17,8 +17,8 @@ class AnyFilter {
   /// As BankFilter::step.
   virtual const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                                      const Eigen::Ref<const Eigen::VectorXd>& measurement) = 0;
-  /// Prediction for a later time, with `input` held until then, as an estimate without measurement. The filter does not
-  /// change.
+  /// Prediction for a later time, with `input` held until then. The result is an estimate without measurement. The
+  /// filter does not change.
   virtual FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) = 0;
   virtual bool started() const = 0;
   virtual void restart() = 0;

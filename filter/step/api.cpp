@@ -23,7 +23,7 @@ modebank::Mode to_internal(const Mode& mode, Index n, Index m) {
   result.Q = view(mode.Q);
   result.parameter_covariance = view(mode.parameter_covariance);
   result.weight = mode.weight;
-  // Omitted fields mean zero: no constant, no input.
+  // Omitted fields mean zero: no constant, no input effect.
   if (result.model.c.size() == 0) result.model.c.setZero(n);
   if (result.model.B.size() == 0) result.model.B.setZero(n, m);
   return result;
@@ -154,7 +154,7 @@ struct BankFilter::Internal {
   std::optional<Forecaster> forecaster = {};  ///< created at the first request
   Estimate estimate = {};
   std::uint64_t seed = pit_seed(1, "");
-  Index samples = 0;  ///< number of processed samples
+  Index samples = 0;  ///< number of samples processed so far
 
   Internal(const Bank& stepped, const FilterOptions& how)
       : bank(stepped),
@@ -203,7 +203,7 @@ std::vector<Forecast> BankFilter::forecast(const Matrix& inputs, std::ptrdiff_t 
 
 std::vector<double> BankFilter::snapshot() const {
   std::vector<double> numbers = to_numbers(internal_->filter.snapshot());
-  numbers.push_back(static_cast<double>(internal_->samples));  // the draws of the transform depend on this number
+  numbers.push_back(static_cast<double>(internal_->samples));  // the draws for the transforms depend on this number
   return numbers;
 }
 

@@ -23,7 +23,7 @@ class TransitionMatrix {
   /// Throws std::invalid_argument unless the matrix is square and its rows are nonnegative with sum one within 1e-9.
   /// Rows are then normalised, unless they already are up to rounding. So construction from matrix() keeps every bit.
   explicit TransitionMatrix(Eigen::MatrixXd row_stochastic);
-  /// `stay` on the diagonal; the rest of each row is distributed equally. K = 1 gives 1.
+  /// `stay` on the diagonal; the other entries of a row are equal. K = 1 gives 1.
   static TransitionMatrix sticky(Eigen::Index modes, double stay);
 
   const Eigen::MatrixXd& matrix() const { return matrix_; }
@@ -40,29 +40,29 @@ struct Mode {
   Eigen::MatrixXd Q;                     ///< n x n process noise covariance per step
   Eigen::MatrixXd parameter_covariance;  ///< p x p, covariance of theta over the mode's windows
   Eigen::VectorXd standard_error;        ///< p, standard errors of theta
-  double weight = 1.0;                   ///< share of the windows
+  double weight = 1.0;                   ///< share of the windows that belong to this mode
 
-  /// Parameters of a motion model and their standard errors. The fields above are then those of its linearisation.
+  /// Parameters of a motion model and their standard errors. The fields above then belong to its linearisation.
   Eigen::VectorXd motion_theta = {};
   Eigen::VectorXd motion_standard_error = {};
   Eigen::MatrixXd Q_standard_error = {};  ///< n x n, standard errors of Q; only for refined banks, else empty
 
-  /// Coefficients of the terms, measured states x T; empty without terms. Their product with the terms is added to
-  /// x[k+1].
+  /// Coefficients of the terms, measured states x T; empty without terms. Terms multiplied by these coefficients are
+  /// added to x[k+1].
   Eigen::MatrixXd bend = {};
   Eigen::MatrixXd bend_standard_error = {};  ///< their standard errors, in the same order; empty without terms
 };
 
 /// Speed at which the noise scale follows a run (filter/step/equations/noise_scale.hpp).
 struct NoiseAdaptation {
-  double forgetting = 0.98;  ///< forgetting factor per sample, in (0, 1]; the memory is 1 / (1 - forgetting) samples;
+  double forgetting = 0.98;  ///< forgetting factor per sample, in (0, 1]. The memory is 1 / (1 - forgetting) samples;
                              ///< with 1 it is the whole run
-  double prior_samples = 5;  ///< weight of scale one at a run's start, in samples, > 0
+  double prior_samples = 5;  ///< weight of the scale 1 at a run's start, in samples, > 0
 };
 
 /// K modes, their transitions, and the measurement y = C x + v, v ~ N(0, R).
 struct Bank {
-  std::string model = "linear";  ///< linear, varx, or the name of a motion model
+  std::string model = "linear";  ///< `linear`, `varx`, or the name of a motion model
   LinearStructure structure;
   std::vector<Mode> modes;  ///< K >= 1
   Eigen::MatrixXd C;        ///< n_y x n
@@ -84,7 +84,8 @@ struct Bank {
   NoiseAdaptation noise_adaptation;               ///< used by filters with adaptive noise
   BankDrift drift;                                ///< drift of each mode's theta within a run; empty without drift
   MotionTerms terms = {};                         ///< nonlinear terms, the same for all modes; empty without terms
-  NoiseFactor noise_factor = {};                  ///< factor of state and input on every Q; empty without a factor
+  NoiseFactor noise_factor = {};                  ///< factor on every Q that depends on state and input; empty without
+                                                  ///< a factor
   RunningNoise running_noise = {};   ///< running noise of a single mode that drifts (the competitor `drifting`); if
                                      ///< empty, the noise is Q
   Eigen::MatrixXd R_standard_error;  ///< n_y x n_y, standard errors of R; empty unless R was estimated with the bank
@@ -93,8 +94,8 @@ struct Bank {
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
   bool is_quantised() const { return (quantum.array() > 0.0).any(); }
-  /// Variances of the difference between recorded values and C x: R, plus the variance of rounding that is uniform
-  /// within the quantum.
+  /// Variances of the difference between recorded values and C x: R, plus the variance of the rounding error, which is
+  /// uniform within the quantum.
   Eigen::MatrixXd recording_noise() const;
   /// The variances of the first mode's process noise, n_s.
   auto noise_variance() { return modes.front().Q.diagonal().head(structure.states); }
@@ -106,27 +107,28 @@ struct Bank {
 /// measured states.
 Bank one_mode_bank(const LinearStructure& structure, const Eigen::VectorXd& theta, const Eigen::VectorXd& variance);
 
-/// Whether the bank has several modes with the same theta, which differ in noise alone.
+/// Whether the bank has several modes with the same theta. Such modes differ only in noise.
 bool has_one_theta(const Bank& bank);
 
 /// Throws std::invalid_argument with the name of the first invalid part. A part is invalid if its size does not fit the
-/// others, a number is not finite, a variance is negative, probabilities are invalid, or a noise adaptation is out of
-/// range.
+/// other parts, a number is not finite, a variance is negative, probabilities are invalid, or a noise adaptation is out
+/// of range.
 void validate(const Bank& bank);
-/// Checks the sizes only, for candidates of an optimiser: these have valid sizes but may have extreme numbers.
+/// Checks the sizes only. Candidates of an optimiser may have extreme numbers.
 void check_sizes(const Bank& bank);
 
-/// Some directions of the state are not determined by one measurement. Their starting variance is this multiple of the
-/// largest variance of Q and R. It is wide compared with what the filter will learn, and small enough for accurate
+/// One measurement does not determine all directions of the state. Undetermined directions start with this multiple of
+/// the largest variance of Q and R. It is wide compared with what the filter will learn, and small enough for accurate
 /// arithmetic.
 inline constexpr double unobserved_variance_factor = 1e4;
 
-/// Start of a filter from its first measurement: x[0] = gain y[0]. With lags, the start uses the measurements of all of
-/// z: gain I, and R for each sample. Quantised values start with a uniform distribution in their interval.
+/// Start of a filter from its first measurement: x[0] = gain y[0]. With lags, the first measurements of all samples in
+/// z are used; the gain is I, and each sample has the covariance R. Quantised values start with a uniform distribution
+/// in their interval.
 struct StartMoments {
   Eigen::MatrixXd gain;        ///< n x n_y, the pseudo-inverse C+; n x n with lagged states
-  Eigen::MatrixXd covariance;  ///< n x n, C+ R C+' plus a wide variance in directions that C does not measure; R itself
-                               ///< for C = I
+  Eigen::MatrixXd covariance;  ///< n x n, C+ R C+' plus a wide variance in directions that C does not measure. For C =
+                               ///< I it is R
 };
 
 StartMoments start_moments(const Bank& bank);

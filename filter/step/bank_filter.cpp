@@ -128,7 +128,7 @@ void BankFilter::restore(const FilterSnapshot& snapshot) {
   FilterMemory own;
   parts_->stepper->save(own);
   check_memory(snapshot.drift, own.drift);
-  parts_->feed.restore(snapshot.samples);  // throws before any change, like the line above
+  parts_->feed.restore(snapshot.samples);  // throws before any change, like the check above
   parts_->stepper->restore(snapshot);
   parts_->started = snapshot.started;
 }

@@ -24,9 +24,9 @@ struct FilterEstimate {
   Eigen::VectorXd mode_probability;            ///< K, mode probabilities after the measurement
   double nis = 0.0;                            ///< normalised innovation squared of the available signals
   double log_density = 0.0;                    ///< nats
-  double spread_share = 0.0;                   ///< share of the modes' differences in the trace of
-                                               ///< innovation_covariance
-  Eigen::Index steps = 0;  ///< model steps from the previous sample; 0 if the filter (re)started here
+  double spread_share = 0.0;                   ///< share of the trace of innovation_covariance that comes from
+                                               ///< differences between the modes
+  Eigen::Index steps = 0;  ///< number of model steps from the previous sample; 0 if the filter (re)started here
 };
 
 /// State of a filter between two samples, for any bank and variant.
@@ -35,7 +35,7 @@ struct FilterMemory {
   Eigen::MatrixXd covariances;       ///< n*n x K
   Eigen::VectorXd mode_probability;  ///< K
   double noise_scale = 1.0;
-  double noise_samples = 0.0;  ///< number of samples in the noise scale
+  double noise_samples = 0.0;  ///< discounted number of samples that determine the noise scale
   DriftState drift = {};       ///< drift state of modes that drift; empty for other modes
 };
 
@@ -63,12 +63,12 @@ class BankFilter {
                              const Eigen::Ref<const Eigen::VectorXd>& measurement);
   /// The result of the last step.
   const FilterEstimate& estimate() const;
-  /// Resets the filter; the next complete measurement starts it.
+  /// Resets the filter; the next complete measurement starts it again.
   void restart();
   bool started() const;
 
   FilterSnapshot snapshot() const;
-  /// Throws std::invalid_argument if the snapshot belongs to a bank of other sizes or has invalid numbers. The filter
+  /// Throws std::invalid_argument if the sizes of the snapshot's bank differ, or if it has invalid numbers. The filter
   /// is then unchanged.
   void restore(const FilterSnapshot& snapshot);
 

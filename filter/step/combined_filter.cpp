@@ -69,8 +69,8 @@ const FilterEstimate& CombinedFilter::step(double time_s, const Eigen::Ref<const
   return estimate_;
 }
 
-/// Combines the filters with the weights from before this sample. If the first filter has no score, its estimate is
-/// used alone.
+/// Combines the filters with their weights before this sample. If the first filter has no score, its estimate is used
+/// alone.
 void CombinedFilter::combine() {
   take_measured(*said_.front(), estimate_);  // modes, steps and fields of a single filter
   if (std::isnan(estimate_.log_density)) return;
@@ -83,8 +83,8 @@ FilterEstimate CombinedFilter::forecast(double time_s, const Eigen::VectorXd& in
   std::vector<double> known;
   for (const auto& filter : filters_) {
     FilterEstimate& one = ahead.emplace_back(filter->forecast(time_s, input));
-    one.innovation = -one.prediction.head(one.innovation.size());  // for a measurement of zero; the differences are
-                                                                   // then those between the filters
+    one.innovation = -one.prediction.head(one.innovation.size());  // with a measurement of zero, differences of
+                                                                   // innovations are those between the filters
     known.push_back(one.prediction.array().isNaN().any() ? not_a_number : 0.0);
   }
   for (std::size_t i = 0; i < ahead.size(); ++i) said_[i] = &ahead[i];

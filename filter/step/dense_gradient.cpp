@@ -87,7 +87,7 @@ class DenseGradient {
   void back_over(Index t, const FilterState<any>& before) {
     const Instant& instant = instants_.instants[static_cast<std::size_t>(t)];
     const Index n = sum_.start_covariance.rows(), K = model_.mode_count();
-    if (instant.starts) {  // at the start the mean is measured
+    if (instant.starts) {  // the mean at the start is the measurement itself
       for (const ByGaussian& mode : by_.modes) sum_.start_covariance += mode.covariance;
       by_ = ByState(n, K);
       return;
@@ -102,8 +102,8 @@ class DenseGradient {
     if (K > 1) back_over_mixing(before);
   }
 
-  /// Goes back over Bayes' rule and the update of every mode: from derivatives by the estimates to those by the
-  /// predictions.
+  /// Goes back over Bayes' rule and the update of every mode. Converts derivatives with respect to the estimates into
+  /// derivatives with respect to the predictions.
   template <class Y>
   void back_over_measurement(const Y& y, double weight, const VectorXd& posterior) {
     const VectorXd by_log = posterior.array() * (weight + by_.probability.array() - by_.probability.dot(posterior));
@@ -155,7 +155,7 @@ class DenseGradient {
     by.covariance = (F.transpose() * by.covariance * F).eval();
   }
 
-  /// Goes back over the mixing: every mode starts from the mixture of all modes with weights W_ij = T_ij mu_i / c_j.
+  /// Goes back over the mixing. Every mode starts from the mixture of all modes with weights W_ij = T_ij mu_i / c_j.
   /// (The derivative of the mixture's covariance with respect to its mean is zero.)
   void back_over_mixing(const FilterState<any>& before) {
     const Index n = sum_.start_covariance.rows(), K = model_.mode_count();

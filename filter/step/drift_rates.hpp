@@ -11,19 +11,19 @@ namespace modebank {
 /// Drift of the coefficients of scaled regressors, in units of the noise variance v (method: section 6).
 struct DriftRates {
   double q = 0.0;     ///< variance added to every coefficient per step; 0 for constant coefficients
-  double p0 = 0.0;    ///< variance of every coefficient at the start; if q is 0, too, coefficients are fixed
+  double p0 = 0.0;    ///< variance of every coefficient at the start; if q and p0 are 0, coefficients are fixed
   double leak = 1.0;  ///< factor per step on the difference from theta0, in (0, 1]
 
   bool operator==(const DriftRates&) const = default;
 };
 
-/// Score of the settings that were chosen on a grid, on the training runs, and whether the grid was wide enough.
+/// Log score of the settings that were chosen on a grid, on the training runs. Also whether the grid was wide enough.
 struct GridTuning {
   double log_score = 0.0;    ///< log score of the training runs [nats/sample]
   Eigen::Index samples = 0;  ///< scored training samples
 
-  /// Settings whose best value lies at the end of the grid, so that the optimum may lie beyond. From "q", "p0", "leak",
-  /// "lam", "nu", "floor", "horizon_factor".
+  /// Settings at the end of their grid; the optimum may lie beyond. Names: "q", "p0", "leak", "lam", "nu", "floor",
+  /// "horizon_factor".
   std::vector<std::string> at_grid_end;
 };
 
@@ -31,8 +31,8 @@ struct GridTuning {
 struct BankDrift {
   DriftRates rates = {};
   Eigen::VectorXd scale = {};            ///< r, root mean square of each regressor, positive; empty without drift
-  Wandering wandering = Wandering::all;  ///< coefficients that drift; a value other than `all` requires running noise
-  GridTuning tuning = {};                ///< tuning of the competitor `drifting`
+  Wandering wandering = Wandering::all;  ///< which coefficients drift; a value other than `all` requires running noise
+  GridTuning tuning = {};                ///< how the competitor `drifting` was tuned
 
   bool empty() const { return scale.size() == 0; }
 };

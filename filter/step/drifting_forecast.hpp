@@ -10,7 +10,7 @@ namespace modebank {
 
 /// Predicts from the state of a filter with running noise, with known inputs and no further measurements.
 ///
-/// Coefficients in step j + 1: theta0 + leak^j (theta - theta0), from those of the origin. The first step equals that
+/// Coefficients in step j + 1: theta0 + leak^j (theta - theta0), with theta at the origin. The first step equals that
 /// of the filter. Unstable coefficients are contracted before the second step: A_i (of x[k-i+1], in full form) becomes
 /// A_i / rho^i. rho > 1 is the largest modulus of the polynomial's roots, so every root is divided by rho. theta0 is
 /// contracted in the same way; otherwise the leak towards theta0 would undo the contraction.
@@ -39,7 +39,8 @@ class DriftingForecast {
   Eigen::MatrixXd theta0_, stable_theta0_;  ///< r x n, coefficients of scaled regressors
   DriftState origin_;
   Eigen::VectorXd z_, h_, prediction_;
-  Eigen::MatrixXd towards_, deviation_, theta_;      ///< r x n: target of the leak, and the difference from it
+  Eigen::MatrixXd towards_, deviation_, theta_;      ///< r x n: value towards which coefficients leak, and the
+                                                     ///< difference from it
   Eigen::MatrixXd direction_;                        ///< r x n, direction of the drift; empty if all coefficients drift
   double of_origin_ = 1.0, of_drift_ = 0.0;          ///< cov(d) / v = of_origin P + of_drift W
   Eigen::MatrixXd Z_, next_Z_;                       ///< covariance of the lagged errors

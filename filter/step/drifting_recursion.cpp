@@ -29,7 +29,7 @@ Eigen::MatrixXd wandering_direction(const Bank& bank) {
   }
   const auto inputs = Eigen::seqN(s.dimension(), s.acting_inputs());
   d(inputs, Eigen::all) = scaled_coefficients(s, bank.theta(0), bank.drift.scale)(inputs, Eigen::all);
-  d.colwise().normalize();  // an output without input coefficients does not drift
+  d.colwise().normalize();  // an output without input coefficients has no drift
   return d;
 }
 
@@ -55,7 +55,7 @@ DriftingRecursion::DriftingRecursion(const Bank& bank)
   start(Eigen::VectorXd::Zero(structure_.dimension()));
 }
 
-/// Makes a separate P for each output.
+/// Gives each output its own P.
 void DriftingRecursion::own_P() {
   std::iota(P_of_.begin(), P_of_.end(), Index{0});
   P_count_ = structure_.states;
@@ -109,7 +109,7 @@ void DriftingRecursion::skip() {
   pass_time();
 }
 
-/// If some outputs that share a P are measured and others are not, the unmeasured outputs get a copy.
+/// If outputs that share a P are measured only in part, the other outputs get a copy of P.
 void DriftingRecursion::split_partial() {
   const Index before = P_count_;
   for (Index g = 0; g < before; ++g) {
@@ -142,7 +142,7 @@ void DriftingRecursion::learn() {
   }
 }
 
-/// A missing signal does not change its variance.
+/// A missing signal leaves its running variance unchanged.
 void DriftingRecursion::adapt_variance() {
   for (Index i = 0; i < v_.size(); ++i) {
     const double e = innovation_(i);
@@ -189,7 +189,7 @@ void DriftingRecursion::restore(const Vector& z, const DriftState& state) {
   P_ = state.P;
   own_P();
   if (direction_.size() > 0) return;
-  P_count_ = 0;  // outputs with equal P share one, as before
+  P_count_ = 0;  // outputs with equal P share one P, as in the saved filter
   for (std::size_t i = 0; i < P_of_.size(); ++i) {
     const auto equal = [&](Index g) { return P_[static_cast<std::size_t>(g)] == state.P[i]; };
     Index g = 0;

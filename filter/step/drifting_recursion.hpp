@@ -8,12 +8,12 @@
 
 namespace modebank {
 
-/// One mode that drifts with independent outputs (running_noise.hpp). It has the equations of drift.hpp with a
-/// covariance of r x r per output (or one for all) instead of p x p. h are the regressors [z; v; (1)] of
+/// One mode that drifts with independent outputs (running_noise.hpp). It has the equations of drift.hpp, but a
+/// covariance of r x r per output (or one for all outputs) instead of p x p. h are the regressors [z; v; (1)] of
 /// LinearStructure, each divided by its scale:
 ///   x[k+1] = x[k] + theta[k]' h[k] + e[k],  theta[k] = theta0 + leak (theta[k-1] - theta0) + w[k],  cov(w) = q v W.
-/// W = I, or d d' for a drifting direction d. In units of v, the variance of e, neither errors nor gains depend on v.
-/// So one recursion serves every v and all outputs.
+/// W = I, or W = d d' if coefficients drift in one direction d. v is the variance of e. In units of v, errors and gains
+/// do not depend on v. So one recursion serves every v and all outputs.
 ///
 /// Choices that the method leaves open, with reasons:
 /// - The first step after a start uses theta0 with covariance p0 v I, without leak or q.
@@ -29,9 +29,9 @@ class DriftingRecursion {
   explicit DriftingRecursion(const Bank& bank);
 
   void start(const Eigen::Ref<const Eigen::VectorXd>& z);
-  /// Advances to the next model step; `inputs`: acting inputs.
+  /// Advances to the next model step. `inputs`: acting inputs.
   void predict(const Eigen::Ref<const Eigen::VectorXd>& inputs);
-  /// Without a measurement, the prediction becomes the sample.
+  /// For a step without measurement: the prediction becomes the sample.
   void skip();
   /// Updates with a sample. Missing signals are replaced by their predictions.
   void update(const Eigen::Ref<const Eigen::VectorXd>& measured);
@@ -59,8 +59,8 @@ class DriftingRecursion {
   Eigen::MatrixXd theta0_, direction_;      ///< r x n, for scaled regressors
   Eigen::MatrixXd theta_;                   ///< r x n
   std::vector<Eigen::MatrixXd> P_;          ///< n of r x r, lower triangles; the first P_count_ are in use
-  std::vector<Eigen::Index> P_of_;          ///< n, position of each output's P
-  Eigen::Index P_count_ = 1;                ///< one P serves all outputs until a signal is missing
+  std::vector<Eigen::Index> P_of_;          ///< n, index of each output's P
+  Eigen::Index P_count_ = 1;                ///< one P is shared by all outputs until a signal is missing
   Eigen::VectorXd z_, v_;
   Eigen::VectorXd h_, prediction_, variance_, innovation_, sample_;
   Eigen::MatrixXd Ph_;      ///< r x n; each P in use has one column

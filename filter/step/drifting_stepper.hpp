@@ -33,7 +33,7 @@ class DriftingStepper final : public Stepper {
  private:
   DriftingRecursion recursion_;
   StudentNoise noise_;
-  Eigen::VectorXd quantum_;  ///< n; 0 for a continuous signal
+  Eigen::VectorXd quantum_;  ///< n, quanta; 0 for a continuous signal
   Eigen::VectorXd one_ = Eigen::VectorXd::Ones(1);
 
   /// Standard deviation of the prediction's error. The update does not change it.

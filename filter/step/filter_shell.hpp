@@ -7,9 +7,9 @@
 
 namespace modebank {
 
-/// Common frame of all filters. It decides whether a filter starts at a sample, makes a step to it, or waits. It also
-/// clears old values of the estimate. A filter derives from this class and provides start() (feed.start() is then
-/// valid) and step(measurement) (feed.inputs() and feed.steps() are then valid).
+/// The part that is common to all filters. It decides whether a filter starts at a sample, makes a step, or waits. It
+/// also clears old values of the estimate. A filter derives from this class and provides start() and step(measurement).
+/// feed.start() is valid in start(); feed.inputs() and feed.steps() are valid in step().
 struct FilterShell {
   FilterEstimate estimate;
   bool started = false;
@@ -19,14 +19,14 @@ struct FilterShell {
   FilterShell(const Bank& bank);
 
   void restart();
-  /// Clears the prediction, because none was made for this sample.
+  /// Clears the prediction, because no prediction was made for this sample.
   void clear_prediction();
   void clear_scores();
   /// Clears all values before a start.
   void wait();
 };
 
-/// Processes one sample. This is BankFilter::step for any filter.
+/// Processes one sample: BankFilter::step for any filter.
 template <class Filter>
 const FilterEstimate& take_sample(Filter& filter, double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                                   const Eigen::Ref<const Eigen::VectorXd>& measurement) {

@@ -11,7 +11,7 @@ namespace modebank {
 
 using Eigen::Index;
 
-/// BankForecast with its sizes hidden.
+/// Interface of BankForecast that hides its sizes.
 struct Forecaster::Sized {
   Sized() = default;
   Sized(const Sized&) = delete;

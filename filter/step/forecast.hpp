@@ -9,14 +9,14 @@
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"
 
-/// Prediction without measurements, from a filter's state and with known inputs. All such predictions use this header.
-/// A forecast is an object with start(...) and step(acting inputs): BankForecast (moments of a bank), DriftingForecast
-/// (running noise) or SamplePaths (random paths). look_ahead applies a forecast to a recorded run; Forecaster applies
-/// one to planned inputs.
+/// Predictions without measurements, from a filter's state and with known inputs. All such predictions use this header.
+/// A forecast is an object with start(...) and step(acting inputs). There are BankForecast (moments of a bank),
+/// DriftingForecast (running noise) and SamplePaths (random paths). look_ahead applies a forecast to a recorded run;
+/// Forecaster applies a forecast to planned inputs.
 namespace modebank {
 
 /// Steps `forecast`, which was started at moment t of a run, through the following moments. Calls arrive(ahead, k) at
-/// each sample k, the `ahead`-th after t. Ends if arrive returns false or the stretch ends.
+/// each sample k, which is the `ahead`-th sample after t. Ends if `arrive` returns false or the stretch ends.
 template <class Forecast, class Arrive>
 void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, Arrive arrive) {
   Eigen::Index ahead = 0;
@@ -39,9 +39,9 @@ void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, cons
   });
 }
 
-/// Forecast of a bank by moments: one Gaussian per mode, mixed (merged) as in the filter, and propagated. With a
-/// constant transition matrix every mode's probability, mean and covariance equal those of the switching system,
-/// because moments of mixtures merge exactly. The approximation is that each mode has a Gaussian distribution.
+/// Forecast of a bank by moments: one Gaussian per mode. As in the filter, the Gaussians are mixed and propagated in
+/// each step. If the transition matrix is constant, every mode's probability, mean and covariance are exact, because
+/// moments of mixtures merge exactly. Only the distribution of each mode is approximated by a Gaussian.
 template <int N, int NY>
 class BankForecast {
  public:
@@ -67,7 +67,7 @@ class BankForecast {
   const FilterModel<N, NY>& model() const { return model_; }
   const FilterStep<N, NY>& predicted() const { return step_; }
 
-  /// Mean and covariance of the predicted state, all modes combined.
+  /// Mean and covariance of the predicted state, combined over all modes.
   template <class Mean, class Covariance>
   void moments(Mean&& mean, Covariance&& covariance) const {
     const auto each = [&](auto add) {
@@ -107,8 +107,8 @@ class BankForecast {
   Gaussian<N> unused_;
   bool ahead_ = false, contracted_ = false;
 
-  /// Contracts coefficients that drifted to unstable values. Such coefficients are good for one step but diverge over
-  /// many. Same method as in DriftingForecast.
+  /// Contracts coefficients that drifted to unstable values. Such coefficients predict one step well but diverge over
+  /// many steps. DriftingForecast uses the same method.
   void contract() {
     contracted_ = true;
     const LinearStructure& s = model_.structure;
@@ -119,7 +119,7 @@ class BankForecast {
   }
 };
 
-/// Prediction of one later sample, all modes combined.
+/// Prediction of one later sample, combined over all modes.
 struct StateForecast {
   Eigen::VectorXd state;             ///< n
   Eigen::MatrixXd covariance;        ///< n x n
@@ -129,14 +129,14 @@ struct StateForecast {
 /// Forecasts of a bank of any size under planned inputs.
 class Forecaster {
  public:
-  /// Conditions are those of BankFilter.
+  /// The conditions are those of BankFilter.
   Forecaster(const Bank& bank, const FilterOptions& options);
   ~Forecaster();
 
   /// Predicts the next `steps` samples, one model step apart, from a filter state of this bank. Column i of `inputs` (m
   /// x c) is the input recorded at the sample i + 1 ahead. An input acts input_delay samples later, so the last
-  /// input_delay columns have no effect and may be omitted. States are NaN before a filter's start. Throws
-  /// std::invalid_argument for too few inputs, inputs that are not finite and steps below 1.
+  /// input_delay columns have no effect and may be omitted. Before the filter's start, states are NaN. Throws
+  /// std::invalid_argument for too few inputs, for inputs that are not finite, and for steps below 1.
   std::vector<StateForecast> ahead(const FilterSnapshot& from, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                    Eigen::Index steps);
 

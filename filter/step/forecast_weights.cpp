@@ -12,10 +12,10 @@ namespace modebank::filter {
 namespace {
 
 constexpr double kept_per_sample = 0.99;     // forgetting factor of Raftery, Karny & Ettler
-constexpr double least_log_weight = -700.0;  // log density in place of a density of zero, so that a forecaster can
-                                             // recover
+constexpr double least_log_weight = -700.0;  // replaces the log density if the density is zero, so that a forecaster
+                                             // can recover
 
-/// The largest number; NaN if there are none.
+/// The largest number; NaN if the list is empty.
 double largest(const std::vector<double>& values) {
   double most = std::numeric_limits<double>::quiet_NaN();
   for (const double value : values) most = std::fmax(most, value);
@@ -50,8 +50,8 @@ void ForecastWeights::observe(const std::vector<double>& log_densities) {
   if (log_densities.size() != evidence_.size())
     throw std::invalid_argument(std::to_string(log_densities.size()) + " log densities of " +
                                 std::to_string(evidence_.size()) + " forecasters");
-  // Forecasters without a value get the density of the mixture. The scores of the others then do not change the weights
-  // of these forecasters.
+  // Forecasters without a value get the density of the mixture. Their weights then do not depend on the scores of the
+  // other forecasters.
   const double together = mixed_log_density(weights_, log_densities);
   if (std::isnan(together)) return;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
@@ -76,7 +76,7 @@ void ForecastWeights::normalise() {
 
 namespace {
 
-/// Densities of all forecasters for each sample, in units of the sample's largest density; NaN without a value.
+/// Densities of all forecasters for each sample, divided by the sample's largest density; NaN without a value.
 std::vector<double> relative_densities(const std::vector<std::vector<double>>& log_densities) {
   const std::size_t forecasters = log_densities.size();
   std::vector<double> densities, one(forecasters);
@@ -89,7 +89,7 @@ std::vector<double> relative_densities(const std::vector<std::vector<double>>& l
   return densities;
 }
 
-/// One step of expectation-maximisation. Forecasters without a value for a sample keep their weight.
+/// One iteration of expectation-maximisation. A forecaster without a value for a sample keeps its weight.
 std::vector<double> likelier_weights(const std::vector<double>& weights, const std::vector<double>& densities) {
   const std::size_t forecasters = weights.size();
   std::vector<double> next(forecasters, 0.0);

@@ -9,8 +9,8 @@
 
 namespace modebank {
 
-/// Derivatives of a log-likelihood with respect to all numbers of a bank that it depends on. Each number has its own
-/// derivative; for symmetric matrices, each entry.
+/// Derivatives of a log-likelihood with respect to all numbers of a bank on which it depends. Each number has its own
+/// derivative. For a symmetric matrix, each entry has its own.
 struct BankGradient {
   struct Mode {
     LinearModel model;
@@ -22,18 +22,18 @@ struct BankGradient {
   Eigen::MatrixXd start_covariance;  ///< derivative with respect to the covariance of start_moments
 
   BankGradient& operator+=(const BankGradient& other);
-  /// First-order difference of the log-likelihoods of two similar banks. They may differ only in the parts listed
-  /// above.
+  /// Difference of the log-likelihoods of two similar banks, to first order. The banks may differ only in the parts
+  /// listed above.
   double along(const Bank& from, const Bank& to) const;
 };
 
 /// Whether the gradient is available for this filter.
 bool has_likelihood_gradient(const Bank& bank, const FilterOptions& options);
 
-/// The gradient of sum_k weight_k log p(y_k | earlier) of one run. It is exact for the filter's computation and costs a
-/// few filter passes for any number of parameters (reverse-mode differentiation; Griewank & Walther 2008, "Evaluating
-/// derivatives"). `weight`: one per sample; if empty, all weights are one. Conditions are those of log_likelihood
-/// (filter/judge/run/evaluate.hpp) and has_likelihood_gradient.
+/// The gradient of sum_k weight_k log p(y_k | earlier) of one run. It is the exact derivative of the filter's
+/// computation. It costs a few filter passes for any number of parameters (reverse-mode differentiation; Griewank &
+/// Walther 2008, "Evaluating derivatives"). `weight`: one per sample; if empty, all weights are one. Conditions are
+/// those of log_likelihood (filter/judge/run/evaluate.hpp) and has_likelihood_gradient.
 BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
                                      const FilterOptions& options);
 

@@ -6,7 +6,7 @@
 
 namespace modebank {
 
-/// Seed of the draws of one run.
+/// Seed for the draws of one run.
 std::uint64_t pit_seed(std::uint64_t seed, std::string_view run);
 
 /// Draws the transform of a quantised measurement within its interval (predicted_mixture.hpp). Moves `pit` (n_y) from

@@ -6,22 +6,22 @@
 
 namespace modebank {
 
-/// Noise of one motion with a variance that follows each output separately (method: section 6, `drifting`). e is a
-/// prediction error with Student's t distribution of variance v (1 + h'Ph); P is the covariance of the coefficients
-/// divided by v:
-///   v <- max(lam v + (1 - lam) e^2 / (1 + h'Ph), floor), from the diagonal of Q at a start.
+/// Noise of one motion. The variance follows each output separately (method: section 6, `drifting`). e is a prediction
+/// error with Student's t distribution of variance v (1 + h'Ph). P is the covariance of the coefficients divided by v.
+/// At a start, v is the diagonal of Q. Then
+///   v <- max(lam v + (1 - lam) e^2 / (1 + h'Ph), floor).
 /// Given the past, outputs are independent.
 struct RunningNoise {
   double lam = 0.9;            ///< forgetting factor of the running variance, in [0, 1]
   double nu = 0.0;             ///< degrees of freedom, above 2; 0 for a normal distribution
-  Eigen::VectorXd floor = {};  ///< n, smallest value of v; if empty, the noise is the constant Q
+  Eigen::VectorXd floor = {};  ///< n, smallest value of v; if empty, the noise is Q and constant
 
-  /// Horizons in samples, ascending from 2, and the factor on the first-order variance at each horizon. One sample
+  /// Horizons in samples, ascending from 2, and for each horizon the factor on the first-order variance. One sample
   /// ahead the factor is 1, because the prediction is that of the filter.
   std::vector<std::pair<Eigen::Index, double>> horizon_factor = {};
 
   bool empty() const { return floor.size() == 0; }
-  /// The factor of the longest horizon that is at most this one; 1 if there is none.
+  /// The factor of the longest horizon that is not above this one; 1 if every horizon is above it.
   double factor_at(Eigen::Index horizon) const {
     double factor = 1.0;
     for (const auto& [ahead, value] : horizon_factor)

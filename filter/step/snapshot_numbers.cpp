@@ -12,7 +12,7 @@ using Eigen::Index;
 
 constexpr double numbers_format = 2.0;
 
-/// Calls part(x) for everything in a snapshot, in the order of the numbers.
+/// Calls part(x) for every part of a snapshot, in the order of the numbers.
 template <class Snapshot, class Part>
 void for_each_part(Snapshot& snapshot, Part part) {
   part(snapshot.started);
@@ -69,7 +69,7 @@ class NumbersReader {
     for (double& value : matrix.reshaped()) value = next();
   }
   void operator()(std::vector<Eigen::MatrixXd>& matrices) {
-    matrices.resize(static_cast<std::size_t>(count(left() / 2)));  // each of these has two sizes
+    matrices.resize(static_cast<std::size_t>(count(left() / 2)));  // two sizes precede each of these
     for (Eigen::MatrixXd& matrix : matrices) (*this)(matrix);
   }
   void require_end() const {

@@ -10,7 +10,7 @@ namespace modebank {
 
 namespace {
 
-/// Stepper by the equations.
+/// A Stepper that uses the equations.
 template <int N, int NY>
 class EquationStepper final : public Stepper {
  public:

@@ -11,23 +11,23 @@ namespace modebank {
 struct FilterMemory;
 
 /// A bank's filter for any size and variant. It uses vector kernels with one mode per lane (detail/vector) if they
-/// exist, else the equations (equations/filter_step.hpp). Both agree up to rounding. Call start, then advance and
-/// update for each sample, or follow. Allocates only at construction.
+/// exist, else the equations (equations/filter_step.hpp). Both agree up to rounding. Call `start` first. Then call
+/// `advance` and `update` for each sample, or `follow` for many. Allocates only at construction.
 class Stepper {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
   using Columns = Eigen::Ref<const Eigen::MatrixXd>;
 
   virtual ~Stepper() = default;
-  /// Starts from the first measurement `y`; with lags, from the first complete z of measurements.
+  /// Starts from the first measurement `y`; with lags, from the first complete z.
   virtual void start(const Vector& y) = 0;
-  /// One model step under the acting inputs `v`. A measurement may follow predict; none follows skip.
+  /// One model step under the acting inputs `v`. After `predict` a measurement may follow; after `skip` none follows.
   virtual void predict(const Vector& v) = 0;
   virtual void skip(const Vector& v) = 0;
-  /// Updates with `y` and returns the log predictive density [nats] of its available signals; NaN without signals.
+  /// Updates with `y`. Returns the log predictive density [nats] of the available signals; NaN if there are none.
   virtual double update(const Vector& y) = 0;
-  /// predict and update for a stretch of samples, each one step after the previous one. Computes the log predictive
-  /// densities of `measurements` (n_y x samples) under `inputs` (acting inputs x samples).
+  /// Calls `predict` and `update` for a stretch of samples, each one step after the previous one. Computes the log
+  /// predictive densities of `measurements` (n_y x samples) under `inputs` (acting inputs x samples).
   virtual void follow(const Columns& inputs, const Columns& measurements, Eigen::Ref<Eigen::VectorXd> log_density) {
     for (Eigen::Index k = 0; k < measurements.cols(); ++k) {
       predict(inputs.col(k));
@@ -40,11 +40,11 @@ class Stepper {
     predict(v);
   }
 
-  /// Call after predict. Moments of the predicted mixture, n and n_y x n_y. Returns the share of the modes' differences
-  /// in the trace of S.
+  /// Moments of the predicted mixture, n and n_y x n_y. Call after `predict`. Returns the share of the trace of S that
+  /// comes from differences between the modes.
   virtual double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) = 0;
-  /// Call after update with the same y. Probability integral transform of y (predicted_mixture.hpp), n_y. `width`:
-  /// width of the interval whose middle is pit; unchanged if nothing is quantised.
+  /// Probability integral transform of y (predicted_mixture.hpp), n_y. Call after `update` with the same y. `width`:
+  /// width of the interval whose middle is `pit`; unchanged if no signal is quantised.
   virtual void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) = 0;
   /// Moments of the present mixture, n and n x n.
   virtual void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) = 0;

@@ -37,10 +37,10 @@ double StudentNoise::probability(double value) const {
 
 double StudentNoise::log_mass(double low, double high) const {
   if (gaussian()) return truncated_normal(low, high).log_mass;
-  if (low + high > 0.0) low = -std::exchange(high, -low);  // the lower tail keeps more digits
+  if (low + high > 0.0) low = -std::exchange(high, -low);  // the lower tail has more accurate digits
   const double mass = probability(high) - probability(low), middle = 0.5 * (low + high);
-  // If an interval is narrow compared with its distance, the difference loses digits. The mass is then computed from
-  // the density.
+  // If an interval is narrow compared with its distance from zero, the difference loses digits. The probability is then
+  // computed from the density.
   constexpr double narrow = 1e-3;
   if (high - low < narrow * (1.0 + std::abs(middle))) return log_density(middle * middle) + std::log(high - low);
   return std::log(mass);

@@ -4,11 +4,12 @@
 
 namespace modebank {
 
-/// State-dependent transition probabilities, a multinomial logit (McFadden 1974). For the step from k to k + 1, to mode
-/// j after mode i:
-///   P(j | i, z[k]) = T_ij exp(w_j' (z[k] - reference)) / sum_l T_il exp(w_l' (z[k] - reference)). z[k] = (x[k], v[k])
-///   holds the state at the start of the step and the acting inputs. Both are known before the measurement of sample k
-///   + 1. Without weights the probabilities are T. A constant added to a column of the weights has no effect.
+/// State-dependent transition probabilities, a multinomial logit (McFadden 1974). In the step from k to k + 1, mode j
+/// follows mode i with the probability
+///   P(j | i, z[k]) = T_ij exp(w_j' (z[k] - reference)) / sum_l T_il exp(w_l' (z[k] - reference)).
+/// z[k] = (x[k], v[k]) holds the state at the start of the step and the acting inputs. Both are known before the
+/// measurement of sample k + 1. Without weights the probabilities are T. A constant added to a column of the weights
+/// has no effect.
 struct TransitionLogit {
   Eigen::MatrixXd weights = {};    ///< K x d, d = n + acting inputs [1 / unit of z]; if empty, T holds for every z
   Eigen::VectorXd reference = {};  ///< d, the value of z for which T holds
@@ -16,7 +17,7 @@ struct TransitionLogit {
   bool empty() const { return weights.size() == 0; }
 };
 
-/// Workspace for a step's transition probabilities, sized once.
+/// Workspace for the transition probabilities of a step, sized once.
 struct TransitionWorkspace {
   TransitionWorkspace(Eigen::Index modes, const TransitionLogit& logit)
       : offset(logit.empty() ? Eigen::VectorXd() : Eigen::VectorXd(logit.weights * logit.reference)) {
@@ -27,14 +28,14 @@ struct TransitionWorkspace {
 
   Eigen::MatrixXd T;       ///< K x K; each row sums to one
   Eigen::VectorXd factor;  ///< K
-  Eigen::VectorXd offset;  ///< K, weights times reference
+  Eigen::VectorXd offset;  ///< K, the product of weights and reference
 };
 
-/// Upper limit of the difference of log odds. Larger differences are practically certain, and with the limit rows of T
-/// stay possible.
+/// Upper limit of the difference of log odds. Larger differences are practically certain. The limit keeps every row of
+/// T possible.
 inline constexpr double largest_log_odds = 200.0;
 
-/// The probabilities at (x, v). T if x or v is not finite. Does not allocate.
+/// The probabilities at (x, v). The result is T if x or v is not finite. Does not allocate.
 template <class X, class V>
 const Eigen::MatrixXd& transition_at(const Eigen::MatrixXd& T, const TransitionLogit& logit, const X& x, const V& v,
                                      TransitionWorkspace& at) {

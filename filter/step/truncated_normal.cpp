@@ -13,7 +13,7 @@ namespace {
 
 double density(double x) { return std::exp(-0.5 * x * x - 0.5 * log_two_pi); }
 
-/// Moments from the error function. `low` must not be far above zero and the interval must not be narrow.
+/// Moments from the error function. `low` must not be far above zero, and the interval must not be narrow.
 TruncatedNormal by_differences(double low, double high) {
   const double mass = 0.5 * (std::erfc(low / std::numbers::sqrt2) - std::erfc(high / std::numbers::sqrt2));
   const double at_low = density(low) / mass, at_high = density(high) / mass, mean = at_low - at_high;
@@ -26,8 +26,8 @@ TruncatedNormal by_differences(double low, double high) {
   return {std::log(mass), mean, variance, third, fourth};
 }
 
-/// Integrals of t^i exp(-low t - t^2 / 2) over [0, width], as far as the integrand is not negligible. Each panel of the
-/// quadrature changes the integrand's logarithm by at most four.
+/// Integrals of t^i exp(-low t - t^2 / 2) over [0, width]. The part where the integrand is negligible is left out. In
+/// each panel of the quadrature the logarithm of the integrand changes by at most four.
 TruncatedNormal by_quadrature(double low, double whole_width) {
   constexpr double negligible = truncated::negligible_exponent;
   const double reach = 2.0 * negligible / (low + std::sqrt(low * low + 2.0 * negligible));
@@ -57,13 +57,13 @@ TruncatedNormal by_quadrature(double low, double whole_width) {
           fourth / sum - mean * (4.0 * cube - mean * (6.0 * square - 3.0 * mean * mean))};
 }
 
-/// `width`: high - low, with the digits that the difference would lose.
+/// `width`: high - low. It is an argument because the difference would lose digits.
 TruncatedNormal within_interval(double low, double high, double width) {
   low = std::clamp(low, -truncated::furthest, truncated::furthest);
   high = std::clamp(high, -truncated::furthest, truncated::furthest);
   const bool mirrored = low + high < 0.0;
   if (mirrored) low = -std::exchange(high, -low);
-  if (!(width > 0.0)) {  // so far out that rounding leaves a single point
+  if (!(width > 0.0)) {  // so far from zero that rounding leaves a single point
     const double mean = mirrored ? -low : low;
     return {-0.5 * low * low - 0.5 * log_two_pi + std::log(std::numeric_limits<double>::min()), mean};
   }

@@ -10,18 +10,18 @@ struct TruncatedNormal {
   double log_mass = 0.0;  ///< log of the interval's probability
   double mean = 0.0;
   double variance = 0.0;             ///< variance, in (0, 1]
-  double third = 0.0, fourth = 0.0;  ///< moments about the mean
+  double third = 0.0, fourth = 0.0;  ///< central moments
 };
 
 /// Constants shared by the scalar and the vector computation.
 namespace truncated {
 
-// Narrower intervals and intervals far out use quadrature, because differences of the error function lose digits.
+// Intervals that are narrower or far from zero use quadrature, because differences of the error function lose digits.
 inline constexpr double least_width = 0.25;
 inline constexpr double largest_start = 4.0;
 inline constexpr double furthest = 1e100;
-inline constexpr double negligible_exponent = 40.0;  ///< exponents beyond this are neglected
-inline constexpr double most_per_panel = 4.0;        ///< largest change of the integrand's logarithm
+inline constexpr double negligible_exponent = 40.0;  ///< exponents below minus this value are neglected
+inline constexpr double most_per_panel = 4.0;        ///< largest change of the integrand's logarithm in one panel
 
 /// Gauss-Legendre quadrature with 12 points: positive abscissas and their weights.
 inline constexpr std::array<std::pair<double, double>, 6> gauss{{{0.12523340851146891547, 0.24914704581340278500},
@@ -33,14 +33,17 @@ inline constexpr std::array<std::pair<double, double>, 6> gauss{{{0.125233408511
 
 }  // namespace truncated
 
-/// Moments for [low, high], low <= high, of any width and at any distance. They are accurate to about twelve digits
-/// (the mass to fourteen). A single point has the smallest representable mass. Bounds beyond 1e100 are clamped.
+/// Moments for [low, high], low <= high, of any width and at any distance from zero. They have about twelve correct
+/// digits, `mass` about fourteen. A single point has the smallest representable mass. Bounds beyond 1e100 are set to
+/// 1e100.
 TruncatedNormal truncated_normal(double low, double high);
 
-/// Likelihood of a Gaussian signal that is recorded in multiples of a quantum, and its moments given the record.
+/// Likelihood of a Gaussian signal that is recorded in multiples of a quantum. Also its moments given the recorded
+/// value.
 struct SignalLikelihood {
-  /// Log of the interval's mean density, log(mass / q). It tends to a log density for q = 0. So scores of coarser and
-  /// finer data have the same unit. Differences between models of the same data equal those of log mass.
+  /// Log of the interval's mean density, log(mass / q). As q goes to 0, it tends to the log density. So scores of
+  /// coarse and fine data have the same unit. For the same data, differences between models equal differences of log
+  /// mass.
   double log_density = 0.0;
   /// Mean m, variance v, third and fourth central moments of the standardised innovation given the measurement. u is
   /// sqrt(s) times this innovation and has mean M and variance V. The four moments also give these derivatives

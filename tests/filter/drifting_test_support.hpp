@@ -44,7 +44,7 @@ inline Bank fixed(Bank model) {
   return model;
 }
 
-/// Noise of variance one with the model's distribution.
+/// Noise of variance one, with the model's type of distribution.
 inline double draw_noise(double nu, std::mt19937_64& generator) {
   if (nu == 0.0) return boost::random::normal_distribution<double>()(generator);
   return boost::random::student_t_distribution<double>(nu)(generator) * std::sqrt((nu - 2.0) / nu);
@@ -87,7 +87,7 @@ inline Trajectory simulate_drifting(const Bank& model, Index samples, std::uint6
   return run;
 }
 
-/// The run with missing samples and signals, a short gap and a long one.
+/// The run with missing samples, missing signals, a short gap and a long gap.
 inline Trajectory holed(Trajectory run) {
   run.state.col(0).setConstant(std::nan(""));
   run.state.middleCols(20, 3).setConstant(std::nan(""));

@@ -14,7 +14,8 @@
 
 namespace modebank::test {
 
-/// A well-conditioned bank of K modes that differ in A, B, c and Q (by a factor of ten per mode), with R = r I, C = I.
+/// A well-conditioned bank of K modes. The modes differ in A, B, c and Q (by a factor of ten from mode to mode). R = r
+/// I, C = I.
 inline Bank example_bank(Eigen::Index n, Eigen::Index m, Eigen::Index K, double r = 1e-4) {
   Bank bank;
   bank.structure = {n, m, true};
@@ -42,7 +43,7 @@ inline Eigen::VectorXd draw_normal(const Eigen::MatrixXd& covariance, std::mt199
   boost::random::normal_distribution<double> normal;
   Eigen::VectorXd z(covariance.rows());
   for (double& value : z) value = normal(generator);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);  // a covariance may be singular, so LLT is unsuitable
+  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);  // LLT is unsuitable, because a covariance may be singular
   const Eigen::VectorXd scaled = factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal() * z;
   return factor.transpositionsP().transpose() * (factor.matrixL() * scaled);
 }
@@ -54,7 +55,7 @@ inline Eigen::Index draw_index(const Eigen::VectorXd& probability, std::mt19937_
   return i;
 }
 
-/// A run of the bank's switching system: y = C x + v, the assumption of the filter.
+/// A run of the bank's switching system, with y = C x + v as the filter assumes.
 inline Trajectory simulate_bank(const Bank& bank, Eigen::Index samples, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::uniform_01<double> uniform;
@@ -114,7 +115,7 @@ inline Bank single_mode(Bank bank, std::size_t j) {
   return bank;
 }
 
-/// The part of the bank that this variant can filter: for kf the first mode only.
+/// The part of the bank that this variant can filter. For kf it is the first mode only.
 inline Bank steppable(Bank bank, FilterVariant variant) {
   return variant == FilterVariant::kf ? single_mode(std::move(bank), 0) : bank;
 }

@@ -19,7 +19,7 @@ inline FreeRunOptions after(Index samples, FreeRunMethod method = FreeRunMethod:
   return options;
 }
 
-/// A bank of one mode with noise-free measured states.
+/// A bank of one mode with exactly measured states.
 inline Bank arx_bank(const LinearStructure& s, const Eigen::VectorXd& theta) {
   Bank bank;
   bank.structure = s;

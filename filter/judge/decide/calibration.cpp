@@ -11,8 +11,9 @@ namespace modebank {
 
 namespace {
 
-constexpr double nis_level = 0.99;     // level of the interval that decides
-constexpr double nis_tolerance = 0.1;  // share of the variance; a tenth of it is a twentieth of the interval's width
+constexpr double nis_level = 0.99;     // level of the confidence interval that decides the verdict
+constexpr double nis_tolerance = 0.1;  // as a share of the variance; a tenth of the variance changes the band's width
+                                       // by a twentieth
 constexpr double outside_level = 0.99;
 
 bool within(double value, double least, double largest) { return value >= least && value <= largest; }

@@ -43,7 +43,7 @@ inline constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 
 using HitsByRun = std::vector<std::vector<char>>;
 SeriesByRun as_numbers(const HitsByRun& hits);
 
-/// Counts that a verdict is based on, over the scored signals of some samples.
+/// Counts over the scored signals of some samples. A verdict is based on them.
 struct BandCounts {
   std::array<HitsByRun, coverage_levels.size()> outside;  ///< 1 where a signal lies outside the band, else 0
   HitsByRun far, close;         ///< 1 where z^2 lies above the 97.5 % or below the 2.5 % quantile of chi-square(1)
@@ -58,7 +58,7 @@ double time_by_sizes(const SeriesByRun& sizes);
 /// Interval of a fraction of hits, for the effective number of independent samples. `time`: from time_by_sizes.
 Interval fraction_interval(const SeriesByRun& hits, double time, double level = 0.95);
 
-/// Whether an interval contains the whole calibrated band and more. If so, the data are inconclusive.
+/// Whether an interval contains the whole calibrated band and values outside. If so, the data are inconclusive.
 bool says_nothing(const Interval& interval, double least, double largest);
 
 /// The verdict for these counts. `time`: from time_by_sizes.

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double negligible_R = 1e-6;  // share of the innovations' variance
+constexpr double negligible_R = 1e-6;  // limit of R as a share of the innovations' variance
 
 /// Sets a fraction of hits and its confidence interval.
 void set_fraction(const HitsByRun& hits, double time, double& fraction, double& lower, double& upper) {
@@ -40,7 +40,8 @@ void set_fractions(const BandCounts& e, double time, DiagnosticsRow& row) {
   set_fraction(e.close, time, row.too_close, row.too_close_lower, row.too_close_upper);
 }
 
-/// The states whose measurement noise is not negligible. For these the covariance after the measurement differs from R.
+/// The states whose measurement noise is not negligible. Only for these states does the covariance after the
+/// measurement differ from R.
 std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vector<Trajectory>& runs,
                                      const std::vector<RunEvaluation>& evaluations) {
   const Index n_y = bank.C.rows();
@@ -95,8 +96,8 @@ DiagnosticsRow make_row(const Collected& c, Index nees_states) {
 
 constexpr double takes_all = 0.99;              // usage of a mode above which it is flagged
 constexpr double unused = 1e-3;                 // usage
-constexpr double flat_entropy = 0.95;           // share of log K
-constexpr double dominating_differences = 0.5;  // share of trace S
+constexpr double flat_entropy = 0.95;           // as a share of log K
+constexpr double dominating_differences = 0.5;  // as a share of the trace of S
 
 void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
 

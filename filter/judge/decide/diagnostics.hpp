@@ -24,7 +24,7 @@ struct DiagnosticsRow {
   Eigen::Index samples = 0;  ///< scored samples
   double usage = 0.0;        ///< mean probability of the mode after the measurement; for the whole filter, of its most
                              ///< probable mode
-  double entropy = 0.0;      ///< mean entropy of the probabilities after the measurement, over log K; 0 for K = 1
+  double entropy = 0.0;      ///< mean entropy of the probabilities after the measurement, divided by log K; 0 for K = 1
   double dwell = 0.0;  ///< mean stay in a mode along viterbi_mode (without it, along the most probable modes) [samples]
   double dwell_model = 0.0;  ///< 1 / (1 - T_jj), the stay by the transition matrix; NaN for the whole filter
 
@@ -33,9 +33,10 @@ struct DiagnosticsRow {
   double coverage_90 = 0.0, coverage_90_lower = 0.0, coverage_90_upper = 0.0;
   double coverage_95 = 0.0, coverage_95_lower = 0.0, coverage_95_upper = 0.0;
   double coverage_99 = 0.0, coverage_99_lower = 0.0, coverage_99_upper = 0.0;
-  double too_far = 0.0, too_far_lower = 0.0, too_far_upper = 0.0;        ///< z^2 above its 97.5 % quantile
-  double too_close = 0.0, too_close_lower = 0.0, too_close_upper = 0.0;  ///< z^2 below its 2.5 % quantile
-  double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< mean_distance, and its interval for a correct model
+  double too_far = 0.0, too_far_lower = 0.0, too_far_upper = 0.0;        ///< share of z^2 above its 97.5 % quantile
+  double too_close = 0.0, too_close_lower = 0.0, too_close_upper = 0.0;  ///< share of z^2 below its 2.5 % quantile
+  double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< `mean_distance` of the NIS, and the interval in
+                                                               ///< which it lies for a correct model
   double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< NEES of the state after the measurement, if the
                                                                ///< truth is known. NaN if R is negligible, because the
                                                                ///< state then equals the measurement
@@ -43,7 +44,7 @@ struct DiagnosticsRow {
   double whiteness_p = 0.0;                                    ///< p value of Ljung & Box's test, as in the summary
   double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value, at this lag; 0 for a mode
   Eigen::Index autocorrelation_lag = 0;
-  double spread_share = 0.0;  ///< mean share of the modes' differences in the trace of S
+  double spread_share = 0.0;  ///< mean share of the trace of S that comes from differences between the modes
   Calibration verdict = Calibration::undecided;
   std::string flags;  ///< remarkable facts, separated by "; "
 };

@@ -17,13 +17,15 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double coarse_share = 0.25;  // share of the innovation's standard deviation; above it densities peak between
-                                       // quanta
+constexpr double coarse_share = 0.25;  // largest quantum, as a share of the innovation's standard deviation. With a
+                                       // larger quantum, a density has peaks between the rounded values
 constexpr Index free_run_horizon = 0;
-constexpr double noticeable_rmse = 1e-3;  // relative difference; visible in a table with three digits
-constexpr double rounding_rmse = 1e-8;    // share of a state's standard deviation; half of a double's digits
+constexpr double noticeable_rmse = 1e-3;  // relative difference of two RMSE that is visible in a table with three
+                                          // digits
+constexpr double rounding_rmse = 1e-8;    // RMSE as a share of a state's standard deviation; corresponds to half of a
+                                          // double's digits
 
-// samples; the smallest stay of 60 systems with modes was 8.4, that of systems without modes 1.6
+// samples; 60 systems with modes had stays of at least 8.4 samples, systems without modes 1.6 samples
 constexpr double fewest_stay = 5.0;
 
 Index scored_runs(const Densities& densities) {
@@ -47,7 +49,7 @@ void set_best_competitor(Finding& finding) {
   }
 }
 
-/// Whether the gain of `better` over another description is negligible or not significant.
+/// Whether the gain of `better` over another description is negligible or insignificant.
 bool is_as_good(const PairedGain& of_better) {
   if (of_better.gain < negligible_gain) return true;
   return std::isfinite(of_better.margin) && !of_better.exceeds() && !of_better.ranks_tell();
@@ -59,8 +61,8 @@ const PairedGain* gain_over(const Finding& finding, const std::string& competito
   return found == finding.gains.end() ? nullptr : &*found;
 }
 
-/// Finds the simplest competitor that is as good as the best competitor and as the bank. Also returns its loss against
-/// the best competitor.
+/// Finds the simplest competitor that is as good as the best competitor and as the bank. Also returns the loss of this
+/// simplest competitor against the best one.
 void set_better_description(const std::vector<Densities>& competitors, Finding& finding) {
   const Densities* leader = named(competitors, finding.best_competitor);
   for (const char* name : competitor_names) {
@@ -104,8 +106,8 @@ Answer answer_by_scores(const Finding& finding) {
   return finding.stay < finding.stay_asked ? Answer::cannot_tell : Answer::evidence;
 }
 
-/// The answer. Competitors have the lags of the bank, so while lags are missing, gains over competitors do not prove
-/// modes.
+/// The answer. All competitors have the lags of the bank. While lags are missing, gains over competitors therefore do
+/// not prove modes.
 Answer answer_of(const Finding& finding) {
   if (finding.step_scatter > most_step_scatter) return Answer::not_yet;
   const Answer answer = answer_by_scores(finding);
@@ -114,8 +116,8 @@ Answer answer_of(const Finding& finding) {
   return by_gains && finding.pattern.told() ? Answer::not_yet : answer;
 }
 
-/// Mean stay of the bank in a mode: one over the rate of leaving it. State-dependent transition probabilities are
-/// functions of the state. For these the stay comes from the most probable sequence of modes.
+/// Mean stay of the bank in a mode: 1 / (rate of leaving the mode). If transition probabilities depend on the state,
+/// this rate is not constant. The stay then comes from the most probable sequence of modes.
 double stay_of(const FindingInputs& in) {
   const bool by_sequence = !in.bank.transition_logit.empty();
   double used = 0.0, left = 0.0;
@@ -139,14 +141,14 @@ Description description_of(const Finding& finding, const Bank& bank) {
   return drifts ? Description::one_drifting_motion : Description::one_linear_motion;
 }
 
-/// Gains of modes and of one nonlinear motion over one linear motion. Set if both gains count and one of the two
-/// describes the runs.
+/// Gains over one linear motion: of several modes, and of one nonlinear motion. Set if both gains count and one of the
+/// two describes the runs.
 void set_gains_over_linear(const std::vector<Densities>& competitors, Finding& finding) {
   const Densities* bent = named(competitors, "nonlinear");
   const bool one_of_both =
       finding.description == Description::several_modes || finding.description == Description::one_nonlinear_motion;
   if (!bent || !one_of_both) return;
-  const PairedGain* over = nullptr;  // the better of the two has the smaller gain of the bank
+  const PairedGain* over = nullptr;  // the bank gains less over the better of the two
   for (const char* name : {"baseline", "noise_only"})
     if (const PairedGain* gain = gain_over(finding, name); gain && (!over || gain->gain < over->gain)) over = gain;
   if (!over || !is_beaten(*over)) return;
@@ -158,7 +160,7 @@ void set_gains_over_linear(const std::vector<Densities>& competitors, Finding& f
   finding.nonlinear_over_linear = of_bend.gain;
 }
 
-/// Whether the errors of one linear model are only rounding.
+/// Whether the errors of one linear model are only the rounding of the data.
 bool leaves_rounding(const FindingInputs& in) {
   for (const SummaryRow& row : in.summary) {
     if (row.filter != "baseline" || row.run != "*" || row.role != in.role) continue;
@@ -170,7 +172,7 @@ bool leaves_rounding(const FindingInputs& in) {
   return false;
 }
 
-/// The competitor of least RMSE at each horizon and state, if its RMSE is below that of the bank.
+/// The competitor with the smallest RMSE at each horizon and state, if this RMSE is below that of the bank.
 class BestMeans {
  public:
   void add(const std::string& filter, Index horizon, const Eigen::VectorXd& rmse) {

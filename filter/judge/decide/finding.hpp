@@ -21,7 +21,7 @@
 namespace modebank {
 
 /// not_yet: a simpler fact must be settled first (Finding::step_scatter, Finding::pattern). not_comparable: log
-/// densities mean little, because measurements are too coarse or repeated too often.
+/// densities cannot be compared, because measurements are too coarse or repeated too often.
 enum class Answer { one_mode, not_comparable, cannot_tell, no_evidence, evidence, not_yet };
 
 template <>
@@ -85,13 +85,13 @@ struct Densities {
 struct Resolution {
   std::string state;
   double quantum = 0.0;        ///< spacing of the values; 0 if none was found
-  double repeated = 0.0;       ///< share of samples in motion equal to the previous one
+  double repeated = 0.0;       ///< share of the samples in motion that equal the previous sample
   double innovation_sd = 0.0;  ///< median standard deviation of the bank's predictions in motion [state unit]
   double sd = 0.0;             ///< standard deviation of the samples [state unit]; 0 if unknown
 };
 
-/// Share of repeated samples above which densities are not compared. In noisy measurements two samples are hardly ever
-/// equal to the last digit.
+/// Limit on the share of repeated samples; above the limit, densities are not compared. In noisy measurements two
+/// samples are hardly ever equal to the last digit.
 inline constexpr double repeated_share = 0.1;
 
 /// A competitor with a smaller root mean square error than the bank over the judged runs.
@@ -108,14 +108,15 @@ struct Finding {
   Eigen::Index runs = 0;       ///< number of judged runs with scored samples
   Eigen::Index modes = 0;      ///< number of modes of the bank
   bool modes_differ = false;   ///< whether the modes differ in theta by more than their errors
-  bool errors_known = true;    ///< errors_known of the bank; if false, modes may differ although modes_differ is false
+  bool errors_known = true;    ///< `errors_known` of the bank. If false, modes may differ although `modes_differ` is
+                               ///< false
   double step_scatter = 0.0;   ///< standard deviation of the time steps over their median
   ErrorPattern pattern;        ///< pattern in the errors of the bank
   double stay = not_a_number;  ///< stay in a mode, harmonic mean over the judged samples [samples]; NaN if unknown
   double stay_asked = 0.0;     ///< stay required for evidence [samples]
   std::vector<Resolution> coarse;  ///< states for which densities are not comparable
   bool without_noise = false;      ///< whether one linear model explains the runs up to rounding
-  bool one_motion_drifts = false;  ///< whether the competitor one_motion drifts within a run, as the bank does
+  bool one_motion_drifts = false;  ///< whether the competitor `one_motion` drifts within a run, as the bank does
   bool terms_asked = false;        ///< whether terms of one nonlinear motion were searched on the training runs
   std::vector<PairedGain> gains;   ///< gains of the bank over each competitor
   std::string best_competitor;     ///< competitor with the highest log score; empty without competitors
@@ -124,14 +125,14 @@ struct Finding {
   std::string better_description;  ///< competitor that describes the runs instead of modes; empty if no competitor does
   double description_loss = 0.0;   ///< loss of that competitor against the best competitor [nats/sample]
 
-  /// Competitor that is worse than one nonlinear motion and than several modes: the better of baseline and noise_only.
-  /// Set if one of these two descriptions holds, because modes that switch by state and input are also a nonlinear
-  /// motion. Else empty.
+  /// The better of the competitors baseline and noise_only, if several modes and one nonlinear motion both predict
+  /// better than it. Set only if one of these two descriptions holds, else empty. Modes that switch by state and input
+  /// are also a nonlinear motion.
   std::string over_linear;
   double bank_over_linear = 0.0, nonlinear_over_linear = 0.0;  ///< [nats/sample]
   std::vector<BetterMean> better_means;
-  std::vector<std::pair<std::string, double>> coefficients;  ///< coefficients of one linear model, if it leaves no
-                                                             ///< noise
+  std::vector<std::pair<std::string, double>> coefficients;  ///< coefficients of one linear model; empty if the model
+                                                             ///< leaves noise
   std::vector<std::string> equations;  ///< equations of the nonlinear motion that describes the runs instead of modes
   std::string text;                    ///< the finding in plain sentences, filled in by the output
 
@@ -146,8 +147,8 @@ bool errors_known(const Bank& bank);
 
 /// The first reason for the answer `cannot tell` in the numbers of a finding.
 Doubt doubt_of(const Finding& finding);
-/// The competitor over which the gain of the bank is least significant, in units of the margin of the gain. A
-/// competitor with an insignificant gain comes first. Null without a margin.
+/// The competitor over which the bank's gain is least significant (gain divided by its margin). A competitor with an
+/// insignificant gain comes first. Null if no gain has a margin.
 const PairedGain* least_beaten(const Finding& finding);
 
 struct FindingInputs {

@@ -227,7 +227,8 @@ class BackwardPass {
     if (!is_finite(result)) result = filtered;
   }
 
-  /// Number of rows that the next state repeats (lags). The gain of these rows is a shift and leaves no uncertainty.
+  /// Number of rows of the next state that repeat the present state (lags). The gain of these rows is a shift and
+  /// leaves no uncertainty.
   Eigen::Index repeated() const { return n() - model_.full_rows; }
 
   /// Computes the gain P F' P_next^-1.

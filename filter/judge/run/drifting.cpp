@@ -24,7 +24,7 @@ struct WhitenedError {
 WhitenedError whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
   const Cholesky factor(covariance);
   if (factor.definite()) return {factor.whiten(error), factor.L().diagonal().array().log().sum()};
-  // a value below the limit can only come from rounding
+  // a variance below the limit can only come from rounding
   const Eigen::ArrayXd deviation = covariance.diagonal().array().max(least_variance).sqrt();
   return {error.array() / deviation, deviation.log().sum()};
 }

@@ -13,9 +13,9 @@
 /// Predictions several steps ahead by banks with running noise (RunningNoise).
 namespace modebank {
 
-/// Predictions some samples ahead (DriftingForecast), without the factor of their horizon.
+/// Predictions several samples ahead (DriftingForecast). Their variances do not yet have the factor of the horizon.
 struct DriftingForecasts {
-  HorizonEvaluation predictions;  ///< predictions, whose log densities have factor 1
+  HorizonEvaluation predictions;  ///< predictions; their log densities have a variance factor of 1
 
   /// Per horizon n x N: errors whitened to unit variance and no correlation, L^-1 error with L L' = cov(error).
   std::vector<Eigen::MatrixXd> whitened;

@@ -49,8 +49,8 @@ void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
   e.spread_share(k) = estimate.spread_share;
 }
 
-/// Runs the filter only. Calls take(first, log densities) for every stretch of scored samples; NaN where nothing was
-/// measured.
+/// Runs the filter only. Calls take(first, log densities) for every stretch of scored samples. A log density is NaN if
+/// nothing was measured.
 template <class Take>
 void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions& options, Take take) {
   const std::unique_ptr<Stepper> stepper = make_stepper(bank, options);
@@ -97,7 +97,7 @@ double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptio
   check_run(bank, run);
   double total = 0.0;
   score_samples(bank, run, options, [&](Index, const Eigen::VectorXd& log_density) {
-    double sum = total;  // summed sample by sample, so that the division into stretches does not change the rounding
+    double sum = total;  // summed sample by sample, so the rounding does not depend on the stretches
     for (const double value : log_density) sum += std::isnan(value) ? 0.0 : value;
     total = sum;
   });

@@ -62,7 +62,7 @@ struct NormalMixture {
   }
 
  private:
-  static constexpr double negligible_weight = 1e-9;  ///< at the edge of any band in use
+  static constexpr double negligible_weight = 1e-9;  ///< weight of a part that no band in use can show
 };
 
 }  // namespace modebank

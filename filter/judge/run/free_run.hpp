@@ -75,8 +75,8 @@ struct FreeRunRow {
   Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample]
   Eigen::VectorXd rmse;      ///< n_y [state unit]
-  Eigen::VectorXd nrmse;     ///< n_y, RMSE over the standard deviation of the measurements (about their mean, divisor
-                             ///< N)
+  Eigen::VectorXd nrmse;     ///< n_y, RMSE divided by the standard deviation of the measurements (about their mean,
+                             ///< divisor N)
   Eigen::VectorXd fit;       ///< n_y [%], 100 (1 - ||y - mean|| / ||y - average of y||)
   Eigen::VectorXd coverage_50, coverage_90, coverage_95, coverage_99;  ///< n_y, share of the samples inside the central
                                                                        ///< bands

@@ -77,8 +77,8 @@ class MomentForecast final : public Forecast {
 };
 
 /// Forecast of a bank by sample paths. Bands are quantiles of the paths with measurement noise. The joint density has
-/// one Gaussian per mode, with the moments of the mode's paths. The noise of the last step enters by its known
-/// covariance instead of samples.
+/// one Gaussian per mode, with the moments of the mode's paths. The noise of the last step is not sampled; its known
+/// covariance is added.
 class PathForecast final : public Forecast {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;

@@ -11,8 +11,8 @@ namespace modebank {
 /// Horizon and score of look-ahead learning.
 struct LookAhead {
   Eigen::Index samples = 1;         ///< h: predictions 1, 2, ... h samples ahead are scored
-  Eigen::VectorXd error_unit = {};  ///< n_y, positive units; scores are minus half the squared errors in these units.
-                                    ///< If empty, scores are densities
+  Eigen::VectorXd error_unit = {};  ///< n_y, positive units. Scores are minus half the squared errors in these units.
+                                    ///< If empty, scores are log densities
 
   bool counts_errors() const { return error_unit.size() > 0; }
   bool is_likelihood() const { return samples == 1 && !counts_errors(); }
@@ -33,7 +33,7 @@ Eigen::VectorXd look_ahead_scores(const Bank& bank, const Trajectory& run, const
 /// Sum of look_ahead_scores over a run. For densities one sample ahead it is bit-identical to log_likelihood.
 double look_ahead_score(const Bank& bank, const Trajectory& run, const FilterOptions& options, const LookAhead& look);
 
-/// Samples between origins: a quarter of the longest horizon, rounded up.
+/// Number of samples between origins: a quarter of the longest horizon, rounded up.
 inline Eigen::Index look_ahead_stride(Eigen::Index h) { return (h + 3) / 4; }
 
 }  // namespace modebank

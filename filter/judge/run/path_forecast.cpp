@@ -39,8 +39,8 @@ Eigen::VectorXd PathForecast::standard_deviation() const {
   return (variance + R_.diagonal().array()).sqrt();
 }
 
-// The i-th of M sorted values is the quantile at i / (M + 1), with linear interpolation. This is the probability that a
-// further path lies below the value.
+// The i-th of M sorted values is the quantile at i / (M + 1), with linear interpolation. A further path lies below this
+// value with probability i / (M + 1).
 
 double PathForecast::probability(Index i, double y) const {
   const auto values = sorted_.col(i);

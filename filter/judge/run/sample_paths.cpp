@@ -15,13 +15,14 @@ using Eigen::Index;
 
 Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
   const SymmetricEigen parts = symmetric_eigen(covariance);
-  const Index directions = (parts.values.array() > 0.0).count();  // values increase, so the last ones are positive
+  const Index directions = (parts.values.array() > 0.0).count();  // values increase, so positive values come last
   return parts.vectors.rightCols(directions) * parts.values.tail(directions).cwiseSqrt().asDiagonal();
 }
 
 namespace {
 
-/// Mode probabilities by the bank's transition matrix; evaluated at the state of each path if they depend on the state.
+/// Mode probabilities by the bank's transition matrix. If they depend on the state, they are evaluated at the state of
+/// each path.
 TransitionRow bank_row(const Bank& bank) {
   if (bank.mode_count() == 1)
     return [](Index mode, const auto&, const auto&, Eigen::VectorXd& row) { row.setZero()(mode) = 1.0; };

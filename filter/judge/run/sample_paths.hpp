@@ -24,7 +24,7 @@ class SamplePaths {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
-  /// `row`: transition probabilities that are not constant; if empty, those of the bank are used.
+  /// `row`: computes transition probabilities that are not constant; if empty, the bank's transition matrix is used.
   SamplePaths(const Bank& bank, Eigen::Index paths, std::uint64_t seed, TransitionRow row = {});
 
   void start(const FilterMemory& origin);

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-/// A pair of modes below this probability does not change a digit of the smoothed values.
+/// Pairs of modes with a lower probability do not change a digit of the smoothed values.
 constexpr double negligible_pair = 1e-18;
 constexpr double rounding = 1e-6;  // nats, far above the rounding of a log density
 
@@ -55,8 +55,8 @@ Eigen::VectorXd noise_scales(const FilterModel<N, NY>& model, const RunInstants&
   return scales;
 }
 
-/// The best history of every mode, moment by moment. `scales`: from noise_scales. This pass cannot adapt a scale of its
-/// own. Its modes count as equally probable at every moment, so it would mistake a change of mode for a change of
+/// The best history of every mode, moment by moment. `scales`: from noise_scales. This pass cannot adapt the scale
+/// itself. Its modes count as equally probable at every moment, so it would mistake a change of mode for a change of
 /// scale.
 template <int N, int NY>
 class BestHistories {
@@ -111,7 +111,7 @@ class BestHistories {
   Eigen::VectorXd score_;                        ///< score of every mode's best history
   std::vector<Gaussian<N>> modes_, next_modes_;  ///< states at the end of these histories
 
-  /// Each row holds for the state of its mode's best history.
+  /// Row j holds for the state of mode j's best history.
   template <class U>
   void set_transition(const U& input) {
     if (model_.transition_logit.empty()) return;
@@ -222,7 +222,7 @@ Eigen::VectorXi viterbi(const Bank& bank, const Trajectory& run, const FilterOpt
 
 void smooth_run(const Bank& bank, const Trajectory& run, const FilterOptions& options, RunEvaluation& evaluation) {
   check_run(bank, run);
-  if (!bank.running_noise.empty()) return;  // its states are known, and it has one mode
+  if (!bank.running_noise.empty()) return;  // a bank with running noise has one mode and exactly known states
   if (!bank.drift.empty()) {
     evaluation.viterbi_mode = drifting_mode_sequence(bank, run, options);
     return;

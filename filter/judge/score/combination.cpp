@@ -134,7 +134,7 @@ void mix_sample(const std::vector<const FreeRun*>& members, const std::vector<do
 
 FreeRun combine_free_runs(const std::vector<const FreeRun*>& members, const std::vector<double>& weights) {
   if (members.empty()) throw std::invalid_argument("no free runs to combine");
-  FreeRun out = *members.front();  // takes over samples and modes
+  FreeRun out = *members.front();  // takes the samples and modes of the first member
   for (Index k = 0; k < out.mode.size(); ++k)
     if (out.mode(k) >= 0) mix_sample(members, weights, k, out);
   return out;

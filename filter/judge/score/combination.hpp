@@ -22,13 +22,13 @@ struct CombinedForecasts {
 };
 /// Combines forecasts. `members`: at least one forecast; all have the same run and horizons. A sample is scored if the
 /// first member scores it. `start`: starting weights per horizon; if empty, weights are equal. Throws
-/// std::invalid_argument if these conditions do not hold.
+/// std::invalid_argument if a condition does not hold.
 CombinedForecasts combine_forecasts(const std::vector<const HorizonEvaluation*>& members,
                                     const std::vector<std::vector<double>>& start = {});
 
-/// Combines free runs of one run with constant weights. The combined band comes from a mixture of normal distributions.
-/// Each member is normal about its mean, on each side as wide as its own band. So the combination of a single member
-/// has that member's band.
+/// Combines free runs of one run with constant weights. The combined band comes from a mixture of distributions, one
+/// per member. Each is normal about the member's mean; on either side it is as wide as the member's band. A single
+/// member therefore keeps its band.
 FreeRun combine_free_runs(const std::vector<const FreeRun*>& members, const std::vector<double>& weights);
 
 /// Mean weight of a filter; one row of /evaluation/combination.
@@ -51,8 +51,8 @@ struct LeftOutRow {
   Eigen::VectorXd rmse;         ///< n_y [state unit]
   double start = not_a_number;  ///< starting weight in combined forecasts; NaN for combined_name
 };
-/// Rows of the filters and, for two or more, of their combination. `forecasts`: per filter (the bank first) the
-/// forecasts of all runs.
+/// Rows of the filters. If there are two or more filters, also rows of their combination. `forecasts`: per filter (the
+/// bank first) the forecasts of all runs.
 std::vector<LeftOutRow> left_out_rows(const std::vector<std::string>& filters,
                                       const std::vector<std::vector<HorizonEvaluation>>& forecasts);
 /// The weights found by left_out_rows, in the form that ForecastTables expects; empty unless the rows have all filters
@@ -66,7 +66,7 @@ std::vector<std::vector<double>> start_weights(const std::vector<LeftOutRow>& ro
 std::vector<double> start_weights(const std::vector<CombinationRow>& rows, Eigen::Index horizon,
                                   const std::vector<std::string>& filters);
 
-/// Approximate number of samples from which stacked weights are computed. Larger sets are thinned evenly.
+/// Approximate number of samples for computing stacked weights. Larger sets are thinned evenly.
 inline constexpr Eigen::Index enough_densities = 20000;
 /// ForecastWeights::stacked of the log densities of runs (filters x N each); large sets are thinned.
 std::vector<double> stacked_weights(const std::vector<Eigen::MatrixXd>& log_densities);
@@ -85,12 +85,12 @@ class ForecastTables {
   /// the training runs so far.
   void start_as_trained();
 
-  /// Rows of all runs: filter by filter, then, for two or more, combined_name.
+  /// Rows of all runs, filter by filter. If there are two or more filters, rows of combined_name follow.
   std::vector<HorizonRow> horizons() const;
   std::vector<CombinationRow> combination() const;
 
  private:
-  /// Sums over samples: filters x horizons, and horizons.
+  /// Sums over samples (filters x horizons), and the number of samples (horizons).
   struct Weights {
     Eigen::MatrixXd sum;
     Eigen::VectorXd samples;
@@ -100,7 +100,7 @@ class ForecastTables {
   std::vector<std::vector<std::vector<HorizonSums>>> sums_;  ///< per filter (the combination last) and run
   std::vector<Weights> weights_;                             ///< per run
   std::vector<std::vector<Eigen::MatrixXd>> densities_;      ///< per training run and horizon: filters x some samples
-  Eigen::Index every_ = 1;                                   ///< every how many-th sample is kept in densities_
+  Eigen::Index every_ = 1;                                   ///< one of this many samples is kept in densities_
   std::vector<std::vector<double>> start_;                   ///< per horizon; if empty, weights are equal
 
   Weights weights_of(Role role) const;

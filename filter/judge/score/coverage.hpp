@@ -11,7 +11,7 @@ namespace modebank {
 inline constexpr std::array<double, 4> coverage_levels{0.50, 0.90, 0.95, 0.99};
 inline constexpr std::size_t deciding_level = 2;
 
-/// Probability of each of the two tails for a correct model.
+/// Probability of each of the two tails if the model is correct.
 inline constexpr double true_tail = 0.025;
 
 /// Classifies a normal score z by bands and tails. All counts of coverage and tails use it.

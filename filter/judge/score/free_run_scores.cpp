@@ -12,8 +12,8 @@ using Eigen::Index;
 
 namespace {
 
-/// Sums over the scored samples of one or more runs. Measurements are relative to the first one. This limits rounding
-/// if they are large against their standard deviation.
+/// Sums over the scored samples of one or more runs. The first measurement is subtracted from all measurements. This
+/// limits rounding errors if measurements are large compared with their standard deviation.
 class FreeRunSums {
  public:
   FreeRunSums(Index n_y)

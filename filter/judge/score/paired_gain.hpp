@@ -9,13 +9,14 @@ namespace modebank {
 /// Gain of one filter over another on the same samples, and its uncertainty.
 struct PairedGain {
   std::string competitor;
-  Eigen::Index samples = 0;     ///< samples that both scored
+  Eigen::Index samples = 0;     ///< number of samples that both filters scored
   double gain = 0.0;            ///< mean difference of log density [nats/sample]; NaN without samples
   double standard_error = 0.0;  ///< standard error of the gain; NaN if unknown
   double degrees_of_freedom = 0.0;
-  double margin = 0.0;     ///< smallest significant gain: t(0.975, degrees of freedom) standard errors; NaN if unknown
+  double margin = 0.0;     ///< smallest significant gain: t(0.975, degrees of freedom) times the standard error; NaN if
+                           ///< unknown
   bool by_blocks = false;  ///< whether clusters are blocks of samples instead of runs
-  double rank_p = 1.0;     ///< signed_rank_p of the mean differences of runs, or of adjacent blocks
+  double rank_p = 1.0;     ///< signed_rank_p of the mean differences per run, or per block of samples
 
   /// False if the standard error is unknown.
   bool exceeds() const { return gain > margin; }

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Index;
 
-/// The two-sided 5 % region of a chi-square variable (method: section 6).
+/// The two tails, 5 % together, of a chi-square variable (method: section 6).
 struct ChiSquareRegion {
   double lower, upper;
   explicit ChiSquareRegion(double degrees_of_freedom)
@@ -68,8 +68,8 @@ class ScoreSums {
   SquaredDistances nis_;
   Eigen::ArrayXd squared_error_, errors_;
   std::vector<double> pit_, whiteness_;
-  std::vector<ChiSquareRegion> nis_regions_;            ///< regions of the NIS for one signal, two signals, ...
-  std::array<Index, coverage_levels.size()> inside_{};  ///< signals inside each central band
+  std::vector<ChiSquareRegion> nis_regions_;            ///< tails of the NIS for one signal, two signals, ...
+  std::array<Index, coverage_levels.size()> inside_{};  ///< number of signals inside each central band
   ScoreBands bands_;
 
   void add_sample(const RunEvaluation& run, Index k, const RunScores& scores) {

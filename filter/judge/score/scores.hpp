@@ -20,7 +20,7 @@ struct SummaryRow {
   Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample], higher is better
   Eigen::VectorXd rmse;      ///< n_y, RMSE of the one-step prediction [state unit]
-  double nis_mean = 0.0;     ///< sum of NIS over the number of scored signals, times n_y; n_y for a correct model
+  double nis_mean = 0.0;     ///< sum of NIS divided by the number of scored signals, times n_y; a correct model has n_y
   double nis_above = 0.0;    ///< share of NIS above the 97.5 % quantile of chi-square for the sample's signals
   double nis_below = 0.0;    ///< share of NIS below the 2.5 % quantile
   double too_far = 0.0;      ///< share of z^2 above the 97.5 % quantile of chi-square(1), z = Phi^-1(pit)
@@ -41,7 +41,7 @@ std::vector<SummaryRow> summarize_role(const std::string& filter, Role role, con
                                        const std::vector<RunEvaluation>& evaluations,
                                        const std::vector<RunScores>& scores);
 
-/// Cost of a limit on the number of modes on the runs of one role. One row of /bank/merged.
+/// Cost of a limit on the number of modes, for the runs of one role. One row of /bank/merged.
 struct MergingCost {
   Role role = Role::train;
   Eigen::Index components = 0;       ///< components of the mixture before merging
@@ -57,7 +57,8 @@ struct MergingCost {
 std::vector<MergingCost> merging_costs(const Bank& unlimited, const Bank& limited, Eigen::Index components,
                                        const Recording& recording, const FilterOptions& options);
 
-/// Which values of a score are good. `nominal`: values near the value of a correct model are good.
+/// Which values of a score are good. With `nominal`, a correct model has the nominal value, and values near it are
+/// good.
 struct ScoreGoal {
   enum class Kind { higher, lower, nominal } kind = Kind::higher;
   double nominal = 0.0;
@@ -67,9 +68,9 @@ struct ScoreGoal {
   std::string text() const;  ///< "higher", "lower" or "nearest 0.025"
 };
 
-/// Goal of a score. Its name is that in the summary, or `<filter>_<role>_<score>` (studies). Empty for columns that are
-/// neither good nor bad (samples, modes). `states`: number of measured states, which is the mean NIS of a correct
-/// model.
+/// Goal of a score. The score has its name in the summary, or `<filter>_<role>_<score>` (studies). Empty for columns
+/// that are neither good nor bad (samples, modes). `states`: number of measured states, which is the mean NIS of a
+/// correct model.
 std::optional<ScoreGoal> goal_of(const std::string& score, int states);
 
 /// The row of a filter over all runs of a role; null if there is none.

@@ -15,8 +15,8 @@ double mean_per_degree(const SquaredDistances& d) {
   return sample_count(d.value) > 0.0 ? sum_of(d.value) / sum_of(d.degrees) : not_a_number;
 }
 
-/// Deviation of each distance from its expected size: its degrees times the mean per degree. The mean of all deviations
-/// is zero.
+/// Deviation of each distance from its expected size, which is its degrees times the mean per degree. The mean of all
+/// deviations is zero.
 SeriesByRun deviations(const SquaredDistances& d) {
   const double share = mean_per_degree(d);
   SeriesByRun result = d.value;

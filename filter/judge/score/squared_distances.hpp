@@ -12,7 +12,7 @@ struct Interval {
 };
 
 /// Squared distances of single samples relative to the filter's covariance: NIS of the available signals, or NEES of
-/// the judged states. For a correct model a distance of d signals has mean d. It is chi-square with d degrees of
+/// the judged states. If the model is correct, a distance of d signals has mean d. It is chi-square with d degrees of
 /// freedom if the prediction is one Gaussian of known variance.
 struct SquaredDistances {
   SeriesByRun value;
@@ -26,14 +26,15 @@ struct SquaredDistances {
 /// Number of scored signals of a sample.
 Eigen::Index scored_signals(const RunEvaluation& evaluation, Eigen::Index sample);
 
-/// Sum of distances over sum of degrees, times `of_all`, the degrees of a complete sample. For a correct model the mean
-/// is therefore `of_all`, even with missing signals. Samples count by their degrees. NaN without samples.
+/// Sum of distances divided by the sum of degrees, times `of_all`, the degrees of a complete sample. If the model is
+/// correct, the mean is therefore `of_all`, even with missing signals. A sample's weight is its degrees. NaN without
+/// samples.
 double mean_distance(const SquaredDistances& distances, double of_all);
 
-/// Dispersion of the distances: their variance about their share of the mean, divided by that of chi-square terms with
-/// the same mean and degrees. It is 1 for a correct model with single Gaussian predictions. It is larger if a few terms
-/// are large, for example with modes that are rare and distant. A factor on the distances does not change it. 1 without
-/// values or variance.
+/// Dispersion of the distances. Computes their variance about the expected sizes, and the variance of chi-square terms
+/// with the same mean and degrees. The dispersion is the ratio of the two. It is 1 for a correct model with single
+/// Gaussian predictions. It is larger if a few terms are large, for example with rare and distant modes. A factor on
+/// all distances does not change it. 1 without values or variance.
 double dispersion(const SquaredDistances& distances);
 
 /// Interval that contains mean_distance of a correct model with probability `level`. The sum is treated as chi-square.
@@ -42,8 +43,8 @@ double dispersion(const SquaredDistances& distances);
 /// of moments: Satterthwaite 1946, Biometrics Bulletin 2). NaN without samples.
 Interval mean_distance_interval(const SquaredDistances& distances, double of_all, bool chi_square, double level = 0.95);
 
-/// NIS of every sample on the scale of all signals, N, so that one region applies to all samples. With missing signals
-/// it is the NIS of all signals with the same tail probability. NaN where nothing was measured.
+/// NIS of every sample on the scale of all signals, N. So one region applies to all samples. If signals are missing,
+/// the NIS is converted to the value for all signals with the same tail probability. NaN where nothing was measured.
 Eigen::VectorXd nis_of_all_signals(const RunEvaluation& evaluation);
 
 }  // namespace modebank

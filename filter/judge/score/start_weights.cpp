@@ -85,7 +85,7 @@ std::vector<double> stacked_weights(const std::vector<Eigen::MatrixXd>& log_dens
   std::vector<std::vector<double>> of_filters(log_densities.empty() ? 0 : log_densities.front().rows());
   for (const Eigen::MatrixXd& run : log_densities)
     for (Index k = 0; k < run.cols(); k += every) {
-      if (std::isnan(run(0, k))) continue;  // combined forecasts cover the samples of the first filter
+      if (std::isnan(run(0, k))) continue;  // combined forecasts have the samples of the first filter
       for (Index f = 0; f < run.rows(); ++f) of_filters[static_cast<std::size_t>(f)].push_back(run(f, k));
     }
   return ForecastWeights::stacked(of_filters);

@@ -47,7 +47,7 @@ std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations)
 }
 
 ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, const ResidualTestOptions& options) {
-  // Sample k + 1 ends transition k, whose input is u[k].
+  // Sample k + 1 is the end of transition k, whose input is u[k].
   return test_residuals(scores.z.rightCols(run.transitions()), run.input.leftCols(run.transitions()), options);
 }
 
@@ -126,7 +126,7 @@ namespace {
 constexpr double outer_tail = 0.025;
 constexpr double root_two_pi = 2.506628274631000502415765284811;
 constexpr double near_one = 0.999;    // the series below converges too slowly for larger correlations
-constexpr double negligible = 1e-10;  // smallest power of the correlation in the sum
+constexpr double negligible = 1e-10;  // terms with a smaller power of the correlation are left out of the sum
 
 /// Autocorrelations at lags 1, 2, ... as long as the sums of successive pairs are positive. The first pair includes lag
 /// 0.

@@ -62,18 +62,17 @@ struct Autocorrelation {
 /// lag 0 if the series are too short.
 Autocorrelation largest_autocorrelation(const SeriesByRun& series);
 
-/// Autocorrelation time: variance of the mean over that for independent terms, at least 1 (initial positive sequence:
-/// Geyer 1992, Statistical Science 7). NaN without values.
+/// Autocorrelation time, at least 1: variance of the mean, divided by its variance for independent terms (initial
+/// positive sequence: Geyer 1992, Statistical Science 7). NaN without values.
 double autocorrelation_time(const SeriesByRun& series);
 
 /// Autocorrelation time of the indicator that a value is among the largest (or smallest) 2.5 %. Such values are too few
-/// for a direct estimate. So it follows from the autocorrelations of all values' normal scores, assumed jointly normal
-/// (tetrachoric series: Pearson 1900). NaN without values.
+/// for a direct estimate. So the time follows from the autocorrelations of all values' normal scores, assumed jointly
+/// normal (tetrachoric series: Pearson 1900). NaN without values.
 double autocorrelation_time_of_tail(const SeriesByRun& series);
 
-/// An upper estimate of an autocorrelation time from `samples` samples: its excess over 1 is raised by the time's
-/// relative standard error (Madras & Sokal 1988, Journal of Statistical Physics 50; lags up to twice the time are
-/// assumed).
+/// A cautious autocorrelation time from `samples` samples. Its excess over 1 is raised by the relative standard error
+/// (Madras & Sokal 1988, Journal of Statistical Physics 50). The error assumes lags up to twice the time.
 double cautious_time(double time, double samples);
 
 }  // namespace modebank

@@ -63,7 +63,7 @@ LearningOptions learning_of(const LearnOptions& options, bool linear) {
   learning.searched_lags = {searched, searched, searched};
   learning.automatic_windows = {options.automatic_length, options.automatic_step};
   learning.noise_by_input = options.noise_by_input ? NoiseByInput::automatic : NoiseByInput::none;
-  learning.competitors = false;  // this API returns no competitors
+  learning.competitors = false;  // this API does not return competitors
   return learning;
 }
 

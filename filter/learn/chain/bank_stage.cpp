@@ -70,9 +70,9 @@ void tell_of(const Refinement& refined, const Progress& progress) {
     progress.progress("refine: fit to predictions up to bank.look_ahead samples ahead: " + worth_of(ahead));
 }
 
-/// Warns of modes that the mixture made from windows between two other modes. Refinement separates such windows.
+/// Warns about modes that the mixture made from windows between two other modes. Refinement separates such windows.
 void warn_of_passing_modes(const LearnedFrom& from, const Bank& bank, const Progress& progress) {
-  constexpr double most = 0.75;  // with flickering labels about half of a true mode's windows seem to be between other
+  constexpr double most = 0.75;  // if labels flicker, about half of a true mode's windows seem to lie between other
                                  // modes
   const Eigen::VectorXd shares = passing_shares(from.windows, from.mixture);
   for (Index k = 0; k < shares.size(); ++k) {

@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-/// Takes one call of the chain through its stages.
+/// Executes the stages for one call of the chain.
 class Run {
  public:
   Run(const Recording& recording, const LearningHooks& hooks, const Progress& progress, Learning& learned)

@@ -50,7 +50,7 @@ Bank drifting(const Recording& recording, const OneModel& of, const CompetitorIn
   return bank;
 }
 
-/// The factor on the competitors' noise; empty if there is none.
+/// The factor on the competitors' noise; empty if the noise has no factor.
 NoiseFactor noise_factor(const Recording& recording, const LinearStructure& structure, const CompetitorInputs& inputs,
                          const Progress& progress) {
   if (inputs.noise_by_input == NoiseByInput::none) return {};

@@ -22,7 +22,7 @@ struct Forecaster {
   std::vector<FreeRun> free(const std::vector<Trajectory>& runs, const FreeRunOptions& options) const;
 };
 
-/// The bank and its competitors, as far as they exist. `filter`: options of the bank's filter.
+/// The bank and those competitors that exist. `filter`: options of the bank's filter.
 std::vector<Forecaster> forecasters_of(const Learning& learned, const FilterOptions& filter);
 
 }  // namespace modebank

@@ -21,9 +21,8 @@ BankInputs bank_inputs(const LearningOptions& options, const FitOptions& window)
   return inputs;
 }
 
-/// Whether to look for noise that follows the input. Everything learned from this noise must support it. The conditions
-/// are: no logit, no drift, no look-ahead, no R that is given, or estimated in addition to rounding, and an IMM without
-/// adaptive noise.
+/// Whether to look for noise that follows the input. All later steps must support such noise. The conditions are: an
+/// IMM without adaptive noise; no logit, drift or look-ahead; R is neither given nor estimated in addition to rounding.
 NoiseByInput noise_by_input(const LearningOptions& options, const FitOptions& window) {
   const BankOptions& bank = options.bank;
   const bool can = refinement_asked(bank, is_linear(window)) == Refine::em &&
@@ -34,7 +33,7 @@ NoiseByInput noise_by_input(const LearningOptions& options, const FitOptions& wi
 }
 
 CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOptions& window) {
-  // A single Kalman filter has no use for the competitors that are learned like a bank.
+  // A single Kalman filter is not compared with the competitors that are learned like a bank.
   const bool rivals = options.filter.variant != FilterVariant::kf;
   RefineOptions em = options.bank.em;
   em.seed = options.seed;
@@ -51,7 +50,7 @@ CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOpti
           options.competitors};
 }
 
-/// one_motion is learned by refinement, for every source of the bank.
+/// `one_motion` is learned by refinement, whatever the source of the bank.
 std::optional<OneMotionInputs> one_motion_inputs(const LearningOptions& options) {
   if (options.filter.variant == FilterVariant::kf) return std::nullopt;
   BankOptions learned;
@@ -80,7 +79,7 @@ FitOptions window_inputs(const LearningOptions& options) {
   return window;
 }
 
-/// The measured samples at the start of a free run must suffice for the model.
+/// A free run needs enough measured samples at its start for the model.
 std::optional<StructureInputs> structure_inputs(const LearningOptions& options) {
   if (!options.searched_lags.any()) return std::nullopt;
   StructureInputs inputs{options.searched_lags, {}, options.filter.variant != FilterVariant::kf};

@@ -21,49 +21,50 @@ struct MixtureInputs {
   std::uint64_t seed = 1;
 };
 
-/// Inputs of the bank's competitors. Except for one_motion, competitors depend on the windows alone. one_motion has at
-/// most as many noise levels as the mixture has components.
+/// Inputs of the bank's competitors. Except for `one_motion`, competitors depend on the windows alone. `one_motion` has
+/// at most as many noise levels as the mixture has components.
 struct CompetitorInputs {
   FitOptions window;
-  FilterOptions filter;               ///< filter of the competitors, for the memory of the noise scale
-  std::vector<Index> horizon;         ///< horizons for which `drifting` widens its predictions
+  FilterOptions filter;               ///< filter of the competitors; needed for the memory of the noise scale
+  std::vector<Index> horizon;         ///< horizons at which `drifting` widens its predictions
   Index transitions = 0;              ///< largest number of transitions to learn from, as for the bank; 0 takes all
-  std::uint64_t seed = 1;             ///< selects these transitions
+  std::uint64_t seed = 1;             ///< seed that selects these transitions
   std::string terms = "auto";         ///< terms of `nonlinear`
   RefineOptions em = {};              ///< how `nonlinear` is learned
-  std::optional<Lags> linear = {};    ///< lags of baseline, noise_only and nonlinear; if empty, those of the windows
-  std::optional<Lags> drifting = {};  ///< lags of `drifting`; if empty, those of the windows
+  std::optional<Lags> linear = {};    ///< lags of `baseline`, `noise_only` and `nonlinear`; if empty, the lags of the
+                                      ///< windows
+  std::optional<Lags> drifting = {};  ///< lags of `drifting`; if empty, the lags of the windows
 
-  /// For all competitors but baseline and drifting, and for the bank.
+  /// Needed for the bank, and for all competitors except `baseline` and `drifting`.
   NoiseByInput noise_by_input = NoiseByInput::none;
-  bool all = true;  ///< if false, only the baseline and the decision on the noise factor
+  bool all = true;  ///< if false, only the baseline and the decision about the noise factor are made
 };
 
-/// Inputs of the competitor one_motion, which is learned like the bank.
+/// Inputs of the competitor `one_motion`, which is learned like the bank.
 struct OneMotionInputs {
   BankOptions bank;
   FilterOptions filter;             ///< its filter
   std::vector<Index> horizon = {};  ///< horizons at which left-out training runs are predicted, in addition to one
                                     ///< sample ahead
-  std::optional<Lags> lags = {};    ///< if empty, those of the windows
+  std::optional<Lags> lags = {};    ///< if empty, the lags of the windows
 };
 
 struct BankInputs {
   FitOptions window;
   BankOptions bank;        ///< bank options with the chain's seed
   bool one_model = false;  ///< whether the bank is the baseline, because a single Kalman filter was requested
-  std::optional<FilterOptions> filter;  ///< set if learning runs the filter: in refinement, and for the cost of merged
-                                        ///< modes
+  std::optional<FilterOptions> filter;  ///< set if learning uses the filter, that is for refinement and for the cost of
+                                        ///< merged modes
   std::optional<OneMotionInputs> one_motion = {};  ///< empty for a single Kalman filter
-  bool terms_stated = false;  ///< whether the terms of `nonlinear` are given instead of chosen on runs that were left
-                              ///< out
+  bool terms_stated = false;  ///< whether the terms of `nonlinear` are given; if not, they are chosen on runs that were
+                              ///< left out
 };
 
 /// The inputs of the search for a structure.
 struct StructureInputs {
   SearchedLags searched;
-  FitOptions window;  ///< the lags that are not searched, and the fit of a model; all other fields have default values
-  bool with_modes = true;  ///< whether modes, and one motion with switching noise, choose their own structure
+  FitOptions window;       ///< the given lags, and how a model is fitted; all other fields have default values
+  bool with_modes = true;  ///< whether modes, and one motion with switching noise, have a structure of their own
 };
 
 /// The inputs of all stages of learning.

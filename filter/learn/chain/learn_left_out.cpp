@@ -45,7 +45,7 @@ std::vector<std::vector<LeftOutRun>> predict_left_out(const std::vector<Validati
       errors[part] = std::current_exception();
     }
   });
-  for (const std::exception_ptr& error : errors)  // throws the first in order, independent of timing
+  for (const std::exception_ptr& error : errors)  // throws the first exception in order, independent of timing
     if (error) std::rethrow_exception(error);
   return said;
 }

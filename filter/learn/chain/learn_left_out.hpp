@@ -20,8 +20,8 @@ struct LeftOutRun {
 };
 
 /// Learns a bank from the training part of each split, and uses this bank to predict the left-out runs of the split.
-/// Returns the runs of each split in order. `filter`: filter for the predictions. `ahead`: horizon of common_step; 0
-/// means none. The result is the same for any number of threads. Throws the errors of the stages.
+/// Returns the runs of each split in order. `filter`: filter for the predictions. `ahead`: a further horizon, for
+/// common_step; 0 means none. The result is the same for any number of threads. Throws the errors of the stages.
 std::vector<std::vector<LeftOutRun>> predict_left_out(const std::vector<ValidationSplit>& splits,
                                                       const LearningInputs& inputs, const FilterOptions& filter,
                                                       Index ahead);

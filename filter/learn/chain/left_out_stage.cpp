@@ -21,8 +21,8 @@ namespace {
 
 using OfSplits = std::vector<std::pair<std::string, std::vector<Bank>>>;
 
-/// Chooses the terms again for the split, because terms score too well on the runs that chose them. If the split's runs
-/// give no terms, the terms of all training runs are fitted to the split's runs.
+/// Chooses the terms again from the runs of the split, because terms score too well on the runs that chose them. If
+/// these runs give no terms, the terms of all training runs are fitted to them.
 Bank relearn_nonlinear(const CompetitorsPart& learned, const Recording& training, const BankInputs& inputs) {
   FoundTerms found;
   if (!inputs.terms_stated) found = find_terms(training, learned.baseline->structure, inputs.window);
@@ -33,8 +33,8 @@ Bank relearn_nonlinear(const CompetitorsPart& learned, const Recording& training
   return learn_nonlinear(training, found.structure, found.terms, inputs.bank.em, *inputs.filter);
 }
 
-/// The filters learned without the left-out runs of a split. Some come from refinement; the others get new
-/// coefficients. A few other numbers stay: Q and R of the baseline, and the rates of `drifting`.
+/// The filters learned without the left-out runs of a split. Some come from refinement; the other filters get new
+/// coefficients. A few numbers are not learned again: Q and R of the baseline, and the rates of `drifting`.
 Learning learned_on(const CompetitorsPart& learned, const Recording& training, const BankInputs& inputs,
                     const OfSplits& of_splits, std::size_t split) {
   Learning anew;

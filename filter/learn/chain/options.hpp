@@ -14,17 +14,17 @@
 
 namespace modebank {
 
-/// Which options of windows are set from the data (ident/fit/window_length.hpp).
+/// Which options of windows are derived from the data (ident/fit/window_length.hpp).
 struct AutomaticWindows {
   bool length = false, step = false;
 
   bool any() const { return length || step; }
 };
 
-/// Lags and delay of stages that differ from those of the windows. Empty if they are the same.
+/// Lags and delays of the stages. A stage without an entry has those of the windows.
 struct OtherLags {
-  std::optional<Lags> linear = {};      ///< for baseline, noise_only and the search for terms
-  std::optional<Lags> one_motion = {};  ///< one motion with switching noise
+  std::optional<Lags> linear = {};      ///< for `baseline`, `noise_only` and the search for terms
+  std::optional<Lags> one_motion = {};  ///< for one motion with switching noise
   std::optional<Lags> drifting = {};
 };
 
@@ -37,12 +37,12 @@ struct LearningOptions {
   ScoringOptions scoring = {};
   std::uint64_t seed = 1;
   SearchedLags searched_lags = {};          ///< lags are chosen on runs that were left out; replaces those in `window`
-  AutomaticWindows automatic_windows = {};  ///< set from the data; replaces the value in `window`
+  AutomaticWindows automatic_windows = {};  ///< derived from the data; replaces the value in `window`
   std::string terms = "auto";               ///< terms of `nonlinear`: auto, none, or a list for
                                             ///< read_terms
   NoiseByInput noise_by_input = NoiseByInput::automatic;  ///< whether noise may depend on state and input
   OtherLags other_lags = {};
-  bool competitors = true;  ///< if false, only the baseline, from which the bank starts
+  bool competitors = true;  ///< if false, only the baseline is learned, and the bank is made from it
 };
 
 }  // namespace modebank

@@ -29,17 +29,17 @@ struct MixturePart {
 
 struct CompetitorsPart {
   std::optional<Bank> baseline;        ///< one Kalman filter
-  std::optional<Bank> noise_only;      ///< one motion of which only the noise switches
+  std::optional<Bank> noise_only;      ///< one motion; only its noise switches
   std::optional<Bank> drifting;        ///< one linear motion whose coefficients drift, with running noise
   std::optional<Bank> nonlinear = {};  ///< one nonlinear motion; empty if no term gains on the training runs
 };
 
 struct BankPart {
   std::optional<Bank> bank;
-  std::optional<Bank> one_motion;  ///< one_motion: learned like the bank, with one theta
+  std::optional<Bank> one_motion;  ///< `one_motion`: learned like the bank, with one theta
   std::optional<Bank> unrefined;   ///< the bank before expectation-maximisation
   MeasuredFit measured_fit = MeasuredFit::none;
-  Index learned_transitions = 0;  ///< number of transitions that refined the bank; 0 means all training transitions
+  Index learned_transitions = 0;  ///< number of transitions that the refinement used; 0 means all training transitions
   std::vector<LeftOutRow> left_out = {};  ///< present if filters were learned without some training runs
   std::vector<MergingCost> merging = {};  ///< present if bank.modes merged components
 };
@@ -48,7 +48,7 @@ struct BankPart {
 struct Learning : StructurePart, WindowsPart, MixturePart, CompetitorsPart, BankPart {
   bool terms_asked = false;  ///< whether terms of `nonlinear` were searched, even if none gained
 
-  /// The bank of a filter by name, if it exists; for the combination, its combined_frame.
+  /// The bank of the filter with this name, if it exists. For the combination, its combined_frame.
   std::optional<Bank> bank_of(const std::string& filter) const;
 };
 

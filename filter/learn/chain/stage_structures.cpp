@@ -33,7 +33,7 @@ void mark(Rows& rows, Flag flag, std::size_t at) {
   rows[at].*flag = true;
 }
 
-/// Position of these lags in the table. Adds missing lags without a score.
+/// Position of these lags in the table. Lags that are missing are added without a score.
 std::size_t position_of(Rows& rows, Index state_lags, Index input_lags, Index delay) {
   const auto found = std::find_if(rows.begin(), rows.end(), [&](const StructureScore& s) {
     return s.state_lags == state_lags && s.input_lags == input_lags && s.input_delay == delay;
@@ -45,8 +45,8 @@ std::size_t position_of(Rows& rows, Index state_lags, Index input_lags, Index de
   return rows.size() - 1;
 }
 
-/// Delays to test: that of one linear motion, and the usual delay. Input effects of opposite sign in different modes
-/// cancel in one common model. That model then prefers a later sample of the input.
+/// Delays to test: the delay of one linear motion, and the usual delay. If an input has effects of opposite sign in two
+/// modes, they cancel in one linear model. Such a model may prefer a wrong delay.
 std::vector<Index> delays_of(const StructureScore& linear, const SearchedLags& searched) {
   constexpr Index usual = 1;
   std::vector<Index> delays{linear.input_delay};
@@ -54,8 +54,8 @@ std::vector<Index> delays_of(const StructureScore& linear, const SearchedLags& s
   return delays;
 }
 
-/// Positions of 1 to `most` equal state and input lags, as far as they are searched. Runs must have enough samples
-/// before their first prediction.
+/// Positions in the table of equal state and input lags, from 1 to `most`, if they were searched. Runs must have enough
+/// samples before their first prediction.
 std::vector<std::size_t> positions_of_equal(Rows& rows, Index most, const SearchedLags& searched) {
   const StructureScore linear = marked(rows, &StructureScore::linear);
   std::vector<std::size_t> positions;
@@ -103,7 +103,7 @@ void let_drifting_choose(const Recording& recording, const StructureInputs& inpu
   mark(rows, &StructureScore::drifting, *fewest);
 }
 
-/// Marks the rows among these positions that modes use.
+/// Marks the rows that modes use.
 void let_modes_choose(const Recording& recording, const StructureInputs& inputs,
                       const std::vector<std::size_t>& positions, bool one_theta, Rows& rows) {
   std::vector<LinearStructure> structures;

@@ -5,9 +5,10 @@
 
 namespace modebank {
 
-/// Chooses a structure for each stage among those that were compared. If a motion is nonlinear or switches, a linear
-/// model needs additional lags. Models that are themselves nonlinear or switch lose by these lags. Marks rows of the
-/// table. Adds rows that are tested only here: one lag and two, with the found delay and with a delay of one sample.
+/// Chooses a structure for each stage among the structures that were compared. A linear model needs additional lags if
+/// the motion is nonlinear or switches. Models that are nonlinear or switch themselves predict worse with these lags.
+/// Marks rows of the table. Adds rows that are tested only here: one lag and two lags, with the found delay and with a
+/// delay of one sample.
 ///
 /// - One linear motion: the result of the search.
 /// - `drifting`: a one-standard-error rule over few, different runs is unstable. Instead the causal score of a model

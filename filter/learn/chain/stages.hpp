@@ -30,12 +30,12 @@ GlobalModel linear_global(const Recording& recording, const WindowFits& windows,
 
 /// One linear model of the training runs.
 struct OneModel {
-  std::string model;  ///< name of the model of the windows, if it has these lags
+  std::string model;  ///< name of the windows' model, if that model has these lags
   LinearStructure structure;
   GlobalModel global;
 };
-/// Fits one model with these lags; without lags, with those of the windows. `motion`: motion model of the windows, null
-/// for linear models.
+/// Fits one model with these lags; if no lags are given, with those of the windows. `motion`: motion model of the
+/// windows, null for linear models.
 OneModel one_model(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
                    const std::optional<Lags>& lags);
 

@@ -16,16 +16,19 @@
 namespace modebank {
 namespace {
 
-constexpr double smallest_r_share = 1e-8;  // share of the residual variance: effect of R at its bound on a prediction
-constexpr double bound_tolerance = 1e-5;   // nats per sample; acceptable loss with R at its bound
-constexpr double least_gain = 1e-9;        // nats per sample; a better start must exceed rounding
+constexpr double smallest_r_share = 1e-8;  // limit on the effect of R at its bound on a prediction, as a share of the
+                                           // residual variance
+constexpr double bound_tolerance = 1e-5;   // nats per sample; largest loss for which R is set to its bound
+constexpr double least_gain = 1e-9;        // nats per sample; a start is better only if it gains more than rounding
+                                           // errors
 constexpr AscentLimits limits{200, 1e-12};
 constexpr AscentLimits rough_limits{200, 1e-6};  // limits of the search while starts and bounds are compared
-constexpr std::array<std::pair<double, double>, 2> noise_starts{{{1.0, 0.1}, {0.01, 0.5}}};  // shares of Q and R
+constexpr std::array<std::pair<double, double>, 2> noise_starts{{{1.0, 0.1}, {0.01, 0.5}}};  // starting values, as
+                                                                                             // shares of Q and R
 
-/// Lower bound of R's diagonal. An output's noise enters the innovations of every state: through the measurement, and
-/// through each lag by the squared coefficient of that lag. The bound limits the sum of these effects to a share of the
-/// residual variance. A share of var(y) is unsuitable: with clean data and many lags it exceeds the residuals.
+/// Lower bound of R's diagonal. An output's noise enters the innovations through the measurement and through each lag,
+/// with the squared coefficient of that lag. The bound limits the sum of these effects to a share of the residual
+/// variance. A share of var(y) is unsuitable: with clean data and many lags it exceeds the residuals.
 Eigen::VectorXd measurement_bound(const LinearStructure& structure, const Eigen::VectorXd& theta,
                                   const Eigen::VectorXd& residual_variance) {
   const Index n = structure.states;
@@ -50,7 +53,7 @@ struct NoiseSearch {
   LikelihoodMaximum maximise(const Bank& start, const std::vector<Index>& free_R,
                              const AscentLimits& end = rough_limits) const {
     FreeParameters free;
-    // an empty vector counts as one column, which would mean one theta
+    // an empty vector would count as one column, which means one theta
     if (theta_unit.size() > 0) free.theta_unit = theta_unit;
     free.least_Q = rounding_share * scale;
     free.R = free_R;
@@ -61,7 +64,7 @@ struct NoiseSearch {
 };
 
 /// The likelihood can have one maximum with the noise in Q and another with the noise in R. So several starts are
-/// compared; NaN counts as lowest.
+/// compared. NaN counts as the lowest likelihood.
 LikelihoodMaximum best_of_starts(const NoiseSearch& search, Bank bank, const std::vector<Index>& outputs) {
   std::optional<LikelihoodMaximum> best;
   for (const auto& [q_share, r_share] : noise_starts) {
@@ -79,8 +82,8 @@ struct HeldNoise {
   std::vector<Index> free;  ///< outputs whose R is not at its bound
 };
 
-/// Holds each output's R at its bound if that costs no likelihood. First tries all outputs at once, with Q of exactly
-/// measured states. Then tries the outputs one by one.
+/// Sets each output's R to its bound if the likelihood does not become smaller. First tries all outputs at once, with Q
+/// of exactly measured states. Then tries the outputs one by one.
 HeldNoise hold_at_bounds(const NoiseSearch& search, const Bank& exact, LikelihoodMaximum best,
                          const std::vector<Index>& outputs) {
   const auto costs_nothing = [&](const LikelihoodMaximum& held, const LikelihoodMaximum& free) {
@@ -121,7 +124,7 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
   const Eigen::VectorXd scale = global.noise_variance().unaryExpr(&positive_variance);
   NoiseSearch search{
       {training, {FilterVariant::kf}, std::nullopt}, scale, measurement_bound(structure, global.theta, scale)};
-  if (bank.is_quantised())  // least squares attributes rounding to the process
+  if (bank.is_quantised())  // least squares takes rounding for process noise
     search.theta_unit = global.covariance.diagonal().cwiseSqrt().unaryExpr(&positive_variance);
   std::vector<Index> outputs(static_cast<std::size_t>(n));
   std::iota(outputs.begin(), outputs.end(), Index{0});

@@ -28,7 +28,7 @@ Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructur
 
 namespace {
 
-constexpr Index factors_below = 16, factors_above = 32;  // grid 2^(i / 4) of a horizon's factor
+constexpr Index factors_below = 16, factors_above = 32;  // index of the grid 2^(i / 4) of a horizon's factor
 
 Bank undecided_bank(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
   const Index n = structure.states;
@@ -52,8 +52,8 @@ void take_own_variance(Bank& bank, const Recording& recording) {
   bank.noise_variance() = bank.noise_variance().unaryExpr(&positive_variance).eval();
 }
 
-/// Settings at the ends of the grid whose optimum may lie beyond the grid. A floor that gives the same score as the
-/// next one has no effect and does not count.
+/// Settings at the ends of the grid; their optimum may lie beyond the grid. A floor does not count if the next floor
+/// has the same score, because it then has no effect.
 std::vector<std::string> grid_ends(const DriftingGrid& grid, const DriftingScores& scores, Index best) {
   const std::array<Index, 6> at = grid.point(best), size = grid.sizes();
   const auto last = [&](std::size_t i) { return size[i] > 1 && at[i] == size[i] - 1; };
@@ -95,7 +95,8 @@ std::vector<DriftingForecasts> training_forecasts(const Bank& bank, const Record
   return forecasts;
 }
 
-/// The grid position of the factor that makes the errors most likely. Among equal positions, the nearest to factor 1.
+/// The grid position of the factor that makes the errors most likely. If several are equally likely, the nearest to
+/// factor 1.
 Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts>& runs, std::size_t horizon) {
   const auto gain = [&](Index i) {
     const double factor = std::exp2(0.25 * static_cast<double>(i));
@@ -106,7 +107,7 @@ Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts
     return sum;
   };
   Index best = 0;
-  double most = 0.0;  // log density of factor 1
+  double most = 0.0;  // log density with factor 1
   for (Index away = 1; away <= factors_above; ++away)
     for (const Index i : {away, -away}) {
       if (i < -factors_below) continue;
@@ -150,7 +151,9 @@ Bank relearn_drifting(const Bank& like, const Recording& recording, const Global
   Bank bank = like;
   bank.modes.front().model = own.modes.front().model;
   bank.drift.scale = own.drift.scale;
-  if (like.drift.wandering == Wandering::gain) return bank;  // the variance of this model comes from its own errors
+  if (like.drift.wandering == Wandering::gain)
+    return bank;  // the variance of this model comes from the model's own
+                  // errors
   const Eigen::ArrayXd share = like.running_noise.floor.array() / like.noise_variance().array();
   bank.running_noise.floor = share * own.noise_variance().array();
   bank.modes.front().Q = own.modes.front().Q;

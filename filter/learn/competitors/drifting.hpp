@@ -10,17 +10,17 @@
 
 namespace modebank {
 
-/// The settings of a drifting model to choose from (method: section 6). Among equal values, the earlier one is
-/// preferred. q, p0 and floor ascend, leak descends.
+/// The settings of a drifting model to choose from (method: section 6). Of settings with equal scores, the earlier one
+/// is preferred. q, p0 and floor ascend, leak descends.
 struct DriftingGrid {
   std::vector<double> q{0.0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1};
   std::vector<double> p0{0.0, 1e-2, 1e-1, 1.0, 10.0};
   std::vector<double> leak{1.0, 0.97, 0.9};
   std::vector<double> lam{0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.92, 0.96};
   std::vector<double> nu{0.0, 3.0, 5.0, 8.0, 15.0};
-  std::vector<double> floor{1e-6, 1e-5, 1e-4, 1e-3};  ///< share of the variance of the training residuals
+  std::vector<double> floor{1e-6, 1e-5, 1e-4, 1e-3};  ///< as a share of the variance of the training residuals
 
-  /// Sizes in the order q, p0, leak, lam, nu, floor; the last index runs fastest.
+  /// Sizes of the grid in the order q, p0, leak, lam, nu, floor; the last index changes fastest.
   std::array<Eigen::Index, 6> sizes() const {
     return {std::ssize(q), std::ssize(p0), std::ssize(leak), std::ssize(lam), std::ssize(nu), std::ssize(floor)};
   }
@@ -33,9 +33,9 @@ struct DriftingScores {
   Eigen::VectorXd log_score;
   Eigen::Index samples = 0;  ///< scored samples, all of equal weight
 
-  /// n x (q, p0, leak): mean of e^2 / (1 + h'Ph), over v0.
+  /// n x (q, p0, leak): mean of e^2 / (1 + h'Ph), divided by v0.
   Eigen::MatrixXd error_ratio = {};
-  /// The grid point with the highest score, the first on a tie.
+  /// The grid point with the highest score; the first one if several are equal.
   Eigen::Index best() const;
 };
 
@@ -53,13 +53,13 @@ Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructur
 /// Learns the competitor `drifting`. `global`: least squares of this structure on the training runs. The settings are
 /// those of the grid with the best log score of the training runs one sample ahead. Each of `horizons` from 2 on has a
 /// factor on the variance: the one of 2^(-4), 2^(-3.75), ..., 2^8 that makes the training errors most likely. All
-/// samples have equal weight. If one common factor drifts, v0 is the variance of the drifting model's own errors,
-/// because the errors of constant coefficients contain the drift.
+/// samples have equal weight. If one common factor drifts, v0 is the variance of the drifting model's own errors.
+/// Errors of a model with constant coefficients would include the drift.
 Bank learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
                     const std::vector<Eigen::Index>& horizons, const DriftingGrid& grid = {},
                     Wandering wandering = Wandering::all);
 
-/// A model with the settings of `like`; theta0 and the variances come from these training runs.
+/// A model with the settings of `like`. theta0 and the variances come from these training runs.
 Bank relearn_drifting(const Bank& like, const Recording& recording, const GlobalModel& global);
 
 /// A grid with fewer settings. It is used to compare models; forecasts use the full grid.

@@ -57,7 +57,8 @@ Bank learn_likeliest_drifting(const Recording& recording, const GlobalModel& glo
   const std::vector<Wanderer> candidates = candidates_of(structure);
   const Wanderer* chosen = &candidates.front();
   DriftingGrid grid = coarse_drifting_grid();
-  grid.p0.push_back(10.0);  // each run learns its own coefficients, so differences between runs cost nothing here
+  grid.p0.push_back(10.0);  // each run learns its own coefficients, so differences between runs do not change this
+                            // comparison
   double best = -std::numeric_limits<double>::infinity();
   for (const Wanderer& candidate : candidates) {
     const double score = drifting_training_score(fewer ? *fewer : recording, structure.first_transition(),

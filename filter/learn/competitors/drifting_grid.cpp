@@ -33,8 +33,8 @@ std::vector<GridRun> training_instants(const Bank& bank, const Recording& record
   return runs;
 }
 
-/// Inputs of all running variances and densities of one (q, p0, leak). They are e^2 / (1 + h'Ph) over v0 of each scored
-/// signal, by output, and the restarts of the running variance.
+/// Inputs of all running variances and densities for one (q, p0, leak): e^2 / (1 + h'Ph), divided by v0, of each scored
+/// signal, by output. Also the restarts of the running variance.
 struct DriftTrace {
   std::vector<std::vector<double>> ratio;       ///< per output
   std::vector<std::vector<std::size_t>> start;  ///< per output: positions in `ratio`
@@ -127,7 +127,7 @@ DriftingScores score_drifting_grid(const Bank& start, const Recording& recording
     const std::array<Index, 6> at = grid.point(d * rest);
     const DriftRates rates{grid.q[static_cast<std::size_t>(at[0])], grid.p0[static_cast<std::size_t>(at[1])],
                            grid.leak[static_cast<std::size_t>(at[2])]};
-    // without drift the leak has no effect, so one leak is enough
+    // without drift the leak has no effect, so one leak is tried
     if (rates.q == 0.0 && rates.p0 == 0.0 && at[2] > 0) return;
     const DriftTrace trace = trace_drift(start, rates, runs);
     score_trace(trace, grid, scores.log_score.segment(d * rest, rest));

@@ -11,8 +11,8 @@
 
 namespace modebank {
 
-/// Sums of logarithms, one per lane. Takes the logarithm of products of eight values; such a product cannot overflow or
-/// underflow.
+/// Sums of logarithms, one per lane. The values are multiplied in groups of eight before the logarithm is taken. Such a
+/// product cannot overflow or underflow.
 class LogSum {
  public:
   static constexpr Eigen::Index block = 8;
@@ -65,8 +65,8 @@ class DriftingLanes {
     signals_ += static_cast<double>(count);
   }
 
-  /// Writes the sums of log densities in the grid's order (lam, nu, floor). They exclude the half of log v0 and log (1
-  /// + h'Ph).
+  /// Writes the sums of log densities in the grid's order (lam, nu, floor). The sums do not include half of log v0 and
+  /// half of log (1 + h'Ph).
   void write(Eigen::Ref<Eigen::VectorXd> out) const {
     const Eigen::Index nus = std::ssize(noise_);
     for (Eigen::Index d = 0; d < nus; ++d) {

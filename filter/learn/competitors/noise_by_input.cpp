@@ -34,17 +34,18 @@ using Eigen::VectorXd;
 constexpr Index most_transitions = 20'000;
 constexpr double nu = 5.0;                // degrees of freedom of the residuals' Student t
 constexpr double ridge = 4.0;             // information of one sample about each standardised logarithm
-constexpr double largest_exponent = 6.0;  // limit of a scale's exponent during the search
+constexpr double largest_exponent = 6.0;  // limit of the exponent of a scale during the search
 constexpr int most_scoring_steps = 25;
-constexpr std::array<double, 4> noise_levels{1.0 / 16.0, 0.25, 1.0, 4.0};  // share of the residuals' variance, at the
-                                                                           // start
+constexpr std::array<double, 4> noise_levels{1.0 / 16.0, 0.25, 1.0, 4.0};  // smallest noise at the start, as a share of
+                                                                           // the residuals' variance
 constexpr double start_stay = 0.9;
 constexpr int most_em_steps = 15;
 
 /// Directions over [z; v] that noise may depend on, one per row. `coefficients`: q x n.
 MatrixXd candidate_directions(const LinearStructure& s, const MatrixXd& coefficients) {
   const Index n = s.dimension(), m = s.acting_inputs();
-  const bool changes = s.input_lags > 1, sums = m > 1;  // a single input is equal to the sum of inputs
+  const bool changes = s.input_lags > 1, sums = m > 1;  // with a single input, the sum of the inputs is the same
+                                                        // direction
   MatrixXd D = MatrixXd::Zero(s.states + s.inputs + (changes ? s.inputs : 0) + (sums ? s.states : 0), n + m);
   Index row = 0;
   for (Index i = 0; i < s.states; ++i) D(row++, i) = 1.0;
@@ -93,7 +94,7 @@ VectorXd fit_scales(const MatrixXd& z, const MatrixXd& E) {
   return g;
 }
 
-/// Returns the usable rows, for a structure with terms as additional regressors.
+/// Returns the usable rows for a structure that has the terms as additional regressors.
 Transitions regression_rows(const TrainingTransitions& all, const MotionTerms& terms) {
   std::vector<Index> usable;
   for (Index k = 0; k < all.count(); ++k)
@@ -141,8 +142,8 @@ NoiseFactor fit(const TrainingTransitions& transitions, const MotionTerms& terms
 }
 
 /// One motion whose noise switches between levels, by expectation-maximisation. If noise is larger for a while, a
-/// filter can follow it without an input. So the levels must be learned: with fixed levels a factor seemed to gain .15
-/// nats per sample on DART's training runs.
+/// filter can follow it without an input. So the levels must be learned. With fixed levels, a factor seemed to gain
+/// 0.15 nats per sample on DART's training runs.
 SwitchingRegression switching_noise(const Recording& recording, const TrainingTransitions& transitions) {
   const GlobalModel global = fit_global(recording, transitions.structure);
   const SwitchingPrior prior = switching_prior(transitions, global, {}, refine_tuning.Q_transitions, refine_tuning);
@@ -156,7 +157,8 @@ SwitchingRegression switching_noise(const Recording& recording, const TrainingTr
   return em.model();
 }
 
-/// Sums per run, over rows of `judged`, of the log density that the factor adds. Also returns the number of these rows.
+/// Per run: sum over the rows of `judged` of the log density that the factor adds. Also returns the number of these
+/// rows.
 std::pair<VectorXd, VectorXd> gains(const Recording& learned, const Recording& judged, const LinearStructure& s) {
   if (stack_training(judged, s).count() == 0) return {};
   const TrainingTransitions rows = gather_training_transitions(learned, s),
@@ -181,7 +183,7 @@ FoundNoiseFactor find_noise_factor(const Recording& all, const LinearStructure& 
   if (all.quantum.size() > 0 || all.weighted() || folds < 2) return found;
   const std::optional<Recording> part = learning_part(all, most_transitions, seed);
   const Recording training = training_part(part ? *part : all);
-  // Runs that are left out gain less than the runs that chose the factor. If even the latter gain too little, the
+  // The runs that chose the factor gain more than runs that are left out. If even these runs gain too little, the
   // factor is rejected without cross-validation.
   const auto [of_all, rows] = gains(training, training, structure);
   const PairedLoss seen = paired_loss(of_all, VectorXd::Zero(of_all.size()), rows);

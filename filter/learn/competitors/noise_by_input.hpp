@@ -11,8 +11,8 @@
 
 namespace modebank {
 
-/// automatic: one factor on all process noise depends on state and input, if training runs that were left out gain by
-/// it. none: no factor.
+/// automatic: one factor on all process noise depends on state and input, if it gains on training runs that were left
+/// out. none: no factor.
 enum class NoiseByInput { automatic, none };
 
 template <>
@@ -31,7 +31,8 @@ NoiseFactor fit_noise_factor(const Recording& recording, const LinearStructure& 
 /// The factor, if training runs that were left out gain by it.
 struct FoundNoiseFactor {
   NoiseFactor factor;          ///< empty: rejected
-  double gain = not_a_number;  ///< gain on left-out runs; on all runs if that is already too small [nats/sample]
+  double gain = not_a_number;  ///< gain on left-out runs [nats/sample]. If the gain on all runs is already too small,
+                               ///< that gain
   double standard_error = not_a_number;  ///< standard error of the gain over the left-out runs; NaN if no run was left
                                          ///< out
 };

@@ -20,7 +20,7 @@
 namespace modebank {
 namespace {
 
-constexpr Index noise_only_levels = 8;  // method: section 6, as for all constants here
+constexpr Index noise_only_levels = 8;  // method: section 6, also for the other constants here
 constexpr double lowest_quantile = 0.30;
 constexpr double highest_quantile = 0.997;
 constexpr std::array<double, 4> stays{0.7, 0.8, 0.9, 0.95};
@@ -62,7 +62,7 @@ Regression regression(const Recording& recording, const LinearStructure& structu
   return {fit.theta.reshaped(q, n), fit.covariance.diagonal().cwiseSqrt().reshaped(q, n)};
 }
 
-/// Sets the most likely `stay` on the training runs, the smallest on a tie.
+/// Sets the `stay` that is most likely on the training runs; the smallest if several are equal.
 void choose_stay(Bank& bank, const Recording& recording) {
   Bank candidate = bank;
   double best = not_a_number;
@@ -104,7 +104,7 @@ namespace {
 Bank by_intervals(Bank bank, const Recording& recording) {
   const Recording unweighted = unweighted_training_part(recording);
   FreeParameters free;
-  // Directions that the runs do not determine may have any unit, because nothing depends on these directions.
+  // The runs do not determine some directions. These may have any unit, because nothing depends on them.
   free.theta_unit = bank.modes.front().standard_error.unaryExpr(
       [](double error) { return std::isnan(error) ? 1.0 : positive_variance(error); });
   free.transition = false;

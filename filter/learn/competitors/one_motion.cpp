@@ -14,14 +14,14 @@ namespace {
 
 using Eigen::Index;
 
-/// The fields of windows that refinement uses, for the linear model.
+/// The fields of the windows that refinement of a linear model uses.
 WindowFits linear_frame(const WindowFits& fits, const GlobalModel& global) {
   WindowFits frame;
   frame.structure = fits.structure;
   frame.length = fits.length;
   frame.step = fits.step;
   frame.global = global;
-  // The prior of a motion model is for other parameters.
+  // The prior of a motion model concerns other parameters.
   if (fits.model_parameters.empty()) frame.prior_sd = fits.prior_sd;
   return frame;
 }
@@ -53,7 +53,7 @@ Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, 
   RefineOptions em = options.em;
   em.one_theta = true;
   em.state_dependent_transition = options.transition == TransitionSource::logit;
-  em.restarts = 0;  // random stretches differ in theta, but this model has only one
+  em.restarts = 0;  // random stretches give different theta, but this model has one theta
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   std::vector<Bank> starts =
       level_starts(recording, fits.structure,

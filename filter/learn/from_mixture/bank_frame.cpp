@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-/// "wz", "wz[k-1]", ...; the count for inputs starts at their delay.
+/// "wz", "wz[k-1]", ... `newest`: age of the newest sample; age -1 is written as [k+1].
 std::vector<std::string> lagged_names(const std::vector<std::string>& names, Index lags, Index newest) {
   std::vector<std::string> all;
   for (Index lag = 0; lag < lags; ++lag)

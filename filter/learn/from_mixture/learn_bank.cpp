@@ -112,7 +112,8 @@ std::vector<Index> screen(const LinearStructure& structure, const std::vector<Co
   return kept;
 }
 
-/// Sets Q of the bank's modes from the chosen source. theta and its standard errors always use the mode's own noise.
+/// Sets Q of the bank's modes from the chosen source. The noise of a mode itself is always used for theta and its
+/// standard errors.
 void set_process_noise(std::vector<ComponentEstimate>& modes, const BankOptions& options) {
   const Index n = modes.front().linear.Q.rows();
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
@@ -127,8 +128,8 @@ void set_process_noise(std::vector<ComponentEstimate>& modes, const BankOptions&
   }
 }
 
-/// Covariance of the windows' parameters in component k, p x p: the component's own block. If the component has other
-/// features, it is the covariance of the windows weighted by their responsibilities.
+/// Covariance of the windows' parameters in component k, p x p. It is the component's own block. If the component has
+/// other features, the covariance is computed from the windows, weighted by their responsibilities.
 Eigen::MatrixXd parameter_covariance_of(const WindowFits& fits, const MixtureResult& mixture, Index k) {
   const Index p = fits.parameter_count();
   if (mixture.features.size() == 0) return mixture.mixture.covariances[static_cast<std::size_t>(k)].topLeftCorner(p, p);
@@ -176,7 +177,7 @@ std::vector<Index> all_positions(Index count) {
 }
 
 /// One mode from all components, used if no component can be a mode. It may be unstable, like the global model that it
-/// competes with. Its predictions one step ahead may still be right; the summary warns of the instability.
+/// competes with. Its predictions one step ahead may still be right. The summary warns about the instability.
 Bank bank_of_all(const Recording& recording, const WindowFits& fits, const MixtureResult& whole, BankOptions options,
                  const Bank& without_modes, const MotionModel* motion) {
   options.modes = 1;
@@ -219,7 +220,7 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
 
 namespace {
 
-/// Score of the chosen fit with its measurement noise; NaN if no run was left out.
+/// Score of the chosen fit with measurement noise; NaN if no run was left out.
 double left_out_score(const Refinement& refined) {
   if (!std::isnan(refined.measurement.score)) return refined.measurement.score;
   double score = std::numeric_limits<double>::quiet_NaN();
@@ -239,7 +240,8 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   };
   for (Index modes = fewer(starts.front().mode_count()); modes >= 1; modes = fewer(modes)) {
     of_start.modes = modes;
-    of_start.screen = options.screen && modes > 1;  // a single mode is always a start; refinement screens it
+    of_start.screen = options.screen && modes > 1;  // a single mode is always a start; refinement decides later whether
+                                                    // it is usable
     starts.push_back(learn_bank(recording, fits, mixture, of_start, R));
   }
   RefineOptions em = options.em;
@@ -250,7 +252,7 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   const std::optional<Recording> part = learning_part(recording, em.transitions, em.seed);
   const Recording& learned = part ? *part : recording;
   Refinement refined = refine_bank(learned, fits, starts, em, filter);
-  if (em.noise_by_input) {  // modes may describe more of the noise than the factor does
+  if (em.noise_by_input) {  // modes may describe more of the noise than the factor describes
     const double without = left_out_score(refined);
     for (Bank& start : starts) start.noise_factor = fit_noise_factor(learned, fits.structure);
     Refinement with_factor = refine_bank(learned, fits, starts, em, filter);

@@ -23,7 +23,7 @@ void check_sizes(const WindowFits& fits, const MixtureResult& mixture) {
 /// A run's clustered windows by increasing start, with their responsibilities. Includes windows that are noise.
 struct RunWindows {
   std::vector<Index> windows;
-  Index first = 0;                   ///< window of the first column
+  Index first = 0;                   ///< index of the window in the first column
   Eigen::MatrixXd responsibilities;  ///< K x number of windows, from the run's first to its last
 };
 
@@ -99,7 +99,7 @@ Eigen::MatrixXd transition_memberships(const TrainingTransitions& transitions, c
       of_run.rowwise() = mixture.mixture.weights.transpose();
   }
   if (mixture.mixture.noise.present()) return transitions.usable.asDiagonal() * memberships;
-  // Every row already sums to one up to rounding. With exact sums, the weights of the modes add up to N.
+  // Every row already sums to one, except for rounding. With exact sums, the weights of the modes add up to N.
   return transitions.usable.cwiseQuotient(memberships.rowwise().sum()).asDiagonal() * memberships;
 }
 

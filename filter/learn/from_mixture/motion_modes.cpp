@@ -13,7 +13,7 @@ namespace modebank {
 namespace {
 
 constexpr int max_passes = 50;
-constexpr double pass_tolerance = 1e-10;  // tolerance: relative change of the diagonal of Q
+constexpr double pass_tolerance = 1e-10;  // stopping tolerance: relative change of the diagonal of Q
 constexpr int search_iterations = 200;
 
 /// sum g r r' / sum g, with a floor; the global covariance if no transition has weight.

@@ -19,9 +19,10 @@ struct MotionMode {
   ModeEstimate linear;
 };
 
-/// fit_weighted_mode for motion models: weighted least squares of the one-step residuals and the prior. They alternate
-/// with updates of the residual variances. `weights`: one per training transition. `given`: a fixed theta that is only
-/// assessed; null to estimate theta. Q is the weighted scatter / sum of weights, with the floor of a linear mode.
+/// fit_weighted_mode for motion models: weighted least squares of the one-step residuals and the prior. The fit
+/// alternates with updates of the residual variances. `weights`: one per training transition. `given`: a fixed theta
+/// that is only assessed; null to estimate theta. Q is the weighted scatter / sum of weights, with the floor of a
+/// linear mode.
 MotionMode fit_motion_mode(const Recording& recording, const MotionModel& model, const Eigen::VectorXd& weights,
                            const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd* given);
 

@@ -29,8 +29,8 @@ class LabelStretches {
   const std::vector<SameLabel>& stretches() const { return stretches_; }
   int label(std::size_t at) const { return labels_(windows_[at]); }
 
-  /// Whether the stretch of one label is too short. Consider a window that shares no transition with the last window
-  /// before the stretch. The stretch is too short if the next stretch begins before any such window could.
+  /// Whether a stretch of windows with one label is too short. Look for the first window that shares no transition with
+  /// the last window before the stretch. The stretch is too short if it ends before this window.
   bool passes(const SameLabel& stretch) const {
     if (stretch.first == 0 || stretch.end == windows_.size()) return false;
     const std::size_t before = stretch.first - 1;

@@ -16,16 +16,16 @@ namespace modebank {
 namespace {
 
 constexpr double smallest_weight = 1e-9;         // transitions; a smaller sum has no information about Q
-constexpr double alternation_tolerance = 1e-12;  // relative change of Q; rounding is three decades smaller
+constexpr double alternation_tolerance = 1e-12;  // relative change of Q; rounding errors are a thousand times smaller
 constexpr int max_alternations = 500;
 
 /// Sums of the weighted transitions about their own least squares fit. This avoids cancellation.
 struct WeightedRegression {
   Eigen::MatrixXd beta;  // q x n, least-squares coefficients; directions without data are those of the global model
-  RegressionSums sums;   // H is zero except for rounding and directions without data
+  RegressionSums sums;   // H is zero, except for rounding and for directions without data
 };
 
-/// Number of transitions per decomposition. With blocks, a long recording needs no copy.
+/// Number of transitions per decomposition. A long recording is decomposed in blocks, so that no copy of it is needed.
 constexpr Index block_rows = Index{1} << 18;
 
 WeightedRegression regress(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
@@ -60,7 +60,7 @@ Eigen::MatrixXd prior_information(Index parameters, const ParameterPrior* prior)
   return prior->sd.array().square().inverse().matrix().asDiagonal();
 }
 
-/// Empty if Q is not definite.
+/// Empty if Q is not positive definite.
 std::optional<Eigen::MatrixXd> regularised(const WeightedRegression& data, const Eigen::MatrixXd& Q,
                                            const ParameterPrior& prior) {
   const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(Q);

@@ -14,11 +14,12 @@ namespace modebank {
 /// transitions can be fitted almost exactly by chance; without this floor they would count as exact.
 inline constexpr double process_noise_floor = 1e-6;
 
-/// Share of a variance that is rounding (a millionth of the standard deviation). It keeps a variance positive if the
-/// data suggest zero, and leaves other variances unchanged.
+/// Rounding as a share of a variance (a millionth of the standard deviation). It keeps a variance positive if the data
+/// suggest zero. Other variances hardly change.
 inline constexpr double rounding_share = 1e-12;
 
-/// A residual variance as the unit of the two shares above; positive even for exact data, so that inverses stay finite.
+/// A residual variance, the unit of the two shares above. It is positive even for exact data, so that inverses stay
+/// finite.
 inline double positive_variance(double variance) { return std::max(variance, 1e-100); }
 
 /// One mode from weighted transitions.
@@ -27,7 +28,8 @@ struct ModeEstimate {
   Eigen::MatrixXd Q;      ///< n x n, weighted scatter about theta / sum of weights; at least process_noise_floor
   Eigen::VectorXd standard_error;      ///< p, standard errors of theta; NaN if neither data nor prior determine theta
   double effective_transitions = 0.0;  ///< sum of weights
-  bool converged = true;               ///< whether theta and Q converged within the iteration limit, with Q definite
+  bool converged = true;               ///< whether theta and Q converged within the iteration limit and Q is positive
+                                       ///< definite
 };
 
 /// Maximises the following by alternating between theta and Q until both converge:
@@ -43,10 +45,12 @@ ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eig
 ModeEstimate assess_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
                                   const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd& theta);
 
-/// Raises the eigenvalues of a process noise covariance to the floor, in units of the global residual variances.
+/// Raises the eigenvalues of a process noise covariance to the floor. The floor is in units of the global residual
+/// variances.
 Eigen::MatrixXd floored_process_noise(const Eigen::MatrixXd& Q, const GlobalModel& global);
 
-/// Limit above 1 for the spectral radius of I + A, so that an integrator (A = 0) passes in spite of rounding.
+/// Limit for the spectral radius of I + A. It is slightly above 1, so that an integrator (A = 0) is not rejected
+/// because of rounding.
 inline constexpr double spectral_radius_slack = 1e-9;
 
 /// Largest absolute eigenvalue of I + A; infinite if A is not finite.

@@ -12,9 +12,9 @@ namespace modebank {
 
 /// The rows of one training run in TrainingTransitions.
 struct RunRows {
-  Index run = 0;    ///< position in Recording::runs
+  Index run = 0;    ///< index in Recording::runs
   Index first = 0;  ///< row of the run's transition 0
-  Index count = 0;  ///< transitions of the run
+  Index count = 0;  ///< number of transitions of the run
 };
 
 /// All transitions of the training runs, run by run. A transition with a missing (non-finite) sample keeps its row, so
@@ -37,8 +37,8 @@ struct TrainingTransitions {
 void check_structure(const Recording& recording, const LinearStructure& structure);
 
 /// Collects the training transitions. Throws the errors of check_structure, and DataError if no training run has a
-/// usable transition. `factor`: rows are divided by its square root. Least squares and expectation-maximisation then
-/// need no change.
+/// usable transition. `factor`: each row is divided by the square root of its factor. Least squares and
+/// expectation-maximisation then need no change.
 TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure,
                                                 const NoiseFactor& factor = {});
 
@@ -49,16 +49,16 @@ Eigen::VectorXd divide_by_noise(const NoiseFactor& factor, const LinearStructure
 /// Sums over the rows of each run. `rows`: N values.
 Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::VectorXd& rows);
 
-/// Sums over weighted transitions that a regression needs. r is the residual (increment minus prediction) for the
-/// coefficients about which the sums are taken; g is the weight of a transition.
+/// Sums over weighted transitions for a regression. g is the weight of a transition. r is the residual (increment minus
+/// prediction) with the coefficients about which the sums were taken.
 struct RegressionSums {
   Eigen::MatrixXd G;    ///< q x q, the sum of g phi phi'
   Eigen::MatrixXd H;    ///< q x n, the sum of g phi r'
   Eigen::MatrixXd S;    ///< n x n, the sum of g r r'
-  double weight = 0.0;  ///< sum g, effective transitions
+  double weight = 0.0;  ///< sum of g, the number of effective transitions
 
   RegressionSums operator+(const RegressionSums& other) const;
-  /// sum g r r' for coefficients that differ by `change` (q x n).
+  /// The sum of g r r' after `change` (q x n) is added to the coefficients about which the sums were taken.
   Eigen::MatrixXd scatter_after(const Eigen::MatrixXd& change) const;
 };
 
@@ -73,7 +73,7 @@ inline Eigen::MatrixXd coefficients(const LinearStructure& s, const Eigen::Vecto
 
 /// A copy of the recording with the training runs only.
 Recording training_part(const Recording& recording);
-/// training_part, with equal weights for all samples.
+/// Like training_part, but all samples have equal weights.
 Recording unweighted_training_part(const Recording& recording);
 
 }  // namespace modebank

@@ -6,7 +6,7 @@
 namespace modebank {
 namespace {
 
-/// Maps mixture labels to positions in the bank; -1 if the component did not become a mode.
+/// Maps mixture labels to positions in the bank; -1 if the component is not a mode.
 std::vector<Index> positions(const Eigen::VectorXi& labels, const std::vector<Index>& kept) {
   Index components = labels.size() > 0 ? labels.maxCoeff() + 1 : 0;
   for (const Index component : kept) components = std::max(components, component + 1);

@@ -7,14 +7,14 @@
 
 namespace modebank {
 
-/// One split of a cross-validation; both recordings hold training runs only.
+/// One split of a cross-validation. Both recordings hold training runs only.
 struct ValidationSplit {
   Recording training;
   Recording left_out;
 };
 
-/// The part with which each run is left out. The longest runs are assigned first, each to the part that is shortest so
-/// far.
+/// Index of the part with which each run is left out. The longest runs are assigned first, each to the part that is
+/// shortest so far.
 std::vector<Index> deal_by_length(const std::vector<Index>& lengths, Index parts);
 
 /// Splits of the training runs for cross-validation. Every run is left out once.

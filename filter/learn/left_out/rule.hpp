@@ -26,10 +26,10 @@ struct PairedLoss {
 /// section 6.4).
 PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& worse, const Eigen::VectorXd& samples);
 
-/// Smallest gain per sample for accepting an addition to a model. It is refine_tuning.least_gain, and over all samples
-/// together log(refine_tuning.proposals / taken_by_chance). By chance, the log-likelihood of left-out runs gains that
-/// much with probability at most taken_by_chance / proposals. The reason: a likelihood ratio has expectation one, and
-/// Markov's inequality bounds its tail.
+/// Smallest gain per sample for accepting an addition to a model. It is at least refine_tuning.least_gain. Over all
+/// samples together it is at least log(refine_tuning.proposals / taken_by_chance). By chance, the log-likelihood of
+/// left-out runs gains this much with probability at most taken_by_chance / proposals. The reason: a likelihood ratio
+/// has expectation one, and Markov's inequality bounds its tail.
 double least_worth(double samples);
 
 /// The rule for accepting every addition to a model: more modes, noise by input, transitions by state, drift, a
@@ -40,15 +40,16 @@ double least_worth(double samples);
 bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples,
                  double most_error = std::numeric_limits<double>::infinity());
 
-/// The candidate with the highest sum of scores; the first on a tie.
+/// The candidate with the highest sum of scores; the first one if several are equal.
 std::size_t best_candidate(const std::vector<LeftOutScores>& candidates);
 
-/// Whether the simpler candidate may replace the best: its loss is within one standard error (Breiman et al. 1984,
-/// section 3.4.3), which is capped at tuning.most_loss. `samples`: number of samples of each left-out run.
+/// Whether the simpler candidate may replace the best one. Its loss must be within one standard error (Breiman et al.
+/// 1984, section 3.4.3), which is capped at tuning.most_loss. `samples`: number of samples of each left-out run.
 bool as_good(const LeftOutScores& candidate, const LeftOutScores& best, const Eigen::VectorXd& samples,
              const RefineTuning& tuning);
 
-/// The candidate with the fewest modes that is as good as the best one. Among equal numbers of modes, the best.
+/// The candidate with the fewest modes that is as good as the best one. If several have this number of modes, the best
+/// of these.
 std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,
                                  const RefineTuning& tuning);
 

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-// Step of central differences for the formulas of the coordinates. These are exponentials; the error is 2e-9.
+// Step of central differences for the formulas of the coordinates. The formulas are exponentials; the error is 2e-9.
 constexpr double jacobian_step = 1e-4;
 
 // exp of a bounded logarithm; cannot overflow.
@@ -77,7 +77,7 @@ const double* BankCoordinates::set_process_noise(const double* at, Bank& bank) c
 
 const double* BankCoordinates::set_measurement_noise(const double* at, Bank& bank) const {
   for (const Index i : free_.R)
-    // A value below its bound could only fall further, through zero. So it is set to the bound.
+    // A value below the bound is set to the bound. Otherwise it could only fall, and would become negative.
     bank.R(i, i) = free_.least_R(i) + std::max(origin_.R(i, i) - free_.least_R(i), 0.0) * bounded_exp(*at++);
   return at;
 }

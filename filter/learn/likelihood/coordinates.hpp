@@ -10,12 +10,12 @@ namespace modebank {
 /// Which parameters of a bank are estimated, and their units.
 struct FreeParameters {
   Eigen::MatrixXd theta_unit = {};   ///< p x K, or p x 1 for one theta of all modes; positive; empty if theta is known
-  bool Q = true;                     ///< whether Q is estimated; if false, every Q is known
+  bool Q = true;                     ///< true: Q is estimated; false: every Q is known
   bool Q_by_one_factor = false;      ///< one common factor on every Q, instead of separate Q
   Eigen::VectorXd least_Q = {};      ///< n, lower bounds of every Q's diagonal [state unit^2]; empty if there are none
   std::vector<Eigen::Index> R = {};  ///< outputs whose variance is estimated
   Eigen::VectorXd least_R = {};      ///< n_y, lower bounds of R's diagonal [state unit^2]
-  bool transition = true;            ///< whether T is estimated; if false, T is known
+  bool transition = true;            ///< true: T is estimated; false: T is known
   Eigen::VectorXd weight_unit = {};  ///< d, units of the weights of T's logit; empty without weights
 };
 

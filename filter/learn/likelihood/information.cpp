@@ -9,7 +9,7 @@
 namespace modebank {
 namespace {
 
-constexpr double least_probability = 1e-100;  // smallest value whose square can still be a divisor
+constexpr double least_probability = 1e-100;  // smallest divisor whose square does not underflow
 
 /// One row per sample, one column per coordinate. A row is zero if the sample has no density.
 Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::VectorXd& steps, const Trajectory& run,
@@ -24,9 +24,9 @@ Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::Vec
   return gradients.array().isNaN().select(0.0, gradients);
 }
 
-/// Inverse variances of Q and T under the prior alone. The prior on Q counts as a scatter of its number of transitions.
-/// The prior on T counts as its number of switches of every kind, except the row's most frequent switch, which balances
-/// the others.
+/// Inverse variances of Q and T by the prior alone. The prior on Q counts as a scatter of its number of transitions.
+/// The prior on T counts as its number of switches, for every pair of modes. The most frequent switch of a row has no
+/// coordinate, because it balances the others.
 Eigen::VectorXd information_of_noise_and_switches(const BankCoordinates& around, const SwitchingPrior& prior) {
   const ParameterPlaces at = around.places();
   const Bank& bank = around.origin();

@@ -33,8 +33,8 @@ SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eige
                                        const TrainingTransitions& transitions);
 
 /// Information of the prior about the coordinates, at the origin. It is exact for theta and the logit's memory. For Q
-/// the prior counts as observations of a normal scatter, for T as counts. A prior on one theta shared by all modes
-/// counts once.
+/// the prior counts as observations of a normal scatter, for T as counts. If all modes share one theta, the prior on
+/// theta counts once.
 Eigen::MatrixXd prior_information(const BankCoordinates& around, const SwitchingPrior& prior);
 
 }  // namespace modebank

@@ -16,13 +16,13 @@
 namespace modebank {
 namespace {
 
-constexpr double step_share = 1e-2;       // share of a standard error, for central differences
-constexpr double first_step = 1e-3;       // step that is used until standard errors are known
-constexpr double least_curvature = 1e-2;  // curvature added to every coordinate, for undetermined ones
+constexpr double step_share = 1e-2;       // step of central differences, as a share of a standard error
+constexpr double first_step = 1e-3;       // step until standard errors are known
+constexpr double least_curvature = 1e-2;  // curvature added to every coordinate, because some may be undetermined
 constexpr double remaining_gain = 1e-3;   // nats
 constexpr Index iterations_per_metric = 40;
 
-/// The target near one bank.
+/// The target function near one bank.
 class Neighbourhood {
  public:
   Neighbourhood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& origin,
@@ -35,7 +35,8 @@ class Neighbourhood {
   Bank decode(const Eigen::VectorXd& at) const { return coordinates_.decode(at); }
   double value(const Eigen::VectorXd& at) const { return target_.value(decode(at)); }
 
-  /// Gradient, and the value if requested. Uses the adjoint of the filter's steps if it exists, else differences.
+  /// Gradient of the target, and the value if requested. Uses the adjoint of the filter's steps if it exists, else
+  /// differences.
   Eigen::VectorXd gradient(const Eigen::VectorXd& at) const {
     if (!is_exact()) return differences(at, [this](const Bank& bank) { return target_.value(bank); });
     const BankGradient by_bank = training_gradient(decode(at), target_.recording, target_.filter);
@@ -50,7 +51,7 @@ class Neighbourhood {
     return result;
   }
 
-  /// Gradient and information of likelihood and prior at the origin. The search follows the same gradient. So the
+  /// Gradient and information of likelihood and prior at the origin. The search uses the same gradient. So this
   /// gradient vanishes where the search ends.
   SampleGradients gradients() const {
     SampleGradients result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look);
@@ -84,7 +85,7 @@ class Neighbourhood {
   }
 };
 
-/// Minus the target, relative to its value at the origin, for minimisation by Ceres. Coordinates are in standard
+/// Minus the target, relative to its value at the origin. Ceres minimises it. Coordinates are in units of standard
 /// errors.
 class WhitenedTarget final : public ceres::FirstOrderFunction {
  public:
@@ -109,9 +110,9 @@ class WhitenedTarget final : public ceres::FirstOrderFunction {
   double origin_value_;
 };
 
-/// The gradient at a bank and the units of its standard errors.
+/// The gradient at a bank, and the standard errors that serve as units.
 struct Metric {
-  Eigen::VectorXd steps;               ///< steps of central differences from here on
+  Eigen::VectorXd steps;               ///< steps of central differences for the rest of the search
   Eigen::MatrixXd by_standard_errors;  ///< maps whitened coordinates to coordinates
   Eigen::VectorXd gradient;            ///< gradient with respect to whitened coordinates
 
@@ -132,10 +133,10 @@ std::optional<Metric> metric_of(const SampleGradients& gradients) {
 struct BfgsEnd {
   Eigen::VectorXd at;
   Index iterations = 0;
-  double expected_gain = 0.0;  ///< expected gain of a Newton step at the end, by the metric at the beginning
+  double expected_gain = 0.0;  ///< expected gain of a Newton step at the end, with the metric at the beginning
 };
 
-/// `small_gain`: the search ends if the expected gain is smaller.
+/// `small_gain`: the search ends if the expected gain is below this value.
 BfgsEnd bfgs(const Neighbourhood& nearby, const Metric& metric, double origin_value, double small_gain, Index limit) {
   const ceres::GradientProblem problem(new WhitenedTarget(nearby, metric.by_standard_errors, origin_value));
   ceres::GradientProblemSolver::Options options;

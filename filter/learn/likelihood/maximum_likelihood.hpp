@@ -13,18 +13,17 @@
 
 namespace modebank {
 
-/// Largest number of state lags with which R is estimated. With more lags, their coefficients can make the predictions
-/// that R would otherwise allow. On ICE with 17 lags the search took a minute for the bank and another for one_motion,
-/// without finding any R.
+/// Largest number of state lags with which R is estimated. With more lags, lag coefficients can replace R. On ICE with
+/// 17 lags the search took a minute for the bank and another for one_motion, without finding any R.
 inline constexpr Eigen::Index most_lags_beside_R = 8;
 
-/// The objective: the filter's log-likelihood of the training runs plus the prior's log density. A sample's weight is
-/// the power of its density. The likelihood is exact for one mode. For several modes it is the approximation of the
-/// IMM.
+/// The objective: the filter's log-likelihood of the training runs plus the prior's log density. The density of a
+/// sample is raised to the power of the sample's weight. The likelihood is exact for one mode. For several modes it is
+/// the approximation of the IMM.
 struct LikelihoodTarget {
   const Recording& recording;
   FilterOptions filter;                 ///< variant imm for several modes
-  std::optional<SwitchingPrior> prior;  ///< if empty, the target is the likelihood alone
+  std::optional<SwitchingPrior> prior;  ///< if empty, the target is only the likelihood
   bool one_theta = false;               ///< whether the prior on theta counts only once
   LookAhead look = {};                  ///< replaces the likelihood in look-ahead learning
 
@@ -36,7 +35,7 @@ struct LikelihoodTarget {
 
 struct AscentLimits {
   Index max_iterations = 100;
-  double tolerance = 1e-6;  ///< nats per transition; converged if the expected gain is at most this
+  double tolerance = 1e-6;  ///< nats per transition; the search has converged if the expected gain is at most this
 };
 
 struct LikelihoodMaximum {
@@ -44,7 +43,7 @@ struct LikelihoodMaximum {
   double value = 0.0;  ///< value of the target at the result; never below the value at the start
   Index iterations = 0;
   MeasuredFit end = MeasuredFit::stalled;
-  bool rose = false;  ///< whether the search converged at the start, or moved to a better point
+  bool rose = false;  ///< true if the search converged at the start or moved to a better point
 };
 
 /// Finds the target's maximum near `start`, by BFGS (ceres::GradientProblemSolver) over BankCoordinates in units of the

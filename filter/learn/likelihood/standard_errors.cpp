@@ -17,11 +17,11 @@
 namespace modebank {
 namespace {
 
-constexpr double weight_unit_share = 0.1;  // share of the prior's standard deviation
+constexpr double weight_unit_share = 0.1;  // as a share of the prior's standard deviation
 
-// Standard errors need an accuracy of a few per cent. Their relative error falls with the square root of the number of
-// samples.
-constexpr double most_numbers = 4e6;  // samples times coordinates: 32 MB
+// Standard errors need an accuracy of a few per cent. Their relative error decreases with the square root of the number
+// of samples.
+constexpr double most_numbers = 4e6;  // number of samples times number of coordinates; 32 MB
 constexpr Index fewest_samples = 2000, most_samples = 20000;
 
 /// Samples for the standard errors. Long training runs are reduced to stretches of all runs. The information is
@@ -32,7 +32,7 @@ struct ErrorSamples {
 };
 
 ErrorSamples error_samples(const Recording& recording, Index coordinates) {
-  constexpr std::uint64_t seed = 1;  // fixed seed: a bank always has the same standard errors
+  constexpr std::uint64_t seed = 1;  // fixed seed, so that a bank always has the same standard errors
   const Index most =
       std::clamp(static_cast<Index>(most_numbers / static_cast<double>(coordinates)), fewest_samples, most_samples);
   ErrorSamples samples{learning_part(recording, most, seed)};
@@ -65,7 +65,7 @@ bool is_exact(const LikelihoodTarget& target, const BankCoordinates& around) {
          bank.drift.empty() && bank.terms.empty();
 }
 
-/// Empty if the information is singular.
+/// Empty if the information matrix is singular.
 std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordinates& around) {
   const ErrorSamples samples = error_samples(target.recording, around.size());
   const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), difference_step);
@@ -92,8 +92,8 @@ std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordi
   return observed;
 }
 
-/// Standard errors given the smoothed modes. theta: by its posterior covariance. Q: that of a normal scatter, (Q_ii
-/// Q_jj + Q_ij^2) / W. T: that of a binomial distribution.
+/// Standard errors given the smoothed modes. For theta from its posterior covariance, for Q from that of a normal
+/// scatter, (Q_ii Q_jj + Q_ij^2) / W, for T from that of a binomial distribution.
 void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior, bool with_R, Bank& bank) {
   const std::vector<Eigen::MatrixXd> covariances = parameter_covariances(sums, prior, switching_model(bank));
   for (std::size_t j = 0; j < bank.modes.size(); ++j) {
@@ -115,8 +115,8 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
 }
 
 /// Whether the training runs contradict borders between modes that are twice as sharp. The test doubles all log odds,
-/// which does not move any border. If no sample lies near a border, the data do not contradict, however small the prior
-/// makes the standard errors.
+/// which does not move any border. If no sample lies near a border, the runs do not contradict, even if the prior makes
+/// standard errors small.
 bool against_harder_borders(const LikelihoodTarget& target, const Bank& bank) {
   constexpr double clearly = 1.92;  // nats: 95 % of a chi-square with one degree of freedom
   Bank harder = bank;
@@ -155,7 +155,8 @@ void set_observed_errors(const ParameterPlaces& at, const Observed& observed, co
                      observed.newton_step.segment(at.weights(j), at.regressors), prior.weight_sd)
               .transpose();
   }
-  // Weights of modes are relative to each other. If one is unknown, all are unknown.
+  // The weights of a mode are relative to those of the other modes. If the weight of one mode is unknown, all are
+  // unknown.
   if (!bank.transition_weight_error.allFinite()) bank.transition_weight_error.setConstant(not_a_number);
   if (at.outputs > 0) bank.R_standard_error = error.segment(at.R(), at.outputs).asDiagonal().toDenseMatrix();
 }
@@ -169,7 +170,7 @@ FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, c
   free.theta_unit.resize(bank.structure.parameters(), one_theta ? 1 : bank.mode_count());
   for (Index j = 0; j < free.theta_unit.cols(); ++j)
     free.theta_unit.col(j) = covariances[static_cast<std::size_t>(j)].diagonal().unaryExpr([](double variance) {
-      if (std::isnan(variance)) return 1.0;  // nothing is known about this parameter
+      if (std::isnan(variance)) return 1.0;  // the data do not determine this parameter
       return std::sqrt(std::max(variance, std::numeric_limits<double>::min()));
     });
   if (estimate_R) free.R.resize(static_cast<std::size_t>(bank.R.rows()));

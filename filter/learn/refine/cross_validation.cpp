@@ -15,7 +15,7 @@ namespace modebank {
 namespace {
 
 /// Chooses the noise adaptation. Candidates are within one standard error of the best over left-out runs (Breiman et
-/// al. 1984, section 3.4.3). Of these the scale that leaves its start soonest is taken. The reason: new runs differ
+/// al. 1984, section 3.4.3). The candidate whose scale leaves its start soonest is taken. The reason: new runs differ
 /// more from the training runs than the training runs differ from each other. `scores`: scores of each candidate, one
 /// per run. `samples`: number of samples of each run.
 std::size_t soonest_of_the_good(const std::vector<NoiseAdaptation>& ways, const std::vector<Eigen::VectorXd>& scores,

@@ -41,7 +41,7 @@ class CrossValidation {
 
   /// Log-likelihoods of the left-out runs; `banks`: one per split.
   LeftOutScores scores(const std::vector<Bank>& banks) const { return scores(banks, look_); }
-  /// Scores by another look-ahead.
+  /// Scores with other look-ahead settings.
   LeftOutScores scores(const std::vector<Bank>& banks, const LookAhead& look) const {
     return {banks.front().mode_count(), run_scores(banks, look)};
   }
@@ -49,7 +49,7 @@ class CrossValidation {
   double mean_score(const LeftOutScores& scores) const;
 
   /// Chooses the noise adaptation for the filter of these banks, one per split. If the left-out runs cannot separate
-  /// several adaptations, the one that leaves its start soonest is chosen.
+  /// several adaptations, the one whose scale leaves its start soonest is chosen.
   NoiseAdaptation adaptation(const std::vector<Bank>& of_splits) const;
 
  private:

@@ -14,17 +14,17 @@
 namespace modebank {
 namespace {
 
-/// Shares of R in the residual variance of exact states. R enters this variance once by the newest sample, and again by
-/// every lagged sample.
+/// Starting values of R, as shares of the residual variance of exact states. R enters this variance once by the newest
+/// sample, and again by every lagged sample.
 constexpr std::array<double, 2> R_shares{0.6, 0.25};
 constexpr double Q_share = 0.05;
 constexpr AscentLimits climb_limits{100, 1e-7};
 /// Above this number of state coefficients, a search over all coefficients takes minutes.
 constexpr Index most_coefficients = 4;
-/// Two lags determine a velocity; with more lags, their coefficients replace R.
+/// Two lags determine a velocity. With more lags, lag coefficients replace R.
 constexpr Index most_lags = 2;
 
-/// One model with the bank's structure and these shares of R.
+/// One model with the bank's structure and R at these shares.
 Bank one_model(const Bank& bank, const GlobalModel& global, double R_share) {
   Bank one = bank;
   const Eigen::VectorXd variance = global.noise_variance().unaryExpr(&positive_variance);

@@ -75,7 +75,7 @@ Fit start_of(Fit fit, const Eigen::VectorXd& scale) {
   return fit;
 }
 
-/// Scores of the runs without drift, with the best noise adaptation for this case.
+/// Scores of the runs without drift, with the noise adaptation that is best without drift.
 Eigen::VectorXd scores_without(const CrossValidation& validation, const Fit& constant) {
   std::vector<Bank> banks = constant.of_splits;
   const NoiseAdaptation adaptation = validation.adaptation(banks);

@@ -24,9 +24,10 @@ struct RefineStart {
 struct Fit {
   RefineStart start;
   SwitchingRegression model;         ///< start of expectation-maximisation, or a model with a logit
-  LogitPrior logit_prior = {};       ///< prior of the logit
+  LogitPrior logit_prior = {};       ///< prior of the logit's weights
   std::size_t row = 0;               ///< row of the start in the table
-  Eigen::Index iterations = 0;       ///< iterations of expectation-maximisation that score best on left-out runs
+  Eigen::Index iterations = 0;       ///< number of iterations of expectation-maximisation that scores best on left-out
+                                     ///< runs
   LeftOutScores scores = {};         ///< scores on the left-out runs
   std::vector<Bank> of_splits = {};  ///< the fit without the left-out runs of each split; empty if no run is left out
   BankDrift drift = {};              ///< drift of the modes; empty without drift

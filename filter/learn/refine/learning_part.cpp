@@ -13,8 +13,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index stretches = 100;         // smallest number of stretches in long runs; folds and restarts draw from them
-constexpr Index shortest_stretch = 100;  // transitions: several dwell times and the filter's first steps
+constexpr Index stretches = 100;         // smallest number of stretches in long runs; folds and random starts draw from
+                                         // these stretches
+constexpr Index shortest_stretch = 100;  // transitions; long enough for several stays in a mode and the filter's first
+                                         // steps
 
 struct Piece {
   const Trajectory* run;

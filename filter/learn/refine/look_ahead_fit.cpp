@@ -20,8 +20,8 @@ namespace modebank {
 namespace {
 
 constexpr Index most_iterations = 40;
-// Every coordinate needs a difference for every gradient. With 200 coordinates (twelve modes on ICE) one fit would take
-// ten minutes, and each fold needs a fit.
+// A gradient needs a difference for every coordinate. With 200 coordinates (twelve modes on ICE) one fit would take ten
+// minutes, and each fold needs a fit.
 constexpr Index most_coordinates = 50;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -47,8 +47,8 @@ struct LookAheadFit {
         .bank;
   }
 
-  /// `densities` fits all parameters. `errors` fits theta only; the likelihood then determines noise and transitions
-  /// for that theta.
+  /// `densities` fits all parameters. `errors` fits theta only; noise and transitions then maximise the likelihood with
+  /// this theta.
   Bank continued(const Recording& recording, const SwitchingPrior& prior, const Bank& bank) const {
     const FreeParameters all = free_parameters(in, recording, prior, R_estimated, bank);
     if (!look.counts_errors()) return climbed(recording, prior, look, all, bank);
@@ -60,8 +60,8 @@ struct LookAheadFit {
   }
 };
 
-/// Root mean square of the scored errors of the present bank. With this unit, all signals have equal weight and gains
-/// are roughly in nats.
+/// Root mean square of the scored errors of the present bank. In this unit, all signals have equal weight and gains are
+/// roughly in nats.
 Eigen::VectorXd error_unit(const RefineInput& in, const Bank& bank) {
   const Index outputs = bank.C.rows();
   Eigen::VectorXd unit(outputs);
@@ -94,7 +94,7 @@ Bank without_errors(Bank bank) {
   return bank;
 }
 
-/// Whether the left-out runs gain enough (left_out/rule.hpp). Each run is scored by a fit without it.
+/// Whether the gain on the left-out runs suffices (left_out/rule.hpp). Each run is scored by a fit without this run.
 bool gains(const LookAheadFit& search, const CrossValidation& validation, LookAheadStage& stage, Fit& fit) {
   std::vector<Bank> banks = fit.of_splits;
   const LeftOutScores before = validation.scores(banks, search.look);

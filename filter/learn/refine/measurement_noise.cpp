@@ -21,17 +21,17 @@
 namespace modebank {
 namespace {
 
-// Options of the search for R alone. The fit of all parameters starts at the end of this search.
+// Options for the search for R alone. The fit of all parameters starts where this search ends.
 constexpr AscentLimits search_limits{30, 1e-7};
 
-/// Smallest increase of the log-likelihood of these training runs by R [nats].
+/// Smallest increase of the log-likelihood of these training runs that R must give [nats].
 double least_rise(const LikelihoodTarget& target) {
   const auto samples = static_cast<double>(target.recording.transitions(Role::train));
   return samples * refine_tuning.least_gain;
 }
 
-/// The bank with R = `share` of the mean Q, subtracted from Q. White measurement noise of variance r enters a residual
-/// of exact states about twice.
+/// The bank with R = `share` of the mean Q, subtracted from Q. Measurement noise of variance r raises the residual
+/// variance of exact states by about 2 r.
 Bank with_share_as_R(Bank bank, double share) {
   const Index n_y = bank.R.rows();
   Eigen::VectorXd mean_Q = Eigen::VectorXd::Zero(n_y);
@@ -41,7 +41,7 @@ Bank with_share_as_R(Bank bank, double share) {
   return bank;
 }
 
-/// Free parameters: R of every output and one factor on Q.
+/// The free parameters are R of every output and one factor on Q.
 FreeParameters free_noise(Index n_y) {
   FreeParameters free;
   free.Q_by_one_factor = true;
@@ -52,7 +52,8 @@ FreeParameters free_noise(Index n_y) {
   return free;
 }
 
-/// Whether a Newton step from `start`, with the information of single samples, is expected to gain more than `level`.
+/// Whether a Newton step from `start` is expected to gain more than `level`. The step uses the information of single
+/// samples.
 bool promises(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start, double level) {
   const BankCoordinates around(start, free);
   const SampleGradients gradients = sample_gradients(around, Eigen::VectorXd::Constant(around.size(), difference_step),
@@ -62,14 +63,14 @@ bool promises(const LikelihoodTarget& target, const FreeParameters& free, const 
   return target.value(start) + 0.5 * information.whiten(gradients.sum).squaredNorm() > level;
 }
 
-/// With more states a filter pass is slow. Then R is searched from one start, and together with theta only if theta has
-/// few coordinates.
+/// With more states than this, a filter pass is slow. Then R is searched from one start. theta is searched, too, only
+/// if it has few coordinates.
 constexpr Index most_states_of_wide_search = 4, most_coordinates_of_large_filters = 40;
 
 bool is_large(const Bank& bank) { return bank.structure.dimension() > most_states_of_wide_search; }
 
-/// Starting shares: all shares in the tuning. For a large filter only the most likely share, if its gradient promises a
-/// gain.
+/// Starting shares. Usually all shares in the tuning; for a large filter only the most likely share, if its gradient
+/// promises a gain.
 std::vector<Bank> starts_of_R(const LikelihoodTarget& target, const FreeParameters& free, const Bank& bank,
                               double level, const RefineTuning& tuning) {
   std::vector<Bank> starts;
@@ -84,8 +85,8 @@ std::vector<Bank> starts_of_R(const LikelihoodTarget& target, const FreeParamete
 }
 
 /// Searches theta with R and one factor on Q, if the gradient promises a gain. The reason: theta of exactly measured
-/// states is biased by errors in variables. With this theta R = 0 may be the most likely. Empty if the search gains
-/// less than least_rise over the bank, too. `transitions`: those of the target's recording.
+/// states is biased by errors in variables, and with this theta R = 0 may be most likely. Empty if this search also
+/// gains less than least_rise over the bank. `transitions`: transitions of the target's recording.
 std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const RefineInput& in,
                                         const TrainingTransitions& transitions, const SwitchingPrior& prior,
                                         const Bank& bank) {
@@ -104,7 +105,7 @@ std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const Re
   return std::move(end.bank);
 }
 
-/// Maximises over theta, Q, T and (`with_R`) R of a bank together on these runs.
+/// Maximises the target on these runs over theta, Q, T and (`with_R`) R of a bank together.
 LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const RefineInput& in,
                                       const TrainingTransitions& transitions, const Bank& bank, bool with_R) {
   const SwitchingSums sums =
@@ -136,7 +137,7 @@ MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, c
 }
 
 /// The fits to the training runs of the splits, with measurement noise. No part of a fit (theta, T, R, prior) uses the
-/// runs that score it.
+/// runs that are scored with it.
 class MeasuredSplits {
  public:
   MeasuredSplits(const RefineInput& in, const CrossValidation& validation, const Fit& exact)
@@ -229,7 +230,7 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 
 namespace {
 
-/// Accepts R, for the bank and the splits, if the data require R and the left-out runs do not lose by it.
+/// Accepts R, for the bank and the splits, if the data require R and the scores of the left-out runs do not fall.
 bool take_R(const RefineInput& in, const SwitchingPrior& exact, std::optional<MeasuredSplits>& splits, Fit& fit,
             MeasurementStage& stage) {
   const RefineTuning& tuning = refine_tuning;
@@ -249,7 +250,8 @@ bool take_R(const RefineInput& in, const SwitchingPrior& exact, std::optional<Me
   return true;
 }
 
-/// Continues to the maximum, for the bank and the splits. Returns to the previous fits if the left-out runs lose.
+/// Continues to the maximum, for the bank and the splits. Returns to the previous fits if the scores of the left-out
+/// runs fall.
 void go_on(const RefineInput& in, const SwitchingPrior& exact, std::optional<MeasuredSplits>& splits, Fit& fit,
            MeasurementStage& stage) {
   fit.prior = prior_with_states_unknown(exact, fit.bank, refine_tuning);
@@ -273,7 +275,7 @@ Fit fit_untimed(const RefineInput& in, const CrossValidation& validation, const 
   Fit fit = exact;
   std::optional<MeasuredSplits> splits;
   if (validation.possible()) splits.emplace(in, validation, exact);
-  // The search for R needs gradients, which ignore that a noise factor changes with the state.
+  // The search for R uses gradients. These ignore that a noise factor changes with the state.
   const bool with_R = in.options.measurement_noise && fit.bank.structure.state_lags <= most_lags_beside_R &&
                       fit.bank.noise_factor.empty();
   const bool quantised = fit.bank.is_quantised();
@@ -281,7 +283,7 @@ Fit fit_untimed(const RefineInput& in, const CrossValidation& validation, const 
   if (asks_for_R && (with_R || quantised ||
                      (fit.bank.R.diagonal().array() > least_measurement_noise(in.fits, refine_tuning).array()).any()))
     go_on(in, exact.prior, splits, fit, stage);
-  // If states count as exact, Q contains the rounding. Only a fit by intervals separates the rounding from Q.
+  // If states count as exact, Q includes the rounding. Only a fit to the intervals separates rounding from Q.
   if (with_R && quantised && take_R(in, exact.prior, splits, fit, stage)) go_on(in, exact.prior, splits, fit, stage);
   if (splits) fit.of_splits = splits->banks();
   return fit;

@@ -14,9 +14,9 @@ namespace modebank {
 
 /// Result of a search for R.
 struct MeasurementNoise {
-  std::optional<Bank> bank;  ///< bank with R and a smaller Q; empty if the data require no R, or if every start failed
+  std::optional<Bank> bank;  ///< bank with R and a smaller Q; empty if R does not gain, or if every start failed
   Index starts = 0;
-  Index failed_starts = 0;  ///< starts that failed: the likelihood is not finite, or no step raised it
+  Index failed_starts = 0;  ///< number of starts that failed: the likelihood is not finite, or no step raised it
 };
 
 /// The bank with maximum-likelihood R (diagonal). The target is maximised over R and one factor on every Q, because Q
@@ -26,10 +26,10 @@ struct MeasurementNoise {
 MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
                                             const RefineTuning& tuning);
 
-/// The prior for unknown states. It equals that of the fit with exactly measured states, except for Q. Q has one
+/// The prior for unknown states. It equals the prior of the fit with exactly measured states, except for Q. Q has one
 /// additional transition, with the harmonic mean covariance of the modes in `start`. (The global residual covariance
 /// would include the differences between modes and outweigh the data of very different modes.) A harmonic mean is at
-/// most a few times the smallest Q. So no mode's Q rises by more than about its share of one transition.
+/// most a few times the smallest Q. So the prior hardly raises Q of any mode.
 SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank& start, const RefineTuning& tuning);
 
 /// Continues the fit with unknown states if R is not negligible.

@@ -17,26 +17,26 @@
 namespace modebank {
 namespace {
 
-/// The parts that are not refined. The fit treats states as measured exactly, so its Q includes the R of a start.
-/// Keeping that R would count it twice.
+/// The parts that are not refined. R of a start is not kept: the fit treats states as measured exactly, so R is already
+/// included in Q.
 Bank frame_of(const Bank& start, const RefineOptions& options) {
   Bank frame = start;
   if (options.measurement_noise) frame.R.setZero();
   return frame;
 }
 
-/// Numbers of modes for starts from stretches: that of the mixture's bank and, if requested, larger numbers.
+/// Numbers of modes for starts from random stretches: that of the mixture's bank and, if requested, larger numbers.
 std::vector<Index> stretch_modes(const RefineOptions& options, Index of_mixture) {
   std::vector<Index> counts;
   const double kept = refine_tuning.modes_kept;
   for (Index modes = options.most_modes; modes > of_mixture;
        modes = static_cast<Index>(kept * static_cast<double>(modes)))
     counts.push_back(modes);
-  if (of_mixture > 1) counts.push_back(of_mixture);  // all starts of one mode end in the same maximum
+  if (of_mixture > 1) counts.push_back(of_mixture);  // all starts with one mode end in the same maximum
   return counts;
 }
 
-/// Starts: the mixture's banks and random stretches of the runs.
+/// The starts: banks of the mixture, and banks from random stretches of the runs.
 std::vector<RefineStart> all_starts(const RefineInput& in, const std::vector<Bank>& banks, double Q_transitions) {
   std::vector<RefineStart> starts;
   for (const Bank& bank : banks) starts.push_back({"mixture", switching_model(bank), Q_transitions});
@@ -50,7 +50,7 @@ std::vector<RefineStart> all_starts(const RefineInput& in, const std::vector<Ban
   return starts;
 }
 
-/// The best start with weaker and stronger priors on Q.
+/// The best start, with weaker and stronger priors on Q.
 std::vector<RefineStart> other_priors(const RefineStart& best, const RefineTuning& tuning) {
   std::vector<RefineStart> starts;
   for (const double transitions : tuning.other_Q_transitions) {
@@ -60,7 +60,7 @@ std::vector<RefineStart> other_priors(const RefineStart& best, const RefineTunin
   return starts;
 }
 
-/// The best start with increasingly strong priors towards one motion.
+/// The best start, with increasingly strong priors towards one motion.
 std::vector<RefineStart> towards_one_motion(const RefineStart& best, const RefineTuning& tuning) {
   std::vector<RefineStart> starts;
   for (const double transitions : tuning.theta_transitions) {
@@ -120,8 +120,8 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   const bool drifts = !chosen.drift.empty();
   chosen.bank = bank_of_fit(in, fit, drifts ? chosen.adaptation : validation.adaptation(chosen.of_splits));
   if (!drifts) chosen = fit_with_measurement_noise(in, validation, chosen, result.measurement);
-  // For drifting modes, standard errors are those of the likelihood without drift, which is the likelihood that the fit
-  // maximises.
+  // For drifting modes, standard errors belong to the likelihood without drift, because the fit maximises that
+  // likelihood.
   const FilterOptions maximised = result.measurement.iterations > 0 ? learning_filter(filter) : exact_filter(filter);
   chosen.bank = with_errors(in, fit, chosen.prior, chosen.R_estimated, maximised, chosen.bank);
   if (drifts)

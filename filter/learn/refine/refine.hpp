@@ -16,10 +16,10 @@ namespace modebank {
 /// Gain of a look-ahead fit (look_ahead_fit.hpp).
 struct LookAheadStage {
   double score_before = 0.0;         ///< mean look-ahead score of the left-out runs before [nats per sample]
-  double score = 0.0;                ///< the same after the fit; equal to score_before if no fit was tried
+  double score = 0.0;                ///< mean look-ahead score after the fit; equal to score_before if no fit was tried
   double gain_standard_error = 0.0;  ///< standard error of the difference, clustered by run
   bool taken = false;
-  bool of_errors = false;  ///< whether scores are minus half of mean squared errors, without unit
+  bool of_errors = false;  ///< true: scores are minus half of mean squared errors, without unit
 };
 
 struct Refinement {

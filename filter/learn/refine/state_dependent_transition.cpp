@@ -65,7 +65,7 @@ std::vector<LogitStart> logit_starts(const RefineInput& in, const std::vector<Fi
   return all;
 }
 
-/// Continues from a start on every split; chooses the best number of iterations.
+/// Continues from a start on every split, and chooses the best number of iterations.
 Fit scored(const RefineInput& in, const CrossValidation& validation, const LogitStart& start, const LogitPrior& prior) {
   const std::vector<SplitData>& splits = validation.splits();
   std::vector<SwitchingPrior> priors;

@@ -79,8 +79,8 @@ VectorXd joined(const std::vector<VectorXd>& parts) {
   return all;
 }
 
-/// The best number of modes of a structure: log-likelihoods of all runs. NaN if a split has no transitions to learn
-/// from.
+/// The best number of modes of a structure, with the log-likelihoods of all runs. NaN if a split has no transitions to
+/// learn from.
 LeftOutRuns best_of(const std::vector<std::vector<LeftOutRuns>>& splits) {
   LeftOutRuns best{VectorXd::Constant(1, not_a_number), VectorXd::Ones(1)};
   if (std::any_of(splits.begin(), splits.end(), [](const auto& said) { return said.empty(); })) return best;

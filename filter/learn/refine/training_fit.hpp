@@ -40,8 +40,8 @@ struct TrainingFit {
   Shrinking shrinking = {};            ///< shrinkage of the present model
 };
 
-/// Runs expectation-maximisation from `model` for a number of iterations, or fewer if the objective converges. Starved,
-/// unstable and duplicate modes are then removed one by one. A few more iterations follow each removal.
+/// Runs expectation-maximisation from `model` for a number of iterations, or fewer if the objective converges. Then
+/// removes starved, unstable and duplicate modes one by one. A few more iterations follow each removal.
 TrainingFit fit_training_runs(const RefineInput& in, const SwitchingRegression& model, const SwitchingPrior& prior,
                               Index iterations);
 
@@ -53,16 +53,17 @@ Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit, const NoiseAdapt
 Bank with_errors(const RefineInput& in, const TrainingFit& fit, const SwitchingPrior& prior, bool estimated_R,
                  const FilterOptions& filter, const Bank& bank);
 
-/// The smallest R in refinement, which is negligible. n_y.
+/// The smallest R in refinement, n_y. It is negligible.
 Eigen::VectorXd least_measurement_noise(const WindowFits& fits, const RefineTuning& tuning);
 
-/// The filter whose likelihood is maximised with measurement noise. It is the bank's filter, as an IMM without
-/// adaptation of parameters.
+/// The filter whose likelihood is maximised with measurement noise: the bank's filter as an IMM that does not adapt
+/// parameters.
 FilterOptions learning_filter(const FilterOptions& filter);
 
-/// The filter whose likelihood expectation-maximisation raises: learning_filter with equal noise in every run. An
-/// adaptive filter would give rough runs less weight; this estimate does not, so its standard errors are then too
-/// small. Over draws of runs with sd 0.4 and 2 they are half of theta's actual error (standard_errors_test.cpp).
+/// The filter whose likelihood expectation-maximisation raises: learning_filter with the same noise in every run. An
+/// adaptive filter would give less weight to runs with large noise. This estimate gives all runs equal weight, so
+/// standard errors in an adaptive filter would be too small. If some runs have noise of standard deviation 0.4 and
+/// others of 2, they are half of theta's actual error (standard_errors_test.cpp).
 FilterOptions exact_filter(const FilterOptions& filter);
 
 }  // namespace modebank

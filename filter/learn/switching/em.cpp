@@ -17,7 +17,7 @@ class ConditionalMaximiser {
                        SwitchingRegression& model)
       : structure_(structure), sums_(sums), prior_(prior), model_(model) {}
 
-  // If a Q is singular, theta stays. The objective is then minus infinity, and such a fit is never chosen.
+  // If a Q is singular, theta does not change. The objective is then minus infinity, and such a fit is never chosen.
   void set_theta(Index j) {
     if (const auto best = best_theta(j, j + 1)) model_.theta.col(j) = *best;
   }
@@ -36,7 +36,7 @@ class ConditionalMaximiser {
   Eigen::MatrixXd& noise(Index j) { return model_.Q[static_cast<std::size_t>(j)]; }
   const RegressionSums& at(Index j) const { return sums_.modes[static_cast<std::size_t>(j)]; }
 
-  /// The best theta for modes first to end - 1, given the data and the prior; empty if a Q is not definite.
+  /// The best theta of the modes `first` to `end` - 1, given the data and the prior; empty if a Q is not definite.
   std::optional<Eigen::VectorXd> best_theta(Index first, Index end) {
     Eigen::MatrixXd information = prior_.information;
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(prior_.mean.size());
@@ -93,7 +93,7 @@ void ExpectationMaximisation::step() {
   if (!model_.logit.empty()) raise_switching(transitions_, posterior_, prior_, model_);
   posterior_ = smooth_modes(transitions_, model_);
   const double gain = posterior_.log_likelihood + log_prior(prior_, options_.one_theta, model_) - objective_.back();
-  // The first step moves from the start's optimum to the prior's, so the objective may fall.
+  // The first step moves from the optimum of the start to that of the prior. So the objective may fall in this step.
   converged_ = objective_.size() > 1 && !(gain >= options_.tolerance * static_cast<double>(transitions_.count()));
 }
 

@@ -8,8 +8,8 @@
 namespace modebank {
 
 struct SwitchingEmOptions {
-  bool one_theta = false;   ///< whether all modes share theta and differ in Q
-  double tolerance = 1e-6;  ///< nats per transition; converged if the objective gains less
+  bool one_theta = false;   ///< whether all modes share theta and differ only in Q
+  double tolerance = 1e-6;  ///< nats per transition; the fit has converged if the objective gains less
   int alternations = 3;     ///< alternations between theta and Q in one maximisation
 };
 

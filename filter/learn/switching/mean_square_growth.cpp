@@ -11,7 +11,8 @@
 namespace modebank {
 namespace {
 
-/// The operator on the modes' second moments: symmetric matrices, stored as their lower triangles one after the other.
+/// The operator on the modes' second moments. The moments are symmetric matrices, stored as lower triangles one after
+/// the other.
 class SecondMoments {
  public:
   SecondMoments(const LinearStructure& structure, const SwitchingRegression& model)
@@ -63,8 +64,8 @@ class SecondMoments {
 double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model) {
   const SecondMoments moments(structure, model);
   if (!moments.finite()) return std::numeric_limits<double>::infinity();
-  // With one motion, the sum of all modes' moments evolves like that of a single mode, because rows of T sum to one. A
-  // root of the n x n matrix is exact even if eigenvalues of the larger operator are multiple.
+  // If all modes have one motion, the sum of their moments evolves like the moment of a single mode, because rows of T
+  // sum to one. A root of the n x n matrix is exact even if the larger operator has multiple eigenvalues.
   if (moments.one_motion()) return std::pow(spectral_radius(unpack(structure, model.theta.col(0))), 2);
   // The operator maps positive semidefinite matrices to positive semidefinite matrices. So its spectral radius is an
   // eigenvalue (Krein & Rutman 1948), and no other eigenvalue has a larger real part.

@@ -16,9 +16,11 @@
 namespace modebank {
 namespace {
 
-constexpr double power_ridge = 1e-12;  // share of the regressors' power; makes regressions without excitation solvable
+constexpr double power_ridge = 1e-12;  // ridge, as a share of the regressors' power; makes regressions without
+                                       // excitation solvable
 
-/// 1/2 W log det of the residual covariance of these transitions' least squares. The sums of pooled modes are added.
+/// 1/2 W log det of the residual covariance, for least squares of these transitions. The sums of pooled modes are
+/// added.
 double cost(const RegressionSums& sums) {
   Eigen::MatrixXd normal = sums.G;
   normal.diagonal().array() += power_ridge * std::max(sums.G.trace(), std::numeric_limits<double>::min());
@@ -30,7 +32,7 @@ double cost(const RegressionSums& sums) {
 std::vector<RegressionSums> sums_of_modes(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                           const SwitchingRegression& model) {
   const Eigen::MatrixXd& X = transitions.data.regressors;
-  const Eigen::VectorXd middle = model.theta.rowwise().mean();  // a point near every mode, which limits cancellation
+  const Eigen::VectorXd middle = model.theta.rowwise().mean();  // a point near every mode, which limits loss of digits
   const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, middle);
   std::vector<RegressionSums> modes;
   for (Index j = 0; j < model.modes(); ++j)
@@ -47,7 +49,7 @@ Index free_parameters(const LinearStructure& structure, bool one_theta) {
   return (one_theta ? 0 : theta) + noise;
 }
 
-/// The pair of modes whose pooling loses least, if the loss is below `least` nats.
+/// The pair of modes whose pooling costs least, if the cost is below `least` nats.
 std::optional<DuplicateModes> closest_duplicates(const std::vector<RegressionSums>& modes, double least) {
   std::optional<DuplicateModes> duplicates;
   for (std::size_t i = 0; i < modes.size(); ++i)
@@ -106,7 +108,8 @@ std::optional<Index> starved_mode(const LinearStructure& structure, const std::v
   return least - modes.begin();
 }
 
-/// The mode with the largest spectral radius above 1, if the switching system with it is not mean-square stable.
+/// The mode with the largest spectral radius above 1. Empty if the switching system is mean-square stable with this
+/// mode.
 std::optional<Index> unstable_mode(const LinearStructure& structure, const SwitchingRegression& model,
                                    double growth_slack) {
   std::optional<Index> unstable;

@@ -27,7 +27,7 @@ std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& trans
                                                 const SwitchingRegression& model, bool one_theta,
                                                 const RefineTuning& tuning);
 
-/// The model with its closest pair of modes merged, whatever the loss. The closest pair is the one whose pooling loses
+/// The model with its closest pair of modes merged, whatever the cost. The closest pair is the one whose pooling costs
 /// least (see "duplicate" above). Requires at least two modes.
 SwitchingRegression with_closest_pair_merged(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                              const SwitchingRegression& model);

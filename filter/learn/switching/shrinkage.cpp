@@ -11,7 +11,7 @@
 namespace modebank {
 namespace {
 
-/// Moves the modes `which` by `share` of the distance to theta.
+/// Moves the modes `which` towards theta, by the share `share` of their distance.
 SwitchingRegression moved(const SwitchingRegression& model, const std::vector<Index>& which,
                           const Eigen::VectorXd& theta, double share) {
   SwitchingRegression result = model;

@@ -14,8 +14,8 @@ SwitchingPrior switching_prior(const TrainingTransitions& transitions, const Glo
                                const Eigen::VectorXd& prior_sd, double noise_transitions,
                                const RefineTuning& tuning = {});
 
-/// Average information of one transition about theta for residuals of covariance Q, p x p. `least_information` of its
-/// largest entry is added to make it definite. Throws DataError if Q is singular.
+/// Average information of one transition about theta, for residuals of covariance Q, p x p. The share
+/// `least_information` of its largest entry is added to make it definite. Throws DataError if Q is singular.
 Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const Eigen::MatrixXd& Q,
                                  double least_information);
 

@@ -25,7 +25,7 @@ Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eige
   const Eigen::MatrixXd whitened = Cholesky(Q).whiten(Eigen::MatrixXd(r.transpose()));
   const double constant = static_cast<double>(Q.rows()) * log_two_pi + log_determinant(Q);
   Eigen::ArrayXd log_density = -0.5 * (whitened.colwise().squaredNorm().array() + constant).transpose();
-  if (transitions.log_noise_factor.size() > 0)  // density of the rows before the division by the noise factor
+  if (transitions.log_noise_factor.size() > 0)  // density of the rows before they were divided by the noise factor
     log_density -= (transitions.usable.array() > 0.0)
                        .select(0.5 * static_cast<double>(Q.rows()) * transitions.log_noise_factor.array(), 0.0);
   return log_density * transitions.usable.array();
@@ -64,7 +64,7 @@ class RunSmoother {
   }
 
  private:
-  /// The rows without leading unusable transitions. The filter starts after these leading ones.
+  /// The rows without unusable transitions at the beginning. The filter starts after these.
   RunRows from_first_usable(RunRows rows) const {
     while (rows.count > 0 && transitions_.usable(rows.first) == 0.0) {
       ++rows.first;
@@ -112,7 +112,7 @@ class RunSmoother {
   /// Mode probabilities before the step to transition k.
   Eigen::VectorXd before(Index k) const { return k > 0 ? filtered_.col(k - 1) : model_.initial; }
 
-  /// The transition matrix of a row; T alone if a sample is missing.
+  /// The transition matrix of a row; T itself if a sample is missing.
   const Eigen::MatrixXd& transition_of(Index row) {
     if (model_.logit.empty() || transitions_.usable(row) == 0.0) return model_.transition;
     const Index n = transitions_.structure.dimension();

@@ -11,11 +11,11 @@ namespace modebank {
 
 /// K linear regressions with a Markov chain that selects one per transition (Hamilton 1989, Econometrica 57(2)):
 ///   x[k+1] - x[k] = [A_j B_j (c_j)] phi_k + w, w ~ N(0, Q_j), P(j next | i now) = T_ij.
-/// It is the bank's model with exactly measured state (R = 0), whose likelihood needs no approximation.
+/// It is the bank's model with exactly measured states (R = 0). Its likelihood is exact.
 struct SwitchingRegression {
   Eigen::MatrixXd theta;           ///< p x K
   std::vector<Eigen::MatrixXd> Q;  ///< K of n x n, covariances of the measured states' noise
-  Eigen::MatrixXd transition;      ///< K x K; a row belongs to the mode before the switch
+  Eigen::MatrixXd transition;      ///< K x K; row i: the mode before a switch is i
   Eigen::VectorXd initial;         ///< K, probabilities before the first transition of a run, as in the filter
   TransitionLogit logit = {};      ///< dependence of T on x[k] and the acting inputs; empty if T is constant
 
@@ -25,7 +25,7 @@ struct SwitchingRegression {
 /// The modes and transitions of a bank as a switching regression.
 SwitchingRegression switching_model(const Bank& bank);
 
-/// The bank `frame` with the modes, T and first modes of `model`, without standard errors.
+/// The bank `frame` with the modes, T and initial probabilities of `model`, without standard errors.
 Bank with_modes(const Bank& frame, const SwitchingRegression& model);
 
 /// The prior. Its log density, up to a constant, is added to the likelihood in expectation-maximisation.
@@ -34,13 +34,13 @@ struct SwitchingPrior {
   Eigen::MatrixXd information;     ///< p x p, inverse covariance of every mode's theta
   Eigen::MatrixXd noise;           ///< n x n, covariance of the `noise_transitions` additional transitions for Q
   double noise_transitions = 0.0;  ///< >= 0
-  double counts = 0.0;             ///< >= 0, added to every expected count of switches and first modes
+  double counts = 0.0;             ///< >= 0, added to every expected count of switches and of first modes
   Eigen::VectorXd weight_sd = {};  ///< d, standard deviations of the logit's weights, normal about zero; empty if T is
                                    ///< constant
 
   /// Standard deviation of the logit's memory, normal about zero. The memory (memory_of) is the part of log T beyond
-  /// its row and column means. If it is small, the previous mode hardly matters. The mode is then a function of state
-  /// and input, as in a piecewise affine system.
+  /// its row and column means. If this standard deviation is small, the previous mode hardly matters. The mode is then
+  /// almost a function of state and input, as in a piecewise affine system.
   double memory_sd = std::numeric_limits<double>::infinity();
 };
 
@@ -53,17 +53,18 @@ struct ModePosterior {
   Eigen::MatrixXd pairs = {};   ///< K*K x N, P(i, then j) at each transition, column-major; only with a logit
 };
 
-/// Forward-backward algorithm over every run, each step scaled by the largest density of a possible mode (log domain).
-/// An unusable transition gives no information about its mode; rows before a run's first usable one stay zero. A sample
-/// weight is the power of its density. The log-likelihood equals that of the IMM filter for R = 0.
+/// Forward-backward algorithm over every run. Each step is scaled by the largest density of a possible mode (log
+/// domain). An unusable transition gives no information about its mode. Rows before a run's first usable transition are
+/// zero. A density is raised to the power of the sample weight. The log-likelihood equals that of the IMM filter for R
+/// = 0.
 ModePosterior smooth_modes(const TrainingTransitions& transitions, const SwitchingRegression& model);
 
 /// log p(transition | previous transitions of its run) for every row, N; 0 for rows before a run's first usable row.
 /// The sum equals the log-likelihood of smooth_modes.
 Eigen::VectorXd predictive_log_densities(const TrainingTransitions& transitions, const SwitchingRegression& model);
 
-/// Expected sums over the transitions. For each mode: the sums of its regression, weighted with its probability, about
-/// the prediction of the prior's mean. Also the expected counts of switches and first modes.
+/// Expected sums over the transitions. For each mode: the sums of its regression about the prediction by the prior's
+/// mean. Transitions are weighted with the mode's probability. Also the expected counts of switches and first modes.
 struct SwitchingSums {
   std::vector<RegressionSums> modes;  ///< K
   Eigen::MatrixXd switches;           ///< K x K expected counts of (i, then j)

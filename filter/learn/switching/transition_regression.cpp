@@ -10,9 +10,9 @@
 namespace modebank {
 namespace {
 
-constexpr double negligible_share = 1e-12;  // smallest weight of a transition that starts from a mode
+constexpr double negligible_share = 1e-12;  // smallest weight for which a mode's transitions are counted
 
-// share of the largest curvature; adding a constant to a row of log T has no effect
+// ridge, as a share of the largest curvature; needed because adding a constant to a row of log T has no effect
 constexpr double curvature_ridge = 1e-10;
 constexpr int most_halvings = 30;
 
@@ -30,7 +30,7 @@ class SwitchObjective {
         d_(regressor_count(transitions.structure)),
         memory_information_(1.0 / (prior.memory_sd * prior.memory_sd)),
         z_((transitions.data.regressors.leftCols(d_).rowwise() - model.logit.reference.transpose()).transpose()) {
-    // A transition with a missing sample switches by T alone.
+    // A transition with a missing sample switches by T, without state and input.
     for (Index k = 0; k < z_.cols(); ++k)
       if (transitions.usable(k) == 0.0) z_.col(k).setZero();
   }

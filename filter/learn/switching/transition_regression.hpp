@@ -27,7 +27,7 @@ SwitchingPrior with_logit_prior(SwitchingPrior prior, const TrainingTransitions&
                                 const LogitPrior& logit_prior);
 
 /// Raises the expected log posterior of the switches over T and the logit's weights together. The objective is the sum
-/// over transitions of posterior.pairs log P(j | i, z), with prior.counts on every log T_ij and normal priors on
+/// over transitions of posterior.pairs log P(j | i, z), plus prior.counts for every log T_ij and normal priors on
 /// weights and memory. The function takes one Newton step on this concave objective (McCullagh & Nelder 1989, section
 /// 5.2), halved until the objective rises. With this generalised maximisation (Dempster, Laird & Rubin 1977) the
 /// likelihood never falls. Returns the gain [nats].

@@ -6,13 +6,13 @@
 
 #include "filter/step/equations/bounds.hpp"
 
-/// Products and factorisation of small matrices with a fixed order of summation and without allocation. Eigen's
-/// products sum in different orders for fixed and dynamic sizes. The functions here give the same bits for both.
+/// Products and factorisations of small matrices without allocation. Eigen sums in different orders for fixed and
+/// dynamic sizes. Here the order of summation is fixed, so both give the same bits.
 namespace modebank::small {
 
 using Eigen::Index;
 
-/// out = a b', where only the first `seen` columns of b are nonzero. Requires seen >= 1; out must not alias.
+/// out = a b'. Only the first `seen` columns of b are nonzero. Requires seen >= 1; `out` must not alias.
 template <class Out, class A, class B>
 void multiply_transposed(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.rows(); ++j)
@@ -23,15 +23,15 @@ void multiply_transposed(Out& out, const A& a, const B& b, Index seen) {
     }
 }
 
-/// out = a b'. Requires an inner size >= 1; out must not alias.
+/// out = a b'. Requires an inner size >= 1; `out` must not alias.
 template <class Out, class A, class B>
 void multiply_transposed(Out& out, const A& a, const B& b) {
   multiply_transposed(out, a, b, a.cols());
 }
 
-/// out = a b for an `a` whose rows i >= full are shifts: row i is e_{i - full}'. b is zero outside its first `inner`
-/// rows and columns; the corresponding columns of `out` are not written. The bits equal those of multiply if b is
-/// finite. With full = a.rows(), `a` may be any matrix.
+/// out = a b. Rows i >= `full` of `a` are shifts: row i is e_{i - full}'. b is zero outside its first `inner` rows and
+/// columns; `out` is not written in the other columns. The bits equal those of `multiply` if b is finite. With full =
+/// a.rows(), `a` may be any matrix.
 template <class Out, class A, class B>
 void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
   for (Index j = 0; j < std::min(inner, b.cols()); ++j) {
@@ -44,7 +44,7 @@ void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner
   }
 }
 
-/// out = a b. Requires an inner size >= 1; out must not alias.
+/// out = a b. Requires an inner size >= 1; `out` must not alias.
 template <class Out, class A, class B>
 void multiply(Out& out, const A& a, const B& b) {
   for (Index j = 0; j < b.cols(); ++j)
@@ -55,8 +55,8 @@ void multiply(Out& out, const A& a, const B& b) {
     }
 }
 
-/// out += a b' for b as above and an `a` whose columns from `inner` on are zero. The product must be symmetric
-/// (add_symmetric_product).
+/// out += a b'. b is as above; the columns of `a` from `inner` on are zero. The product must be symmetric (see
+/// add_symmetric_product).
 template <class Out, class A, class B>
 void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
   const Index rows = std::min(a.rows(), inner + full);
@@ -74,8 +74,8 @@ void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full
     }
 }
 
-/// out = a b, where `a` differs from the identity only in its first `seen` columns. The bits equal those of multiply if
-/// b is finite. With seen = a.cols(), `a` may be any matrix.
+/// out = a b. `a` differs from the identity only in its first `seen` columns. The bits equal those of `multiply` if b
+/// is finite. With seen = a.cols(), `a` may be any matrix.
 template <class Out, class A, class B>
 void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.cols(); ++j)
@@ -86,7 +86,7 @@ void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
     }
 }
 
-/// out += a b' for b as above. The product must be symmetric (add_symmetric_product).
+/// out += a b', with a and b as above. The product must be symmetric (see add_symmetric_product).
 template <class Out, class A, class B>
 void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.rows(); ++j)
@@ -98,8 +98,8 @@ void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) 
     }
 }
 
-/// out += a b' for a product that must be symmetric. The lower triangle is computed and mirrored, so `out` stays
-/// symmetric to the bit.
+/// out += a b', for a product that is symmetric in theory. The lower triangle is computed and mirrored, so `out` is
+/// exactly symmetric.
 template <class Out, class A, class B>
 void add_symmetric_product(Out& out, const A& a, const B& b) {
   add_symmetric_product_shifting(out, a, b, b.rows(), a.cols());
@@ -156,7 +156,7 @@ struct Ldl {
     }
   }
 
-  /// v' S^-1 v for a decorrelated v.
+  /// v' S^-1 v for a v that `decorrelate` has changed.
   template <class Vector>
   double squared_distance(const Vector& v) const {
     double sum = 0.0;

@@ -2,27 +2,28 @@
 
 #include <cmath>
 
-/// Limits that keep a filter's arithmetic stable for any input, shared by the equations and the vector kernels (which
-/// do not use Eigen).
+/// Limits that keep a filter's arithmetic stable for any input. The equations and the vector kernels (which do not use
+/// Eigen) share these limits.
 namespace modebank {
 
-/// Lower bound of mode probabilities after a measurement (then renormalised), so that every mode can recover.
+/// Lower bound of mode probabilities after a measurement, so that every mode can recover. Probabilities are then
+/// renormalised.
 inline constexpr double mode_probability_floor = 1e-12;
 
-/// A mode with a smaller probability before a measurement is impossible (T forbids it) and is skipped.
+/// A mode with a smaller probability before a measurement is impossible (T forbids it). The filter skips such a mode.
 inline constexpr double impossible_probability = 1e-100;
 
 /// Upper bound of variances in a diverging prediction, so that squares stay finite. Its square root bounds the means.
 inline constexpr double largest_variance = 1e60;
 inline constexpr double largest_mean = 1e30;
 
-/// Smallest variance (a standard deviation of 1e-20 in the signal's unit), used if S = 0.
+/// Smallest variance. It is used if S = 0. The standard deviation is 1e-20 in the signal's unit.
 inline constexpr double least_variance = 1e-40;
 
 /// Lower bound of log densities.
 inline constexpr double lowest_log_density = -1e300;
 
-/// Measurements of at least this magnitude, infinite or NaN count as missing.
+/// A measurement counts as missing if it is NaN, infinite, or at least this large.
 inline constexpr double largest_measurement = 1e30;
 
 inline bool is_missing(double y) { return !(std::abs(y) < largest_measurement); }
@@ -35,11 +36,11 @@ auto missing_entries(const Y& y) {
   return count;
 }
 
-/// Smallest pivot of a covariance as a share of its diagonal entry; smaller pivots are rounding. Raising a pivot to
-/// this bound is the same as adding the difference to the diagonal.
+/// Smallest pivot of a covariance, as a share of its diagonal entry. Smaller pivots are rounding errors. Raising a
+/// pivot to this bound is the same as adding the difference to the diagonal.
 inline constexpr double relative_pivot_floor = 1e-14;
 
-/// Largest innovation for adaptive noise, in standard deviations, so that one outlier does not inflate the scale.
+/// Largest innovation for adaptive noise, in standard deviations. It limits the effect of one outlier on the scale.
 inline constexpr double largest_standardised = 5.0;
 
 }  // namespace modebank

@@ -15,9 +15,9 @@
 ///       m_k + mu_k g,   P_k - mu_k D + mu_k (1 - mu_k) g g' / s.
 /// - Then time passes: m_k <- theta_k + leak (m_k - theta_k),   P_k <- leak^2 P_k + W_k.
 ///
-/// Without a measurement the state's error is correlated with that of theta (`cross`). Predictions several steps ahead
-/// include this correlation to first order, like the extended Kalman filter of (theta, x). With W = P0 = 0 the filter
-/// equals that of the bank without drift. With one mode of diagonal Q it equals DriftingRecursion.
+/// Without a measurement the error of the state is correlated with the error of theta (`cross`). Predictions several
+/// steps ahead include this correlation to first order, like the extended Kalman filter of (theta, x). With W = P0 = 0
+/// the filter equals that of the bank without drift. With one mode of diagonal Q it equals DriftingRecursion.
 ///
 /// Modes that share theta (`one_motion`) have one common Gaussian. g_k and D_k are the change of mean and covariance if
 /// mode k ruled the step:
@@ -38,8 +38,9 @@ void set_coefficients(const LinearStructure& s, const Theta& theta, Mode& mode) 
   }
 }
 
-/// step.drift.mixed: covariance of mode j's theta with the error of the state at which its prediction starts. Only the
-/// part of this state that comes from mode j is correlated with theta_j. If theta is shared, the whole state is.
+/// step.drift.mixed: covariance of mode j's theta with the error of the state from which mode j's prediction starts.
+/// Only the part of this state that comes from mode j is correlated with theta_j. If the modes share theta, the whole
+/// state is correlated with theta.
 template <int N, int NY>
 void mix_cross(const FilterModel<N, NY>& model, const FilterState<N>& state, std::size_t j, FilterStep<N, NY>& step) {
   const auto k = static_cast<Eigen::Index>(j);
@@ -54,8 +55,7 @@ void mix_cross(const FilterModel<N, NY>& model, const FilterState<N>& state, std
     mixed = step.mixing.matrix(k, k) * state.drift.cross[j];
 }
 
-/// Adds the effect of theta's errors to the prediction of mode j that was made with the mean of theta. Call after
-/// mix_cross.
+/// Adds the effect of theta's errors to the prediction of mode j, which used the mean of theta. Call after mix_cross.
 template <int N, int NY, class U>
 void add_errors(const FilterModel<N, NY>& model, const FilterState<N>& state, std::size_t j, const Gaussian<N>& from,
                 const U& u, FilterStep<N, NY>& step) {
@@ -90,7 +90,7 @@ void add_errors(const FilterModel<N, NY>& model, const FilterState<N>& state, st
   make_usable(kalman.predicted);
 }
 
-/// Step 3 of imm.hpp with the modes' present coefficients.
+/// Step 3 of imm.hpp, with the modes' present coefficients.
 template <int N, int NY, class U>
 void predict_modes(const FilterModel<N, NY>& model, const FilterState<N>& state, const std::vector<Gaussian<N>>& from,
                    const U& u, FilterStep<N, NY>& step) {
@@ -115,14 +115,15 @@ inline void pass_time(const DriftModel& model, DriftState& state) {
     for (Eigen::MatrixXd& cross : state.cross) cross *= model.leak;
 }
 
-/// Without a measurement theta is unchanged; the error of the predicted state stays correlated with that of theta.
+/// For a step without measurement: theta is unchanged, and the error of the predicted state remains correlated with the
+/// error of theta.
 template <int N, int NY>
 void keep_prediction(const FilterModel<N, NY>& model, const FilterStep<N, NY>& step, FilterState<N>& state) {
   for (std::size_t j = 0; j < state.drift.cross.size(); ++j) state.drift.cross[j] = step.drift.cross[j];
   pass_time(model.drift, state.drift);
 }
 
-/// step.drift.gain and .move: the update of mode j's theta if mode j produced the measurement.
+/// Sets step.drift.gain and step.drift.move: the update of mode j's theta if mode j produced the measurement.
 template <int N, int NY, class Sensor>
 void match(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step) {
   DriftWorkspace<N, NY>& at = step.drift;
@@ -136,7 +137,7 @@ void match(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step) {
   small::multiply(at.move, at.gain, kalman.innovation);
 }
 
-/// P + weight (scatter move move' - gain G'); call after match.
+/// P + weight (scatter move move' - gain G'). Call after match.
 template <int N, int NY>
 void learn_covariance(const DriftWorkspace<N, NY>& at, double weight, double scatter, Eigen::MatrixXd& P) {
   for (Eigen::Index b = 0; b < P.cols(); ++b)
@@ -148,7 +149,7 @@ void learn_covariance(const DriftWorkspace<N, NY>& at, double weight, double sca
     }
 }
 
-/// Covariance of mode j's state error with theta after both updates; call after match.
+/// Covariance of mode j's state error with theta after both updates. Call after match.
 template <int N, int NY, class Sensor>
 void learn_cross(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step, DriftState& state) {
   DriftWorkspace<N, NY>& at = step.drift;
@@ -158,13 +159,13 @@ void learn_cross(const Sensor& sensor, std::size_t j, FilterStep<N, NY>& step, D
     state.cross[j].noalias() -= at.gain.col(i) * at.seen.col(i).transpose();
 }
 
-/// Updates mode j's theta with a measurement; mu is the probability that mode j produced it. `scale`: noise scale of
-/// the prediction.
+/// Updates mode j's theta with a measurement. `mu`: probability that mode j produced the measurement. `scale`: noise
+/// scale of the prediction.
 template <int N, int NY, class Sensor>
 void learn_mode(const Sensor& sensor, std::size_t j, double mu, double scale, FilterStep<N, NY>& step,
                 DriftState& state) {
   match(sensor, j, step);
-  if (!step.drift.move.allFinite()) {  // an overflowing correction is ignored
+  if (!step.drift.move.allFinite()) {  // a correction that overflows is ignored
     state.cross[j] = step.drift.cross[j];
     return;
   }
@@ -174,7 +175,7 @@ void learn_mode(const Sensor& sensor, std::size_t j, double mu, double scale, Fi
   learn_cross(sensor, j, step, state);
 }
 
-/// Updates the shared theta with a measurement; mu are the probabilities that the modes produced it.
+/// Updates the shared theta with a measurement. `mu`: probabilities that the modes produced the measurement.
 template <int N, int NY, class Sensor>
 void learn_together(const Sensor& sensor, const Eigen::VectorXd& mu, double scale, FilterStep<N, NY>& step,
                     DriftState& state) {
@@ -198,7 +199,7 @@ void learn_together(const Sensor& sensor, const Eigen::VectorXd& mu, double scal
   make_usable(state.P[0]);
 }
 
-/// Updates every mode's theta by its probability, after Bayes' rule.
+/// Updates every mode's theta, weighted with the mode's probability. Call after Bayes' rule.
 template <int N, int NY, class Sensor>
 void learn(const FilterModel<N, NY>& model, const Sensor& sensor, double scale, FilterStep<N, NY>& step,
            FilterState<N>& state) {

@@ -26,13 +26,13 @@ struct DriftState {
 /// The bank's drift in the layout for stepping.
 struct DriftModel {
   double leak = 1.0;
-  bool shared = false;              ///< whether modes differ in noise alone and share all learning of theta
-  Eigen::MatrixXd theta0;           ///< p x K, p x 1 if shared; empty without drift
+  bool shared = false;              ///< whether modes differ only in noise and share theta with its updates
+  Eigen::MatrixXd theta0;           ///< p x K; p x 1 if modes share theta; empty without drift
   std::vector<Eigen::MatrixXd> W;   ///< K (1) of p x p, added to P per step
   std::vector<Eigen::MatrixXd> P0;  ///< K (1) of p x p, P at a start
 
-  /// W_k = q Q_k (x) D^-2 and P0_k = p0 Q_k (x) D^-2. D holds the scales of the regressors; Q_k is that of the measured
-  /// states. Modes that share theta use their mean Q, weighted with the weights of the modes.
+  /// W_k = q Q_k (x) D^-2 and P0_k = p0 Q_k (x) D^-2. D holds the scales of the regressors; Q_k is the process noise of
+  /// the measured states. Modes that share theta use their mean Q, weighted with the weights of the modes.
   explicit DriftModel(const Bank& bank) : modes_(bank.modes.size()) {
     if (bank.drift.empty()) return;
     leak = bank.drift.rates.leak;
@@ -51,7 +51,7 @@ struct DriftModel {
   }
 
   bool on() const { return theta0.size() > 0; }
-  /// Index of mode k's theta.
+  /// Index of mode k's theta: 0 if modes share theta.
   std::size_t owner(std::size_t k) const { return shared ? 0 : k; }
 
   void restart(DriftState& state) const {
@@ -113,8 +113,8 @@ struct DriftWorkspace {
 
 namespace drift {
 
-/// Repairs a covariance that rounding made indefinite (samples of very different sizes). The variances stay and the
-/// correlations are set to zero. So variances grow only by the additions per step, and nothing overflows.
+/// Repairs a covariance that rounding made indefinite (if samples have very different sizes). The variances stay and
+/// the correlations are set to zero. So variances grow only by the additions per step, and nothing overflows.
 inline void make_usable(Eigen::MatrixXd& P) {
   if (P.diagonal().minCoeff() >= 0.0) return;
   for (Eigen::Index j = 0; j < P.cols(); ++j)

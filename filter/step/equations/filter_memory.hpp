@@ -26,7 +26,8 @@ void save(const FilterState<N>& state, FilterMemory& memory) {
   memory.drift = state.drift;
 }
 
-/// Number of uncertain rows of these estimates. Later rows have the same mean in all estimates and no covariance.
+/// Number of uncertain rows of these estimates. Rows after these have the same mean in all estimates, and zero
+/// covariance.
 template <int N>
 Eigen::Index uncertain_rows_of(const std::vector<Gaussian<N>>& modes) {
   Eigen::Index rows = modes.front().mean.size();
@@ -39,7 +40,7 @@ Eigen::Index uncertain_rows_of(const std::vector<Gaussian<N>>& modes) {
   return rows;
 }
 
-/// `state` must have the sizes of the memory. `exact`: as in FilterModel.
+/// `state` must have the sizes of the memory. `exact`: see FilterModel.
 template <int N>
 void restore(const FilterMemory& memory, bool exact, FilterState<N>& state) {
   const Eigen::Index n = memory.means.rows();

@@ -69,7 +69,7 @@ void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const
   predict_modes(model, mix(model, state, u, step), noise_of_step(model, state, u, step), u, step);
 }
 
-/// For a missing measurement: makes the prediction the estimate.
+/// For a missing measurement: the prediction becomes the estimate.
 template <int N, int NY>
 void skip_measurement(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, FilterState<N>& state) {
   keep_prediction(step, state);
@@ -78,7 +78,7 @@ void skip_measurement(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, 
   if (model.drift.on()) drift::keep_prediction(model, step, state);
 }
 
-/// Updates with the measurement of `sensor`. `sensor` is the model, or its part for the available signals.
+/// Updates with a measurement. `sensor` is the model, or its part for the available signals.
 template <int N, int NY, class Sensor, class Y>
 double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y, FilterStep<N, NY>& step,
                FilterState<N>& state) {
@@ -97,8 +97,8 @@ double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y
 }
 
 /// Updates with the measurement after `predict`. Returns the log predictive density of the available signals. The
-/// density uses only information from before the measurement. Without signals the prediction becomes the estimate and
-/// the result is NaN.
+/// density uses only information from before the measurement. If all signals are missing, the prediction becomes the
+/// estimate, and the result is NaN.
 template <int N, int NY, class Y>
 double update(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, FilterState<N>& state) {
   step.partial.missing = missing_entries(y);

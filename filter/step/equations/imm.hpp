@@ -34,12 +34,12 @@ struct FilterState {
   std::vector<Gaussian<N>> modes;    ///< K
   Eigen::VectorXd mode_probability;  ///< K, mu
   double noise_scale = 1.0;          ///< multiplies every mode's Q in the next prediction
-  double noise_samples = 0.0;        ///< number of samples in the scale (noise_scale.hpp)
+  double noise_samples = 0.0;        ///< discounted number of samples that determine the scale (noise_scale.hpp)
   DriftState drift = {};             ///< estimates of drifting coefficients (drift.hpp); empty otherwise
 };
 
-/// Column j holds mu_{i|j}, the contribution of each mode i to the start of mode j. Unlike a TransitionMatrix, the
-/// columns sum to one.
+/// Column j holds mu_{i|j}, the weight of each mode i in the start of mode j. Unlike in a TransitionMatrix, the columns
+/// sum to one.
 struct MixingWeights {
   Eigen::MatrixXd matrix;  ///< K x K
 };
@@ -55,7 +55,7 @@ struct FilterStep {
   Eigen::VectorXd log_likelihood;          ///< K
   PartialSensor<N, NY> partial;            ///< sensor of the last measurement; `missing` is 0 if it was complete
   Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
-  double noise_factor = 1.0;               ///< NoiseFactor of the last prediction
+  double noise_factor = 1.0;               ///< value of the NoiseFactor in the last prediction
   Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
 
   DriftWorkspace<N, NY> drift;  ///< workspace for modes that drift; empty for other modes
@@ -84,7 +84,7 @@ void combine_means(const FilterState<N>& state, Eigen::Matrix<double, N, 1>& mea
 }
 
 /// The scale of every mode's Q in the step from `state` under the acting inputs `u`: noise scale times noise factor.
-/// The factor is evaluated at the combined estimate, which is exact for exactly measured states.
+/// The factor is evaluated at the combined estimate. This is exact if states are measured exactly.
 template <int N, int NY, class U>
 double noise_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
                      FilterStep<N, NY>& step) {
@@ -94,8 +94,8 @@ double noise_of_step(const FilterModel<N, NY>& model, const FilterState<N>& stat
   return state.noise_scale * step.noise_factor;
 }
 
-/// T of the step from `state` under the acting inputs `u`. A logit is evaluated at the combined estimate, which is
-/// exact for exactly measured states.
+/// T of the step from `state` under the acting inputs `u`. A logit is evaluated at the combined estimate. This is exact
+/// if states are measured exactly.
 template <int N, int NY, class U>
 const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
                                           FilterStep<N, NY>& step) {
@@ -104,8 +104,8 @@ const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const
   return transition_at(model.transition.matrix(), model.transition_logit, step.difference, u, step.transition);
 }
 
-/// Step 1: c_j = sum_i T_ij mu_i (11.6.6-8) and mu_{i|j} = T_ij mu_i / c_j (11.6.6-7). An impossible mode keeps its own
-/// state. The rows of T sum to one.
+/// Step 1: c_j = sum_i T_ij mu_i (11.6.6-8) and mu_{i|j} = T_ij mu_i / c_j (11.6.6-7). An impossible mode starts from
+/// its own state.
 inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, Eigen::VectorXd& c,
                            MixingWeights& weights) {
   for (Eigen::Index j = 0; j < mu.size(); ++j) {
@@ -119,7 +119,7 @@ inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, 
   }
 }
 
-/// Number of rows that are uncertain in at least one of `parts` (Gaussian::uncertain).
+/// Number of rows that are uncertain in any of `parts` (Gaussian::uncertain).
 template <int N>
 Eigen::Index uncertain_rows(std::span<const Gaussian<N>> parts) {
   Eigen::Index most = 0;
@@ -135,10 +135,10 @@ bool has_one_mean(std::span<const Gaussian<N>> parts, Eigen::Index row) {
 
 /// Steps 2 and 5: mean and covariance of the mixture sum_i weights(i) N(parts[i]) (moment matching). With weights
 /// mu_{i|j} the result is the start of mode j (11.6.6-9, -10). With mu it is the combined estimate (11.6.6-17, -18).
-/// Differences of means are relative to the final mean. The sum of the weights may differ from one: [S25, eq. 12-13] is
-/// the same sum with other weights. The outer loops run over sums and the inner loops over parts, so that sums stay in
-/// registers. `exact`: as in FilterModel. A row with the same mean in all parts then keeps this mean without rounding.
-/// Rounding would look like a difference that other rows share.
+/// Differences of means are relative to the final mean. The sum of the weights may differ from one, because the filter
+/// of [S25, eq. 12-13] uses other weights. The inner loops run over parts, so that sums stay in registers. `exact`: see
+/// FilterModel. With it, a row with the same mean in all parts keeps this mean without rounding. Rounding errors would
+/// look like differences between the parts.
 template <int N, class Weights>
 void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights, Gaussian<N>& merged,
            bool exact = false) {
@@ -164,7 +164,7 @@ void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weigh
     }
 }
 
-/// Step 2: every mode j starts from x0_j = sum_i mu_{i|j} x_i (11.6.6-9) with the covariance of that mixture
+/// Step 2: every mode j starts from x0_j = sum_i mu_{i|j} x_i (11.6.6-9), with the covariance of this mixture
 /// (11.6.6-10).
 template <int N>
 void mix(const FilterState<N>& state, const MixingWeights& weights, bool exact, std::vector<Gaussian<N>>& mixed) {
@@ -172,7 +172,7 @@ void mix(const FilterState<N>& state, const MixingWeights& weights, bool exact, 
     merge(state.modes, weights.matrix.col(static_cast<Eigen::Index>(j)), mixed[j], exact);
 }
 
-/// Step 3, before the measurement: every mode's own prediction, and S_j.
+/// Step 3, before the measurement: computes every mode's own prediction, and S_j.
 template <int N, int NY, class U>
 void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N>>& from, double noise_scale,
                    const U& u, FilterStep<N, NY>& step) {
@@ -182,8 +182,9 @@ void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N
   }
 }
 
-/// Step 3, after the measurement: updates every mode's estimate with `y` of `sensor`. Computes its log likelihood log
-/// Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) for the available signals. Quantised signals use interval.hpp.
+/// Step 3, after the measurement: updates every mode's estimate with `y` of `sensor`. Computes the mode's log
+/// likelihood log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) for the available signals. For quantised signals, see
+/// interval.hpp.
 template <int N, int NY, class Sensor, class Y>
 void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vector<Gaussian<N>>& estimates) {
   const double excess = 0.5 * log_two_pi * static_cast<double>(step.partial.missing);
@@ -200,7 +201,7 @@ void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vec
 
 /// Step 4: mu_j = Lambda_j c_j / c (11.6.6-15), c = sum_j Lambda_j c_j (11.6.6-16). This is Bayes' rule in the log
 /// domain: posterior_j is proportional to prior_j exp(log_likelihood_j). Returns log c. The largest term is factored
-/// out first, so nothing underflows to 0/0. Requires at least one possible mode.
+/// out first; so 0/0 by underflow is impossible. Requires at least one possible mode.
 template <class Prior, class LogLikelihood>
 double bayes(const Prior& prior, const LogLikelihood& log_likelihood, Eigen::VectorXd& posterior) {
   double largest = -std::numeric_limits<double>::infinity();

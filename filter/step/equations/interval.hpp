@@ -8,18 +8,19 @@
 #include "filter/step/equations/kalman.hpp"
 #include "filter/step/truncated_normal.hpp"
 
-/// Quantised measurements: a value in multiples of q only shows that C x + v lies in [y - q/2, y + q/2]. A mode
+/// Quantised measurements. A value in multiples of q only shows that C x + v lies in [y - q/2, y + q/2]. A mode
 /// predicts the signal as N(C x, s). So the interval's probability is a difference of normal distribution functions,
-/// and the signal's posterior is a truncated normal. Its mean and variance update the state by the Kalman gain:
-///   x <- x + K (E[C x + v | interval] - C x),   P <- P + K (Var[C x + v | interval] - s) K',   K = P C' / s. For one
-///   signal these moments are exact. Several signals are processed one after another, each time approximating the
-///   posterior by a Gaussian (assumed density filtering: Maybeck 1982, "Stochastic Models, Estimation and Control",
-///   volume 2, chapter 12). A signal of quantum zero has exactly the recorded value.
+/// and the signal's posterior is a truncated normal. Mean and variance of this posterior update the state by the Kalman
+/// gain:
+///   x <- x + K (E[C x + v | interval] - C x),   P <- P + K (Var[C x + v | interval] - s) K',   K = P C' / s.
+/// For one signal these moments are exact. Several signals are processed one after another. After each of them, the
+/// posterior is approximated by a Gaussian (assumed density filtering: Maybeck 1982, "Stochastic Models, Estimation and
+/// Control", volume 2, chapter 12). A signal of quantum zero has exactly the recorded value.
 namespace modebank {
 
-/// Combines observe and correct (kalman.hpp); call after expect. `sensor` has C, diagonal R and quantum. Stores the
-/// signals' innovations given the previous signals in `decorrelated`, and the variances of these in `cholesky.D`. The
-/// rest of the factor is overwritten.
+/// Does the work of `observe` and `correct` (kalman.hpp) for quantised signals; call after `expect`. `sensor` has C,
+/// diagonal R and the quanta. Stores the signals' innovations given the previous signals in `decorrelated`, and their
+/// variances in `cholesky.D`. Other parts of the factor are overwritten.
 template <int N, int NY, class Sensor, class Y>
 void correct_intervals(const Sensor& sensor, const Y& y, KalmanStep<N, NY>& kalman, Gaussian<N>& posterior) {
   const Eigen::Index n = posterior.mean.size();
@@ -52,12 +53,12 @@ void correct_intervals(const Sensor& sensor, const Y& y, KalmanStep<N, NY>& kalm
     kalman.log_density += said.log_density;
   }
   if (!(kalman.log_density > lowest_log_density)) kalman.log_density = lowest_log_density;
-  if (!is_finite(posterior)) posterior = kalman.predicted;  // an overflowing correction is ignored
+  if (!is_finite(posterior)) posterior = kalman.predicted;  // a correction that overflows is ignored
   bound_variances(kalman.predicted, posterior);
 }
 
-/// The sums of one Kalman step for the noise scale (noise_scale.hpp), after correct_intervals. For each signal the
-/// expectation of e^2 / s given the interval replaces e^2 / s.
+/// The sums of one Kalman step for the noise scale (noise_scale.hpp). Call after correct_intervals. Each signal's e^2 /
+/// s is replaced by its expectation given the interval.
 struct IntervalSums {
   double share = 0.0, square = 0.0;
 };

@@ -18,8 +18,8 @@ template <int N>
 struct Gaussian {
   Eigen::Matrix<double, N, 1> mean;
   Eigen::Matrix<double, N, N> covariance;
-  /// Rows from this index on are known: they have zero covariance, and the same mean in every mode. The lags of an
-  /// exact sensor are known.
+  /// Rows from this index on are known: their covariance is zero, and their mean is the same in every mode. The lags of
+  /// an exact sensor are known.
   Eigen::Index uncertain;
 
   explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size), uncertain(size) {
@@ -28,11 +28,12 @@ struct Gaussian {
   }
 };
 
-/// One mode's Kalman step with its workspace, sized once. Call in this order: predict, expect, observe, correct.
+/// One mode's Kalman step with its workspace, sized once. Call in this order: `predict`, `expect`, `observe`,
+/// `correct`.
 template <int N, int NY>
 struct KalmanStep {
   Gaussian<N> predicted;                                ///< x, P before the measurement
-  Eigen::Matrix<double, N, N> process_noise;            ///< Q, in the form in which it is added to P
+  Eigen::Matrix<double, N, N> process_noise;            ///< Q in the layout in which it is added to P
   Eigen::Matrix<double, NY, 1> measured;                ///< y of an exact sensor
   Eigen::Matrix<double, NY, 1> innovation;              ///< e = y - C x
   Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e; its variance is cholesky.D
@@ -40,7 +41,7 @@ struct KalmanStep {
   small::Ldl<NY> cholesky;                              ///< factor of S; a singular S is regularised
   double log_density = 0.0;                             ///< log N(e; 0, S)
 
-  // The numbers below are for quantised measurements only (interval.hpp).
+  // Only for quantised measurements (interval.hpp):
   Eigen::Matrix<double, NY, 1> signal_log_density;  ///< log density of each signal given the previous signals
   Eigen::Matrix<double, NY, 1> second_moment;       ///< E[e^2 / s | interval] of each signal given the previous signals
   Eigen::Matrix<double, N, 1> column;               ///< workspace
@@ -63,22 +64,22 @@ struct KalmanStep {
         NY_(n, n_y),
         phi_(regressors) {}
 
-  /// x = x + A x + B u + c, P = F P F' + noise_scale Q. Terms g are added to x, and F includes their derivative at the
-  /// mean (extended Kalman filter, exact for P = 0).
+  /// x = x + A x + B u + c, P = F P F' + noise_scale Q. If there are terms g, g is added to x, and F includes the
+  /// derivative of g at the mean. This is an extended Kalman filter, which is exact for P = 0.
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
                const U& u, double noise_scale = 1.0);
-  /// Predicts the measurement: S and its factor. Here and in the functions below, `sensor` has C and R. It is the
+  /// Predicts the measurement: S and its factor. Here and in the functions below, `sensor` has C and R. `sensor` is the
   /// model, or its part for the available signals.
   template <class Sensor>
   void expect(const Sensor& sensor);
-  /// Innovation e and its log density.
+  /// Computes the innovation e and its log density.
   template <class Sensor, class Y>
   void observe(const Sensor& sensor, const Y& y);
   /// State after the measurement, covariance in Joseph's form.
   template <class Sensor>
   void correct(const Sensor& sensor, Gaussian<N>& posterior);
-  /// log N(residual; 0, S) of any residual. Decorrelates `residual` in place.
+  /// log N(residual; 0, S) for any residual. `residual` is decorrelated in place.
   template <class Vector>
   double log_normal(Vector& residual) const;
 
@@ -91,18 +92,18 @@ struct KalmanStep {
   TermValues terms_;
   Eigen::Matrix<double, N, N> bent_F_;
 
-  /// Copies the rows that an exact sensor measures, without the rounding of a correction.
+  /// Copies the rows that an exact sensor measures. A correction would add rounding errors.
   template <class Sensor>
   void take_exactly(const Sensor& sensor, Gaussian<N>& posterior) const;
-  /// Adds terms to the predicted mean, and their derivatives to F.
+  /// Adds the terms to the predicted mean, and their derivatives to F.
   template <class U>
   const Eigen::Matrix<double, N, N>& bend(const FilterModel<N, NY>& model,
                                           const typename FilterModel<N, NY>::Mode& mode,
                                           const Eigen::Matrix<double, N, 1>& x, const U& u);
 };
 
-/// Repairs a prediction. Diverging values are scaled down. Rounding can make a covariance indefinite if variances
-/// differ by more than double precision. The variances then stay, and the correlations are set to zero.
+/// Repairs a prediction. Diverging values are scaled down. If variances differ by more than double precision, rounding
+/// can make a covariance indefinite. The variances then stay, and the correlations are set to zero.
 template <int N>
 void make_usable(Gaussian<N>& g) {
   double largest = g.covariance(0, 0), least = largest, mean = std::abs(g.mean(0));
@@ -202,7 +203,7 @@ double KalmanStep<N, NY>::log_normal(Vector& residual) const {
   cholesky.decorrelate(residual);
   const double value = -0.5 * (static_cast<double>(residual.size()) * log_two_pi + cholesky.log_determinant() +
                                cholesky.squared_distance(residual));
-  return value > lowest_log_density ? value : lowest_log_density;  // NaN from overflow also gives the lowest value
+  return value > lowest_log_density ? value : lowest_log_density;  // NaN from an overflow also gives the lowest value
 }
 
 template <int N, int NY>
@@ -229,7 +230,7 @@ void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
   small::add_symmetric_product_seeing(posterior.covariance, NN_, closed_loop_, sensor.seen_columns);
   small::multiply(NY_, gain_, sensor.R);
   small::add_symmetric_product(posterior.covariance, NY_, gain_);
-  if (!is_finite(posterior)) posterior = predicted;  // an overflowing correction is ignored
+  if (!is_finite(posterior)) posterior = predicted;  // a correction that overflows is ignored
   bound_variances(predicted, posterior);
   if (sensor.exact) take_exactly(sensor, posterior);
 }

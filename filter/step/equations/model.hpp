@@ -36,18 +36,19 @@ struct FilterModel {
   TransitionMatrix transition;
   TransitionLogit transition_logit;
   Eigen::VectorXd initial_probability;                  ///< K
-  Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0]; with lags y[0] is all of z
+  Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0]; with lags, y[0] stands for all
+                                                        ///< samples of z
   Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
   DriftModel drift;                                     ///< drift of the modes' coefficients
   MotionTerms terms;                                    ///< nonlinear terms; empty if there are none
-  NoiseFactor noise_factor;                             ///< factor on every mode's Q; empty if it is one
+  NoiseFactor noise_factor;                             ///< factor on every mode's Q; empty without a factor
 
-  /// Rows of every F that are not shifts of older samples by one. These are the measured states if there are lags, else
-  /// all n rows.
+  /// Number of rows of F that are not shifts of older samples. With lags these are the measured states, else all n
+  /// rows.
   Eigen::Index full_rows;
-  /// Number of leading columns of C that contain all nonzero entries.
+  /// Number of leading columns of C outside which all entries are zero.
   Eigen::Index seen_columns;
-  /// Whether a measurement determines the state that lags repeat, so that covariances are zero.
+  /// Whether a measurement determines the state exactly, and the other rows are lags of it. Covariances are then zero.
   bool exact;
 
   /// Requires check_sizes(bank). Throws std::invalid_argument for FilterVariant::kf with several modes.
@@ -56,7 +57,7 @@ struct FilterModel {
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
 };
 
-/// A bank from another source may have lags whose rows are not shifts.
+/// A bank from another program may have lags whose rows are not shifts.
 template <int N, int NY>
 Eigen::Index full_rows_of(const FilterModel<N, NY>& model) {
   const Eigen::Index n = model.structure.dimension(), states = model.structure.states;
@@ -110,8 +111,8 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
 }
 
 /// Calls f.template operator()<N, NY>(), with fixed sizes if these are faster. One state and one signal run three times
-/// as fast (K = 9, GPB2: 1.5 us instead of 4.9 us). Two and three states run only 1.7 and 1.5 times as fast, and the
-/// IMM has vector kernels for those sizes. This is the only place where run-time sizes become compile-time sizes.
+/// as fast (K = 9, GPB2: 1.5 us instead of 4.9 us). With two and three states the factor is only 1.7 and 1.5, and the
+/// IMM has vector kernels for these sizes. This is the only place where run-time sizes become compile-time sizes.
 template <class F>
 auto with_sizes(Eigen::Index states, Eigen::Index measurements, F&& f) {
   if (states == 1 && measurements == 1) return f.template operator()<1, 1>();

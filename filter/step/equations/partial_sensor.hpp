@@ -16,7 +16,7 @@ void detach(Matrix& S, Eigen::Index i) {
 
 /// A sensor with missing signals. The rows of C and R for a missing signal become those of a signal that is always
 /// zero, has variance one and no correlation, and is measured as zero. Gains, NIS and the other signals' densities are
-/// then exactly those of the available signals. The log density is too small by log(2 pi) / 2 per missing signal.
+/// then exactly those of the available signals. For each missing signal, the log density is too small by log(2 pi) / 2.
 template <int N, int NY>
 struct PartialSensor {
   Eigen::Matrix<double, NY, N> C;
@@ -25,7 +25,7 @@ struct PartialSensor {
   Eigen::Matrix<double, NY, 1> quantum;
   bool quantised = false;
   static constexpr bool exact = false;
-  Eigen::Index seen_columns;  ///< columns of C in use (FilterModel)
+  Eigen::Index seen_columns;  ///< leading columns of C that contain all nonzero entries (FilterModel)
   Eigen::Index missing = 0;   ///< number of missing signals
 
   PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y), quantum(n_y), seen_columns(n) {}

@@ -15,9 +15,9 @@ namespace modebank {
 /// Upper limit of normalised squares.
 inline constexpr double largest_nis = 1e300;
 
-/// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)').
-/// Quantised signals have the variance of rounding, q^2 / 12, added. Returns the share of the differences between the
-/// modes' predictions in the trace of S.
+/// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)'). For a
+/// quantised signal the variance of rounding, q^2 / 12, is added. Returns the share of the trace of S that comes from
+/// differences between the modes' predictions.
 template <int N, int NY, class State, class Covariance>
 double combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x, Covariance&& S) {
   const Eigen::VectorXd& c = step.predicted_probability;
@@ -74,12 +74,12 @@ struct CombinedInnovation {
   small::Ldl<Eigen::Dynamic> cholesky_;
 };
 
-/// Phi(x), with a small relative error far into the lower tail.
+/// Phi(x). The relative error is small far into the lower tail.
 inline double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 /// Probability integral transform of the last measurement (Rosenblatt 1952). Component i is the predictive distribution
-/// function of y_i given y_1 .. y_(i-1). These earlier signals have updated the mixture weights. NaN if y_i is missing.
-/// `weights`: workspace, K. Overwrites step.log_likelihood.
+/// function at y_i, given the earlier signals y_1 .. y_(i-1), which have updated the mixture weights. NaN if y_i is
+/// missing. `weights`: workspace, K. Overwrites step.log_likelihood.
 template <int N, int NY, class Y, class Pit>
 void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
   weights = step.predicted_probability;
@@ -96,20 +96,20 @@ void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd&
       sum += weights(j) * normal_cdf(z / std::sqrt(v));
       if (more) step.log_likelihood(j) = -0.5 * (std::log(v) + z * z / v);
     }
-    pit(i) = sum < 1.0 ? sum : 1.0;  // limits the rounding of the sum of weights
+    pit(i) = sum < 1.0 ? sum : 1.0;  // limits rounding errors of the sum of weights
     if (more) bayes(weights, step.log_likelihood, weights);
   }
 }
 
-/// A mode's innovation of a signal given the previous signals, with its variance and the signal's log density.
+/// For one mode and signal, given the previous signals: innovation, its variance, and the signal's log density.
 struct ModeSignal {
   double e = 0.0, s = 0.0, log_density = 0.0;
 };
 
-/// Transform of quantised measurements. Component i lies between the values of the predictive distribution function at
-/// the two ends of y_i's interval, given the intervals of y_1 .. y_(i-1). `pit`: mean of these values. `width`: their
-/// difference, 0 for a continuous or missing signal. `signal`(i, j): ModeSignal of mode j. `weights`: the modes'
-/// probabilities before the measurement. Overwrites `weights` and `log_likelihood`.
+/// Transform of quantised measurements. The predictive distribution function of y_i is computed at both ends of y_i's
+/// interval, given the intervals of y_1 .. y_(i-1). Component i lies between the two values. `pit`: mean of the two
+/// values. `width`: their difference, 0 for a continuous or missing signal. `signal`(i, j): ModeSignal of mode j.
+/// `weights`: the modes' probabilities before the measurement. Overwrites `weights` and `log_likelihood`.
 template <class Quantum, class Y, class Signal, class Pit, class Width>
 void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen::VectorXd& weights,
                         Eigen::VectorXd& log_likelihood, Pit&& pit, Width&& width) {
@@ -136,7 +136,7 @@ void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen
   }
 }
 
-/// Version for the general steps; call after the update with y.
+/// For a FilterStep by the equations. Call after the update with y.
 template <int N, int NY, class Y, class Pit, class Width>
 void interval_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights,
                         Pit&& pit, Width&& width) {

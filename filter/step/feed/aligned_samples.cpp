@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Times that differ by less are equal up to rounding, like in io/import.
+/// Times count as equal if they differ by less than this, as in io/import.
 double tolerance_s(double time_s, double spacing_s) {
   constexpr double share_of_spacing = 1e-6, units_in_last_place = 4.0;
   return std::max(share_of_spacing * spacing_s,
@@ -41,7 +41,7 @@ void AlignedSamples::push(const TimedSample& sample) {
   samples_.push_back({at_s, sample});
 }
 
-/// Estimates the sample period as the median of the last steps, because a log may begin with a pause.
+/// Estimates the sample period. It is the median of the last steps, because a log may begin with a pause.
 void AlignedSamples::learn_rate(double since_s) {
   constexpr std::size_t steps = 5;
   constexpr double slow = 0.75;
@@ -82,7 +82,7 @@ const TimedSample* AlignedSamples::next() {
     ready_.input = samples_[next_].sample.input;
   else
     take_input_of(time_s - alignment_.lag_s);
-  // Counts the first sample, too. It passes before it is known whether samples come faster than the rate.
+  // Also counts the first sample, which was returned before the sample period was known.
   steps_ += 1.0;
   ++next_;
   return &ready_;
@@ -110,7 +110,7 @@ Stream AlignedSamples::between(double from_s, double to_s, VectorXd TimedSample:
   return stream;
 }
 
-/// Replaces the picked values by means over the step that ends at `time_s`.
+/// Replaces the picked values by their means over the step that ends at `time_s`.
 void AlignedSamples::average(VectorXd TimedSample::*signal, const std::vector<Eigen::Index>& rows, double time_s) {
   if (!averages_ || rows.empty()) return;
   MatrixXd values = ready_.*signal;

@@ -10,32 +10,32 @@
 
 namespace modebank {
 
-/// A sample in the form in which it is recorded or passed to a filter.
+/// A sample as recorded, or as passed to a filter.
 struct TimedSample {
   double time_s = 0.0;
   Eigen::VectorXd input;        ///< m
   Eigen::VectorXd measurement;  ///< n_y; missing signals are NaN
-  double rest_s = 0.0;          ///< added to time_s; the part of a time since 1970 that a double cannot hold
+  double rest_s = 0.0;          ///< to be added to time_s: the part of a time since 1970 that a double cannot hold
 };
 
-/// Conversion of live samples to the form from which a bank was learned.
+/// Converts live samples to the form from which a bank was learned.
 struct Alignment {
-  double rate_hz = 0.0;  ///< above 0, faster samples are reduced to this rate; with 0, samples keep their times
+  double rate_hz = 0.0;  ///< above 0: faster samples are reduced to this rate; 0: samples keep their times
   double lag_s = 0.0;    ///< the input that acts at time t is the one recorded at t - lag_s
   AveragedColumns averaged = {};
 
-  /// Age up to which samples before an estimate are stored, because later estimates need them.
+  /// Samples up to this age before an estimate are stored, because later estimates need them.
   double reach_s() const {
     const double oldest_s = lag_s + (averaged.inputs.empty() ? 0.0 : averaged.further_lag_s);
     return std::max(0.0, oldest_s) + (rate_hz > 0.0 && averaged.any() ? 1.0 / rate_hz : 0.0);
   }
 };
 
-/// Applies a lag between inputs and states, and a rate, to live samples. io/import does the same with whole runs.
-/// States are interpolated and inputs held. If samples come fast enough for averages (is_averaged_at), columns are
-/// averaged over the step that ends at the new sample. The stream that is ahead waits for the other stream. With a
-/// negative lag a state waits for its acting input, which arrives -lag_s later. Samples slower than three quarters of
-/// the rate pass unchanged.
+/// Applies to live samples a lag between inputs and states, and a rate. io/import does the same with whole runs. States
+/// are interpolated and inputs held. If samples come fast enough (is_averaged_at), columns are averaged over the step
+/// that ends at the new sample. If states are ahead of inputs, they wait, and vice versa. With a negative lag a state
+/// waits for its acting input, which arrives -lag_s later. If the sample rate is below three quarters of the requested
+/// rate, samples pass unchanged.
 class AlignedSamples {
  public:
   explicit AlignedSamples(const Alignment& alignment) : alignment_(alignment) {}
@@ -47,7 +47,7 @@ class AlignedSamples {
   const TimedSample* next();
   /// Forgets all samples.
   void restart() { *this = AlignedSamples(alignment_); }
-  /// Call before the first sample: times at the rate continue from an earlier sample.
+  /// Call before the first sample, to continue the times at the rate from an earlier sample.
   void go_on_after(double time_s) { before_s_ = time_s; }
   /// Time of the last sample added; NaN if no sample was added.
   double newest_s() const { return samples_.empty() ? not_a_number : samples_.back().sample.time_s; }
@@ -61,13 +61,13 @@ class AlignedSamples {
   Alignment alignment_;
   double origin_s_ = 0.0;
   std::deque<Kept> samples_;  ///< samples that are still needed; always includes the last one
-  std::size_t next_ = 0;      ///< index of the next output sample, if samples keep their times
+  std::size_t next_ = 0;      ///< index of the next output sample; used if samples keep their times
   std::size_t pushed_ = 0;
   bool resamples_ = false, averages_ = false;
-  double before_s_ = not_a_number;  ///< time of an earlier sample, on the user's clock
+  double before_s_ = not_a_number;  ///< time of an earlier sample, as given by the user
   double first_s_ = 0.0, spacing_s_ = 0.0;
-  std::deque<double> recent_s_;  ///< time steps; used until samples prove faster than the rate
-  double steps_ = 0.0;           ///< number of steps at the rate from first_s_ to the next output sample
+  std::deque<double> recent_s_;  ///< time steps; needed until the sample period is known
+  double steps_ = 0.0;           ///< number of steps at the rate, from first_s_ to the next output sample
   double ready_s_ = 0.0;
   TimedSample ready_;
 

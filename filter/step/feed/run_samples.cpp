@@ -20,7 +20,7 @@ void check_run(const Bank& bank, const Trajectory& run) {
   mismatch("inputs", run.input.rows(), bank.structure.inputs);
   mismatch("input samples", run.input.cols(), run.samples());
   if (run.time_s.size() > 0) mismatch("times", run.time_s.size(), run.samples());
-  // tests all entries for finiteness in one vectorised pass
+  // one vectorised pass tests whether all entries are finite
   if ((run.input.leftCols(run.transitions()).array() * 0.0).sum() == 0.0) return;
   for (Index k = 0; k < run.transitions(); ++k)
     if (!run.input.col(k).allFinite())

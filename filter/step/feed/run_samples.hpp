@@ -8,7 +8,7 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"
 
-/// A recorded run in the form for filters: sample by sample, or moment by moment for random access.
+/// A recorded run as filters need it: sample by sample, or moment by moment for random access.
 namespace modebank {
 
 /// Throws std::invalid_argument if the sizes of the bank do not fit each other or the run. Throws DataError for an
@@ -20,15 +20,15 @@ inline double sample_time_s(const Trajectory& run, Eigen::Index k) {
   return run.time_s.size() > 0 ? run.time_s(k) : not_a_number;
 }
 
-/// Samples of a run that are one model step apart. Only the first may be further from its predecessor.
+/// Samples of a run at distances of one model step. Only the first sample may be further from its predecessor.
 struct SampleStretch {
-  Eigen::Index first = 0;                      ///< sample of the run
-  Eigen::Index steps = 1;                      ///< model steps to the first sample
+  Eigen::Index first = 0;                      ///< index of the first sample in the run
+  Eigen::Index steps = 1;                      ///< number of model steps to the first sample
   Eigen::Ref<const Eigen::MatrixXd> inputs;    ///< acting inputs x samples; column k acts on the step to sample k
   Eigen::Ref<const Eigen::MatrixXd> measured;  ///< n_y x samples
 };
 
-/// The samples of a run in the form for filters.
+/// The samples of a run, prepared for a filter.
 class RunSamples {
  public:
   RunSamples(const Bank& bank, const Trajectory& run)
@@ -49,7 +49,7 @@ class RunSamples {
   }
 
   /// Visits many samples at a time. Calls start(feed) at samples where the filter (re)starts, and follow(stretch) for
-  /// all other samples.
+  /// the samples between.
   template <class Start, class Follow>
   void for_each_stretch(Start start, Follow follow) {
     Eigen::Index first = 0, count = 0, steps = 1;
@@ -80,12 +80,12 @@ class RunSamples {
 
 /// One moment of a filtered run: a sample, or a model step between two distant samples.
 struct Instant {
-  Eigen::Index sample = -1;    ///< sample; -1 between samples
+  Eigen::Index sample = -1;    ///< index of the sample; -1 between samples
   bool starts = false;         ///< whether the filter (re)starts here
   Eigen::VectorXd start = {};  ///< measurements for the start; empty at other moments
 };
 
-/// All moments of a run with the acting inputs, in the order of the filter.
+/// All moments of a run with the acting inputs, in the filter's order.
 struct RunInstants {
   std::vector<Instant> instants;
   Eigen::MatrixXd inputs;  ///< m x instants; column t acts on the step to moment t

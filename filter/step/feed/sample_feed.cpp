@@ -37,7 +37,7 @@ void SampleFeed::restore(const Memory& memory) {
   if (memory.inputs.rows() != recent_.rows() || memory.inputs.cols() != recent_.cols() ||
       memory.measurements.rows() != measurements_.rows() || memory.measurements.cols() != measurements_.cols())
     throw std::invalid_argument("the stored samples do not fit this bank");
-  constexpr Index most_samples = Index(1) << 53;  // a million years at 285 Hz
+  constexpr Index most_samples = Index(1) << 53;  // a million years of steps at 285 Hz
   if (!memory.inputs.allFinite() || memory.samples < 0 || memory.samples > most_samples || memory.whole < 0 ||
       memory.whole > memory.samples)
     throw std::invalid_argument("the stored samples have invalid counts");

@@ -9,22 +9,22 @@
 
 namespace modebank {
 
-/// After more steps than this without a sample, a filter restarts from the next complete measurement. Its information
-/// is then outdated, and predictions with an input held for that long are worthless.
+/// If more steps than this pass without a sample, a filter restarts at the next complete measurement. Its state is
+/// outdated by then, and predictions with an input held for so long are worthless.
 inline constexpr Eigen::Index longest_gap_steps = 50;
 
-/// Converts samples in time order to the inputs of a filter step: the acting inputs of the transition to each sample
-/// (with lags), the number of model steps, and the start. Allocates only at construction.
+/// Converts samples in time order to the inputs of a filter step. These are the acting inputs of the transition to each
+/// sample (with lags), the number of model steps, and whether the filter starts. Allocates only at construction.
 class SampleFeed {
  public:
   explicit SampleFeed(const Bank& bank);
 
-  /// Adds the next sample: time (NaN: one step after the last), input (m) and measurement (n_y).
+  /// Adds the next sample: time (NaN: one step after the last sample), input (m) and measurement (n_y).
   void push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
             const Eigen::Ref<const Eigen::VectorXd>& measurement);
-  /// Like `push`, for m inputs and n_y measurements without checks of the sizes.
+  /// Like `push`, but without checks of the sizes (m inputs, n_y measurements).
   void push(double time_s, const double* input, const double* measurement);
-  /// Model steps between two times, at most longest_gap_steps + 1; 1 without times.
+  /// Number of model steps between two times, at most longest_gap_steps + 1. Without times it is 1.
   static Eigen::Index steps_between(double from_s, double to_s, double dt_s) {
     const bool near = !(dt_s > 0.0 && to_s - from_s >= 1.25 * dt_s);  // the usual case is decided without a division
     return near ? 1 : whole_steps((to_s - from_s) / dt_s);
@@ -32,17 +32,17 @@ class SampleFeed {
   /// Forgets all samples.
   void clear() { samples_ = whole_ = 0; }
 
-  /// Model steps from the previous sample to this one; above longest_gap_steps the filter restarts.
+  /// Number of model steps from the previous sample to this one. Above longest_gap_steps, the filter restarts.
   Eigen::Index steps() const { return steps_; }
-  /// Whether the filter can start at this sample. Requires that it and all lagged samples are complete, and that all
-  /// lagged inputs are known.
+  /// Whether the filter can start at this sample. The sample and all lagged samples must be complete, and all lagged
+  /// inputs known.
   bool can_start() const { return samples_ > first_transition_ && whole_ >= measurements_.cols(); }
-  /// Data for a start: the measurement; with lags, the measurements of all of z.
+  /// Data for a start: the measurement. With lags, the measurements of all samples in z.
   auto start() const { return measurements_.reshaped(); }
   /// The acting inputs v of the transition to this sample.
   Eigen::Map<const Eigen::VectorXd> inputs() const { return {recent_.data() + inputs_ * input_delay_, acting_inputs_}; }
 
-  /// State between samples, for checkpoints.
+  /// The state between two samples, for a snapshot.
   struct Memory {
     Eigen::MatrixXd inputs;        ///< m x depth, the newest column first
     Eigen::MatrixXd measurements;  ///< n_y x state lags, the newest column first
@@ -56,7 +56,7 @@ class SampleFeed {
  private:
   Eigen::Index inputs_, input_delay_, acting_inputs_, first_transition_;
   double dt_s_;
-  Eigen::MatrixXd recent_;        ///< inputs u[k], u[k-1], ...; the acting inputs come last
+  Eigen::MatrixXd recent_;        ///< inputs u[k], u[k-1], ...; the last columns are the acting inputs
   Eigen::MatrixXd measurements_;  ///< newest first
   Eigen::Index samples_ = 0, whole_ = 0, steps_ = 1;
   double time_s_ = 0.0;
@@ -70,14 +70,15 @@ class SampleFeed {
   }
 };
 
-// Inlined, with plain loops. Function calls or Eigen expressions of dynamic size would take longer than a filter step.
+// Inlined, with plain loops. Function calls, or Eigen expressions of dynamic size, would take longer than a filter
+// step.
 [[gnu::always_inline]] inline void SampleFeed::push(double time_s, const double* input, const double* measurement) {
   steps_ = samples_ == 0 ? 1 : steps_between(time_s_, time_s, dt_s_);
   if (steps_ > longest_gap_steps) clear();
   shift(recent_);
   double* newest = recent_.data();
   for (Eigen::Index i = 0; i < inputs_; ++i)
-    if (std::isfinite(input[i])) newest[i] = input[i];  // otherwise the last known value still acts
+    if (std::isfinite(input[i])) newest[i] = input[i];  // if the input is missing, its last known value acts
   shift(measurements_);
   newest = measurements_.data();
   bool whole = true;

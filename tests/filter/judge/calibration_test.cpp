@@ -1,4 +1,4 @@
-// Verdicts on filters whose truth is known, and the intervals behind these verdicts.
+// Verdicts on filters for simulated data, and the intervals behind these verdicts.
 #include "filter/judge/decide/calibration.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using Eigen::Index;
 using test::example_bank;
 using test::simulate_truth;
 
-/// Number of simulated runs (of `seeds`) with each verdict, for a filter whose Q and R are wrong by a factor.
+/// Simulates `seeds` runs, and counts the runs with each verdict. The filter's Q and R are wrong by a factor.
 std::map<Calibration, int> verdicts(const Bank& truth, double of_Q, double of_R, Index samples, int seeds,
                                     FilterNoise noise = FilterNoise::gaussian) {
   Bank filter = truth;
@@ -43,7 +43,7 @@ TEST(Calibration, VerdictsAreRightSeedBySeed) {
     EXPECT_GE(verdicts(bank, 1, 1, 1500, seeds)[Calibration::calibrated], nearly_all) << r;
     std::map<Calibration, int> few = verdicts(bank, 1, 1, 30, seeds);
     EXPECT_GE(few[Calibration::undecided] + few[Calibration::calibrated], nearly_all) << r;
-    if (r < 1e-3) {  // if R is ten times Q, Q hardly shows
+    if (r < 1e-3) {  // if R is ten times Q, a wrong Q has little effect
       EXPECT_GE(verdicts(bank, 0.25, 1, 500, seeds)[Calibration::overconfident], nearly_all) << r;
       EXPECT_GE(verdicts(bank, 4, 1, 500, seeds)[Calibration::underconfident], nearly_all) << r;
     }
@@ -52,20 +52,20 @@ TEST(Calibration, VerdictsAreRightSeedBySeed) {
       EXPECT_GE(verdicts(bank, 1, 4, 500, seeds)[Calibration::underconfident], nearly_all) << r;
     }
   }
-  // Without measurement noise, thirty samples are enough to detect a factor of four.
+  // Without measurement noise, thirty samples are enough to detect a wrong variance by a factor of four.
   const Bank exact = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
   EXPECT_GE(verdicts(exact, 0.25, 1, 30, seeds)[Calibration::overconfident], nearly_all);
   EXPECT_GE(verdicts(exact, 4, 1, 30, seeds)[Calibration::underconfident], nearly_all);
 }
 
-/// An adaptive noise scale has its own error. For a correct model the mean NIS then lies above n_y, significantly so
-/// with many samples.
+/// An adaptive noise scale has an error of its own. So the mean NIS of a correct model lies above n_y, significantly if
+/// there are many samples.
 TEST(Calibration, AdaptiveNoiseIsJudgedByTailsAlone) {
   const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
-  for (const double factor : {1.0, 4.0})  // the adaptive scale compensates for the factor on Q
+  for (const double factor : {1.0, 4.0})  // the adaptive scale removes the error of Q
     EXPECT_EQ(verdicts(bank, factor, 1, 10000, 2, FilterNoise::adaptive)[Calibration::calibrated], 2) << factor;
-  const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // the adaptive scale does not compensate for
-                                                                           // a factor on measurement noise
+  const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // the adaptive scale does not remove an
+                                                                           // error of the measurement noise
   EXPECT_EQ(verdicts(noisy, 1, 4, 1500, 10, FilterNoise::adaptive)[Calibration::underconfident], 10);
 }
 
@@ -76,7 +76,8 @@ TEST(Calibration, AFewPercentOfVarianceAreNoVerdict) {
     EXPECT_EQ(verdicts(bank, factor, 1, 20000, 1)[Calibration::calibrated], 1) << factor;
 }
 
-/// Innovations of the right size with autocorrelation. Hits then come in groups, and a group counts as few samples.
+/// Innovations of the right size, but with autocorrelation. Hits then come in groups, and a group counts as few
+/// samples.
 TEST(Calibration, GroupsOfHitsAreFewSamples) {
   Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-12), 0);
   bank.modes[0].model.A(0, 0) = -1.0;
@@ -94,7 +95,8 @@ TEST(Calibration, GroupsOfHitsAreFewSamples) {
   EXPECT_LE(wrong, 4);
 }
 
-/// Autocorrelated standard normal scores: either the scores themselves (correlation `rho`) or their sizes alone.
+/// Standard normal scores with autocorrelation: either of the scores themselves (correlation `rho`), or of their sizes
+/// only.
 std::vector<double> related_scores(int samples, double rho, bool sizes_alone, std::mt19937_64& generator) {
   boost::random::normal_distribution<double> normal;
   std::vector<double> scores;
@@ -107,7 +109,7 @@ std::vector<double> related_scores(int samples, double rho, bool sizes_alone, st
   return scores;
 }
 
-/// Counts of a filter that states standard deviation 1 although the true one is `scale`.
+/// Counts of a filter that claims standard deviation 1, although `scale` is true.
 BandCounts counts_of(const std::vector<double>& scores, double scale, bool with_nis) {
   BandCounts counts;
   for (HitsByRun* hits : {&counts.far, &counts.close}) hits->emplace_back();
@@ -130,7 +132,7 @@ BandCounts counts_of(const std::vector<double>& scores, double scale, bool with_
 
 Calibration calibration_on(const BandCounts& counts) { return calibration_of(counts, time_by_sizes(counts.sizes)); }
 
-/// Percentages over 100 series.
+/// Percentages of 100 series.
 std::map<Calibration, int> verdicts_of_related(int samples, double rho, bool sizes_alone, double scale, bool with_nis) {
   std::mt19937_64 generator(17);
   std::map<Calibration, int> counts;
@@ -139,8 +141,9 @@ std::map<Calibration, int> verdicts_of_related(int samples, double rho, bool siz
   return counts;
 }
 
-/// With the autocorrelation time of the hits alone, up to half of these verdicts were wrong, because a few groups of
-/// hits do not show it. Errors are most frequent if 120 samples are worth two or three independent ones.
+/// The autocorrelation time of the hits alone is unreliable, because there are only a few groups of hits. With it, up
+/// to half of these verdicts were wrong. Errors are most frequent if 120 samples are worth two or three independent
+/// ones.
 TEST(Calibration, ShortRelatedSamplesOfATrueFilterAreSeldomJudgedWrong) {
   for (const int samples : {120, 500, 1000})
     for (const double rho : {0.0, 0.5, 0.9, 0.97})
@@ -154,7 +157,8 @@ TEST(Calibration, ShortRelatedSamplesOfATrueFilterAreSeldomJudgedWrong) {
   EXPECT_GE(verdicts_of_related(3000, 0.9, false, 1.0, false)[Calibration::calibrated], 90);
 }
 
-/// Variances that are wrong by a factor of 1.7 or more must be found; otherwise the verdict must not be "calibrated".
+/// If variances are wrong by a factor of 1.7 or more, the verdict must state this. Otherwise the verdict must not be
+/// "calibrated".
 TEST(Calibration, AWrongFilterIsNotCalledCalibrated) {
   EXPECT_GE(verdicts_of_related(1000, 0.5, false, 1.3, false)[Calibration::overconfident], 95);
   EXPECT_GE(verdicts_of_related(3000, 0.5, false, 0.75, false)[Calibration::underconfident], 95);
@@ -165,8 +169,8 @@ TEST(Calibration, AWrongFilterIsNotCalledCalibrated) {
             << samples << " samples, " << rho << ", scale " << scale;
 }
 
-/// A mixture of small and large errors: too many samples are near the middle, and over 6.3 % lie outside the 95 % band.
-/// The second fact harms users, so it decides.
+/// A mixture of small and large errors. Too many samples are near the middle, and over 6.3 % lie outside the 95 % band.
+/// The second fact harms users, so it decides the verdict.
 TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   boost::random::normal_distribution<double> normal;
   std::mt19937_64 generator(5);
@@ -178,7 +182,7 @@ TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   EXPECT_EQ(calibration_on(counts), Calibration::overconfident);
 }
 
-/// If the model is correct, the central bands contain their nominal shares.
+/// If the model is correct, each central band contains its nominal share of the samples.
 TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
   const ScoreBands bands;
   for (const double side : {-1.0, 1.0}) {
@@ -186,9 +190,10 @@ TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
     EXPECT_TRUE(bands.of(side * 0.674489750197).outside[0]);
     EXPECT_FALSE(bands.of(side * 1.959963984540).outside[2]);
     EXPECT_TRUE(bands.of(side * 1.959963984541).outside[2]);
-    EXPECT_TRUE(bands.of(side * 0.031337).close);  // the square root of chi-square(1)'s 2.5 % quantile: 0.0313380
+    EXPECT_TRUE(bands.of(side * 0.031337).close);  // 2.5 % quantile: the square root of that of chi-square(1),
+                                                   // 0.0313380
     EXPECT_FALSE(bands.of(side * 0.031339).close);
-    EXPECT_FALSE(bands.of(side * 2.241402).far);  // 97.5 %: 2.2414027
+    EXPECT_FALSE(bands.of(side * 2.241402).far);  // 97.5 % quantile: 2.2414027
     EXPECT_TRUE(bands.of(side * 2.241403).far);
   }
   std::mt19937_64 generator(6);
@@ -197,7 +202,7 @@ TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
     EXPECT_NEAR(mean_of(as_numbers(counts.outside[b])), 1.0 - coverage_levels[b], 4e-3) << b;
 }
 
-/// For an autoregression the largest autocorrelation is the coefficient, at lag one.
+/// The largest autocorrelation of an autoregression is its coefficient, at lag one.
 TEST(Calibration, TheLargestAutocorrelationOfAnAutoregressionIsItsCoefficient) {
   for (const double rho : {-0.6, 0.3, 0.8}) {
     std::mt19937_64 generator(8);
@@ -216,7 +221,7 @@ TEST(Calibration, TimeOfATailIsItsHits) {
     std::vector<double> hits;
     for (const double score : scores) hits.push_back(score > normal_score(0.975) ? 1.0 : 0.0);
     const double time = autocorrelation_time({hits});
-    // the estimated time itself varies by this much
+    // relative standard error of the estimated time
     EXPECT_NEAR(autocorrelation_time_of_tail({scores}), time, 0.12 * time) << rho;
   }
   EXPECT_TRUE(std::isnan(autocorrelation_time_of_tail({{}})));
@@ -226,7 +231,7 @@ TEST(Calibration, TimeOfATailIsItsHits) {
 }
 
 TEST(Calibration, IntervalsAreTheBooks) {
-  // Clopper & Pearson (1934), table for 95 %: 3 of 10; 0 of 10; 10 of 10.
+  // Clopper & Pearson (1934), 95 % intervals in their table: 3 of 10; 0 of 10; 10 of 10.
   EXPECT_NEAR(binomial_interval(3, 10).lower, 0.0667, 5e-5);
   EXPECT_NEAR(binomial_interval(3, 10).upper, 0.6525, 5e-5);
   EXPECT_EQ(binomial_interval(0, 10).lower, 0.0);

@@ -42,8 +42,8 @@ TEST(Combination, ALoneFilterAndEqualOnesAreThemselves) {
   }
 }
 
-/// Two filters, with the formula written out. The log odds of sample k's forecast are a sum over samples j up to k - h.
-/// Each term is 0.99^(k - h - j) times the difference of the log densities of j, divided by h.
+/// Two filters, with the formula written out. The log odds of the forecast for sample k are a sum over samples j up to
+/// k - h. Each term is 0.99^(k - h - j) times the difference of the log densities of sample j, divided by h.
 TEST(Combination, AForecastHasTheWeightsOfItsOrigin) {
   const Index N = 60;
   const HorizonEvaluation a = forecasts(N, {1, 5}, 2, 1.0), b = forecasts(N, {1, 5}, 3, 1.3);
@@ -92,7 +92,7 @@ TEST(Combination, LosesLittleAgainstTheBestOfARun) {
   ForecastTables tables({"bank", "drifting"}, runs);
   tables.add(0, {bad, good});
   const std::vector<HorizonRow> rows = tables.horizons();
-  ASSERT_EQ(rows.size(), 6);  // rows: three filters, for the run and for all runs
+  ASSERT_EQ(rows.size(), 6);  // rows: three filters, each for the run and for all runs
   const HorizonRow &best = rows[3], &combined = rows[5];
   EXPECT_EQ(best.filter, "drifting");
   EXPECT_EQ(combined.filter, "combined");
@@ -120,7 +120,7 @@ TEST(Combination, HeldOutRunsStartWithStackedWeights) {
   tables.add(0, {bad, good});
   tables.start_as_trained();
   tables.add(1, {bad, good});
-  const double start = tables.combination()[1].start;  // weight of the competitor drifting
+  const double start = tables.combination()[1].start;  // weight of the competitor `drifting`
   const std::vector<double> stacked =
       stacked_weights({(Eigen::MatrixXd(2, N) << bad.log_density.row(0), good.log_density.row(0)).finished()});
   EXPECT_NEAR(start, stacked[1], combined_digits);
@@ -132,8 +132,8 @@ TEST(Combination, HeldOutRunsStartWithStackedWeights) {
   EXPECT_NEAR(rows.back().log_score, run.predictions.log_density.row(0).tail(N - 1).mean(), combined_digits);
 }
 
-/// A run that is too short to separate the filters. Its loss against the filter that was best in training must be
-/// almost nothing.
+/// A run that is too short to compare the filters. Its score must be almost that of the filter that was best in
+/// training.
 TEST(Combination, ShortRunsKeepWhatTrainingFound) {
   const HorizonEvaluation good = forecasts(30, {10}, 6, 1.0), bad = forecasts(30, {10}, 7, 3.0);
   const std::vector<double> start =
@@ -145,7 +145,7 @@ TEST(Combination, ShortRunsKeepWhatTrainingFound) {
 TEST(Combination, LeftOutRowsChooseWeightsAndScoreAllTogether) {
   const HorizonEvaluation a = forecasts(60, {1, 5}, 10, 1.0), b = forecasts(60, {1, 5}, 11, 2.0);
   const std::vector<LeftOutRow> rows = left_out_rows({"bank", "baseline"}, {{a, b}, {b, a}});
-  ASSERT_EQ(rows.size(), 6);  // rows: three filters, two horizons
+  ASSERT_EQ(rows.size(), 6);  // rows: three filters, each with two horizons
   EXPECT_EQ(rows[5].filter, "combined");
   EXPECT_EQ(rows[5].horizon, 5);
   EXPECT_EQ(rows[0].samples, 2 * 59);
@@ -161,7 +161,7 @@ TEST(Combination, LeftOutRowsChooseWeightsAndScoreAllTogether) {
   EXPECT_TRUE(start_weights(rows, {1}, {"bank", "nonlinear"}).empty());
 }
 
-/// Two normal distributions: moments in closed form, and a band with 2.5 % of the mixture beyond each edge.
+/// Two normal distributions: moments in closed form. At each edge of the band, 2.5 % of the mixture lie outside.
 TEST(Combination, FreeRunsAreMixed) {
   FreeRun a, b;
   for (FreeRun* one : {&a, &b}) {

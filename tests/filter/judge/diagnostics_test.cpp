@@ -1,4 +1,4 @@
-// Diagnostics on simulated truth: a correct filter passes, a wrong filter fails.
+// Diagnostics on simulated data: a correct filter passes, and a wrong filter fails.
 #include "filter/judge/decide/diagnostics.hpp"
 
 #include <gmock/gmock.h>
@@ -120,13 +120,13 @@ TEST(Diagnostics, NoNeesWhereTheStateIsTheMeasurement) {
   EXPECT_THAT(row.flags, testing::HasSubstr("no NEES"));
 }
 
-/// One of two gyros is noise-free, so only the other gyro is judged.
+/// One of two gyros has no noise, so only the other gyro is judged.
 TEST(Diagnostics, NeesIsAboutTheStatesThatAreNotTheMeasurement) {
   Bank bank = test::single_mode(example_bank(2, 1, 1, 1e-4), 0);
   const std::vector<Trajectory> runs = truth_runs(bank, 2, 1500);
   bank.R(1, 1) = 1e-13;
   const DiagnosticsRow row = diagnose_runs(bank, runs).front();
-  EXPECT_NEAR(row.nees_mean, 1.0, 0.35);  // one degree of freedom; the filter overrates the other gyro
+  EXPECT_NEAR(row.nees_mean, 1.0, 0.35);  // one degree of freedom; the filter assumes too much noise for the other gyro
   EXPECT_LT(row.nees_upper, 1.2);
   EXPECT_THAT(row.flags, testing::HasSubstr("NEES only of the other states"));
 }
@@ -148,7 +148,7 @@ TEST(Diagnostics, ASwitchingBankIsCalibratedModeByMode) {
     samples += rows[i].samples;
     EXPECT_NEAR(rows[i].usage, 1.0 / 3.0, 0.1);
     EXPECT_NEAR(rows[i].dwell_model, 20.0, 1e-9);
-    EXPECT_GT(rows[i].dwell, 15.0);  // the best sequence ignores the shortest stays
+    EXPECT_GT(rows[i].dwell, 15.0);  // the most probable sequence lacks the shortest stays
     EXPECT_LT(rows[i].dwell, 40.0);
   }
   EXPECT_NEAR(usage, 1.0, 1e-12);
@@ -180,7 +180,7 @@ TEST(Diagnostics, FlagsWhatStandsOut) {
   apart.modes[1].model.c(0) = -1.0;
   apart.transition = TransitionMatrix::sticky(2, 0.5);
   EXPECT_THAT(flags(apart, truth_runs(apart, 1, 300)), testing::HasSubstr("spread dominates S"));
-  // A model with a wrong motion.
+  // A model of the wrong motion.
   Bank wrong = test::single_mode(bank, 0);
   wrong.modes[0].model.A *= 0.1;
   wrong.modes[0].Q *= 4.0;

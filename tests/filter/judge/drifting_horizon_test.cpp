@@ -36,7 +36,7 @@ TEST(DriftingHorizon, OneSampleAheadIsTheFilter) {
   }
 }
 
-/// Without drift the variance is that of the ARX model: v times the sum of squares of its impulse response.
+/// Without drift the model is ARX. Its variance is v times the sum of squares of the impulse response.
 TEST(DriftingHorizon, FixedCoefficientsHaveTheImpulseResponsesVariance) {
   Bank model = example_drifting(1, 1, 2);
   model.drift.rates = {0.0, 0.0, 1.0};
@@ -61,7 +61,7 @@ TEST(DriftingHorizon, FixedCoefficientsHaveTheImpulseResponsesVariance) {
   }
 }
 
-/// With fixed coefficients and several outputs, the result is the Gaussian of a bank with one mode.
+/// With fixed coefficients and several outputs, the result is the Gaussian prediction of a bank with one mode.
 TEST(DriftingHorizon, FixedCoefficientsOfSeveralOutputsAreOneKalmanFilter) {
   Bank model = example_drifting(3, 2, 2);
   model.drift.rates = {0.0, 0.0, 1.0};
@@ -74,7 +74,7 @@ TEST(DriftingHorizon, FixedCoefficientsOfSeveralOutputsAreOneKalmanFilter) {
   for (std::size_t h = 0; h < 3; ++h) EXPECT_TRUE(near(drifting.error[h], bank.error[h], ahead_digits));
 }
 
-/// If the model is correct and drifts slowly, errors have the stated variance.
+/// If the model is correct and drifts slowly, errors have the predicted variance.
 TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
   Bank model = example_drifting(2, 1, 2);
   model.drift.rates = {2e-3, 0.05, 0.98};
@@ -92,8 +92,8 @@ TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
           ++count(h);
         }
   }
-  // 40,000 values. With their autocorrelation they are worth at least a tenth of that number. Six standard errors are
-  // allowed.
+  // 40,000 values. Because of their autocorrelation they are worth less, but at least a tenth of that number. Six
+  // standard errors are allowed.
   EXPECT_NEAR(squares(0) / count(0), 1.0, 6.0 * std::sqrt(2.0 / (0.1 * count(0))));
   EXPECT_NEAR(squares(1) / count(1), 1.0, 6.0 * std::sqrt(2.0 / (0.1 * count(1))));
 }

@@ -1,4 +1,4 @@
-// The finding about modes of motion, from scores with a known answer.
+// The finding about modes of motion, from scores for which the answer is known.
 #include "filter/judge/decide/finding.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Scores of a filter over six held-out runs: white noise common to all filters plus `gain`.
+/// Scores of a filter over six held-out runs: white noise that all filters share, plus `gain`.
 Densities scores_of(const std::string& filter, double gain, double own_noise = 0.01) {
   std::mt19937_64 common(7), own(std::hash<std::string>()(filter));
   boost::random::normal_distribution<double> normal;
@@ -83,13 +83,14 @@ TEST(Finding, AGainWithinItsErrorTellsNothing) {
   for (Densities& competitor : few.competitors)
     for (VectorXd& run : competitor.of_runs) run.tail(198).setConstant(std::nan(""));
   for (Densities& competitor : few.competitors) competitor.of_runs.resize(6);
-  EXPECT_EQ(few.judged().answer, Answer::evidence);  // two samples in each of six runs are enough to compare runs
+  EXPECT_EQ(few.judged().answer, Answer::evidence);  // two samples in each of six runs are enough for a comparison by
+                                                     // runs
   for (Densities& competitor : few.competitors)
     for (std::size_t r = 1; r < 6; ++r) competitor.of_runs[r].setConstant(std::nan(""));
   EXPECT_EQ(few.judged().answer, Answer::cannot_tell);
 }
 
-/// In each of these cases the gain over noise_only and one_motion is significant.
+/// In each of these cases the gain over `noise_only` and `one_motion` is significant.
 TEST(Finding, AGainBelowWhatCountsIsNoEvidence) {
   Case small;
   small.bank_gain = 0.115;
@@ -97,7 +98,7 @@ TEST(Finding, AGainBelowWhatCountsIsNoEvidence) {
   ASSERT_TRUE(least_beaten(finding)->told());
   ASSERT_LT(finding.gain + least_beaten(finding)->margin, 0.02);
   EXPECT_EQ(finding.answer, Answer::no_evidence);
-  small.bank_gain = 0.117;  // 0.012 to 0.022 over each competitor in the six runs
+  small.bank_gain = 0.117;  // gains of 0.012 to 0.022 over each competitor in the six runs
   for (Densities& competitor : small.competitors) {
     competitor = scores_of(competitor.filter, 0.1, 0.0);
     for (std::size_t r = 0; r < 6; ++r) competitor.of_runs[r].array() += 0.002 * (static_cast<double>(r) - 2.5);
@@ -112,7 +113,7 @@ TEST(Finding, AGainBelowWhatCountsIsNoEvidence) {
   EXPECT_EQ(small.judged().answer, Answer::evidence);
 }
 
-/// The whole gain comes from one of six runs. It may be significant by the t-test, but must not be by ranks.
+/// The whole gain comes from one of six runs. The t-test may find it significant, but the rank test must not.
 TEST(Finding, AGainOfOneOddRunIsNoEvidence) {
   Case odd;
   odd.bank_gain = 0.0;
@@ -126,8 +127,8 @@ TEST(Finding, AGainOfOneOddRunIsNoEvidence) {
   EXPECT_EQ(doubt_of(finding), Doubt::within_chance);
 }
 
-/// Modes that are used for 3/4 and 1/4 of the time and left every 10th and every 2nd sample. The stay is 1 / (.75 / 10
-/// + .25 / 2) = 5.
+/// Two modes, used for 3/4 and 1/4 of the time. The first is left every 10th sample, the second every 2nd sample. The
+/// stay is 1 / (.75 / 10 + .25 / 2) = 5.
 TEST(Finding, ModesHaveToStayForFiveSamplesAndTheModelsMemory) {
   Case passing;
   for (const auto& [mode, usage, stay] : {std::tuple{0, 0.75, 10.0}, {1, 0.25, 2.0}}) {
@@ -182,13 +183,13 @@ TEST(Finding, ModesOfTheSameParametersAreNoModesOfMotion) {
   same.bank.modes[1].model = same.bank.modes[0].model;
   EXPECT_FALSE(modes_differ(same.bank));
   EXPECT_EQ(same.judged().answer, Answer::no_evidence);
-  Case vague;  // parameters that differ by at most 0.1
+  Case vague;  // parameters differ by at most 0.1
   vague.bank = Case::with_errors(vague.bank, 0.1);
   EXPECT_FALSE(modes_differ(vague.bank));
   EXPECT_TRUE(modes_differ(Case().bank));
 }
 
-// Without standard errors (a look-ahead fit, or an undetermined theta), the modes may be alike.
+// Without standard errors (after a look-ahead fit, or if theta is undetermined), the modes may be alike.
 TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   Case unknown;
   unknown.bank = Case::with_errors(unknown.bank, std::nan(""));
@@ -198,7 +199,7 @@ TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   EXPECT_EQ(unknown.judged().answer, Answer::cannot_tell);
   unknown.bank.modes[1].model = unknown.bank.modes[0].model;
   EXPECT_EQ(unknown.judged().answer, Answer::no_evidence) << "the same, whatever the errors";
-  Case some;  // one known parameter separates the modes
+  Case some;  // one parameter with a known error separates the modes
   some.bank.modes[0].standard_error(0) = std::nan("");
   EXPECT_EQ(some.judged().answer, Answer::evidence);
   Case worse = unknown;
@@ -207,7 +208,7 @@ TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   EXPECT_EQ(worse.judged().answer, Answer::no_evidence) << "a competitor has the higher score";
 }
 
-// The baseline loses 0.4 nats in each of six runs. In one run `drifting` gains 2.6 nats more, which makes the t-test
+// The baseline loses 0.4 nats in each of six runs. In one run `drifting` gains 2.6 nats more. This makes the t-test
 // insignificant.
 TEST(Finding, ADescriptionThatLosesInEveryRunIsNotAsGood) {
   Case even;
@@ -226,13 +227,13 @@ TEST(Finding, AMotionThatBendsIsNamedWhereItBeatsAllSimplerOnes) {
   EXPECT_EQ(finding.answer, Answer::no_evidence);
   EXPECT_EQ(finding.best_competitor, "nonlinear");
   EXPECT_EQ(finding.description, Description::one_nonlinear_motion);
-  bent.competitors[3] = scores_of("drifting", 0.5);  // equally good, and simpler
+  bent.competitors[3] = scores_of("drifting", 0.5);  // equally good, but simpler
   EXPECT_EQ(bent.judged().description, Description::one_drifting_motion);
   bent.bank_gain = 0.8;
   EXPECT_EQ(bent.judged().answer, Answer::evidence);
 }
 
-// With one parameter and two modes the limit for the difference over its standard error is the normal quantile 1.96.
+// With one parameter and two modes, the limit of (difference / standard error) is the normal quantile 1.96.
 TEST(Finding, TheLimitForOneComparisonIsTheNormalQuantile) {
   Bank bank = test::example_bank(1, 0, 2);
   bank.structure = {1, 0, false};
@@ -248,7 +249,7 @@ TEST(Finding, TheLimitForOneComparisonIsTheNormalQuantile) {
   EXPECT_TRUE(modes_differ(bank));
 }
 
-// One motion with steps of many lengths looks like several modes. The limit is 10 % of the median.
+// One motion with time steps of many lengths looks like several modes. The limit is a scatter of 10 % of the median.
 TEST(Finding, StepsThatScatterComeBeforeModes) {
   Case even;
   even.step_scatter = 0.099;
@@ -261,7 +262,7 @@ TEST(Finding, StepsThatScatterComeBeforeModes) {
   EXPECT_TRUE(finding.better_description.empty());
 }
 
-// Modes that switch by state and input are one nonlinear motion, too.
+// Modes that switch by state and input are also one nonlinear motion.
 TEST(Finding, ModesAndABendThatBothGainAreBothNamed) {
   Case modes;
   EXPECT_TRUE(modes.judged().over_linear.empty()) << "nothing bends";
@@ -283,7 +284,7 @@ TEST(Finding, ModesAndABendThatBothGainAreBothNamed) {
   EXPECT_TRUE(modes.judged().over_linear.empty()) << "the bend gains next to nothing";
 }
 
-// Gains over competitors that lack the same lags prove little about modes. The pattern must gain 0.02 nats and two
+// Gains over competitors that lack the same lags are weak evidence for modes. The pattern must gain 0.02 nats and two
 // standard errors.
 TEST(Finding, APatternThatLagsWouldTakeAwayComesBeforeModes) {
   Case patterned;
@@ -333,7 +334,7 @@ TEST(Finding, WhatOneModelLeavesNoNoiseOfHasOneMode) {
   EXPECT_TRUE(finding.without_noise);
   EXPECT_EQ(finding.answer, Answer::one_mode);
   EXPECT_TRUE(finding.better_description.empty() && finding.better_means.empty());
-  exact.summary = {pooled("baseline", 1e-6)};  // measured with six digits
+  exact.summary = {pooled("baseline", 1e-6)};  // recorded with six digits
   EXPECT_EQ(exact.judged().answer, Answer::evidence);
 }
 

@@ -1,4 +1,4 @@
-// Free runs of several modes: moments and sample paths compared with all sequences of modes.
+// Free runs of several modes: moments and sample paths, compared with the sum over all sequences of modes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ Bank two_modes() {
   return bank;
 }
 
-/// Every sequence of modes with its probability and the Gaussian of x under it, `steps` after x[0] ~ N(y, R).
+/// Every sequence of modes: its probability, and the Gaussian of x `steps` after x[0] ~ N(y, R).
 struct Sequences {
   std::vector<double> probability, mean, variance;
 
@@ -90,7 +90,7 @@ TEST(FreeRun, MomentsAreThoseOfAllSequencesOfModes) {
     EXPECT_NEAR(found.mean(0, k), exact.average(), 1e-9) << k;
     EXPECT_NEAR(found.deviation(0, k), exact.deviation(bank.R(0, 0)), 1e-9) << k;
   }
-  // After one step each mode has a Gaussian, so band and density are exact, too.
+  // After one step the distribution of each mode is Gaussian, so band and density are exact, too.
   const Sequences exact(bank, run, 1);
   EXPECT_NEAR(exact.below(found.lower(0, 1), bank.R(0, 0)), 0.025, 1e-9);
   EXPECT_NEAR(exact.below(found.upper(0, 1), bank.R(0, 0)), 0.975, 1e-9);
@@ -160,7 +160,7 @@ TEST(FreeRun, SaysOfPathsThatLeaveTheFiniteRange) {
   EXPECT_TRUE(found.mean.middleCols(1, predicted).allFinite());
 }
 
-/// State-dependent transitions: mode 1 if x is positive. Without noise the path equals that of the piecewise recursion.
+/// State-dependent transitions: mode 1 if x is positive. Without noise, the path is that of the piecewise recursion.
 TEST(SamplePaths, ModesMayFollowStateAndInput) {
   Bank bank = two_modes();
   for (Mode& mode : bank.modes) mode.Q.setZero();

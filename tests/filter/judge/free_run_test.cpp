@@ -26,7 +26,7 @@ using test::single_mode;
 using test::stable_theta;
 using ::testing::HasSubstr;
 
-/// x[k+1] = x[k] + sum A_i x[k+1-i] + sum B_j u[k+1-d-j] + c after n measured samples, computed from theta.
+/// Computes x[k+1] = x[k] + sum A_i x[k+1-i] + sum B_j u[k+1-d-j] + c from theta, after n measured samples.
 Eigen::MatrixXd arx_recursion(const LinearStructure& s, const Eigen::VectorXd& theta, const Trajectory& run, Index n) {
   Eigen::MatrixXd x = run.state;
   for (Index k = n; k < x.cols(); ++k)
@@ -152,7 +152,7 @@ TEST(FreeRunScores, HaveTheirClosedForms) {
   EXPECT_DOUBLE_EQ(rows[0].coverage_90(0), 0.5);
   EXPECT_DOUBLE_EQ(rows[0].coverage_95(0), 0.75);
   EXPECT_DOUBLE_EQ(rows[0].coverage_99(0), 0.75);
-  EXPECT_TRUE(std::isnan(rows[1].nrmse(0)));  // undefined for one sample
+  EXPECT_TRUE(std::isnan(rows[1].nrmse(0)));  // undefined if there is one sample
   EXPECT_EQ(rows[2].run, "*");
   EXPECT_DOUBLE_EQ(rows[2].rmse(0), 1.0);
   EXPECT_DOUBLE_EQ(rows[2].fit(0), 100.0 * (1.0 - std::sqrt(5.0 / 50.0)));  // y = 1 2 3 4 10 with mean 4

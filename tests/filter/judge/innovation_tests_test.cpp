@@ -19,7 +19,7 @@ TEST(InnovationTests, OfTheTrueFilterStayInsideTheirBands) {
   EXPECT_GT(tests.ljung_box_p(0), 1e-3);
 }
 
-/// The effect of an input that the bank lacks appears at lag 0, the lag of the predicted transition.
+/// The bank lacks an input. The effect of this input appears at lag 0, the lag of the predicted transition.
 TEST(InnovationTests, ShowAnInputThatTheBankIgnores) {
   const Bank truth = test::example_bank(1, 2, 1);
   const Trajectory run = test::simulate_bank(truth, white_samples, 5);

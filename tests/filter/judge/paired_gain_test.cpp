@@ -1,4 +1,4 @@
-// Gains and their standard errors: closed forms, and simulated series with known variance of the mean.
+// Gains and their standard errors: closed forms, and simulated series for which the variance of the mean is known.
 #include "filter/judge/score/paired_gain.hpp"
 
 #include <gtest/gtest.h>
@@ -48,8 +48,8 @@ TEST(PairedGain, OfOneSamplePerRunIsTheMeanWithItsStandardError) {
   EXPECT_TRUE(gain.exceeds());
 }
 
-// Runs of unequal length, with the variance of the linearised ratio by hand. Sums 2, 8, 0, 6, 4 over 2, 4, 2, 1, 1
-// samples give m = 2, residuals -2, 0, -4, 4, 2 and SE = sqrt(5 / 4 * 40) / 10.
+// Runs of different lengths. The variance of the linearised ratio is computed by hand: sums 2, 8, 0, 6, 4 over 2, 4, 2,
+// 1, 1 samples give m = 2, residuals -2, 0, -4, 4, 2 and SE = sqrt(5 / 4 * 40) / 10.
 TEST(PairedGain, RunsCountByTheirSamples) {
   const std::vector<VectorXd> runs{VectorXd::Constant(2, 1.0), VectorXd::Constant(4, 2.0), VectorXd::Zero(2),
                                    VectorXd::Constant(1, 6.0), VectorXd::Constant(1, 4.0)};
@@ -82,12 +82,12 @@ TEST(PairedGain, BlocksKnowAboutAutocorrelation) {
     const PairedGain gain = gain_of({autoregression(rho, 0.3, samples, generator)});
     const double truth = 1.0 / (1.0 - rho) / std::sqrt(static_cast<double>(samples));
     EXPECT_TRUE(gain.by_blocks);
-    // a block of two autocorrelation times contains most of the correlation
+    // a block of two autocorrelation times contains most of the autocorrelation
     EXPECT_NEAR(gain.standard_error, truth, 0.25 * truth) << rho;
   }
 }
 
-/// By hand: a gain of one in each of eight stretches has the most extreme ranks, with probability 2^-8.
+/// By hand: if each of eight blocks gains one, the ranks are the most extreme possible, with probability 2^-8.
 TEST(PairedGain, BlocksAreRankedToo) {
   VectorXd run(4000);
   std::mt19937_64 generator(7);
@@ -112,7 +112,7 @@ TEST(PairedGain, TooFewBlocksAndNoSamplesKnowNoError) {
   EXPECT_FALSE(none.exceeds());
 }
 
-// For two equally good filters a gain is significant in 2.5 % of the cases: 25 of 1000, with binomial sd 4.9.
+// If two filters are equally good, a gain is significant in 2.5 % of the cases: 25 of 1000, with binomial sd 4.9.
 TEST(PairedGain, ChanceExceedsTheMarginAsOftenAsItSays) {
   std::mt19937_64 generator(43);
   for (const int runs : {6, 3}) {

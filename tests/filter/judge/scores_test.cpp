@@ -12,16 +12,16 @@
 namespace modebank {
 namespace {
 
-/// Boost.Math against scipy; both are accurate to a few units in the last place.
+/// Boost.Math compared with scipy; both are accurate to a few units in the last place.
 constexpr double special_function_tolerance = 1e-11;
-/// Allowed deviation of a simulated fraction from its expectation, in standard deviations. By chance about one fraction
-/// in 16000 exceeds the limit; seeds are fixed.
+/// Allowed deviation of a simulated fraction from its expectation, in standard deviations. By chance, about one
+/// fraction in 16000 is beyond the limit. Seeds are fixed.
 constexpr double sigmas = 4.0;
 
 nlohmann::json golden() { return test::read_golden("scores"); }
 
 TEST(Calibration, ChiSquareQuantilesAgreeWithScipy) {
-  const nlohmann::json rows = golden().at("chi_square");  // must outlive the loop
+  const nlohmann::json rows = golden().at("chi_square");  // must live longer than the loop
   for (const auto& row : rows) {
     const double expected = row.at("value");
     EXPECT_NEAR(chi_square_quantile(row.at("p"), row.at("dof")) / expected, 1.0, special_function_tolerance);
@@ -81,7 +81,7 @@ void expect_calibrated(const SummaryRow& row, double components) {
   EXPECT_NEAR(row.coverage_90, 0.90, binomial_bound(0.10, N * components));
   EXPECT_NEAR(row.coverage_95, 0.95, binomial_bound(0.05, N * components));
   EXPECT_NEAR(row.coverage_99, 0.99, binomial_bound(0.01, N * components));
-  EXPECT_LT(row.pit_distance, 1.95 / std::sqrt(N * components));  // Kolmogorov's 0.1 % critical value
+  EXPECT_LT(row.pit_distance, 1.95 / std::sqrt(N * components));  // 0.1 % critical value of Kolmogorov's distance
   EXPECT_GT(row.whiteness_p, 1e-3);
 }
 
@@ -99,7 +99,7 @@ TEST(Summary, TheTrueKalmanFilterIsCalibrated) {
 }
 
 TEST(Summary, TheTrueBankIsCalibrated) {
-  // With almost no measurement noise the mixing of histories is exact, so the bank equals the correct filter.
+  // With almost no measurement noise, mixing the modes' estimates is exact. The bank is then the correct filter.
   for (const Eigen::Index n : {1, 2}) {
     const Bank truth = test::example_bank(n, 1, 3, 1e-10);
     expect_calibrated(score(truth, truth, 20000, 12), static_cast<double>(n));
@@ -130,7 +130,7 @@ TEST(Summary, AWrongModelIsNotWhite) {
   EXPECT_LT(score(wrong, truth, 2000, 14).whiteness_p, 1e-6);
 }
 
-/// An evaluation with given innovations (one component); all other scores are standard normal.
+/// An evaluation with given innovations (one component). All other scores are standard normal.
 RunEvaluation hand_made(const Eigen::RowVectorXd& innovation, const Eigen::VectorXd& log_density) {
   RunEvaluation e;
   e.innovation = innovation;
@@ -165,7 +165,7 @@ TEST(Summary, CountsScoredSamplesAndPoolsOverThem) {
   EXPECT_DOUBLE_EQ(rows[2].log_score, -3.0);
   EXPECT_DOUBLE_EQ(rows[2].rmse(0), std::sqrt(14.0 / 3.0));
   EXPECT_DOUBLE_EQ(rows[2].nis_mean, 14.0 / 3.0);
-  EXPECT_DOUBLE_EQ(rows[2].nis_above, 1.0 / 3.0);  // 9 > 5.02
+  EXPECT_DOUBLE_EQ(rows[2].nis_above, 1.0 / 3.0);  // 9 > 5.02, the 97.5 % quantile of chi-square(1)
   EXPECT_DOUBLE_EQ(rows[2].nis_below, 0.0);
   EXPECT_DOUBLE_EQ(rows[2].too_close, 1.0);  // pit = 0.5 gives z = 0
   EXPECT_DOUBLE_EQ(rows[2].pit_distance, 0.5);

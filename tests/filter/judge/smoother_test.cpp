@@ -28,7 +28,7 @@ RunEvaluation smoothed(const Bank& bank, const Trajectory& run, const FilterOpti
   return evaluation;
 }
 
-/// Mean and covariance of all states given all measurements, from the joint normal density of the run.
+/// Mean and covariance of all states given all measurements. They come from the joint normal density of the run.
 struct Batch {
   Eigen::MatrixXd state;                    ///< n x N
   std::vector<Eigen::MatrixXd> covariance;  ///< N
@@ -59,7 +59,7 @@ Batch solve_batch(const Bank& bank, const Trajectory& run) {
 }
 
 TEST(Smoother, OneModeIsTheBatchEstimateOfEveryState) {
-  // The batch estimate must equal that of the recursive Rauch-Tung-Striebel smoother.
+  // The batch estimate must equal the estimate of the recursive Rauch-Tung-Striebel smoother.
   for (const Index n : {1, 2, 4}) {
     const Bank bank = single_mode(example_bank(n, 1, 1, 1e-3), 0);
     Trajectory run = simulate_bank(bank, 25, 20);
@@ -89,7 +89,7 @@ TEST(Smoother, IdenticalModesAreOneSmoother) {
 double rms(const Eigen::MatrixXd& a) { return std::sqrt(a.squaredNorm() / static_cast<double>(a.size())); }
 
 TEST(Smoother, IsCloserToTheTruthThanTheFilter) {
-  Bank bank = example_bank(2, 1, 2, 4e-3);  // measurement noise as large as the steps
+  Bank bank = example_bank(2, 1, 2, 4e-3);  // the measurement noise is as large as the steps
   bank.transition = TransitionMatrix::sticky(2, 0.97);
   for (const std::uint64_t seed : {1, 2, 3}) {
     const auto [run, mode] = simulate_truth(bank, 2000, seed);
@@ -125,8 +125,8 @@ TEST(Smoother, StaysFiniteWhereNoiseIsSingular) {
   }
 }
 
-/// Two states with three lags each. `rounding`: deviation of the shift rows from exact shifts. With a deviation they
-/// are treated as general rows.
+/// Two states with three lags each. `rounding`: deviation of the shift rows from exact shifts. With a deviation, they
+/// are treated like other rows.
 Bank lagged_bank(double R, double rounding = 0.0) {
   Bank bank = example_bank(2, 1, 3, R);
   const LinearStructure one_lag = bank.structure;
@@ -175,11 +175,11 @@ void expect_alike(const Bank& a, const Bank& b, const FilterOptions& options, do
   }
 }
 
-/// If lags only shift, products use shorter loops.
+/// If lag rows are exact shifts, products use shorter loops.
 TEST(LaggedStates, ThatShiftAreThoseOfAnyRows) { expect_alike(lagged_bank(1e-4), lagged_bank(1e-4, 1e-14), {}, 1e-10); }
 
-/// Exactly measured states are known, and the smoother skips computations. The result must be the limit of vanishing
-/// measurement noise.
+/// Exactly measured states are known, and the smoother skips computations. The result must be the limit for measurement
+/// noise that goes to zero.
 TEST(LaggedStates, MeasuredExactlyAreTheLimitOfLittleNoise) {
   expect_alike(lagged_bank(0.0), lagged_bank(1e-13), {}, 1e-7);
 }
@@ -201,7 +201,8 @@ TEST(LaggedStates, EstimatesHoldTheSampleAlone) {
   }
 }
 
-/// The best of all sequences by joint density, for exactly measured states. `scale`: factor on Q, sample by sample.
+/// The sequence of modes with the highest joint density, of all sequences, for exactly measured states. `scale`: factor
+/// on Q, sample by sample.
 Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& scale) {
   const int K = static_cast<int>(bank.mode_count()), samples = static_cast<int>(run.samples());
   double best = -1e300;

@@ -1,4 +1,4 @@
-// Mean NIS and NEES with their intervals for any missing signals: closed forms and simulation.
+// Mean NIS and NEES with their intervals, with and without missing signals: closed forms and simulation.
 #include "filter/judge/score/squared_distances.hpp"
 
 #include <gtest/gtest.h>
@@ -31,13 +31,13 @@ TEST(SquaredDistances, AMeanCountsSamplesByTheirDegrees) {
   distances.begin_run();
   distances.add(5.0, 2);
   distances.add(std::nan(""), 0);                        // no signal
-  EXPECT_DOUBLE_EQ(mean_distance(distances, 3.0), 6.0);  // 12 over 6 degrees, times 3
+  EXPECT_DOUBLE_EQ(mean_distance(distances, 3.0), 6.0);  // sum 12 divided by 6 degrees, times 3
   EXPECT_TRUE(std::isnan(mean_distance({}, 1.0)));
   EXPECT_TRUE(std::isnan(mean_distance_interval({}, 1.0, true).lower));
 }
 
-/// Quantiles of chi-square with 100 degrees of freedom: 74.22 and 129.56, however the degrees are distributed over
-/// samples.
+/// Quantiles of chi-square with 100 degrees of freedom are 74.22 and 129.56. The distribution of the degrees over the
+/// samples does not matter.
 TEST(SquaredDistances, TheIntervalIsThatOfTheSum) {
   for (const Index degrees : {1, 4}) {
     const SquaredDistances whole =
@@ -49,7 +49,7 @@ TEST(SquaredDistances, TheIntervalIsThatOfTheSum) {
   }
 }
 
-/// With every value twice, the interval has the width for half the number of values, apart from the margin.
+/// If every value occurs twice, the interval is that of half the number of values, apart from the margin.
 TEST(SquaredDistances, RelatedSamplesAreFewer) {
   std::mt19937_64 generator(1);
   std::vector<double> once, twice;
@@ -62,8 +62,8 @@ TEST(SquaredDistances, RelatedSamplesAreFewer) {
   EXPECT_NEAR((b.upper - b.lower) / (a.upper - a.lower), 1.0, 0.1);
 }
 
-/// The dispersion is 1 for chi-square with any degrees. For a mixture it is known in closed form: variances 1 and 9
-/// with equal probability, mean 5, variance 98.
+/// The dispersion is 1 for chi-square variables with any degrees. For this mixture it is known in closed form:
+/// variances 1 and 9 with equal probability, mean 5, variance 98.
 TEST(SquaredDistances, DispersionIsThatOfTheLaw) {
   std::mt19937_64 generator(5);
   boost::random::normal_distribution<double> normal;
@@ -84,7 +84,7 @@ TEST(SquaredDistances, DispersionIsThatOfTheLaw) {
   EXPECT_EQ(dispersion(distances_of({0.0, 0.0})), 1.0);
 }
 
-/// A run of the bank with missing signals, each missing independently with this probability.
+/// A run of the bank. Each signal is missing independently with this probability.
 Trajectory with_missing(const Bank& bank, double missing, Index samples, std::uint64_t seed) {
   Trajectory run = test::simulate_bank(bank, samples, seed);
   run.role = Role::test;
@@ -96,7 +96,7 @@ Trajectory with_missing(const Bank& bank, double missing, Index samples, std::ui
   return run;
 }
 
-/// The plain mean over samples with missing signals would be about n_y (1 - missing).
+/// If signals are missing, the plain mean over samples would be about n_y (1 - missing).
 TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
   const Bank bank = test::single_mode(test::example_bank(3, 1, 1), 0);
   for (const double missing : {0.0, 0.3, 0.7}) {
@@ -107,8 +107,8 @@ TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
     const DiagnosticsRow row = diagnose("bank", bank, {}, runs, evaluations, scores).front();
     const double signals = 2.0 * 6000.0 * 3.0 * (1.0 - missing);
     EXPECT_NEAR(row.nis_mean, 3.0, 4.0 * 3.0 * std::sqrt(2.0 / signals)) << missing;
-    EXPECT_DOUBLE_EQ(row.nis_mean, summary.back().nis_mean) << missing;  // both tables use one definition of the mean
-                                                                         // NIS
+    EXPECT_DOUBLE_EQ(row.nis_mean, summary.back().nis_mean) << missing;  // both tables must define the mean NIS in the
+                                                                         // same way
     EXPECT_LT(row.nis_lower, 3.0);
     EXPECT_GT(row.nis_upper, 3.0);
     EXPECT_NEAR(row.nis_upper - row.nis_lower, 2.0 * 1.96 * 3.0 * std::sqrt(2.0 / signals), 0.02) << missing;
@@ -116,7 +116,8 @@ TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
   }
 }
 
-/// The interval contains the mean of a correct model for 95 % of the seeds, within five standard errors of 400 seeds.
+/// If the model is correct, the interval contains the mean for 95 % of the seeds. Allowed: five standard errors of 400
+/// seeds.
 TEST(SquaredDistances, TheIntervalCoversWithMissingSignals) {
   std::mt19937_64 generator(9);
   boost::random::normal_distribution<double> normal;
@@ -137,8 +138,8 @@ TEST(SquaredDistances, TheIntervalCoversWithMissingSignals) {
   EXPECT_NEAR(inside / 400.0, 0.95, 5.0 * std::sqrt(0.95 * 0.05 / 400.0));
 }
 
-/// On the scale of all signals, a NIS exceeds the edges of the region exactly if it exceeds the edges for its own
-/// degrees.
+/// A NIS on the scale of all signals lies outside its region exactly if the original NIS lies outside the region for
+/// its own degrees.
 TEST(SquaredDistances, NisOfFewerSignalsIsDrawnWhereAllWouldBe) {
   RunEvaluation e;
   const double nan = std::nan("");

@@ -37,7 +37,7 @@ Recording simulated(const Bank& bank, Index runs, Index samples, std::uint64_t s
   return recording;
 }
 
-/// theta is fixed at the true value, because the test is about Q and R.
+/// theta is fixed at the true value; this test concerns Q and R.
 GlobalModel model_at(const Recording& recording, const Bank& truth) {
   GlobalModel global = fit_global(recording, test::structure_of(recording));
   global.theta = truth.theta(0);
@@ -108,7 +108,7 @@ TEST(Baseline, ErrorsOfQAndRAreAsLargeAsTheirStandardErrors) {
     EXPECT_TRUE(fit.converged && !fit.at_bound) << "repetition " << i;
     squares += standardised_errors(fit, recording, truth).cwiseAbs2();
   }
-  // chi-square(20): 0.1 % and 99.9 % quantiles.
+  // 0.1 % and 99.9 % quantiles of chi-square(20).
   EXPECT_GT(squares.minCoeff(), 5.92);
   EXPECT_LT(squares.maxCoeff(), 45.31);
 }
@@ -119,7 +119,7 @@ TEST(Baseline, NoGridPointIsMoreLikely) {
     const Recording recording = simulated(truth, 2, 200);
     const Baseline fit = learn(recording, fit_global(recording, test::structure_of(recording)));
     EXPECT_TRUE(fit.converged);
-    // A loss of 1e-7 per sample at the bound is allowed.
+    // At the bound, a loss of 1e-7 per sample is allowed.
     const double slack = 1e-7 * static_cast<double>(recording.transitions(Role::train));
     const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
     for (int i = -24; i <= 4; ++i)
@@ -139,7 +139,7 @@ TEST(Baseline, AgreesWithNelderMead) {
     EXPECT_TRUE(near(global.theta, test::golden_rows(expected.at("theta")), 1e-10)) << name;
     const Baseline fit = learn(recording, global);
     EXPECT_TRUE(fit.converged) << name;
-    // The simplex search stops at 1e-11 in the likelihood, which is about 1e-5 in the flattest direction.
+    // The simplex search stops at 1e-11 in the likelihood. In the flattest direction that is about 1e-5.
     EXPECT_NEAR(fit.log_likelihood, expected.at("log_likelihood").get<double>(), 1e-7) << name;
     EXPECT_TRUE(near(fit.bank.modes[0].Q, test::golden_rows(expected.at("Q")), 1e-5)) << name;
     EXPECT_TRUE(near(fit.bank.R, test::golden_rows(expected.at("R")), 1e-5)) << name;
@@ -149,19 +149,21 @@ TEST(Baseline, AgreesWithNelderMead) {
 TEST(Baseline, WithoutMeasurementNoiseStopsAtTheBound) {
   const Bank truth = single_filter(-0.3, 0.04, 1e-30);
   const Recording recording = simulated(truth, 3, 400);
-  // Measurement noise makes successive errors negatively correlated. A theta that forgets too fast makes the
-  // correlation positive.
+  // Measurement noise makes successive errors negatively correlated. If theta forgets too fast, the correlation is
+  // positive.
   GlobalModel global = fit_global(recording, test::structure_of(recording));
   global.theta(0) = -0.5;
   const Baseline fit = learn(recording, global);
   EXPECT_TRUE(fit.converged);
   EXPECT_TRUE(fit.at_bound);
-  // An error of y enters the innovation of its own sample and, times 1 - 0.5, that of the next sample.
+  // An error of y enters the innovation of the same sample. Times 1 - 0.5, it also enters the innovation of the next
+  // sample.
   EXPECT_NEAR(fit.bank.R(0, 0), 1e-8 * global.residual_covariance(0, 0) / (1.0 + 0.25), 1e-20);
 }
 
-/// Clean data of six lags, with poles at 0.95. The variance of the residuals is 1e-11 of that of the data, and the
-/// squares of the coefficients sum to about 600. R must be able to become negligible against these residuals.
+/// Exact data of six lags, with poles at 0.95. The variance of the residuals is 1e-11 times the variance of the data,
+/// and the squares of the coefficients sum to about 600. R must be able to become negligible compared with the
+/// residuals.
 TEST(Baseline, TheBoundOfRCostsNothingInDataOfManyLags) {
   const LinearStructure structure{1, 1, false, 6};
   Recording recording = test::empty_recording(1, 1);

@@ -76,7 +76,7 @@ TEST(ClusterWindows, OfManyLagsAreThoseOfOneLagFits) {
   }
 }
 
-/// A mode's coefficients are the pooled regression of its runs with all lags; its parameter covariance is that of its
+/// A mode's coefficients are the pooled regression of its runs with all lags. Its parameter covariance is that of its
 /// windows.
 TEST(ClusterWindows, StartModesOfAllCoefficients) {
   const Clustered c(two_components(CovarianceType::full));

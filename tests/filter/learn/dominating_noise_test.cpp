@@ -1,4 +1,4 @@
-// Dominating measurement noise: a model with a large R is tried, in addition to the search from exact states.
+// Data that are mostly measurement noise. A model with a large R is tried, in addition to the search from exact states.
 #include "filter/learn/refine/dominating_noise.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@
 namespace modebank {
 namespace {
 
-/// Position of a target with white acceleration (standard deviation 0.3 m/s^2) every 0.1 s, measured with R.
+/// Measured position of a target with white acceleration (standard deviation 0.3 m/s^2) every 0.1 s. R is the variance
+/// of the measurement.
 Recording constant_velocity(double R, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;
@@ -35,7 +36,7 @@ Recording constant_velocity(double R, std::uint64_t seed) {
   return recording;
 }
 
-/// One mode of two state lags by least squares, as a bank before the search for R.
+/// A bank before the search for R: one mode with two state lags, by least squares.
 struct LeastSquares {
   explicit LeastSquares(const Recording& data) : recording(data) {
     structure.state_lags = 2;
@@ -68,7 +69,7 @@ struct LeastSquares {
   Bank bank;
 };
 
-/// Regression test: the search once ended with R = 4e-11, 0.275 nats below the result with R given. Two lags of the
+/// Regression test: the search once found R = 4e-11 and scored 0.275 nats less than with R given. Two lags of the
 /// position determine its velocity. So the process noise is small beside R, and exact states give coefficients 1 and
 /// -1.
 TEST(DominatingNoise, IsFoundWithTheCoefficientsThatItHid) {
@@ -84,8 +85,8 @@ TEST(DominatingNoise, IsFoundWithTheCoefficientsThatItHid) {
   }
 }
 
-/// A wrong start of a search must not create measurement noise. Here the measurement error is a hundredth of the
-/// movement by acceleration in one step.
+/// A search with a wrong start must not find measurement noise in data with little noise. Here the acceleration moves
+/// the target in one step by 100 times the measurement error.
 TEST(DominatingNoise, IsNotFoundWhereStatesAreExact) {
   const Recording recording = constant_velocity(1e-10, 0);
   const LeastSquares least_squares(recording);

@@ -1,4 +1,4 @@
-// The drifting model on the Husky-on-ice runs, compared with an independent numpy script.
+// The drifting model on the runs of the Husky on ice, compared with an independent numpy script.
 #include <gtest/gtest.h>
 
 #include <cmath>

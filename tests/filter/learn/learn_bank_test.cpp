@@ -120,7 +120,7 @@ TEST(LearnBank, MeanTakesTheComponentsMeansAndNoiseAboutThem) {
   }
 }
 
-/// By default linear modes are refined, unless refinement would undo a requested option.
+/// By default linear modes are refined, unless refinement would undo an option that the user has set.
 TEST(LearnBank, RefinementIsTheDefaultOfWhatItDoesNotUndo) {
   BankOptions options;
   EXPECT_EQ(refinement_asked(options, true), Refine::em);
@@ -172,7 +172,7 @@ TEST(Screening, UnstableAndStarvedModesAreListedAndLeftOut) {
   Case data({-0.2, 0.1, -0.8});  // the second mode grows by a tenth per step
   Eigen::MatrixXd gamma = Eigen::MatrixXd::Zero(4, data.fits.count());
   gamma.topRows(3) = memberships_by_run(data.fits, 3);
-  gamma.col(0) << 0.9, 0.0, 0.0, 0.1;  // a tenth of one transition, and shares of nine others
+  gamma.col(0) << 0.9, 0.0, 0.0, 0.1;  // a tenth of one transition, plus parts of nine others
   data.mixture = test::mixture_of(data.fits, gamma);
   data.mixture.mixture.weights << 0.4, 0.2, 0.3, 0.1;
   const Bank bank = data.learn();
@@ -220,7 +220,7 @@ TEST(Screening, WhereNoComponentIsLeftAllOfThemTogetherAreOneMode) {
   EXPECT_EQ(bank.screened[1].reason, "unstable");
 }
 
-/// One step ahead the predictions of such a mode may be right, like those of the global model that it competes with.
+/// The predictions of such a mode may be right one step ahead, like those of the global model that it competes with.
 /// The mode is kept, with a warning.
 TEST(Screening, WhereAllTogetherAreUnstableTheyAreOneModeStill) {
   Case data({-0.2, -0.3});

@@ -46,7 +46,7 @@ inline LinearStructure structure_of(const Recording& recording) {
   return {recording.state_count(), recording.input_count(), false};
 }
 
-/// Windows of every training run with only those fields that a bank needs: the global fit.
+/// Windows of every training run. They have only the fields that a bank needs: the global fit.
 inline WindowFits windows_of(const Recording& recording, Index length, Index step) {
   WindowFits fits;
   fits.structure = structure_of(recording);
@@ -57,8 +57,8 @@ inline WindowFits windows_of(const Recording& recording, Index length, Index ste
   return fits;
 }
 
-/// A mixture of K components of equal weight around the global theta. Its memberships are `responsibilities` (K x M,
-/// NaN columns: not clustered).
+/// A mixture of K components of equal weight around the global theta. Its memberships are `responsibilities` (K x M). A
+/// window with a NaN column is not clustered.
 inline MixtureResult mixture_of(const WindowFits& fits, const Eigen::MatrixXd& responsibilities) {
   const Index K = responsibilities.rows(), p = fits.parameter_count();
   MixtureResult result;

@@ -1,4 +1,4 @@
-// The part of long data that is drawn for learning.
+// The part of a long recording that is drawn for learning.
 #include "filter/learn/refine/learning_part.hpp"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-/// Runs whose state at sample k of run r is 1e6 r + k, so that each stretch can be identified.
+/// Runs in which the state at sample k of run r is 1e6 r + k, so that each stretch can be identified.
 Recording numbered(const std::vector<Index>& transitions) {
   Recording recording = test::empty_recording(1, 1);
   for (std::size_t r = 0; r < transitions.size(); ++r) {
@@ -55,7 +55,8 @@ TEST(LearningPart, IsMadeOfWholeStretchesOfTheTrainingRuns) {
 TEST(LearningPart, HasEveryRunInProportionToItsLength) {
   const Recording recording = numbered({50000, 100000, 250000});
   const std::map<Index, Index> drawn = drawn_by_run(learning_part(recording, 40000, 3).value());
-  const double stretch = 400.0;  // a hundredth of the drawn transitions; the share of a run is exact to two stretches
+  const double stretch = 400.0;  // a stretch is a hundredth of the drawn transitions; each run's part is exact to two
+                                 // stretches
   EXPECT_NEAR(static_cast<double>(drawn.at(0)), 5000.0, 2.0 * stretch);
   EXPECT_NEAR(static_cast<double>(drawn.at(1)), 10000.0, 2.0 * stretch);
   EXPECT_NEAR(static_cast<double>(drawn.at(2)), 25000.0, 2.0 * stretch);

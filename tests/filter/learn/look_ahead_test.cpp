@@ -107,8 +107,8 @@ TEST_F(LookAheadLearning, PullWithoutEndLeavesOneMotion) {
   EXPECT_LT(spread(1e8), 1e-4);
 }
 
-/// y = x + v, where the noise in v equals that in x. The model of exact states that is best one step ahead then decays
-/// too fast for longer predictions.
+/// y = x + v; the noise in v has the size of the noise in x. A model with exact states that is best one step ahead
+/// decays too fast for longer predictions.
 Recording measured_with_noise(std::uint64_t seed, Index runs) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;

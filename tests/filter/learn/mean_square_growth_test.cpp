@@ -22,7 +22,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using test::near;
 
-/// Largest eigenvalue of the second moments' operator as one matrix with blocks T_ij (F_i (x) F_i).
+/// Largest eigenvalue of the operator on second moments, written as one matrix with blocks T_ij (F_i (x) F_i).
 double growth_by_kronecker(const LinearStructure& structure, const SwitchingRegression& model) {
   const Index K = model.modes(), n = structure.dimension();
   Eigen::MatrixXd moments(K * n * n, K * n * n);
@@ -70,7 +70,8 @@ TEST(MeanSquareGrowth, OfScalarModesIsThatOfTheirSquares) {
                             {Eigen::MatrixXd::Ones(1, 1), Eigen::MatrixXd::Ones(1, 1)},
                             Eigen::MatrixXd{{0.7, 0.3}, {0.7, 0.3}},
                             Eigen::Vector2d(0.5, 0.5)};
-  EXPECT_NEAR(mean_square_growth(scalar, model), 0.7 * 0.25 + 0.3 * 1.44, 1e-12);  // independent draws: sum p_j f_j^2
+  EXPECT_NEAR(mean_square_growth(scalar, model), 0.7 * 0.25 + 0.3 * 1.44, 1e-12);  // independent draws of the mode: sum
+                                                                                   // p_j f_j^2
   model.transition = Eigen::Matrix2d{{0.5, 0.5}, {0.01, 0.99}};
   EXPECT_GT(mean_square_growth(scalar, model), 1.0);
   model.transition = Eigen::Matrix2d{{0.9, 0.1}, {0.8, 0.2}};
@@ -78,7 +79,7 @@ TEST(MeanSquareGrowth, OfScalarModesIsThatOfTheirSquares) {
   EXPECT_NEAR(mean_square_growth(scalar, model), moments.eigenvalues().cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// Poles of modulus .9: the moments of one mode rotate in phase, so a power iteration never converges.
+// Poles of modulus 0.9. The moments of the modes rotate in phase, so a power iteration never converges.
 TEST(MeanSquareGrowth, OfAnOscillatingModeIsItsSquaredRadius) {
   EXPECT_NEAR(growth_of({oscillator(0.9, 0.5)}, sticky(1, 1.0)), 0.81, 1e-12);
   EXPECT_NEAR(growth_of({oscillator(0.995, 0.5)}, sticky(1, 1.0)), 0.995 * 0.995, 1e-12);
@@ -110,7 +111,7 @@ TEST(MeanSquareGrowth, OfRandomSystemsIsTheDenseEigenvalue) {
   EXPECT_GE(iterated, 12);
 }
 
-// Defective operators: chains of integrators, coinciding poles. Closed form: the squared spectral radius.
+// Defective operators: chains of integrators, and coinciding poles. The closed form is the squared spectral radius.
 TEST(MeanSquareGrowth, OfDefectiveSystemsIsTheSquaredRadius) {
   const MatrixXd twice{{1.0, 0.1}, {0.0, 1.0}}, thrice{{1.0, 0.1, 0.005}, {0.0, 1.0, 0.1}, {0.0, 0.0, 1.0}};
   const MatrixXd critical = oscillator(0.9, 0.0), growing = 1.002 * twice;
@@ -120,7 +121,7 @@ TEST(MeanSquareGrowth, OfDefectiveSystemsIsTheSquaredRadius) {
       EXPECT_NEAR(growth, radius * radius, 1e-3) << K << '\n' << F;
       EXPECT_EQ(growth > 1.0 + refine_tuning.growth_slack, radius > 1.0) << "on the safe side of the threshold";
     }
-  // Integrators with different steps share their eigenvector. So triangular modes grow like their diagonals.
+  // Integrators with different steps have the same eigenvector. So triangular modes grow like their diagonals.
   const double several =
       growth_of({twice, MatrixXd{{1.0, 0.3}, {0.0, 1.0}}, MatrixXd{{1.0, -0.2}, {0.0, 1.0}}}, sticky(3, 0.9));
   EXPECT_NEAR(several, 1.0, 1e-4);
@@ -169,7 +170,7 @@ TEST(Shrinkage, LeavesStableSystemsAndHopelessOnes) {
   EXPECT_FALSE(shrunk_to_stability(structure, model, unstable, {}));
 }
 
-// All are mean-square stable by the dense eigenvalue, so none may be shrunk.
+// By the dense eigenvalue all these systems are mean-square stable, so no mode may be shrunk.
 TEST(Shrinkage, LeavesLightlyDampedOscillatorsAlone) {
   std::mt19937_64 generator(11);
   boost::random::uniform_real_distribution<double> uniform;

@@ -85,7 +85,7 @@ Bank disturbed_start(const Recording& recording, const SystemTruth& truth) {
 
 class RefineMeasured : public testing::TestWithParam<Index> {};
 
-/// With 1 fold the fit runs to convergence; with more folds cross-validation stops it.
+/// With 1 fold the fit runs to convergence. With more folds cross-validation stops the fit.
 TEST_P(RefineMeasured, RecoversEverythingWithinThreeStandardErrors) {
   const SystemTruth truth;
   const Recording recording = measured_runs(truth, 6, 600, 11);
@@ -98,7 +98,7 @@ TEST_P(RefineMeasured, RecoversEverythingWithinThreeStandardErrors) {
   expect_recovery(refined.bank, truth);
 }
 
-/// Noise and rounding of equal size: R must be that of the noise alone.
+/// Noise and rounding of equal size. The estimated R must be that of the noise without the rounding.
 TEST_P(RefineMeasured, TellsNoiseFromRounding) {
   const SystemTruth truth;
   Recording recording = measured_runs(truth, 6, 600, 11);
@@ -148,7 +148,7 @@ TEST(RefineMeasured, KeepsAGivenRAndFitsTheRest) {
   }
 }
 
-// R alone, with an exact likelihood: one mode with a = -0.2 without input.
+// Only R is estimated, with an exact likelihood: one mode with a = -0.2 without input.
 
 constexpr double Q_true = 0.04;
 
@@ -168,7 +168,7 @@ std::optional<Bank> with_R(const Recording& recording, const Bank& bank) {
   return estimate_measurement_noise({recording, {}, std::nullopt}, bank, {}).bank;
 }
 
-/// The share of Q that is R must be found, for every share.
+/// R must be found for every ratio of R to Q.
 TEST(EstimateMeasurementNoise, SplitsQAndR) {
   for (const double R : {0.005, 0.02, 0.2}) {
     const Recording recording = one_mode_with(R);
@@ -184,7 +184,7 @@ TEST(EstimateMeasurementNoise, IsNoneWhereTheDataShowNone) {
   EXPECT_FALSE(with_R(recording, one_mode(recording, Q_true)));
 }
 
-/// A search in which some starts fail because R and Q are infinite.
+/// A search that has failed starts, because R and Q are infinite.
 MeasurementNoise searched_from(const std::array<double, 4>& shares) {
   const Recording recording = one_mode_with(0.02);
   RefineTuning tuning;
@@ -207,8 +207,8 @@ TEST(EstimateMeasurementNoise, AStartThatFailsIsCountedAndTheOthersDecide) {
   EXPECT_FALSE(all_failed.bank);
 }
 
-/// Regression test: of 50 known systems one got R = 0 and lost 0.12 nats. With the theta of exact states, R = 0 was the
-/// most likely value.
+/// Regression test: for one of 50 known systems the result was R = 0, with a loss of 0.12 nats. With the theta of exact
+/// states, R = 0 was most likely.
 TEST(RefineMeasured, FindsRThatThetaHides) {
   SystemTruth truth;
   truth.theta.col(1) = truth.theta.col(0);
@@ -238,8 +238,8 @@ TEST(RefineMeasured, FindsRThatThetaHides) {
   EXPECT_NEAR(measured.bank.theta(0)(0), truth.theta(0, 0), 0.05);
 }
 
-/// No part of a fit, including R, may use the runs that score it. Here the last run has ten times the measurement
-/// noise.
+/// No part of a fit, including R, may use the runs that are scored with it. Here the last run has ten times the
+/// measurement noise.
 TEST(RefineMeasured, ScoresAreOfFitsThatLeaveTheRunOut) {
   SystemTruth truth;
   truth.theta.col(1) = truth.theta.col(0);

@@ -12,7 +12,7 @@ namespace {
 
 using test::near;
 
-/// Rounding of means of at most two responsibilities.
+/// Rounding error of a mean of at most two responsibilities.
 constexpr double weight_rounding = 1e-15;
 
 Recording two_runs(Index first, Index second) {
@@ -45,7 +45,8 @@ TEST(Memberships, UncoveredTransitionsTakeTheNearestClusteredWindow) {
   gamma.col(8) << 0.0, 1.0;  // covers 8, 9
   const TrainingTransitions transitions = gather_training_transitions(recording, fits.structure);
   const Eigen::MatrixXd g = transition_memberships(transitions, fits, test::mixture_of(fits, gamma));
-  Eigen::VectorXd first(13);  // 5 is two from the first window and 6 is two from the second; 12 is in the other run
+  Eigen::VectorXd first(13);  // transition 5 is two from the first window and 6 is two from the second; 12 is in the
+                              // other run
   first << 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0.5;
   EXPECT_TRUE(near(g.col(0), first, weight_rounding));
   EXPECT_TRUE(near(g.rowwise().sum(), Eigen::VectorXd::Ones(13), weight_rounding));

@@ -89,8 +89,8 @@ TEST(NoiseFactor, MultipliesTheCovarianceOfEveryStep) {
   }
 }
 
-/// With exactly measured states, the filter's likelihood equals that of rows divided by the square root of their
-/// factor, minus half the logarithm of the factor.
+/// With exactly measured states, the filter's likelihood follows from rows divided by the square root of their factor.
+/// Half the logarithm of each factor is subtracted.
 TEST(NoiseFactor, LikelihoodIsThatOfRowsOverTheirFactor) {
   const Recording recording = runs_of(follows_input, 4, 3, 200);
   for (const Index lags : {Index{1}, Index{2}}) {
@@ -108,7 +108,7 @@ TEST(NoiseFactor, LikelihoodIsThatOfRowsOverTheirFactor) {
 
 class ConstantNoiseFactor : public testing::TestWithParam<FilterNoise> {};
 
-/// A constant input gives a constant factor. The filter must then give the results for Q times that factor.
+/// A constant input gives a constant factor. The filter's results must then equal those for Q times this factor.
 TEST_P(ConstantNoiseFactor, IsAsAnotherQ) {
   Recording recording = runs_of(follows_input, 5, 1, 150);
   recording.runs.front().input.setOnes();
@@ -218,7 +218,7 @@ TEST(FindNoiseFactor, IsNotAskedOfRoundedOrWeightedSamples) {
   EXPECT_TRUE(std::isnan(find_noise_factor(recording, test::structure_of(recording), 6, 1).gain));
 }
 
-/// The result does not depend on the units of states and inputs.
+/// The result must not depend on the units of states and inputs.
 TEST(FindNoiseFactor, DoesNotDependOnUnits) {
   const Recording recording = runs_of(follows_input);
   Recording other = recording;
@@ -244,7 +244,7 @@ TEST(LearnRefinedBank, HasTheFactorWhereRunsLeftOutDoNotLoseByIt) {
   EXPECT_FALSE(bank.noise_factor.empty());
 }
 
-/// A bank whose start has a factor keeps the factor. Its Q is that of rows divided by their factor, and R is
+/// A bank that starts with a factor keeps this factor. Q is computed from rows divided by their factor, and R is
 /// negligible.
 TEST(NoiseFactor, OfAStartIsKeptByRefinement) {
   const Recording recording = runs_of(follows_input, 8, 6, 300);

@@ -1,4 +1,4 @@
-// The competitor with switching noise compared with statsmodels, numpy and the textbook filter
+// The competitor `noise_only` compared with statsmodels, numpy and the textbook filter
 // (tests/golden/generate/learn_reference.py).
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using test::near;
 
-/// Both implementations iterate until theta moves by less than 1e-12.
+/// Both implementations iterate until theta changes by less than 1e-12.
 constexpr double noise_exact = 1e-10;
 
 class NoiseOnly : public testing::TestWithParam<const char*> {
@@ -50,7 +50,7 @@ TEST_P(NoiseOnly, StayIsTheMostLikelyOne) {
   EXPECT_TRUE(near(bank.R, test::golden_rows(golden.at("R")), 0.0));
   for (std::size_t i = 0; i < golden.at("stays").size(); ++i) {
     bank.transition = TransitionMatrix::sticky(8, golden.at("stays")[i].get<double>());
-    // Sum over a hundred samples of densities that agree to 1e-10.
+    // Sum over a hundred samples; each density agrees to 1e-10.
     EXPECT_NEAR(training_log_likelihood(bank, recording, {}), golden.at("log_likelihood")[i].get<double>(), 1e-8);
   }
 }

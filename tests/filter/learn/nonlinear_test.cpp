@@ -124,7 +124,7 @@ TEST(LearnNonlinear, RecoversCoefficientsWithinTheirErrors) {
   }
 }
 
-/// Log score of a bank on runs with another noise [nats/sample]. The bank is learned from runs like `like`.
+/// Log score [nats/sample] of a bank on runs with different noise. The bank is learned from runs like `like`.
 double score_on(double sd, const Bent& like) {
   const Bank bank = learn_nonlinear(like.runs(8, 3), like.structure, like.terms, RefineOptions(), FilterOptions());
   Bent other = like;
@@ -138,8 +138,8 @@ double score_on(double sd, const Bent& like) {
   return sum / samples;
 }
 
-/// The true density scores -ln(sd sqrt(2 pi e)). If errors are three times larger than in training, the level of the
-/// training runs would lose (9 - 1) / 2 - ln 3 = 2.9 nats.
+/// The true density scores -ln(sd sqrt(2 pi e)). If errors are three times as large as in training, the noise level
+/// from training would lose (9 - 1) / 2 - ln 3 = 2.9 nats.
 TEST(LearnNonlinear, OneLevelIsWiderThanTheTrainingRuns) {
   const Bent bent;
   const auto truth = [](double sd) { return -std::log(sd * std::sqrt(2.0 * M_PI * std::exp(1.0))); };
@@ -152,7 +152,7 @@ TEST(LearnNonlinear, TakesLagsAndDelaysAsTheyAre) {
   bent.structure = {1, 1, true, 2, 2, 0};
   MotionTerms terms = bent.terms;
   terms.direction = MatrixXd::Zero(5, 2);
-  terms.direction(0, 0) = terms.direction(3, 1) = 1.0;  // the previous sample of u acts
+  terms.direction(0, 0) = terms.direction(3, 1) = 1.0;  // the previous sample of u is the acting input
   const Recording recording = bent.runs(8, 4);
   const Bank bank = learn_nonlinear(recording, bent.structure, terms, RefineOptions(), FilterOptions());
   const RunEvaluation said = evaluate_run(bank, recording.runs.front(), FilterOptions());

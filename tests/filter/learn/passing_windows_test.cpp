@@ -13,7 +13,7 @@ namespace {
 
 using test::near;
 
-/// Windows of 25 transitions of runs with these labels, `step` apart, all with equal residual variance.
+/// Windows of 25 transitions, `step` apart, in runs with these labels. All windows have the same residual variance.
 struct Labelled {
   WindowFits fits;
   MixtureResult mixture;
@@ -41,7 +41,7 @@ std::vector<int> sequence(const std::vector<std::pair<int, int>>& stretches) {
   return labels;
 }
 
-// A switch lies inside a window of 25 transitions for 24 starts.
+// A window of 25 transitions contains a given switch for 24 starts.
 TEST(PassingWindows, AComponentThatLastsNoLongerThanASwitchTakes) {
   const Labelled data({sequence({{0, 60}, {2, 24}, {1, 60}, {2, 24}, {0, 60}})}, 3, 1);
   EXPECT_TRUE(near(passing_shares(data.fits, data.mixture), Eigen::Vector3d(0.0, 0.0, 1.0), 0.0));

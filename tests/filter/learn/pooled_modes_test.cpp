@@ -1,5 +1,5 @@
-// Weighted regressions compared with statsmodels and a general minimiser (tests/golden/generate/learn_reference.py),
-// and by laws.
+// Weighted regressions, compared with statsmodels and a general minimiser (tests/golden/generate/learn_reference.py).
+// Also tests of laws.
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 
 #include <gtest/gtest.h>
@@ -17,9 +17,9 @@ namespace {
 
 using test::near;
 
-/// Closed forms on well-conditioned data (condition below 1e2).
+/// Closed forms for well-conditioned data (condition number below 1e2).
 constexpr double exact = 1e-10;
-/// The golden minimiser differentiates its cost numerically; its theta is accurate to about 1e-7.
+/// The minimiser of the golden file differentiates numerically, so its theta is accurate to about 1e-7.
 constexpr double minimiser = 2e-6;
 
 struct WeightedGolden {
@@ -45,7 +45,7 @@ TEST(WeightedMode, OfManyTransitionsIsTheSame) {
   WeightedGolden data;
   const nlohmann::json& expected = data.golden.at("plain");
   Transitions& rows = data.transitions.data;
-  const Index copies = 600'000 / rows.count();  // several blocks, the last one not full
+  const Index copies = 600'000 / rows.count();  // several blocks; the last one is not full
   rows.regressors = rows.regressors.replicate(copies, 1).eval();
   rows.increments = rows.increments.replicate(copies, 1).eval();
   const Eigen::VectorXd weights = data.weights.replicate(copies, 1) / static_cast<double>(copies);
@@ -72,7 +72,7 @@ TEST(WeightedMode, WithOneModeIsTheGlobalModelOfTheSampleWeights) {
   const GlobalModel global = fit_global(data.recording, data.structure);
   EXPECT_GT((global.theta - data.global.theta).norm(), 1e-3);
   const TrainingTransitions transitions = gather_training_transitions(data.recording, data.structure);
-  // A run's first weight belongs to no transition.
+  // The first weight of a run belongs to no transition.
   EXPECT_NEAR(transitions.usable.mean(), 1.0, exact);
   const ModeEstimate mode = fit_weighted_mode(transitions, transitions.usable, global, nullptr);
   EXPECT_TRUE(near(mode.theta, global.theta, exact));
@@ -104,7 +104,7 @@ TEST(WeightedMode, WithoutWeightStaysAtTheGlobalModel) {
 }
 
 TEST(WeightedMode, UnexcitedDirectionsStayAtTheGlobalModel) {
-  // Two inputs that differ in the first half only. A mode of the second half determines only the sum of their gains.
+  // Two inputs that differ only in the first half. A mode of the second half determines only the sum of their gains.
   std::mt19937_64 generator(4);
   boost::random::normal_distribution<double> normal;
   const Index N = 121;
@@ -130,7 +130,7 @@ TEST(WeightedMode, UnexcitedDirectionsStayAtTheGlobalModel) {
 TEST(WeightedMode, NoiseIsFlooredWhereAModeFitsExactly) {
   const WeightedGolden data;
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(data.transitions.count());
-  weights.head(3).setOnes();  // the number of transitions equals that of regressors
+  weights.head(3).setOnes();  // as many transitions as regressors
   const ModeEstimate mode = fit_weighted_mode(data.transitions, weights, data.global, nullptr);
   const Eigen::MatrixXd floor = process_noise_floor * data.global.noise_variance().asDiagonal().toDenseMatrix();
   EXPECT_TRUE(near(mode.Q, floor, 1e-6 * floor.maxCoeff()));

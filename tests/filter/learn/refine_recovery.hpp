@@ -15,7 +15,7 @@
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 
-/// Refinement of systems measured with noise, compared with the truth they were simulated from.
+/// Refinement of simulated systems with measurement noise, compared with the true parameters.
 namespace modebank::test {
 
 /// A bank for simulation. `theta`: one column per mode; `stay`: diagonal of T; `R`: diagonal.
@@ -28,7 +28,7 @@ inline Bank true_bank(const LinearStructure& structure, const Eigen::MatrixXd& t
   return bank;
 }
 
-/// A pendulum (angle, rate) that a torque drives, with one mode per damping. R is `R_factor` times that of typical
+/// A pendulum (angle, rate) driven by a torque, with one mode per damping. R is `R_factor` times the R of typical
 /// sensors.
 inline Bank true_pendulum(const std::vector<double>& dampings, double R_factor) {
   const double dt = 0.02, torque = 70.0;
@@ -65,8 +65,8 @@ inline Recording simulated_recording(const Bank& truth, Index runs, Index sample
   return recording;
 }
 
-/// A start similar to one from clustered windows: theta is shrunk, Q includes measurement noise, and modes are
-/// short-lived.
+/// A start like that from clustered windows: theta is shrunk, Q includes measurement noise, and stays in a mode are
+/// short.
 inline Bank blurred(const Bank& truth, const Recording& recording) {
   Bank start = bank_frame(recording, truth.structure, 1e-3 * truth.R);
   for (Index j = 0; j < truth.mode_count(); ++j)
@@ -86,8 +86,8 @@ inline Refinement refine_blurred(const Bank& truth, const Recording& recording, 
   return refine_bank(recording, windows_of(recording, 25, 1), {blurred(truth, recording)}, options, {});
 }
 
-/// Errors of all learned parameters in standard errors: theta, Q (lower triangles), R, T's diagonal. Modes have the
-/// order of the truth, which starts keep.
+/// Errors of all learned parameters in standard errors: theta, Q (lower triangles), R, T's diagonal. Modes are in the
+/// order of the truth, which the starts preserve.
 inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
   std::vector<double> z;
   const Index n = truth.structure.states;
@@ -118,10 +118,10 @@ inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, 
   return diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front();
 }
 
-/// Interval for the mean NEES of a learned bank. The mean is about n. The interval includes the scatter for a correct
-/// model (the interval of `row`) and the effect of the bank's own error. By the delta method this effect is g' Sigma g.
-/// g is the derivative of log mean NEES on the held-out runs with respect to the bank's coordinates. Sigma is the
-/// covariance of the coordinates, the inverse of the training runs' information.
+/// Interval for the mean NEES of a learned bank, whose expected value is about n. The interval includes the scatter for
+/// a correct model (the interval of `row`) and the effect of the bank's own error. By the delta method this effect is
+/// g' Sigma g. g is the derivative of log mean NEES on the held-out runs with respect to the bank's coordinates. Sigma
+/// is the covariance of the coordinates, the inverse of the training runs' information.
 struct NeesInterval {
   double lower, upper;
   double parameter_sd, filter_sd;  ///< standard deviations of the logarithm

@@ -1,5 +1,6 @@
-// Statistics over many seeds. Standard errors are right. Filters with the true parameters lie in the intervals of mean
-// NEES and NIS, and wrong filters lie outside. Learned filters lie inside if their parameters are known well enough.
+// Statistics over many seeds. Tested are: standard errors are right; with the true parameters, mean NEES and NIS lie in
+// their intervals; with wrong parameters, they lie outside; with learned parameters, they lie inside if the parameters
+// are known well enough.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -45,16 +46,16 @@ TEST_P(RefineRecoverySeeds, ErrorsAreAsLargeAsStated) {
   RecordProperty("in_a_learned_filters_interval", std::to_string(as_known));
   RecordProperty("in_a_true_filters_interval", std::to_string(as_true));
   EXPECT_NEAR(std::sqrt(squares / count), 1.0, 0.15);
-  EXPECT_LT(beyond / count, 0.02);  // 0.27 % by the normal law; variances are skewed
+  EXPECT_LT(beyond / count, 0.02);  // 0.27 % for a normal distribution; variances have a skewed distribution
 
-  // 95 % of 20 are 19; fewer than 17 have a probability of 1.6 %. The interval for a correct model contains fewer (11
-  // to 18), because parameters from so few training samples have errors.
+  // 95 % of 20 is 19; fewer than 17 have a probability of 1.6 %. The interval for a correct model contains fewer (11 to
+  // 18), because so few training samples give parameters with errors.
   EXPECT_GE(as_known, 17.0);
   const auto states = static_cast<double>(system.truth.structure.states);
   EXPECT_NEAR(nees, states, 0.04 * states);
 }
 
-/// Number of seeds (out of 100) for which the mean NEES of a filter, the mean NIS, and both lie in their intervals.
+/// Number of seeds (out of 100) for which the filter's mean NEES, its mean NIS, and both lie in their intervals.
 struct Inside {
   double nees = 0.0, nis = 0.0, both = 0.0;
 };
@@ -74,8 +75,8 @@ Inside count_inside(const Bank& filter, const Bank& truth, std::uint64_t seeds) 
   return inside;
 }
 
-/// 95 of 100 are expected; fewer than 89 have a probability of 1 %, more than 99 of 0.6 %. The IMM's approximation has
-/// no visible effect.
+/// 95 of 100 are expected. Fewer than 89 have a probability of 1 %, more than 99 a probability of 0.6 %. The IMM's
+/// approximation has no visible effect.
 TEST_P(RefineRecoverySeeds, TrueFiltersLieInTheirIntervals) {
   const Inside inside = count_inside(GetParam().truth, GetParam().truth, 100);
   EXPECT_GE(inside.nees, 89.0);
@@ -85,7 +86,7 @@ TEST_P(RefineRecoverySeeds, TrueFiltersLieInTheirIntervals) {
 }
 
 /// A factor of four on Q or R must move NEES or NIS outside its interval. One of the two may stay inside. If Q is far
-/// larger than R, the state equals the measurement for any Q. And the NIS of rare, distant switches scatters.
+/// larger than R, the state equals the measurement for any Q. If switches are rare and distant, the NIS scatters.
 TEST_P(RefineRecoverySeeds, WrongFiltersDoNot) {
   for (const double factor : {0.25, 4.0})
     for (const bool process : {true, false}) {

@@ -1,4 +1,5 @@
-// With measurement noise, refinement ends at the maximum of the filter's likelihood, which recovers the truth.
+// With measurement noise, refinement ends at the maximum of the filter's likelihood. This maximum recovers the true
+// parameters.
 #include "tests/filter/learn/refine_recovery.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ namespace {
 using test::refine_blurred;
 using test::simulated_recording;
 
-/// A prior that only fixes theta at that of the global model, like in the baseline.
+/// A prior that only fixes theta at the global model's theta, as in the baseline.
 SwitchingPrior theta_known(const Recording& recording, const LinearStructure& structure) {
   const TrainingTransitions transitions = gather_training_transitions(recording, structure);
   SwitchingPrior prior = switching_prior(transitions, fit_global(recording, structure), {}, 0.0);
@@ -34,7 +35,7 @@ FreeParameters everything(const Bank& bank, double theta_unit) {
   return free;
 }
 
-/// For one mode the likelihood is exact, and the baseline maximises it over Q and R by another method.
+/// For one mode the likelihood is exact. The baseline maximises it over Q and R by another method.
 TEST(MaximiseLikelihood, OfOneModeReachesTheBaselinesMaximum) {
   const Bank truth = test::true_pendulum({1.0}, 1.0);
   const Recording recording = simulated_recording(truth, 2, 800, 3);
@@ -48,14 +49,14 @@ TEST(MaximiseLikelihood, OfOneModeReachesTheBaselinesMaximum) {
   EXPECT_EQ(maximum.end, MeasuredFit::converged);
   bank = maximum.bank;
   EXPECT_NEAR(training_log_likelihood(bank, recording, {}), baseline.log_likelihood, 1e-4);
-  constexpr double near_enough = 1e-2;  // a hundredth of each parameter is far below its standard error
+  constexpr double near_enough = 1e-2;  // a hundredth of each parameter is far below the parameter's standard error
   EXPECT_TRUE(bank.modes[0].Q.isApprox(baseline.bank.modes[0].Q, near_enough)) << bank.modes[0].Q;
   EXPECT_NEAR(bank.modes[0].Q(0, 0), baseline.bank.modes[0].Q(0, 0), near_enough * bank.modes[0].Q(0, 0));
   EXPECT_NEAR(bank.R(0, 0), baseline.bank.R(0, 0), near_enough * bank.R(0, 0));
   EXPECT_NEAR(bank.R(1, 1), baseline.bank.R(1, 1), near_enough * bank.R(1, 1));
 }
 
-/// At a maximum no step in either direction gains, for any number of modes.
+/// At a maximum no step in either direction gains. Tested for several numbers of modes.
 TEST(MaximiseLikelihood, EndsWhereNoStepGains) {
   const Bank truth = test::true_pair(1.0);
   const Recording recording = simulated_recording(truth, 3, 300, 5);
@@ -125,7 +126,8 @@ TEST(BankCoordinates, HoldWhatIsKnownAndScaleQByOneFactor) {
   EXPECT_EQ(moved.transition.matrix(), truth.transition.matrix());
 }
 
-/// If modes hardly move, the share of Q of some outputs is below R's bound. Variances must not fall through zero.
+/// If modes hardly move, a starting value of R (a share of Q) is below R's bound for some outputs. Variances must not
+/// become negative.
 TEST(BankCoordinates, KeepRAtItsBound) {
   Bank truth = test::true_pair(1.0);
   FreeParameters noise;
@@ -141,8 +143,8 @@ TEST(BankCoordinates, KeepRAtItsBound) {
   }
 }
 
-/// By hand: the derivative of R_ii with respect to its logarithm is R_ii. That of a row of T with respect to the
-/// logarithm of one entry is T_ij (delta - T_ik).
+/// By hand: the derivative of R_ii with respect to its logarithm is R_ii. The derivative of a row of T with respect to
+/// the logarithm of one entry is T_ij (delta - T_ik).
 TEST(BankCoordinates, JacobianIsThatOfTheParameters) {
   const Bank truth = test::true_scalar(1.0);
   const BankCoordinates around(truth, everything(truth, 0.1));
@@ -172,7 +174,7 @@ TEST_P(RefineRecovery, TwoModesOfTwoStatesWithinThreeStandardErrors) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RefineRecovery, testing::Values(11, 12, 13));
 
-/// Regression test: the pendulum's modes differ so much that the global residual covariance, used as a prior on Q, once
+/// Regression test: the modes of the pendulum differ much. When the global residual covariance was the prior on Q, it
 /// outweighed the data.
 TEST(RefineRecovery, PendulumOfTwoDampingsIsCalibratedOnHeldOutRuns) {
   const Bank truth = test::true_pendulum({0.2, 20.0}, 1.0);
@@ -185,7 +187,7 @@ TEST(RefineRecovery, PendulumOfTwoDampingsIsCalibratedOnHeldOutRuns) {
   const DiagnosticsRow row = test::held_out_diagnostics(bank, truth, 2);
   EXPECT_GT(row.nees_mean, row.nees_lower);
   EXPECT_LT(row.nees_mean, row.nees_upper);
-  // Switches are rare and large. So NIS is not chi-square, even for a correct model.
+  // Switches are rare and large. So NIS is not chi-square, even if the model is correct.
   EXPECT_NEAR(row.nis_mean, test::held_out_diagnostics(truth, truth, 2).nis_mean, 0.05);
 }
 

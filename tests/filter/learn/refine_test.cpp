@@ -1,4 +1,4 @@
-// Refinement: recovery of simulated truth, choice by cross-validation, screening.
+// Refinement: recovery of simulated parameters, choice by cross-validation, screening.
 #include "filter/learn/refine/refine.hpp"
 
 #include <gmock/gmock.h>
@@ -96,7 +96,7 @@ TEST_F(Refine, OneThetaIsThatOfAllModes) {
   }
 }
 
-/// Without folds no score decides whether a stronger prior on Q would gain.
+/// Without folds no score can decide whether a stronger prior on Q gains.
 TEST_F(Refine, WithoutAnythingToLeaveOutThePriorIsWorthOneTransition) {
   learn_from(1, 30);
   RefineOptions options = quick();

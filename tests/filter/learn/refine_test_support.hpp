@@ -18,7 +18,7 @@ struct Truth {
   Eigen::Matrix3d T{{0.96, 0.03, 0.01}, {0.02, 0.96, 0.02}, {0.02, 0.02, 0.96}};
 };
 
-/// x[k+1] = x + a x + b u + w with switching modes, exactly measured; `rough` scales the standard deviation of w.
+/// x[k+1] = x + a x + b u + w with switching modes, exactly measured. `rough` multiplies the standard deviation of w.
 inline void simulate(const Truth& truth, Index runs, Index samples, double rough, Role role, std::mt19937_64& generator,
                      Recording& recording) {
   boost::random::normal_distribution<double> normal;

@@ -1,4 +1,4 @@
-// Learning from measurements in multiples of a quantum.
+// Learning from measurements that are rounded to multiples of a quantum.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ Recording rounded_recording(double quantum) {
 }
 
 TEST(RoundedStates, TheBaselineFindsWhatLeastSquaresMiss) {
-  const double quantum = 0.2;  // two innovation standard deviations
+  const double quantum = 0.2;  // the quantum is two standard deviations of the innovation
   Recording recording = rounded_recording(quantum);
   const LinearStructure structure = test::structure_of(recording);
   const GlobalModel global = fit_global(recording, structure);
@@ -59,7 +59,7 @@ TEST(RoundedStates, NoiseOnlyFindsWhatLeastSquaresMiss) {
   EXPECT_EQ(bank.R, R);
 }
 
-/// Most values repeat the previous one. Huber's regression would treat this as an exact law.
+/// Most values equal the previous value. Huber's regression would treat this as an exact law.
 TEST(RoundedStates, NoiseOnlyIsNotFooledByRepeats) {
   Recording recording = rounded_recording(0.9);
   const LinearStructure structure = test::structure_of(recording);

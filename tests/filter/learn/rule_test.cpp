@@ -17,7 +17,7 @@ RefineTuning losing(double most) {
   return tuning;
 }
 
-/// A candidate whose runs score this number of nats per hundred samples below 2000 each.
+/// A candidate whose runs score 2000 minus this number of nats per hundred samples.
 LeftOutScores below(Eigen::Index modes, const Eigen::Vector4d& losses) {
   return {modes, Eigen::VectorXd::Constant(4, 2000.0) - 10.0 * losses};
 }
@@ -30,7 +30,7 @@ TEST(ModelChoice, PairedLossIsClusteredByRun) {
   EXPECT_NEAR(loss.standard_error, std::sqrt(2000.0 / 3.0) / 4000.0, 1e-15);
 }
 
-/// A loss that is equal in every sample has no error, whatever the lengths of the runs.
+/// A loss that is equal in every sample has a standard error of zero, whatever the lengths of the runs.
 TEST(ModelChoice, RunsOfDifferentLengthDoNotBlurALossPerSample) {
   const Eigen::VectorXd lengths = Eigen::Vector3d(50.0, 100.0, 400.0);
   const PairedLoss loss = paired_loss(Eigen::VectorXd::Zero(3), -0.01 * lengths, lengths);
@@ -53,7 +53,7 @@ TEST(ModelChoice, FewestModesWithinOneStandardError) {
   EXPECT_EQ(fewest_modes_as_good(candidates, thousands, losing(0.02)), 1u);
 }
 
-/// With few runs the standard error is unreliable. If it were the only criterion, it would excuse any loss.
+/// With few runs the standard error is unreliable. As the only criterion it would accept any loss.
 TEST(ModelChoice, ALossAboveTheLimitIsNotExcusedByItsError) {
   // One mode loses 0.025 +- 0.095.
   const std::vector<LeftOutScores> candidates{below(2, {0, 0, 0, 0}), below(1, {30, -10, 0, -10})};
@@ -61,7 +61,8 @@ TEST(ModelChoice, ALossAboveTheLimitIsNotExcusedByItsError) {
   EXPECT_EQ(fewest_modes_as_good(candidates, thousands, losing(0.03)), 1u);
 }
 
-/// Four modes gain 0.0008 +- 0.0001 nats per sample over three: significant, but too little for a fourth mode.
+/// Four modes gain 0.0008 +- 0.0001 nats per sample over three modes. This is significant, but too little for a fourth
+/// mode.
 TEST(ModelChoice, AGainTooSmallToMatterAddsNoMode) {
   const std::vector<LeftOutScores> candidates{below(4, {0, 0, 0, 0}), below(3, {0.08, 0.06, 0.1, 0.08}),
                                               below(2, {0.2, 0.22, 0.18, 0.2})};
@@ -75,7 +76,7 @@ TEST(ModelChoice, OfAsManyModesTheBestThatQualifies) {
   EXPECT_EQ(fewest_modes_as_good({candidates[0], candidates[0]}, thousands, losing(0.02)), 0u);
 }
 
-/// log(7 / 0.05) nats over all samples, or with many samples 0.001 nats each.
+/// The gain must be log(7 / 0.05) nats over all samples; with many samples, 0.001 nats per sample.
 TEST(Rule, TheLeastThatCountsIsAProbabilityOfErrorAndNotTooSmallToMatter) {
   EXPECT_NEAR(least_worth(1200.0), 4.94164242 / 1200.0, 1e-10);
   EXPECT_EQ(least_worth(1e6), 1e-3);

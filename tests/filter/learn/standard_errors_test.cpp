@@ -1,4 +1,4 @@
-// Standard errors of a bank by single samples' gradients: effect of the filter and of sample weights.
+// Standard errors of a bank from the gradients of single samples: effect of the filter and of sample weights.
 #include "filter/learn/likelihood/standard_errors.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ class StandardErrors : public testing::Test {
   Bank truth = test::true_scalar(1.0);
   Recording recording = test::simulated_recording(truth, 2, 500, 9);
 
-  /// Standard errors of the true parameters for a given recording and filter. Everything else comes from the whole
+  /// Standard errors of the true parameters for a given recording and filter. All other inputs come from the whole
   /// recording.
   Bank errors_in(const Recording& of, const FilterOptions& filter) const {
     const TrainingTransitions transitions = gather_training_transitions(recording, truth.structure);
@@ -47,7 +47,7 @@ TEST_F(StandardErrors, GoByTheSamplesWeights) {
   for (Trajectory& run : weighted.runs) run.weight.setConstant(run.samples(), 3.0);
   expect_same(errors_in(weighted, {}), plain, 1e-12);
 
-  // The second run's samples have no weight, but the first run's information per transition must not double.
+  // The samples of the second run have no weight. The information per transition of the first run must not double.
   weighted.runs[1].weight.setZero();
   Recording first = recording;
   first.runs.resize(1);
@@ -55,7 +55,7 @@ TEST_F(StandardErrors, GoByTheSamplesWeights) {
   EXPECT_GT(errors_in(weighted, {}).modes[0].standard_error(1), 1.2 * plain.modes[0].standard_error(1));
 }
 
-/// A filter that ignores times treats gaps as absent.
+/// A filter that ignores times makes one step at every gap.
 TEST_F(StandardErrors, AreThoseOfTheFilterThatRuns) {
   truth.dt_s = recording.median_period_s();
   const Bank plain = errors_in(recording, {});
@@ -66,8 +66,8 @@ TEST_F(StandardErrors, AreThoseOfTheFilterThatRuns) {
   EXPECT_FALSE(errors_in(gaps, {}).modes[0].parameter_covariance.isApprox(plain.modes[0].parameter_covariance, 0.05));
 }
 
-/// A mode that occurs only in a later run, after more samples than the errors are computed from. Closed form: least
-/// squares' Q (sum of phi phi')^-1 of that run.
+/// A mode that occurs only in a later run. The samples before this run are more than the standard errors are computed
+/// from. Closed form: least squares' Q (sum of phi phi')^-1 of that run.
 TEST(StandardErrorsOfLongData, RestOnAllRuns) {
   const Bank truth = test::true_bank({1, 1, false}, Eigen::MatrixXd{{-0.2, -0.6}, {1.0, 3.0}},
                                      {Eigen::MatrixXd{{0.01}}, Eigen::MatrixXd{{0.04}}}, Eigen::VectorXd::Zero(1), 1.0);
@@ -93,8 +93,9 @@ TEST(StandardErrorsOfLongData, RestOnAllRuns) {
   }
 }
 
-/// Expectation-maximisation gives rough and quiet runs equal weight. So its errors are those of a filter with equal
-/// weights, for any filter of the bank. In the adaptive filter they would be half that size (1.9 and 2.3 here).
+/// Expectation-maximisation gives all runs equal weight, whether their noise is large or small. So its errors are those
+/// of a filter with equal weights, whatever the bank's filter. In the adaptive filter the stated errors would be half
+/// of that (1.9 and 2.3 here).
 TEST(StandardErrorsByDraws, AreAsLargeAsTheErrorsWhereRunsDifferInRoughness) {
   constexpr std::uint64_t draws = 30;
   const Bank truth = test::true_bank({1, 1, false}, Eigen::Vector2d(-0.3, 0.5), {Eigen::MatrixXd{{0.01}}},

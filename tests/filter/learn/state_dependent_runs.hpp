@@ -13,13 +13,13 @@ namespace modebank::test {
 
 inline constexpr double mode_a[] = {-0.5, -0.1}, mode_b[] = {0.4, -0.3}, mode_sd[] = {0.05, 0.1};
 
-/// Mode 1 after mode i has the log odds offset(i) + slope u.
+/// Log odds of mode 1 after mode i: offset(i) + slope u.
 struct LogOdds {
   Eigen::Vector2d offset;
   double slope;
 };
 
-/// x+ = x + a_m x + b_m u + w; the mode of a step is drawn from these odds. No input lies within `gap` of `border`.
+/// x+ = x + a_m x + b_m u + w. The mode of a step is drawn from these odds. No input lies within `gap` of `border`.
 inline Recording state_dependent_runs(const LogOdds& log_odds, Index runs, Index samples, std::uint64_t seed,
                                       double border = 0.0, double gap = 0.0) {
   std::mt19937_64 generator(seed);

@@ -1,5 +1,5 @@
-// State-dependent transition probabilities, chosen by cross-validation. Soft and hard borders are found; a Markov chain
-// stays unchanged.
+// State-dependent transition probabilities, chosen by cross-validation. Soft and hard borders are found. A Markov chain
+// keeps its constant T.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +51,7 @@ double log_odds_of_staying(const Bank& bank) {
   return std::log(T(0, 0) / T(0, 1)) + std::log(T(1, 1) / T(1, 0));
 }
 
-/// If the input alone determines the mode, borders do not depend on the previous mode; otherwise they do.
+/// If the input alone determines the mode, the borders do not depend on the previous mode. Otherwise they do.
 TEST(StateDependentTransition, TheModeBeforeCountsWhereItMatters) {
   const Refinement without = refined(state_dependent_runs({{-0.4e6, -0.4e6}, 1e6}, 8, 400, 7), {{-3.0, 3.0}, 0.0});
   EXPECT_LT(without.switching.memory_sd, 1.0);
@@ -83,7 +83,7 @@ TEST(StateDependentTransition, OfAHardBorderNoErrorIsStatedAndTheBorderLiesInThe
   }
 }
 
-/// In such a gap only the prior determines the curvature of the likelihood, so no standard error may be stated.
+/// In such a gap the curvature of the likelihood comes only from the prior, so no standard error may be given.
 TEST(StateDependentTransition, OfAHardBorderNoErrorIsStatedWhereInputsLeaveAGap) {
   const double border = 0.4, gap = 0.1;
   for (const std::uint64_t seed : {8, 9, 10}) {

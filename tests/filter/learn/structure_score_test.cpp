@@ -1,4 +1,4 @@
-// The lags that modes choose, for systems with known structure, by the comparison on left-out runs.
+// The lags that are chosen for modes on left-out runs, for systems with known structure.
 #include "filter/learn/refine/structure_score.hpp"
 
 #include <gmock/gmock.h>
@@ -39,7 +39,7 @@ Recording second_order(std::uint64_t seed) {
 }
 
 /// Modes with one lag must keep it, although one linear model of all modes would use more lags. The alternative has
-/// eighteen superfluous regressors, which each mode must learn.
+/// eighteen regressors too many, which each mode must learn.
 TEST(StructureScore, ModesWithOneLagLeaveTheLagsThatALinearModelWants) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const StructuresOfModes compared =
@@ -49,8 +49,8 @@ TEST(StructureScore, ModesWithOneLagLeaveTheLagsThatALinearModelWants) {
   }
 }
 
-/// x[k+1] = a x[k] + b u[k] + w with other coefficients in each run. Scores of left-out runs differ so much that their
-/// standard error hides every gain.
+/// x[k+1] = a x[k] + b u[k] + w, with other coefficients in each run. Scores of left-out runs differ so much that their
+/// standard error is larger than any gain.
 Recording another_mode_each_run(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   boost::random::normal_distribution<double> normal;
@@ -67,9 +67,9 @@ Recording another_mode_each_run(std::uint64_t seed) {
   return recording;
 }
 
-/// Structures with fewer lags that gain are accepted without regard to the standard error. Regression test: a system of
-/// two states and four modes kept three lags and a delay of five samples from its linear model, although one lag gained
-/// 0.2 nats per sample.
+/// A structure with fewer lags that gains is accepted without regard to the standard error. Regression test: a system
+/// of two states and four modes kept the three lags and the delay of five samples of its linear model. One lag would
+/// have gained 0.2 nats per sample.
 TEST(StructureScore, FewerLagsThatGainNeedNoStandardError) {
   const StructuresOfModes compared =
       compare_structures(another_mode_each_run(1), {lags(1, 1), lags(8, 8)}, 1, false, 1);

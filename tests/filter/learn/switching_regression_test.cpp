@@ -1,5 +1,5 @@
-// The switching regression is compared with an enumeration of all sequences of modes, with the filter's likelihood, and
-// with its own laws.
+// The switching regression, compared with the sum over all sequences of modes, with the filter's likelihood, and with
+// its own laws.
 #include "filter/learn/switching/switching_regression.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ namespace {
 
 using test::near;
 
-/// Runs of n states and one input; the random walk of modes is irrelevant here.
+/// Runs of n states and one input; the sequence of modes does not matter here.
 Recording noisy_runs(Index n, const std::vector<Index>& samples, double missing = 0.0) {
   std::mt19937_64 generator(3);
   boost::random::normal_distribution<double> normal;
@@ -61,7 +61,7 @@ double density(const Eigen::VectorXd& r, const Eigen::MatrixXd& Q) {
   return std::exp(-0.5 * r.dot(Q.inverse() * r)) / std::sqrt((2.0 * std::numbers::pi * Q).determinant());
 }
 
-/// p(run, modes before and at every transition), summed over all sequences by enumeration.
+/// p(run, modes before and at every transition), summed over all sequences of modes.
 ModePosterior enumerate(const TrainingTransitions& t, const SwitchingRegression& model) {
   const Index K = model.modes();
   ModePosterior sum{Eigen::MatrixXd::Zero(t.count(), K), Eigen::MatrixXd::Zero(K, K), Eigen::VectorXd::Zero(K)};
@@ -117,7 +117,7 @@ TEST(SwitchingRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
   bank.initial_probability = model.initial;
   double expected = 0.0;
   for (const Trajectory& run : recording.runs) expected += log_likelihood(bank, run, {});
-  EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter has a floor on probabilities
+  EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter has a lower bound on probabilities
 }
 
 class SwitchingRegressionEm : public testing::TestWithParam<bool> {};
@@ -148,8 +148,8 @@ TEST_P(SwitchingRegressionEm, EveryIterationRaisesTheObjective) {
 INSTANTIATE_TEST_SUITE_P(OneTheta, SwitchingRegressionEm, testing::Bool(),
                          [](const auto& test) { return test.param ? "yes" : "no"; });
 
-/// If T has zeros, the mode of largest density may be impossible. The scale in the log domain must come from a possible
-/// mode.
+/// If T has zeros, the mode with the largest density may be impossible. The scale in the log domain must come from a
+/// possible mode.
 TEST(SwitchingRegression, ImpossibleModesDoNotScaleTheOthersAway) {
   Recording recording = noisy_runs(1, {4});
   recording.runs[0].state << 0.0, 100.0, 100.0, 100.0;
@@ -174,7 +174,7 @@ TEST(DefiniteInverse, IsEmptyWhereThereIsNone) {
     EXPECT_FALSE(definite_inverse(matrix));
 }
 
-/// A singular covariance has no density and gives no errors; theta then stays unchanged.
+/// A singular covariance has no density and no errors. theta is then not changed.
 TEST(SwitchingRegression, ACovarianceThatIsNotDefiniteIsSaidToBe) {
   const Recording recording = noisy_runs(2, {100, 80});
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));

@@ -11,7 +11,7 @@ namespace {
 
 using test::near;
 
-/// Rounding of a few divisions.
+/// Rounding error of a few divisions.
 constexpr double row_rounding = 1e-14;
 
 WindowFits windows(std::initializer_list<Window> list, Index step) {
@@ -25,8 +25,8 @@ TEST(LabelTransitions, CountsNeighboursWithinRuns) {
   const WindowFits fits = windows({{0, 0}, {0, 2}, {0, 4}, {0, 8}, {1, 0}, {1, 2}, {1, 4}, {1, 6}}, 2);
   Eigen::VectorXi labels(8);
   labels << 0, 0, 1, 1, 1, -1, 1, 0;
-  // 0->0, 0->1; 4 to 8 is a gap; then the border of a run; the unclustered window counts as the previous mode: 1->1
-  // twice; 1->0.
+  // Counts: 0->0 and 0->1. Windows 4 and 8 have a gap between them. Then a new run begins. The window without a mode
+  // counts as the previous mode: 1->1 twice; 1->0.
   Eigen::MatrixXd expected(2, 2);
   expected << 1, 1, 1, 2;
   EXPECT_TRUE(near(count_label_transitions(fits, labels, {0, 1}), expected, 0.0));

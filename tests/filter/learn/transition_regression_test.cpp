@@ -53,7 +53,7 @@ TEST(TransitionRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
   const SwitchingRegression model = true_model(soft);
   double expected = 0.0;
   for (const Trajectory& run : recording.runs) expected += log_likelihood(bank_of(recording, t, model), run, {});
-  EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter has a floor on probabilities
+  EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter has a lower bound on probabilities
 }
 
 TEST(TransitionRegression, NoEffectIsTheConstantTransitionMatrix) {
@@ -75,7 +75,8 @@ SwitchingPrior prior_of(const Recording& recording, const TrainingTransitions& t
   return with_logit_prior(switching_prior(t, fit_global(recording, t.structure), {}, 4.0), t, logit_prior);
 }
 
-/// For two modes the memory is a quarter of the difference of the log odds after the two modes.
+/// For two modes the memory is a quarter of a difference: log odds after the one mode minus log odds after the other
+/// mode.
 TEST(TransitionRegression, MemoryIsWhatRowsAndColumnsDoNotExplain) {
   const Eigen::Matrix2d log_T = Eigen::Matrix2d{{0.7, 0.3}, {0.1, 0.9}}.array().log();
   const double m = (std::log(0.7) - std::log(0.3) - std::log(0.1) + std::log(0.9)) / 4.0;
@@ -87,13 +88,13 @@ TEST(TransitionRegression, MemoryIsWhatRowsAndColumnsDoNotExplain) {
   EXPECT_TRUE(near(memory_projection(3) * some.transpose().reshaped(), memory_of(some).transpose().reshaped(), 1e-14));
 }
 
-/// The prior's information about T is the curvature of its log density along rows of T.
+/// The prior's information about T is the curvature of the prior's log density along the rows of T.
 TEST(TransitionRegression, InformationOfMemoryIsTheCurvatureOfItsPrior) {
   const Recording recording = state_dependent_runs(soft, 2, 100, 2);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   SwitchingPrior prior = prior_of(recording, t, {1.0, any});
   SwitchingRegression model = true_model(soft);
-  model.transition = Eigen::Matrix2d{{0.6, 0.4}, {0.6, 0.4}};  // no memory: the log density is a square only
+  model.transition = Eigen::Matrix2d{{0.6, 0.4}, {0.6, 0.4}};  // without memory, the log density is only a square
   const Bank bank = bank_of(recording, t, model);
   const BankCoordinates around(
       bank, all_parameters(bank, sum_transitions(t, smooth_modes(t, model), prior), prior, false, false, {}));
@@ -128,8 +129,7 @@ TEST(TransitionRegression, EveryIterationRaisesThePenalisedLikelihood) {
   }
 }
 
-/// At the maximum a Newton step gains nothing. Near the maximum the objective, computed again here, falls in every
-/// direction.
+/// At the maximum a Newton step gains nothing. The objective is computed again here; it must fall in every direction.
 TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
   const Recording recording = state_dependent_runs(soft, 2, 300, 4);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
@@ -169,7 +169,8 @@ TEST(TransitionRegression, EndsWhereTheExpectedLogPosteriorIsLargest) {
     }
 }
 
-/// Mode 1 occurs twice, slightly different. The closest pair becomes one mode again, with the probabilities of both.
+/// Mode 1 occurs twice, in slightly different form. The closest pair must become one mode again, with the probabilities
+/// of both.
 TEST(TransitionRegression, TheClosestPairIsMerged) {
   const Recording recording = state_dependent_runs(soft, 4, 300, 11);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));

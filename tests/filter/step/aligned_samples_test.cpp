@@ -1,4 +1,4 @@
-// Live samples and whole runs must be joined in the same way, by hold and interpolation.
+// Live samples and whole runs must be aligned in the same way, by holding and interpolation.
 #include "filter/step/feed/aligned_samples.hpp"
 
 #include <gtest/gtest.h>
@@ -83,8 +83,8 @@ TEST(AlignedSamples, AverageWhatTheWholeRunAverages) {
       }
 }
 
-/// A log with a period of .07 s is too near a rate of 10 Hz for averages. A log with a period of .12 s is slower than
-/// the rate.
+/// A log with a period of .07 s is too slow for averages at a rate of 10 Hz. A log with a period of .12 s is slower
+/// than the rate.
 TEST(AlignedSamples, AverageOnlyWhatIsFasterByHalf) {
   for (const double period_s : {0.07, 0.12}) {
     const Recorded run(50, period_s, 0.0);
@@ -101,7 +101,7 @@ TEST(AlignedSamples, OfASlowStreamKeepTheirTimes) {
   for (Index k = 0; k < 50; ++k) EXPECT_EQ(samples[static_cast<std::size_t>(k)].time_s, run.time_s(k));
 }
 
-/// After a pause, three samples of a fast log pass unchanged. Later samples come at the rate.
+/// After a pause, the first three samples of a fast log pass unchanged. Later samples come at the rate.
 TEST(AlignedSamples, FindTheRateAfterAPause) {
   Recorded run(400, 0.01, 0.0);
   run.time_s.tail(399).array() += 0.7;

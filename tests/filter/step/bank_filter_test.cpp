@@ -1,4 +1,4 @@
-// The live filter with unusual banks and samples.
+// The live filter with unusual banks and unusual samples.
 #include "filter/step/bank_filter.hpp"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(BankFilter, AnInputThatIsNoNumberIsTheLastKnownOne) {
   EXPECT_EQ(last(INFINITY), last(0.3));
 }
 
-/// Without measurement noise, and with process noise of rank one or zero, S becomes singular.
+/// S becomes singular without measurement noise, if the process noise has rank one or zero.
 TEST(BankFilter, VariancesAreNeverNegative) {
   for (const Index n : {2, 3})
     for (const double q : {0.0, 1e-4}) {

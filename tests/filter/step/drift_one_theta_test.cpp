@@ -1,4 +1,4 @@
-// Modes that share theta and differ in noise alone. What one mode learns about theta applies to all modes.
+// Modes that share theta and differ only in noise. What one mode learns about theta applies to all modes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,9 +40,9 @@ TEST(DriftOfOneTheta, ModesThatAreTheSameAreOneThatDrifts) {
   }
 }
 
-/// Largest loss of a run [nats] by an unknown theta, if its noise were always the smallest. theta is Gaussian about
-/// another theta, with the mean Q of its modes (as in DriftModel). With z the regressors of a transition: log det(I +
-/// P0 sum z z' / q) / 2 + |difference|^2 / (2 P0).
+/// Largest loss of a run [nats] because theta is unknown, if the noise were always the smallest. theta is Gaussian
+/// about another theta, with the mean Q of its modes (as in DriftModel). z are the regressors of a transition: log
+/// det(I + P0 sum z z' / q) / 2 + |difference|^2 / (2 P0).
 double cost_of_learning(const Bank& bank, const Bank& truth, const Trajectory& run, double mean_Q, double least_Q) {
   const Index r = bank.structure.regressors();
   Eigen::MatrixXd known = Eigen::MatrixXd::Identity(r, r);

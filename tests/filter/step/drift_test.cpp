@@ -1,4 +1,4 @@
-// Modes that drift: laws, closed forms, an independent reference, continuing from a snapshot.
+// Modes that drift: laws, closed forms, an independent reference, and continuing from a snapshot.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -8,7 +8,8 @@
 namespace modebank::test {
 
 inline constexpr double law_digits = 1e-12;
-inline constexpr double two_routes = 1e-9;  // two computations in double precision over a few hundred samples
+inline constexpr double two_routes = 1e-9;  // tolerance for two computations in double precision over a few hundred
+                                            // samples
 
 /// K modes of n states, exactly measured.
 inline Bank exact_bank(Index n, Index K) {
@@ -29,7 +30,7 @@ inline Trajectory with_holes(Trajectory run) {
   return run;
 }
 
-/// A bank with one drifting mode and known variance, and its results on a run.
+/// A bank with one drifting mode and known variance, with its results for a run.
 struct OneMode {
   Bank model;  ///< model with constant running noise
   Bank bank;   ///< bank with the same model, by the general equations

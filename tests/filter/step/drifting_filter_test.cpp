@@ -1,4 +1,4 @@
-// The drifting model live: snapshots, rejected inputs, unusual samples.
+// The drifting model sample by sample: snapshots, rejected inputs, unusual samples.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +77,7 @@ TEST(DriftingFilter, RefusesWhatIsNone) {
   EXPECT_THROW(filter.restore(odd), std::invalid_argument);
 }
 
-/// Any input gives finite numbers.
+/// Any input must give finite numbers.
 TEST(DriftingFilter, StaysFiniteOnWildSamples) {
   for (const double huge : {1e8, 1e25}) {
     Bank model = example_drifting(1, 1, 2);

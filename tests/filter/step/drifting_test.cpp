@@ -24,7 +24,7 @@ using test::holed;
 using test::near;
 using test::simulate_drifting;
 
-constexpr double drift_digits = 1e-10;  // two computations in double precision over a few hundred samples
+constexpr double drift_digits = 1e-10;  // tolerance for two computations in double precision over a few hundred samples
 
 TEST(StudentNoise, DensityIsTheSlopeOfTheProbabilityAndHasVarianceOne) {
   for (const double nu : {0.0, 2.5, 3.0, 8.0, 15.0}) {
@@ -33,7 +33,7 @@ TEST(StudentNoise, DensityIsTheSlopeOfTheProbabilityAndHasVarianceOne) {
       const double h = 1e-4, slope = (noise.probability(x + h) - noise.probability(x - h)) / (2 * h);
       EXPECT_NEAR(std::exp(noise.log_density(x * x)), slope, 1e-7) << nu << " at " << x;
     }
-    if (nu == 2.5) continue;  // the tails of the distribution are too long for the integration
+    if (nu == 2.5) continue;  // the tails of the distribution are too long for numerical integration
     const double variance =
         integrate([&](double x) { return 2.0 * x * x * std::exp(noise.log_density(x * x)); }, 0.0, 2e4);
     EXPECT_NEAR(variance, 1.0, nu == 3.0 ? 1e-3 : 1e-6) << nu;
@@ -42,8 +42,8 @@ TEST(StudentNoise, DensityIsTheSlopeOfTheProbabilityAndHasVarianceOne) {
     EXPECT_THROW(StudentNoise{nu}, std::invalid_argument);
 }
 
-/// One factor on the input's coefficient with known noise: x[k+1] = (1 + a) x[k] + g[k] b u[k] + e, g a random walk.
-/// The Kalman filter of (a, b g) is written out.
+/// One factor on the input's coefficient, with known noise: x[k+1] = (1 + a) x[k] + g[k] b u[k] + e, where g is a
+/// random walk. The Kalman filter of (a, b g) is written out.
 TEST(Drifting, OneFactorWandersAlongTheInputsCoefficients) {
   Bank model = example_drifting(1, 2, 1);
   model.drift.wandering = Wandering::gain;
@@ -101,7 +101,7 @@ TEST(Drifting, FixedCoefficientsAndVarianceAreOneKalmanFilter) {
     }
 }
 
-/// q = 0: theta is the regularised least squares of all samples so far, for any noise variances.
+/// q = 0: theta is the regularised least squares estimate from all samples so far, for any noise variances.
 TEST(Drifting, ConstantCoefficientsAreBatchLeastSquares) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Bank model = example_drifting(2, 1, 2);
@@ -149,7 +149,7 @@ TEST(Drifting, ScoresTheSamplesThatABankScores) {
     }
 }
 
-/// The published recursion for one output on given regressors. NaN means missing.
+/// The published recursion for one output with given regressors. NaN means a missing sample.
 struct Printed {
   Eigen::VectorXd log_density, prediction;
 };
@@ -176,7 +176,7 @@ Printed printed(const Bank& m, Index output, const Eigen::MatrixXd& h, const Eig
   return out;
 }
 
-/// Outputs may share P only while this makes no difference.
+/// Outputs may share P only as long as sharing does not change the result.
 TEST(Drifting, EveryOutputLearnsFromItsOwnSamples) {
   for (const double nu : {0.0, 5.0}) {
     Bank model = example_drifting(3, 1, 1);
@@ -211,15 +211,15 @@ TEST(Drifting, WhereNothingIsMeasuredThePredictionStandsIn) {
   EXPECT_TRUE(near(e.state.middleCols(10, 2), e.prediction.middleCols(10, 2), 0.0));
   EXPECT_TRUE(near(e.state.col(12).head(2), run.state.col(12), 0.0));
   BankFilter filter(model, {});
-  Eigen::VectorXd state;  // including its lags
+  Eigen::VectorXd state;  // the state includes its lags
   for (Index k = 0; k <= 12; ++k) state = filter.step(run.time_s(k), run.input.col(k), run.state.col(k)).state;
   EXPECT_TRUE(near(state.tail(2), e.prediction.col(11), 0.0));
   EXPECT_EQ(e.covariance.rightCols(28).cwiseAbs().maxCoeff(), 0.0);
   EXPECT_TRUE(std::isfinite(e.log_density(12)));
 }
 
-/// Kolmogorov's distance of N pit values from uniform, times sqrt(N). For a correct model it exceeds 1.95 once in a
-/// thousand times.
+/// Kolmogorov's distance of N pit values from the uniform distribution, times sqrt(N). If the model is correct, it
+/// exceeds 1.95 once in a thousand times.
 double scaled_distance(const Bank& filter, const Bank& truth, std::uint64_t seed) {
   const RunEvaluation e = evaluate_run(filter, simulate_drifting(truth, 3000, seed), {});
   std::vector<double> pit;
@@ -230,14 +230,14 @@ double scaled_distance(const Bank& filter, const Bank& truth, std::uint64_t seed
 
 TEST(Drifting, PitIsUniformWhereTheModelIsTrue) {
   Bank walking = example_drifting(1, 2, 2);
-  walking.running_noise.lam = 1.0;  // the variance stays v0
+  walking.running_noise.lam = 1.0;  // the variance remains v0
   walking.running_noise.nu = 0.0;   // with other noise the filter of drifting coefficients is approximate
   walking.drift.rates = {0.05, 0.5, 0.95};
   Bank heavy = example_drifting(2, 1, 1);
   heavy.running_noise.lam = 1.0;
   heavy.running_noise.nu = 3.0;
   heavy.drift.rates = {0.0, 0.0, 1.0};
-  Bank blind = walking;  // assumes constant coefficients, and the test must detect this
+  Bank blind = walking;  // this filter assumes constant coefficients, and the test must detect the error
   blind.drift.rates.q = 0.0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     EXPECT_LT(scaled_distance(walking, walking, seed), 1.95) << seed;

@@ -23,7 +23,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using test::Index;
 
-constexpr double two_texts = 1e-10;  // vector kernels and equations differ by rounding
+constexpr double two_texts = 1e-10;  // vector kernels and equations differ by rounding errors
 
 struct NamedBank {
   std::string name;
@@ -65,7 +65,7 @@ std::vector<NamedBank> banks() {
   Bank quantised = test::example_bank(1, 1, 2);
   quantised.quantum = VectorXd::Constant(1, 0.05);
   Bank quick = test::example_bank(1, 1, 2);
-  quick.dt_s = 1.0;  // gaps are several steps
+  quick.dt_s = 1.0;  // gaps consist of several steps
   return {{"vector registers", test::example_bank(2, 1, 3)},
           {"many states", test::example_bank(5, 2, 2)},
           {"one mode", test::single_mode(test::example_bank(3, 2, 2), 1), {FilterVariant::kf}},
@@ -178,7 +178,7 @@ TEST(Forecast, IsWhatTheJudgeScores) {
     filter::BankFilter live(installed(bank), options);
     for (Index k = 0; k + steps < samples; ++k) {
       take(live, bank, k);
-      if (k >= 9 && k <= 12) continue;  // the gap lies ahead, where evaluation takes more steps
+      if (k >= 9 && k <= 12) continue;  // a gap follows, in which the evaluation takes more steps
       const std::vector<filter::Forecast> ahead = live.forecast(planned(bank, k, steps), steps);
       for (Index h = 1; h <= steps && live.started(); ++h) {
         const VectorXd error = judged.error[static_cast<std::size_t>(h - 1)].col(k + h);
@@ -278,7 +278,7 @@ TEST(Snapshot, IsRefusedWhereItDoesNotFit) {
   EXPECT_EQ(live.snapshot(), good);
 }
 
-// A bank that was described and rebuilt must give the same bits. Every optional part is on.
+// A bank with every optional part. It is converted to numbers and built again, and must give the same bits.
 TEST(BankDescription, GivesTheSameBankBack) {
   for (const auto& [name, bank, options] : banks()) {
     SCOPED_TRACE(name);

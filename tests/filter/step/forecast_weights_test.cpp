@@ -16,8 +16,8 @@ constexpr double silent = std::numeric_limits<double>::quiet_NaN();
 
 double log_odds(const ForecastWeights& weights) { return std::log(weights.weights()[0] / weights.weights()[1]); }
 
-/// Raftery et al.: the odds of two forecasters are the product of past density ratios. The exponent of a ratio is 0.99
-/// to the power of its age in samples.
+/// Raftery et al.: the odds of two forecasters are the product of past density ratios. A ratio has the exponent
+/// 0.99^age, with its age in samples.
 TEST(ForecastWeights, OddsAreForgottenRatiosOfDensities) {
   ForecastWeights weights(2);
   EXPECT_EQ(weights.weights(), (std::vector<double>{0.5, 0.5}));
@@ -46,7 +46,7 @@ TEST(ForecastWeights, OverlappingForecastsCountAsOneTogether) {
   EXPECT_NEAR(log_odds(far), 0.1, digits);
 }
 
-/// Odds change only if both have a value for a sample.
+/// Odds change only if both forecasters have a value for a sample.
 TEST(ForecastWeights, TheSilentKeepTheirWeight) {
   ForecastWeights weights(3);
   weights.observe({0.3, -0.2, 0.1});
@@ -77,14 +77,15 @@ TEST(ForecastWeights, DensitiesAreMixedByWeight) {
   EXPECT_NEAR(ForecastWeights::mixed_log_density({0.5, 0.5}, {-1e6, -1e6}), -1e6, digits);
 }
 
-/// If each sample has one forecaster of density zero, the most likely constant weights are the shares of samples.
+/// In each sample one forecaster has density zero. The most likely constant weight of a forecaster is then the share of
+/// samples that it predicts.
 TEST(ForecastWeights, StackedWeightsAreTheLikeliest) {
   const double never = -std::numeric_limits<double>::infinity();
   const std::vector<double> stacked = ForecastWeights::stacked({{1.0, 2.0, 0.5, never}, {never, never, never, 3.0}});
   EXPECT_NEAR(stacked[0], 0.75, 1e-12);
   EXPECT_NEAR(stacked[1], 0.25, 1e-12);
   // The derivative of log(2 w + 1 - w) + 2 log(w + 3 (1 - w)) is zero at w = -1/6. So the second forecaster gets all
-  // weight except the minimum.
+  // the weight, except for the minimum weight of the first.
   const double ln2 = std::log(2.0), ln3 = std::log(3.0);
   EXPECT_NEAR(ForecastWeights::stacked({{ln2, 0.0, 0.0}, {0.0, ln3, ln3}})[0], 0.001, 2e-4);
   EXPECT_NEAR(ForecastWeights::stacked({{0.0, silent, ln2}, {silent, 1.0, 0.0}})[0], 1.0, 2e-3);

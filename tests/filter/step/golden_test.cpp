@@ -1,4 +1,4 @@
-// The filters compared with tests/golden/generate/imm_reference.py, an independent textbook implementation in numpy.
+// The filters, compared with tests/golden/generate/imm_reference.py, an independent textbook implementation in numpy.
 #include "tests/support/golden.hpp"
 
 #include <gtest/gtest.h>
@@ -16,9 +16,9 @@ using test::golden_columns;
 using test::golden_rows;
 using test::near;
 
-/// Both implementations use double precision over 40 steps with condition numbers below 1e3.
+/// Both implementations use double precision over 40 steps, with condition numbers below 1e3.
 constexpr double tolerance = 1e-10;
-/// The first covariances of the unobserved state are about ten, with the same relative accuracy.
+/// The first covariances of the unobserved state are about ten. Their relative accuracy is the same.
 constexpr double relative_tolerance = 1e-10;
 
 Bank read_bank(const json& golden) {

@@ -170,7 +170,7 @@ TEST(Interval, TransformIsUniformInATrueFilter) {
   }
 }
 
-/// The transform that programs get, sample by sample and for a run, at a quantum of three standard deviations.
+/// The transform that programs get, sample by sample and for a whole run. The quantum is three standard deviations.
 TEST(Interval, TransformOfTheInstalledFilterIsUniform) {
   const Index samples = 20000;
   const double quantum = 0.3;

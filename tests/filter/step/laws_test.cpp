@@ -19,7 +19,7 @@ using test::near;
 using test::simulate_bank;
 using test::single_mode;
 
-/// Two computations of one number of order one in double precision.
+/// Tolerance for two computations of a number of order one in double precision.
 constexpr double law_rounding = 1e-12;
 constexpr FilterOptions imm{}, kf{FilterVariant::kf};
 
@@ -28,11 +28,11 @@ void expect_same_estimates(const RunEvaluation& a, const RunEvaluation& b) {
   EXPECT_TRUE(near(a.innovation_covariance, b.innovation_covariance, law_rounding));
   EXPECT_TRUE(near(a.state, b.state, law_rounding));
   EXPECT_TRUE(near(a.covariance, b.covariance, law_rounding));
-  EXPECT_TRUE(near(a.log_density, b.log_density, law_rounding * 10));  // log densities reach about ten
+  EXPECT_TRUE(near(a.log_density, b.log_density, law_rounding * 10));  // log densities have sizes up to about ten
   EXPECT_TRUE(near(a.pit, b.pit, law_rounding));
 }
 
-/// Products for lagged samples skip factors of zero and one.
+/// Products for lagged samples skip factors that are zero or one.
 TEST(SmallProducts, OfShiftsAndOfPartsThatAreSeenHaveThePlainOnesBits) {
   const Eigen::Index n = 7, full = 2;
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n), gain = Eigen::MatrixXd::Random(n, full), P(n, n);
@@ -57,7 +57,7 @@ TEST(SmallProducts, OfShiftsAndOfPartsThatAreSeenHaveThePlainOnesBits) {
   EXPECT_EQ(plain_sum, quick_sum);
 }
 
-/// If only the newest samples are uncertain, the rest of a product is zero.
+/// If only the newest samples are uncertain, the other entries of a product are zero.
 TEST(SmallProducts, OfAPartThatIsUncertainAreThoseOfTheWhole) {
   const Eigen::Index n = 7, full = 2, uncertain = 3;
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n), P = Eigen::MatrixXd::Zero(n, n);
@@ -107,7 +107,7 @@ TEST(Imm, OneModeIsTheKalmanFilter) {
   expect_same_estimates(evaluate_run(bank, run, imm), evaluate_run(bank, run, kf));
 }
 
-/// Any choice between the modes would be arbitrary.
+/// The modes are equal, so any choice between them would be arbitrary.
 TEST(Kf, RefusesSeveralModes) {
   const Bank bank = example_bank(1, 2, 3);
   const Trajectory run = simulate_bank(bank, 60, 3);
@@ -153,7 +153,8 @@ TEST(Imm, ThatNeverSwitchesIsBayesRuleOverSeparateFilters) {
 
   bank.transition = TransitionMatrix::sticky(3, 1.0);
   const RunEvaluation result = evaluate_run(bank, run, imm);
-  EXPECT_TRUE(near(result.mode_probability, expected, law_rounding * 100));  // sums of 40 log densities of order ten
+  EXPECT_TRUE(near(result.mode_probability, expected, law_rounding * 100));  // tolerance for sums of 40 log densities
+                                                                             // of order ten
   EXPECT_NEAR(result.log_density.tail(39).sum(), evidence(39), law_rounding * 1000);
 }
 
@@ -161,7 +162,7 @@ TEST(Kf, WithoutProcessNoiseIsBatchLeastSquares) {
   Bank bank = single_mode(example_bank(2, 1, 1, 0.01), 0);
   bank.modes[0].Q.setZero();
   const Trajectory run = simulate_bank(bank, 30, 6);
-  // y_k = F^k x_0 + d_k + v_k: normal equations for x_0. The estimate is then propagated to the last sample.
+  // y_k = F^k x_0 + d_k + v_k gives normal equations for x_0. The estimate is then propagated to the last sample.
   const LinearModel& model = bank.modes[0].model;
   const Eigen::Matrix2d F = model.full_form();
   Eigen::Matrix2d power = Eigen::Matrix2d::Identity(), information = Eigen::Matrix2d::Zero();

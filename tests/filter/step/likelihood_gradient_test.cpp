@@ -1,4 +1,4 @@
-// The gradient of the filter's likelihood compared with differences of the likelihood.
+// The gradient of the filter's likelihood, compared with differences of the likelihood.
 #include "filter/step/likelihood_gradient.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,8 @@ using Eigen::Index;
 
 using Change = std::function<void(Bank&, double)>;
 
-/// Tests every number of a bank separately. For T a pair of entries in a row changes, so that the sum stays one.
+/// Tests every number of a bank separately. For T, two entries of a row change together, so that the sum of the row
+/// stays one.
 std::vector<std::pair<std::string, Change>> all_changes(const Bank& bank) {
   std::vector<std::pair<std::string, Change>> changes;
   const Index n = bank.structure.dimension(), m = bank.structure.acting_inputs(), K = bank.mode_count();
@@ -90,7 +91,7 @@ TEST(LikelihoodGradient, IsThatOfEverySize) {
         SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K << ", R " << r);
         const Bank bank = bank_of(n, K > 4 ? 4 : K, r);
         Bank more = bank;
-        if (K > 4) {  // more modes than a register holds
+        if (K > 4) {  // more modes than fit into a register
           for (Index j = 4; j < K; ++j) {
             more.modes.push_back(bank.modes[static_cast<std::size_t>(j % 4)]);
             more.modes.back().model.A *= 0.8 + 0.02 * static_cast<double>(j);
@@ -102,7 +103,7 @@ TEST(LikelihoodGradient, IsThatOfEverySize) {
       }
 }
 
-/// Sizes without vector kernels, and single modes, which have no vector kernels for any size.
+/// Sizes without vector kernels. Banks of a single mode never have vector kernels.
 TEST(LikelihoodGradient, IsThatOfSizesWithoutKernels) {
   for (const auto& [n, K] : {std::pair<Index, Index>{1, 1}, {2, 1}, {4, 1}, {4, 2}, {5, 3}}) {
     SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K);
@@ -123,7 +124,7 @@ TEST(LikelihoodGradient, SeesPartOfTheState) {
   expect_gradient(bank, test::simulate_bank(bank, 60, 4), {});
 }
 
-/// Missing signals and samples, a longer time between samples, and one so long that the filter starts again.
+/// Missing signals and samples, a longer time between two samples, and a gap after which the filter starts again.
 TEST(LikelihoodGradient, IsThatOfRunsWithGaps) {
   for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive}) {
     const Bank bank = bank_of(2, 3, 1e-3);
@@ -138,7 +139,7 @@ TEST(LikelihoodGradient, IsThatOfRunsWithGaps) {
   }
 }
 
-/// The noise scale depends on all earlier samples. An outlier enters it with its limited size.
+/// The noise scale depends on all earlier samples. The size of an outlier is limited before it enters the scale.
 TEST(LikelihoodGradient, GoesBackOverTheNoiseScale) {
   FilterOptions options;
   options.noise = FilterNoise::adaptive;
@@ -158,7 +159,7 @@ TEST(LikelihoodGradient, CountsSamplesByTheirWeight) {
   expect_gradient(bank, run, {}, weight);
 }
 
-/// Same as bank_of, but signals are multiples of a quantum and R is diagonal.
+/// Like bank_of, but signals are multiples of a quantum and R is diagonal.
 Bank quantised_bank(Index n, Index K, double r, double quantum) {
   Bank bank = bank_of(n, K, r);
   bank.R = Eigen::MatrixXd(bank.R.diagonal().asDiagonal());
@@ -174,8 +175,8 @@ Trajectory rounded_run(const Bank& bank, Index samples, std::uint64_t seed) {
   return run;
 }
 
-/// Quanta from almost zero to many standard deviations (those of the modes are 0.01 to 0.1), missing signals, and
-/// values far out in every mode's tail.
+/// Quanta from almost zero to many standard deviations of the modes (0.01 to 0.1), missing signals, and values far into
+/// every mode's tail.
 TEST(LikelihoodGradient, IsThatOfIntervals) {
   for (const FilterNoise noise : {FilterNoise::gaussian, FilterNoise::adaptive})
     for (const Index n : {1, 2, 3})

@@ -1,4 +1,4 @@
-// The filter must not return NaN for any input, and fixed and dynamic sizes share one code.
+// The filter must not return NaN for any input. Fixed and dynamic sizes must give the same bits.
 #include <gtest/gtest.h>
 
 #include "filter/judge/run/evaluate.hpp"
@@ -25,7 +25,7 @@ std::vector<FilterOptions> all_options() {
   return all;
 }
 
-/// Everything from sample 1 on must be finite if no measurement is missing.
+/// If no measurement is missing, all numbers from sample 1 on must be finite.
 void expect_finite(const Bank& modes, const Trajectory& run, const std::string& what) {
   for (const FilterOptions& options : all_options()) {
     const Bank bank = test::steppable(modes, options.variant);
@@ -90,7 +90,7 @@ TEST(NeverNaN, TinyAndHugeUnits) {
       mode.model.c *= unit;
     }
     expect_finite(scaled, scaled_run, "unit " + std::to_string(unit));
-    // A signal's units do not change the mode probabilities.
+    // The units of a signal do not change the mode probabilities.
     constexpr double relative = 1e-9;
     EXPECT_TRUE(test::near(evaluate_run(scaled, scaled_run, {}).mode_probability,
                            evaluate_run(bank, run, {}).mode_probability, relative));
@@ -120,7 +120,7 @@ TEST(NeverNaN, AMillionStepsAtConstantInput) {
   EXPECT_TRUE(result.state.allFinite() && result.covariance.allFinite() && result.mode_probability.allFinite());
   EXPECT_TRUE(result.log_density.tail(samples - 1).allFinite());
   EXPECT_GT(result.covariance.minCoeff(), 0.0);
-  // After settling, the numbers are constant.
+  // After some samples, the numbers are constant.
   EXPECT_NEAR(result.log_density(samples - 1), result.log_density(1000), 1e-9);
 }
 
@@ -140,7 +140,7 @@ TEST(NeverNaN, AMillionStepsAtConstantInputInEveryVariant) {
   }
 }
 
-/// Finite weights of any size, which an archive may contain; their log odds overflow.
+/// Finite weights of any size, which an archive may contain. The log odds of these weights overflow.
 TEST(NeverNaN, LogOddsOfAnySize) {
   for (const double weight : {1e3, 1e150, 1e308}) {
     Bank bank = example_bank(2, 2, 3);
@@ -173,7 +173,7 @@ TEST(DeadMode, ComesBackWhenTheMotionChanges) {
   EXPECT_GT(result.mode_probability(1, 419), 0.99);
 }
 
-/// Filters `run` with the given sizes; returns the last state and the log densities, for comparison of bits.
+/// Filters `run` with the given sizes. Returns the last state and the log densities, for a comparison of bits.
 template <int N, int NY>
 std::vector<double> trace(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   const FilterModel<N, NY> model(bank, options);
@@ -211,7 +211,7 @@ TEST(Sizes, FixedAndDynamicGiveTheSameBits) {
   expect_same_bits<3>();
 }
 
-/// With lags a run starts from several measurements of one signal.
+/// With lags, the filter starts from several measurements of a signal.
 TEST(Sizes, LaggedBanksToo) {
   for (const Eigen::Index lags : {2, 3}) {
     Bank bank = example_bank(1, 1, 3);

@@ -17,7 +17,7 @@ using test::example_bank;
 using test::near;
 using test::simulate_bank;
 
-constexpr double digits = 1e-12;  // two computations of one number of order one in double precision
+constexpr double digits = 1e-12;  // tolerance for two computations of a number of order one in double precision
 
 TEST(Start, IsTheFirstMeasurementWithItsCovariance) {
   const Bank bank = example_bank(3, 2, 2);
@@ -58,7 +58,7 @@ TEST(MissingMeasurement, IsAPredictionOnlyStep) {
   EXPECT_TRUE(std::isfinite(result.log_density(7)));
 }
 
-/// The bank that measures only the signals `rows`.
+/// The bank with a sensor for the signals `rows` only.
 Bank measuring(Bank bank, const std::vector<Eigen::Index>& rows) {
   bank.C = bank.C(rows, Eigen::all).eval();
   bank.R = bank.R(rows, rows).eval();
@@ -72,7 +72,7 @@ TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
     Trajectory run = simulate_bank(bank, 3, 9);
     run.state(1, 2) = std::nan("");
     const RunEvaluation partial = evaluate_run(bank, run, {variant});
-    // The same step from the same start, by a sensor without that signal.
+    // The same step from the same start, with a sensor that lacks the signal.
     BankFilter filter(bank, {variant}), reduced(measuring(bank, {0, 2}), {variant});
     filter.step(0.0, run.input.col(0), run.state.col(0));
     filter.step(1.0, run.input.col(1), run.state.col(1));
@@ -95,7 +95,7 @@ TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
   }
 }
 
-/// An outlier counts as at most a few standard deviations of the available signals.
+/// An outlier counts like a few standard deviations of the available signals.
 TEST(MissingMeasurement, OfSomeSignalsMovesTheNoiseScaleByTheOthers) {
   Bank bank = example_bank(3, 1, 2);
   bank.R(0, 1) = bank.R(1, 0) = 0.4 * bank.R(0, 0);
@@ -141,7 +141,7 @@ TEST(TimeSteps, ALongerTimeIsSeveralPredictionsWithTheInputHeld) {
   bank.dt_s = 0.1;
   Trajectory run = simulate_bank(bank, 12, 13), every = run;
   run.time_s *= 0.1;
-  // The same run with all times, but without measurements at two of these times and with the input held.
+  // The same run with all times. At two times the measurement is missing, and the input is held.
   every.time_s = run.time_s;
   every.state.middleCols(5, 2).setConstant(std::nan(""));
   every.input.col(5) = every.input.col(6) = every.input.col(4);
@@ -185,7 +185,7 @@ TEST(BankFilter, GoesOnFromASnapshotAsIfNothingHadHappened) {
       EXPECT_TRUE(near(a.state, b.state, 0.0));
     }
   }
-  // a snapshot from before the start
+  // a snapshot taken before the start
   BankFilter fresh(bank, {}), restored(bank, {});
   EXPECT_NO_THROW(restored.restore(fresh.snapshot()));
   EXPECT_FALSE(restored.started());

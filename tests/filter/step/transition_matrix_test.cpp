@@ -26,7 +26,7 @@ TEST(TransitionMatrix, RejectsWhatIsNotRowStochastic) {
   EXPECT_THROW(TransitionMatrix(Eigen::MatrixXd::Constant(2, 2, 0.5 + 1e-8)), std::invalid_argument);
   EXPECT_THROW(TransitionMatrix((Eigen::MatrixXd(2, 2) << 1.1, -0.1, 0.5, 0.5).finished()), std::invalid_argument);
   EXPECT_THROW(TransitionMatrix(Eigen::MatrixXd::Constant(1, 1, std::nan(""))), std::invalid_argument);
-  // Columns sum to one and rows do not. This happens if mixing weights are passed by mistake.
+  // Columns sum to one, and rows do not. This happens if a caller passes mixing weights by mistake.
   EXPECT_THROW(TransitionMatrix((Eigen::MatrixXd(2, 2) << 0.9, 0.3, 0.1, 0.7).finished()), std::invalid_argument);
 }
 

@@ -11,12 +11,13 @@
 namespace modebank {
 namespace {
 
-/// Moments in long double: integrals of t^i exp(-low t - t^2 / 2), in pieces of equal decrease of its logarithm.
+/// Moments in long double: integrals of t^i exp(-low t - t^2 / 2). In each piece the logarithm of the integrand
+/// decreases by the same amount.
 struct Reference {
   long double log_mass, mean, variance, third, fourth;
 
   Reference(long double low, long double high) {
-    const long double peak = std::clamp(0.0L, low, high);  // integrands are one at that point
+    const long double peak = std::clamp(0.0L, low, high);  // the integrands are one at this point
     long double sum = 0.0L, first = 0.0L, second = 0.0L, cubes = 0.0L, fourths = 0.0L;
     const auto add = [&](long double from, long double to) {
       const auto moment = [&](int power) {
@@ -29,7 +30,7 @@ struct Reference {
       cubes += moment(3);
       fourths += moment(4);
     };
-    const auto walk = [&](long double until) {  // from the peak, in pieces of half a unit of scale
+    const auto walk = [&](long double until) {  // from the peak on, in pieces of half a unit of scale
       const long double scale = 0.5L / std::max(1.0L, std::abs(peak)), sign = until < 0.0L ? -1.0L : 1.0L;
       for (long double t = 0.0L; t < std::abs(until) && t < 140.0L * scale; t += scale) {
         const long double end = std::min(t + scale, std::abs(until));
@@ -75,7 +76,7 @@ TEST(TruncatedNormal, HasTheMassOfBoost) {
   }
 }
 
-/// The derivatives stated in the header, compared with differences.
+/// The derivatives in the header's comment, compared with differences.
 TEST(SignalLikelihood, ItsMomentsAreItsDerivatives) {
   const auto moments = [](const SignalLikelihood& said, double s) {
     return std::array{said.log_density, std::sqrt(s) * said.mean, s * said.variance};
@@ -97,7 +98,7 @@ TEST(SignalLikelihood, ItsMomentsAreItsDerivatives) {
         const auto down_s = moments(signal_likelihood(e, s * (1.0 - h), quantum), s * (1.0 - h));
         const std::array unit{1.0, root, s};  // units of the derivatives
 
-        // Differences contain the rounding of the bounds.
+        // The differences contain rounding errors of the bounds.
         const double rounding = share > 0.0 ? 1e-15 * (1.0 + std::abs(z)) / (share * h) : 0.0;
         for (std::size_t i = 0; i < 3; ++i) {
           const double scale = unit[i] * (1.0 + (i == 0 ? z * z : std::abs(z)));

@@ -1,4 +1,4 @@
-// The vector filter (one mode per lane) compared with the general steps in all results.
+// The vector filter (one mode per lane), compared with the equations in all results.
 #include "filter/step/detail/vector/vector_imm.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
       for (Index i = 0; i < n_y; ++i) {
         ASSERT_EQ(std::isnan(pit(i)), std::isnan(expected_pit(i)));
         if (std::isnan(pit(i))) continue;
-        // Relative to the smaller tail. For the upper tail, 1 - pit has fewer bits.
+        // The difference is relative to the smaller tail. In the upper tail, 1 - pit has fewer bits.
         const double tail = std::min(expected_pit(i), 1.0 - expected_pit(i));
         ASSERT_NEAR(pit(i), expected_pit(i), 1e-15 + 1e3 * relative * tail) << "sample " << k << ", signal " << i;
       }
@@ -78,7 +78,7 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
   }
 }
 
-/// The example's modes, slowed down so that many of them are stable, with noises of one order of magnitude.
+/// The example's modes, slowed down so that many of them are stable. Their noises have the same order of magnitude.
 Bank many_modes(Index n, Index K) {
   Bank bank = test::example_bank(n, 2, K);
   for (Index j = 0; j < K; ++j) {
@@ -101,7 +101,7 @@ TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
     for (const Index K : {2, 8, 9, 25}) {
       const Bank bank = many_modes(n, K);
       Trajectory run = test::simulate_bank(bank, 70, 51);
-      run.state(0, 30) = std::nan("");  // some signals are missing, later all of them
+      run.state(0, 30) = std::nan("");  // first some signals are missing, later all signals
       run.state.col(40).setConstant(std::nan(""));
       run.state(0, 50) = std::nan("");  // an outlier in the available signals
       run.state(n - 1, 50) += n > 1 ? 0.5 : 0.0;
@@ -112,7 +112,7 @@ TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
     }
 }
 
-/// Quanta of about a standard deviation, tiny ones, and one continuous signal.
+/// A quantum of about a standard deviation, a tiny quantum, and one continuous signal.
 TEST(VectorImm, TakesIntervalsAsTheGeneralStepsDo) {
   for (const Index n : {1, 2, 3})
     for (const Index K : {2, 8, 9})
@@ -133,7 +133,7 @@ TEST(VectorImm, TakesIntervalsAsTheGeneralStepsDo) {
       }
 }
 
-/// All kernels give the same results for a stretch, with or without missing signals.
+/// All kernels must give the same results for a stretch, with or without missing signals.
 TEST(VectorImm, AStretchIsItsSamples) {
   for (const Index n : {1, 2, 3})
     for (const Index K : {2, 5, 9, 16, 17, 25})
@@ -165,7 +165,7 @@ TEST(VectorImm, AStretchIsItsSamples) {
         }
 }
 
-/// Numbers of modes that fill one register of any width, one more, one fewer, and more than eight registers.
+/// Numbers of modes that fill a register of any width, one mode more, one mode fewer, and more than eight registers.
 TEST(VectorImm, AnyNumberOfModes) {
   for (const Index K : {2, 3, 4, 5, 7, 8, 9, 16, 17, 60}) {
     const Bank bank = many_modes(1, K);
@@ -202,7 +202,7 @@ TEST(VectorImm, CorrelatedNoiseAndImpossibleModes) {
   expect_agreement(bank, run, adaptive(), 1e-11);
 }
 
-/// The noise scale follows the possible modes, even if an impossible mode fits well.
+/// The noise scale must follow the possible modes, even if an impossible mode fits well.
 TEST(VectorImm, AnImpossibleModeHasNoSayInTheNoise) {
   Bank bank = many_modes(1, 3);
   bank.transition = TransitionMatrix((MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());
@@ -217,10 +217,10 @@ TEST(VectorImm, AnImpossibleModeHasNoSayInTheNoise) {
   FilterState<any> state = start(model, run.state.col(0));
   predict(model, state, run.input.col(0), step);
   update(model, run.state.col(1), step, state);
-  EXPECT_GT(state.noise_scale, 1.5);  // one step of a hundred standard deviations; the filter counts it as five
+  EXPECT_GT(state.noise_scale, 1.5);  // one step of a hundred standard deviations; the filter limits it to five
 }
 
-/// Unreachable modes, diverging modes and no noise. All results must be finite.
+/// Impossible modes, diverging modes and no noise. All results must be finite.
 TEST(VectorImm, NeverSaysNaN) {
   const Bank usual = many_modes(1, 3);
   Bank dead = usual, exact = usual, unstable = usual, none = usual;
@@ -247,8 +247,8 @@ TEST(VectorImm, NeverSaysNaN) {
   expect_agreement(dead, test::simulate_bank(dead, 100, 33), {}, 1e-11);
 }
 
-/// Phi(z) to 20 digits (mpmath), far into the lower tail. All modes are equal, so the transform is that of one normal
-/// distribution.
+/// Phi(z) to 20 digits (mpmath), far into the lower tail. All modes are equal, so the transform is that of a single
+/// normal distribution.
 TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
   Bank bank = test::example_bank(1, 1, 3);
   for (Mode& mode : bank.modes) {
@@ -273,17 +273,17 @@ TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
     const VectorXd y = VectorXd::Constant(1, z);
     kernel.update(y);
     kernel.transform(y, pit, width);
-    // z itself is rounded, which changes the tail in proportion to z^2.
+    // z itself is rounded. This changes the tail in proportion to z^2.
     EXPECT_NEAR(pit(0), probability, (1e-14 + 2.3e-16 * z * z) * probability) << z;
   }
 }
 
-/// Modes with distant predictions and small variances. Moments about their common mean would cancel.
+/// The modes' predictions are far apart and have small variances. Moments about the common mean would lose all digits.
 TEST(VectorImm, ModesFarApartKeepTheirVariances) {
   Bank bank = many_modes(2, 9);
   for (Mode& mode : bank.modes) mode.Q *= 1e-6;
   bank.R.setIdentity();
-  bank.R *= 1e4;  // no measurement draws the modes together
+  bank.R *= 1e4;  // no measurement brings the modes closer together
   bank.transition = TransitionMatrix::sticky(9, 1.0 - 1e-9);
   for (Index j = 0; j < 9; ++j) bank.modes[static_cast<std::size_t>(j)].model.c.setConstant(static_cast<double>(j));
   const Trajectory run = test::simulate_bank(bank, 60, 55);

@@ -22,7 +22,7 @@ struct Mode {
   std::vector<double> c;        ///< n
   Matrix Q;                     ///< n x n, covariance of the process noise per step [state unit^2]
   Matrix parameter_covariance;  ///< p x p, covariance of theta over the mode's windows; an empty matrix means zero
-  double weight = 1.0;          ///< share of the windows
+  double weight = 1.0;          ///< share of the windows that belong to this mode
 };
 
 /// State-dependent transition probabilities: P(j | i, z) is proportional to transition_ij exp(w_j' (z - reference)). z
@@ -32,9 +32,9 @@ struct StateDependentTransition {
   std::vector<double> reference;  ///< d, the value of z for which the transition matrix holds
 };
 
-/// Process noise that depends on state and input. A step from z has Q times exp(sum_i weights_i log(|directions_i z| +
-/// 0.1) - offset), limited to the range from a fifth to five. z holds the state and the acting inputs. If empty, Q is
-/// constant.
+/// Process noise that depends on state and input. In a step from z the covariance is Q exp(sum_i weights_i
+/// log(|directions_i z| + 0.1) - offset). The factor on Q is limited to 0.2 to 5. z holds the state and the acting
+/// inputs. If empty, Q is constant.
 struct NoiseByState {
   Matrix directions;            ///< d x (n + acting inputs)
   std::vector<double> weights;  ///< d
@@ -43,41 +43,43 @@ struct NoiseByState {
 
 /// Drift of every mode's theta within a run, per regressor of [z; v; (1)]. If empty, theta is constant.
 struct CoefficientDrift {
-  std::vector<double> scale;  ///< size of each regressor; the regressor's coefficient drifts in the inverse unit
+  std::vector<double> scale;  ///< size of each regressor; the drift of its coefficient is in units of 1 / size
   double rate = 0.0;          ///< variance that each step adds to a coefficient, in units of Q, >= 0
   double start = 0.0;         ///< variance of a coefficient at the start of a run, in units of Q, >= 0
-  double leak = 1.0;  ///< factor per step on the difference of a coefficient from the mode's coefficient, in (0, 1]
-  Wandering wandering = Wandering::all;  ///< coefficients that drift; a value other than `all` requires RunningNoise
+  double leak = 1.0;  ///< factor by which each step multiplies a coefficient's difference from the mode's coefficient,
+                      ///< in (0, 1]
+  Wandering wandering = Wandering::all;  ///< which coefficients drift; a value other than `all` requires RunningNoise
 };
 
 /// Running noise variance of a single mode that drifts (the competitor `drifting`). The variance v of each measured
 /// state starts at the diagonal of Q and follows v <- max(forgetting v + (1 - forgetting) e^2, floor). e is the
-/// prediction error divided by the widening due to the coefficients' uncertainty. If empty, Q is constant.
+/// prediction error, divided by a factor for the uncertainty of the coefficients. If empty, Q is constant.
 struct RunningNoise {
   std::vector<double> floor;         ///< n_y, smallest value of v [state unit^2]
   double forgetting = 0.9;           ///< forgetting factor, in [0, 1]
   double degrees_of_freedom = 0.0;   ///< degrees of freedom of Student's t, above 2; 0 for a normal distribution
   std::vector<double> horizon = {};  ///< horizons in samples, ascending, at least 2
-  std::vector<double> factor = {};   ///< factors on the variance of forecasts, each from its horizon up to the next one
+  std::vector<double> factor = {};   ///< per horizon: factor on the variance of forecasts from this horizon up to the
+                                     ///< next one
 };
 
 /// Speed at which the noise scale of FilterNoise::adaptive follows a run.
 struct NoiseMemory {
   double forgetting = 0.98;    ///< forgetting factor per sample, in (0, 1]
-  double prior_samples = 5.0;  ///< weight of the scale 1 at the start of a run, in samples, > 0
+  double prior_samples = 5.0;  ///< number of samples that the scale 1 counts for at the start of a run, > 0
 };
 
 /// All numbers of a bank, for writing or reading it: K modes, their transitions, and the measurement y = C x + v with v
 /// ~ N(0, R).
 struct BankDescription {
   std::vector<Mode> modes;      ///< K >= 1
-  Matrix C;                     ///< n_y x n; if empty, the identity
+  Matrix C;                     ///< n_y x n; an empty matrix means the identity
   Matrix R;                     ///< n_y x n_y, covariance of the measurement noise [state unit^2]
-  std::vector<double> quantum;  ///< n_y, spacing of measured values [state unit]; 0 marks a continuous signal, an empty
-                                ///< vector all signals as continuous
+  std::vector<double> quantum;  ///< n_y, spacing of measured values [state unit]; 0: the signal is continuous; empty:
+                                ///< all signals are continuous
   Matrix transition;            ///< K x K, row i: probabilities of the next mode after mode i
   StateDependentTransition state_dependent_transition;  ///< empty: constant
-  std::vector<double> initial_probability;              ///< K; if empty, all are equal
+  std::vector<double> initial_probability;              ///< K; if empty, all modes are equally probable
   std::vector<std::string> state_names;                 ///< names of the measured states; may be empty
   std::vector<std::string> input_names;                 ///< names of the inputs; may be empty
   double dt_s = 0.0;                                    ///< sample period of one step [s]; 0 if it is not fixed
@@ -92,10 +94,10 @@ struct BankDescription {
   RunningNoise running_noise;                           ///< an empty value means that the noise is Q
 };
 
-/// A bank of modes; immutable and cheap to copy. The library holds its numbers.
+/// A bank of modes; immutable and cheap to copy.
 class Bank {
  public:
-  /// Throws std::invalid_argument that names the first size or number that no filter can use.
+  /// Throws std::invalid_argument if a filter cannot use a size or number; the message names the first one.
   explicit Bank(const BankDescription& description);
   /// For internal use by the library.
   explicit Bank(std::shared_ptr<const modebank::Bank> bank);

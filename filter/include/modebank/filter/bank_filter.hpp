@@ -25,8 +25,8 @@ struct Estimate {
   std::vector<double> mode_probability;            ///< K, mode probabilities after the measurement
   double nis = 0.0;                                ///< normalised innovation squared of the available signals
   double log_density = 0.0;                        ///< log density of the measurement under the prediction [nats]
-  double spread_share = 0.0;                       ///< share of the modes' differences in the trace of the innovation
-                                                   ///< covariance
+  double spread_share = 0.0;                       ///< share of the trace of the innovation covariance that comes from
+                                                   ///< differences between the modes
   std::ptrdiff_t steps = 0;  ///< model steps since the previous sample; 0 means that the filter (re)started here
 };
 
@@ -76,7 +76,7 @@ class BankFilter {
   /// that filter. Throws std::invalid_argument for a snapshot of another bank and for invalid numbers; the filter is
   /// then unchanged.
   void restore(const std::vector<double>& snapshot);
-  /// Resets the filter; the next complete measurement starts it.
+  /// Resets the filter; the next complete measurement starts it again.
   void restart();
   /// Whether the filter has started.
   bool started() const;

@@ -4,9 +4,9 @@
 
 namespace modebank {
 
-/// Coefficients of a mode that drift. all: each coefficient independently. constant: only the constant. gain: one
-/// common factor on all input coefficients, whose ratios stay. With constant and gain, the other coefficients are
-/// learned within a run from their starting variance.
+/// Which coefficients of a mode drift. all: each coefficient independently. constant: only the constant. gain: one
+/// common factor on all input coefficients, so their ratios do not change. With constant and gain, the other
+/// coefficients are learned within a run from their starting variance.
 enum class Wandering { all, constant, gain };
 
 template <>

@@ -77,10 +77,11 @@ struct RefineOptions {
                                   ///< mixture's number
   std::ptrdiff_t look_ahead = 1;  ///< largest number of samples ahead: predictions 1 to this many samples ahead are
                                   ///< scored
-  LookAheadScore look_ahead_score = LookAheadScore::density;  ///< `density` also scores starts, modes and iterations
+  LookAheadScore look_ahead_score = LookAheadScore::density;  ///< `density` also serves to choose starts, modes and
+                                                              ///< iterations
   std::ptrdiff_t folds = 6;  ///< parts of the cross-validation; 1 turns it off, and every start runs to convergence
-  bool measurement_noise = true;  ///< if true, R by maximum likelihood of the filter on the training runs; if false, R
-                                  ///< of the start
+  bool measurement_noise = true;  ///< true: R maximises the filter's likelihood of the training runs; false: R of the
+                                  ///< start is kept
   bool screen = true;             ///< whether unstable, starved and duplicate modes are removed
   bool state_dependent_transition = false;  ///< whether transition probabilities may depend on state and input
                                             ///< (TransitionSource::logit)
@@ -89,8 +90,8 @@ struct RefineOptions {
                                        ///< negligible
   std::uint64_t seed = 1;              ///< seed of the random starts
   Drift drift = Drift::none;           ///< whether each mode's theta drifts within a run
-  std::ptrdiff_t transitions = 20000;  ///< largest number of transitions to learn from, in stretches drawn with the
-                                       ///< seed; 0 takes all
+  std::ptrdiff_t transitions = 20000;  ///< largest number of transitions to learn from; they lie in stretches drawn
+                                       ///< with the seed; 0 takes all transitions
 
   /// Number of samples ahead at which densities are scored.
   std::ptrdiff_t densities_ahead() const { return look_ahead_score == LookAheadScore::density ? look_ahead : 1; }
@@ -103,7 +104,7 @@ struct BankOptions {
   TransitionSource transition = TransitionSource::labels;  ///< source of the transition matrix
   double stay = 0.95;                          ///< diagonal of the transition matrix for TransitionSource::stay
   double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
-  std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; if empty, that of the baseline
+  std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; if empty, R of the baseline is used
   bool screen = true;                          ///< whether unstable and starved modes are removed
   std::ptrdiff_t modes = 0;  ///< largest number of modes; 0 for no limit. Above the limit, the closest components are
                              ///< merged
@@ -117,12 +118,14 @@ struct LearnOptions {
   FitOptions window;         ///< how windows are cut and fitted
   ClusterOptions mixture;    ///< how windows are clustered
   BankOptions bank;          ///< how the mixture becomes a bank
-  FilterOptions filter;      ///< filter of the bank; variant kf: a single Kalman filter, the baseline
+  FilterOptions filter;      ///< filter of the bank; with variant `kf`, the bank is the baseline (a single Kalman
+                             ///< filter)
   std::uint64_t seed = 1;    ///< the only seed: replaces those in `window` and `bank`
   bool search_lags = false;  ///< whether lags and delay are chosen by cross-validation on training runs; replaces those
                              ///< in `window`; not for motion models
   bool automatic_length = false;  ///< whether window.length is set from the number of regressors
-  bool automatic_step = false;    ///< whether window.step is set so that there are about 100,000 windows
+  bool automatic_step = false;    ///< whether process noise may have a factor that follows states and inputs. The
+                                  ///< factor must gain on training runs that were left out
   bool noise_by_input = true;     ///< whether process noise may have one factor that follows states and inputs, if the
                                   ///< factor gains on training runs that were left out
 };

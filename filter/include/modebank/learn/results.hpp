@@ -8,9 +8,9 @@
 
 namespace modebank {
 
-/// How a maximisation of the likelihood of a filter with measurement noise ended. none: not done, or it did not pay.
-/// converged: at the maximum. iteration_limit: stopped before the maximum. stalled: no step raised the likelihood
-/// although the gradient was not zero.
+/// How a maximisation of the likelihood of a filter with measurement noise ended. none: not done, or its result was
+/// rejected. converged: at the maximum. iteration_limit: stopped before the maximum. stalled: no step raised the
+/// likelihood although the gradient was not zero.
 enum class MeasuredFit { none, converged, iteration_limit, stalled };
 
 template <>
@@ -37,12 +37,12 @@ struct RefineCandidate {
 
 /// The search for R, and the fit with R if it is not negligible.
 struct MeasurementStage {
-  std::ptrdiff_t starts = 0;         ///< starts of the search for R; 0 if R was given
-  std::ptrdiff_t failed_starts = 0;  ///< starts from which no step raised the likelihood; the best of the other starts
-                                     ///< is kept
-  std::ptrdiff_t iterations = 0;     ///< iterations with measurement noise; 0 if there were none or they would not have
-                                     ///< paid
-  MeasuredFit end = MeasuredFit::none;                             ///< how these iterations ended
+  std::ptrdiff_t starts = 0;            ///< number of starts of the search for R; 0 if R was given
+  std::ptrdiff_t failed_starts = 0;     ///< number of starts from which no step raised the likelihood; the best of the
+                                        ///< other starts is kept
+  std::ptrdiff_t iterations = 0;        ///< number of iterations with measurement noise; 0 if none were made or their
+                                        ///< result was rejected
+  MeasuredFit end = MeasuredFit::none;  ///< how these iterations ended
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs before these
                                                                    ///< iterations
   double score = std::numeric_limits<double>::quiet_NaN();         ///< mean log score of the left-out runs after these
@@ -69,7 +69,7 @@ struct DriftStage {
   bool taken = false;        ///< whether the bank's modes drift
   std::ptrdiff_t modes = 0;  ///< number of modes of the best bank with drift
   double rate = 0.0;   ///< rate of the drift: variance that a step adds to every coefficient, in units of the mode's
-                       ///< noise, for regressors divided by their root mean square
+                       ///< noise. Each regressor is divided by its root mean square
   double start = 0.0;  ///< start of the drift: variance of every coefficient at the start of a run
   double leak = 1.0;   ///< leak of the drift: factor per step on the difference from the mode's coefficients
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs without

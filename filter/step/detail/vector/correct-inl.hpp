@@ -26,7 +26,7 @@ HWY_INLINE void solve(const V (&L)[packed_size(NY)], const V (&inverse)[NY], V (
   }
 }
 
-/// Same as bound_variances of kalman.hpp, for negative variances.
+/// Like bound_variances of kalman.hpp, in the lanes where `negative` is true.
 template <std::size_t N>
 HWY_INLINE void bound_variances(M negative, const Moments<N>& predicted, Moments<N>& posterior) {
   for (std::size_t a = 0; a < N; ++a)
@@ -37,7 +37,7 @@ HWY_INLINE void bound_variances(M negative, const Moments<N>& predicted, Moments
     }
 }
 
-/// The estimate after the measurement; an overflowing correction is ignored.
+/// The estimate after the measurement. A correction that overflows is ignored.
 template <std::size_t N>
 HWY_INLINE Moments<N> usable(const Moments<N>& predicted, Moments<N> result) {
   V check = result.x[0], least = result.P[0];
@@ -125,7 +125,8 @@ struct Correction {
   }
 };
 
-/// tr(S^-1 C s Q C') and e' S^-1 C s Q C' S^-1 e of the modes r .., with e' S^-1 e limited (noise_scale.hpp).
+/// Two sums of the modes r ..: tr(S^-1 C s Q C') and e' S^-1 C s Q C' S^-1 e. In the second one, e' S^-1 e is limited
+/// (noise_scale.hpp).
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void explained_by_values(const ModeRows& p, const Sensor& sensor, const double* y, std::size_t r, V& share,
                                     V& square) {

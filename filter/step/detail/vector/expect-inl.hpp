@@ -64,7 +64,7 @@ HWY_INLINE void store_prediction(const Prediction<N, NY>& q, const ModeRows& p, 
   store_rows(q.inverse, p.stride, p.D_inverse + r);
 }
 
-/// Reads the values of store_prediction. Skips S and D, which a correction does not need.
+/// Reads the values that store_prediction wrote. Skips S and D, which a correction does not need.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE Prediction<N, NY> load_prediction(const ModeRows& p, std::size_t r) {
   Prediction<N, NY> q;

@@ -13,10 +13,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Moments of signal i for the modes of register r, from the innovation and variance in their rows.
+/// Moments of signal i for the modes of register r. The rows of innovation and variance are the inputs.
 template <std::size_t NY>
 HWY_NOINLINE void look_at_signal(const ModeRows& p, double quantum, std::size_t i, std::size_t r) {
-  const M there = hn::FirstN(D(), p.modes > r ? p.modes - r : 0);  // padding lanes get values that are cheap to compute
+  const M there = hn::FirstN(D(), p.modes > r ? p.modes - r : 0);  // padding lanes get an interval that is cheap to
+                                                                   // compute
   const V e = hn::IfThenElseZero(there, load(p.decorrelated + i * p.stride + r));
   const V s = hn::IfThenElse(there, load(p.D + i * p.stride + r), splat(quantum > 0.0 ? quantum * quantum : 1.0));
   const Signals said = signal_likelihood(e, s, quantum);
@@ -36,7 +37,7 @@ HWY_INLINE V signal_moment(const ModeRows& p, std::size_t which, std::size_t i, 
 /// Updates one register of modes with the signals one after another.
 template <std::size_t N, std::size_t NY>
 struct IntervalCorrection {
-  Moments<N> m;  ///< moments after the signals processed so far
+  Moments<N> m;  ///< moments after the signals that were processed so far
   V column[N];   ///< P C_i'
   V s;           ///< C_i P C_i' + R_ii
 
@@ -57,7 +58,7 @@ struct IntervalCorrection {
     for (std::size_t a = 0; a < N; ++a) e = hn::NegMulAdd(splat(sensor.C[i * N + a]), m.x[a], e);
     return e;
   }
-  /// Updates with a standardised innovation of this mean and variance.
+  /// Updates the moments, given mean and variance of the standardised innovation.
   HWY_INLINE void take(V mean, V variance) {
     const V step = hn::Div(mean, hn::Sqrt(s)), shrink = hn::Div(hn::Sub(splat(1.0), variance), s);
     for (std::size_t a = 0; a < N; ++a) {
@@ -68,7 +69,8 @@ struct IntervalCorrection {
   }
 };
 
-/// Computes decorrelated, D and signal for all signals and the modes of register r, and the moments after them.
+/// Computes `decorrelated`, `D` and `signal` for all signals and the modes of register r, and then the moments after
+/// the measurement.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE Moments<N> look_at(const ModeRows& p, const Sensor& sensor, const double* y, std::size_t r,
                               const Moments<N>& predicted) {
@@ -83,7 +85,7 @@ HWY_INLINE Moments<N> look_at(const ModeRows& p, const Sensor& sensor, const dou
   return c.m;
 }
 
-/// Same as correct of update-inl.hpp, but exponents hold the whole log density, which may be positive.
+/// Like `correct` in update-inl.hpp, but `exponents` holds complete log densities, which may be positive.
 template <std::size_t N, std::size_t NY>
 HWY_NOINLINE V correct_intervals(const ModeRows& p, const Sensor& sensor, const double* y) {
   V largest = splat(-far);
@@ -120,7 +122,7 @@ HWY_INLINE V second_moment(const ModeRows& p, std::size_t i, std::size_t r) {
   return hn::MulAdd(mean, mean, signal_moment<NY>(p, 2, i, r));
 }
 
-/// Same as interval_sums of interval.hpp.
+/// Like `interval_sums` of interval.hpp.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void explained_by_intervals(const ModeRows& p, const Sensor& sensor, std::size_t r, V& share, V& square) {
   V Q[packed_size(N)];

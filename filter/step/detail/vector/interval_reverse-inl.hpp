@@ -13,8 +13,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Derivatives with respect to innovation and variance of a signal, and to mean M and variance V of the innovation
-/// given its interval (SignalLikelihood).
+/// Derivatives of one signal with respect to its innovation and variance. Also with respect to mean M and variance V of
+/// the innovation given its interval (SignalLikelihood).
 struct BySignal {
   V e, s, mean, variance;
 };
@@ -79,7 +79,7 @@ class IntervalUncorrection {
 
   HWY_INLINE V moment(std::size_t which, std::size_t i) const { return signal_moment<NY>(p_, which, i, r_); }
 
-  /// Adjoint of C_i Q C_i' / s (share + square (M^2 + V) / s), with the last factor limited (interval_sums).
+  /// Adjoint of C_i Q C_i' / s (share + square (M^2 + V) / s). The last factor is limited (interval_sums).
   HWY_INLINE void explained(std::size_t i, V share, V square, const V (&Q)[packed_size(N)], V root, BySignal& to,
                             V (&by_Q)[packed_size(N)]) const {
     const V second = second_moment<NY>(p_, i, r_), most = splat(largest_standardised * largest_standardised);

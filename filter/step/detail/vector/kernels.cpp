@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "filter/step/detail/vector/kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// Must follow highway.h:
+// This include must follow highway.h:
 #include "filter/step/detail/vector/mixture-inl.hpp"
 #include "filter/step/detail/vector/update-inl.hpp"
 

@@ -4,7 +4,7 @@
 
 /// Interface between vector_imm.cpp and its kernels, which are compiled once per instruction set. Rows hold `stride`
 /// numbers, one per mode, and begin at multiples of 64 bytes. Symmetric matrices are packed: entry (a, b), a >= b, is
-/// row a (a + 1) / 2 + b. Entries beyond the last mode are zero, and no mode can switch to these entries.
+/// row a (a + 1) / 2 + b. Entries beyond the last mode are zero, and no mode can switch to them.
 namespace modebank::vector_imm {
 
 struct ModeRows {
@@ -16,9 +16,9 @@ struct ModeRows {
   // The filter's state.
   double *mean = nullptr, *covariance = nullptr, *probability = nullptr;  ///< number of rows: n, packed n, 1
 
-  // Derived from the state for the next step's mixing.
+  // Numbers derived from the state, for mixing in the next step.
   double share = 0.0;        ///< 1 / modes
-  double* center = nullptr;  ///< n numbers, the mean of the modes' means; mixing computes moments about it
+  double* center = nullptr;  ///< n numbers, the mean of the modes' means; moments for mixing are computed about it
   double* parts = nullptr;   ///< n + packed n: summands of the mixtures
 
   // Results of a step.
@@ -27,10 +27,10 @@ struct ModeRows {
   double *expected = nullptr, *innovation_covariance = nullptr;       ///< n_y: C x; packed n_y: S
   double *L = nullptr, *D = nullptr, *D_inverse = nullptr;            ///< packed n_y; n_y: S = L D L'
   double* decorrelated = nullptr;                                     ///< n_y: L^-1 (y - C x)
-  double *exponent = nullptr, *weight = nullptr;  ///< 1: -e' S^-1 e / (2 log 2); unnormalised posterior
+  double *exponent = nullptr, *weight = nullptr;  ///< 1: -e' S^-1 e / (2 log 2); 1: posterior before normalisation
 
-  /// For quantised measurements only. Holds the numbers of SignalLikelihood for every signal given the previous
-  /// signals, n_y rows for each number. decorrelated and D then hold the innovation and its variance given the previous
+  /// Only for quantised measurements. Holds the numbers of SignalLikelihood for every signal given the previous
+  /// signals, n_y rows per number. `decorrelated` and `D` then hold the innovation and its variance given the previous
   /// signals.
   double* signal = nullptr;
 };
@@ -60,7 +60,7 @@ struct CombinedExpectation {
   double differences = 0.0;               ///< sum_j c_j |C x_j - C x|^2
 };
 
-/// Complete samples, each one step after the previous one.
+/// Complete samples; each is one step after the previous one.
 struct CompleteSamples {
   const double *inputs = nullptr, *measurements = nullptr;  ///< acting inputs and n_y measurements per sample
   std::size_t samples = 0;
@@ -71,16 +71,16 @@ struct CompleteSamples {
 struct Kernels {
   /// Call after mean, covariance and probability were set. Computes everything else that the next prediction reads.
   void (*prepare)(const ModeRows&) = nullptr;
-  /// Mixing, prediction and predicted measurement: everything from predicted_probability to D_inverse. `v`: inputs.
+  /// Computes everything from `predicted_probability` to `D_inverse`: mixing, prediction and predicted measurement.
+  /// `v`: inputs.
   void (*predict)(const ModeRows&, const Sensor&, const double* v, double noise_scale) = nullptr;
   /// Recomputes C x, S and its factor for another sensor.
   void (*expect)(const ModeRows&, const Sensor&) = nullptr;
-  /// Computes the state after y; for noise_scale > 0 also share and square.
+  /// Computes the state after y. If noise_scale > 0, also computes `share` and `square`.
   UpdateResult (*update)(const ModeRows&, const Sensor&, const double* y, double noise_scale) = nullptr;
-  /// predict and update for a stretch, at noise scale one. Afterwards only the state is valid; other results of the
-  /// steps are not.
+  /// Calls `predict` and `update` for a stretch of samples, with noise scale 1. Afterwards only the state is valid.
   void (*follow)(const ModeRows&, const Sensor&, const CompleteSamples&) = nullptr;
-  /// Without a measurement the prediction becomes the state.
+  /// For a sample without measurement: the prediction becomes the state.
   void (*skip)(const ModeRows&) = nullptr;
   void (*merge)(const ModeRows&, CombinedMoments) = nullptr;
   void (*combine)(const ModeRows&, const Sensor&, CombinedExpectation&) = nullptr;
@@ -88,7 +88,7 @@ struct Kernels {
   void (*transform)(const ModeRows&, const double* y, double* pit) = nullptr;
 };
 
-/// Kernels for these sizes; entries are null if there are no kernels.
+/// Kernels for these sizes. Entries are null if no kernels exist for the sizes.
 Kernels kernels(std::size_t states, std::size_t measurements);
 
 /// Rows are padded to multiples of this number, which is enough for any instruction set.

@@ -13,8 +13,8 @@ HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
 /// Stores d_i and P_i + d_i d_i' of each mode in p.parts. d_i is relative to p.center, the mean of the modes' means.
-/// These numbers do not depend on the probabilities, which are the last results of an update. So this function need not
-/// wait for them.
+/// The stored numbers do not depend on the probabilities, which an update computes last. So this function can run
+/// before the probabilities are known.
 template <std::size_t N>
 HWY_INLINE void center_modes(const ModeRows& p) {
   const std::size_t stride = p.stride;
@@ -54,8 +54,8 @@ void prepare(const ModeRows& p) {
   for (std::size_t r = 0; r < p.stride; r += hn::Lanes(D())) weigh_parts<N>(p, r, load(p.probability + r));
 }
 
-/// Computes the means first and the covariances about these means. Needed if modes are so different that moments about
-/// the center cancel.
+/// Computes the means first, then the covariances about these means. Needed if modes are so different that moments
+/// about the center lose too many digits.
 template <std::size_t N>
 HWY_NOINLINE void mix_apart(const ModeRows& p, std::size_t r, V inverse, Moments<N>& m) {
   const std::size_t stride = p.stride;
@@ -80,7 +80,7 @@ HWY_NOINLINE void mix_apart(const ModeRows& p, std::size_t r, V inverse, Moments
 }
 
 /// Start of the modes of register r: the mixture of all modes that can switch to the mode (Blom & Bar-Shalom 1988).
-/// `sums`: of mu_i T_ij, then of parts_i T_ij.
+/// `sums`: sum of mu_i T_ij, then sum of parts_i T_ij.
 template <std::size_t N>
 HWY_INLINE Moments<N> mixture(const ModeRows& p, std::size_t r, const V (&sums)[1 + N + packed_size(N)]) {
   const V c = sums[0];
@@ -102,7 +102,7 @@ HWY_INLINE Moments<N> mixture(const ModeRows& p, std::size_t r, const V (&sums)[
       if (a == b) cancelled = hn::Or(cancelled, hn::Lt(m.P[k], least_sound(square, center[a])));
     }
   if (HWY_UNLIKELY(!hn::AllFalse(D(), hn::And(possible, cancelled)))) {
-    Moments<N> apart;  // separate from m, which can then stay in registers
+    Moments<N> apart;  // a separate array, so that m can stay in registers
     mix_apart(p, r, inverse, apart);
     m = apart;
   }

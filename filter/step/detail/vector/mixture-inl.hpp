@@ -82,7 +82,7 @@ inline constexpr double scaled_erfc[24] = {
     1.7419011945194366247e-6,   -5.741076073013915709e-8,  -2.4851108650210706133e-7,   2.3398534313040896942e-8,
     3.1953986120578180665e-8,   -3.7981897977362071919e-9, -2.6185201565031447991e-9,   3.2052623379289157079e-10};
 
-/// Phi(x), with a small relative error in the lower tail down to x = -37. Smaller arguments give the value at -37.
+/// Phi(x). The relative error is small in the lower tail down to x = -37. Smaller arguments give the value at -37.
 HWY_INLINE V normal_cdf(V x) {
   const V t = hn::Min(hn::Mul(hn::Abs(x), splat(0.70710678118654752440)), splat(26.2));
   const V s = hn::Mul(hn::Sub(t, splat(3.75)), reciprocal(hn::Add(t, splat(3.75)))), s2 = hn::Mul(s, s);
@@ -99,7 +99,7 @@ HWY_INLINE V normal_cdf(V x) {
   return hn::IfThenElse(hn::Lt(x, zero()), tail, hn::Sub(splat(1.0), tail));
 }
 
-/// Probability integral transform of the last measurement (probability_transform of predicted_mixture.hpp).
+/// Probability integral transform of the last measurement (see probability_transform of predicted_mixture.hpp).
 template <std::size_t NY>
 void transform(const ModeRows& p, const double* y, double* pit) {
   const std::size_t stride = p.stride;
@@ -118,7 +118,7 @@ void transform(const ModeRows& p, const double* y, double* pit) {
       nearest = hn::Min(nearest, hn::IfThenElse(hn::Ge(w, splat(impossible_probability)), hn::Mul(z, z), splat(far)));
     }
     const double below = sum_of(sum);
-    pit[i] = below < 1.0 ? below : 1.0;  // limits the rounding of the sum of weights
+    pit[i] = below < 1.0 ? below : 1.0;  // limits rounding errors of the sum of weights
     if (i + 1 == NY) return;
     nearest = hn::MinOfLanes(D(), nearest);
     sum = zero();

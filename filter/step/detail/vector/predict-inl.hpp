@@ -66,7 +66,7 @@ HWY_INLINE Moments<N> propagate(const ModeRows& p, std::size_t r, const double* 
   return m;
 }
 
-/// Processes J registers of modes from r on together, which share the loads of the previous modes.
+/// Processes J registers of modes from r on together. These registers share the loads of the previous modes.
 template <std::size_t N, std::size_t NY, std::size_t J>
 HWY_INLINE void predict_registers(const ModeRows& p, const Sensor& sensor, std::size_t r, const double* v, V scale,
                                   Prediction<N, NY> (&q)[J]) {
@@ -75,7 +75,7 @@ HWY_INLINE void predict_registers(const ModeRows& p, const Sensor& sensor, std::
   V sums[J][1 + parts];
   for (auto& of_register : sums)
     for (V& sum : of_register) sum = zero();
-  for (std::size_t i = 0; i < p.modes; ++i) {  // a separate loop, because everything else is divided by the result
+  for (std::size_t i = 0; i < p.modes; ++i) {  // a separate loop, because all other results are divided by this one
     const V mu = splat(p.probability[i]);
     for (std::size_t b = 0; b < J; ++b)
       sums[b][0] = hn::MulAdd(load(p.transition + i * stride + r + b * L), mu, sums[b][0]);
@@ -97,7 +97,7 @@ HWY_INLINE void predict_registers(const ModeRows& p, const Sensor& sensor, std::
   }
 }
 
-/// Number of registers processed together. It is limited so that all sums fit into registers.
+/// Number of registers that are processed together. It is limited so that all sums fit into registers.
 template <std::size_t N>
 inline constexpr std::size_t most_together = N == 1   ? 4
                                              : N == 2 ? 2

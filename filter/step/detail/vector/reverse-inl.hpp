@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// Weight of a packed entry: v' P w and similar sums count off-diagonal entries twice.
+/// Weight of a packed entry. Sums such as v' P w count off-diagonal entries twice.
 constexpr double times(std::size_t a, std::size_t b) { return a == b ? 1.0 : 2.0; }
 
 HWY_INLINE void add_to(double* row, V value) { store(hn::Add(load(row), value), row); }
@@ -56,7 +56,7 @@ HWY_INLINE void add_to_state(const Sensor& sensor, const V (&W)[packed_size(NY)]
               hn::MulAdd(splat(sensor.C[i * N + a] * sensor.C[k * N + b]), W[packed(i, k)], result[packed(a, b)]);
 }
 
-/// Adjoint of the measurement's terms for one register of modes.
+/// Adjoint of the measurement equations for one register of modes.
 template <std::size_t N, std::size_t NY>
 struct Uncorrection {
   const Correction<N, NY> c;
@@ -81,7 +81,7 @@ struct Uncorrection {
     }
   }
 
-  /// Derivatives of `by_log` times the log density with respect to S.
+  /// Derivatives of the log density, times `by_log`, with respect to S.
   HWY_INLINE void log_density(V by_log, V (&by_S)[packed_size(NY)]) const {
     const V half = hn::Mul(splat(0.5), by_log);
     for (std::size_t i = 0; i < NY; ++i)
@@ -89,8 +89,8 @@ struct Uncorrection {
         by_S[packed(i, k)] = hn::Mul(half, hn::MulSub(pulled[i], pulled[k], S_inverse[packed(i, k)]));
   }
 
-  /// Derivatives of share tr(S^-1 C Q C') + square e' S^-1 C Q C' S^-1 e with respect to e, S (added) and Q. The last
-  /// term is limited (noise_scale.hpp).
+  /// Derivatives of share tr(S^-1 C Q C') + square e' S^-1 C Q C' S^-1 e with respect to e, S (added) and Q. The term
+  /// with `square` is limited (noise_scale.hpp).
   HWY_INLINE void explained(const Sensor& sensor, const V (&Q)[packed_size(N)], V share, V square, V (&by_e)[NY],
                             V (&by_S)[packed_size(NY)], V (&by_Q)[packed_size(N)]) const {
     const V most = splat(largest_standardised * largest_standardised * sensor.signals), nis = c.distance();
@@ -112,7 +112,7 @@ struct Uncorrection {
       value = hn::MulAdd(along[i], pulled[i], value);
     }
     weigh(along, pull);
-    // The limited square is most times value / nis.
+    // If the limit applies, the square is `most` times value / nis.
     const V by_nis = hn::IfThenElseZero(cut, hn::Div(hn::Mul(hn::Neg(square), value), hn::Max(nis, most)));
     for (std::size_t i = 0; i < NY; ++i) {
       by_e[i] = hn::Mul(splat(2.0), hn::MulAdd(square, pull[i], hn::Mul(by_nis, pulled[i])));
@@ -240,7 +240,7 @@ template <std::size_t N>
 HWY_INLINE void back_to_state(const ModeRows& p, const ReverseRows& d, std::size_t j) {
   const std::size_t stride = p.stride;
   const double prior = p.predicted_probability[j];
-  if (!(prior >= impossible_probability)) {  // an impossible mode keeps its own state
+  if (!(prior >= impossible_probability)) {  // an impossible mode starts from its own state
     for (std::size_t a = 0; a < N; ++a) d.mean[a * stride + j] += d.by_mixed_mean[a * stride + j];
     for (std::size_t k = 0; k < packed_size(N); ++k)
       d.covariance[k * stride + j] += d.by_mixed_covariance[k * stride + j];
@@ -279,8 +279,8 @@ HWY_INLINE void back_to_state(const ModeRows& p, const ReverseRows& d, std::size
   }
 }
 
-/// Replaces the derivatives by those with respect to the probabilities before the floor, including the sums for the
-/// noise scale. Returns their mean. A floored probability is constant.
+/// Replaces the derivatives by derivatives with respect to the probabilities before the floor. Includes the sums for
+/// the noise scale. Returns the mean of the derivatives. A probability at the floor is constant.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE V unfloor(const ModeRows& p, const ReverseStep& step, const ReverseRows& d) {
   V mean = zero();
@@ -300,8 +300,8 @@ HWY_INLINE V unfloor(const ModeRows& p, const ReverseStep& step, const ReverseRo
 }
 
 /// Converts derivatives with respect to the corrected moments of register r to those with respect to the predicted
-/// moments, R and Q. `by_log`: derivative with respect to the mode's log density. mu: probability of the mode after the
-/// measurement.
+/// moments, R and Q. `by_log`: derivative with respect to the mode's log density. `mu`: probability of the mode after
+/// the measurement.
 template <std::size_t N, std::size_t NY>
 HWY_INLINE void back_to_predicted(const ModeRows& p, const ReverseStep& step, const ReverseRows& d, std::size_t r,
                                   V by_log, V mu, Moments<N>& by, V (&by_Q)[packed_size(N)]) {

@@ -26,14 +26,14 @@ using em::HWY_NAMESPACE::in_register;
 using em::HWY_NAMESPACE::ln_2;
 using em::HWY_NAMESPACE::log2_e;
 
-// At most the width of the padding (kernels.hpp), so that rows consist of whole registers on every machine.
+// Not wider than the padding (kernels.hpp), so that rows consist of whole registers on every machine.
 using D = hn::CappedTag<double, 8>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
 static_assert(hn::MaxLanes(D()) <= row_multiple);
 
-inline constexpr double far = 1e300;  ///< squared distance of an impossible mode
+inline constexpr double far = 1e300;  ///< squared distance that marks an impossible mode
 
 HWY_INLINE V splat(double value) { return hn::Set(D(), value); }
 HWY_INLINE V zero() { return hn::Zero(D()); }
@@ -41,9 +41,9 @@ HWY_INLINE V load(const double* p) { return hn::Load(D(), p); }
 HWY_INLINE void store(V v, double* p) { hn::Store(v, D(), p); }
 HWY_INLINE double sum_of(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 
-/// Smallest variance for which the moments of a mixture may come from sums about another point, the center. They are
-/// variance = square - shift^2, mean = center + shift. Below this variance, more than ten of its 53 bits cancel, or the
-/// error of the mean approaches a standard deviation. The sums must then be relative to the mean.
+/// Smallest variance for which the moments of a mixture may be computed from sums about another point, the center. They
+/// are variance = square - shift^2 and mean = center + shift. For a smaller variance, more than ten of 53 bits are
+/// lost, or the error of the mean approaches a standard deviation. Then the sums must be about the mean.
 HWY_INLINE V least_sound(V square, V center) {
   constexpr double least_share = 0x1p-10, least_of_center = 0x1p-80;
   return hn::Max(hn::Mul(square, splat(least_share)), hn::Mul(hn::Mul(center, center), splat(least_of_center)));
@@ -71,7 +71,7 @@ struct Moments {
   V P[packed_size(N)];
 };
 
-/// One number per mode: in R registers, or in memory for any number of modes (R = 0).
+/// One number per mode, in R registers. If R = 0, the numbers of any number of modes are in memory.
 template <std::size_t R>
 struct Row {
   V registers[R];
@@ -87,7 +87,7 @@ struct Row<0> {
   HWY_INLINE void set(std::size_t b, V value) { store(value, memory + b * hn::Lanes(D())); }
 };
 
-/// Calls visit(b, r) for every register of modes, with rows r .. r + lanes; a loop over R registers is unrolled.
+/// Calls visit(b, r) for every register of modes, with rows r .. r + lanes. The loop over R registers is unrolled.
 template <std::size_t R, class Visit>
 HWY_INLINE void for_each_register(const ModeRows& p, const Visit& visit) {
   constexpr std::size_t lanes = hn::MaxLanes(D());

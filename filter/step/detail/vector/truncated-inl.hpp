@@ -20,10 +20,10 @@ struct Signals {
   V log_density, mean, variance, third, fourth;
 };
 
-/// Moments of standard normal variables in [low, high], computed from differences. Intervals must not be narrow or far
-/// out.
+/// Moments of standard normal variables in [low, high], computed from differences. Intervals must be neither narrow nor
+/// far from zero.
 HWY_INLINE Signals by_differences(V low, V high) {
-  const V beyond = splat(38.0);  // beyond this argument the density is denormal
+  const V beyond = splat(38.0);  // for larger arguments the density is denormal
   low = hn::Max(low, hn::Neg(beyond));
   high = hn::Min(high, beyond);
   const V mass = hn::Sub(normal_cdf(hn::Neg(low)), normal_cdf(hn::Neg(high)));
@@ -46,7 +46,7 @@ HWY_INLINE Signals by_differences(V low, V high) {
   return s;
 }
 
-/// Moments by Gauss-Legendre quadrature in panels. All lanes use the number of panels of the most demanding lane.
+/// Moments by Gauss-Legendre quadrature in panels. The lane that needs most panels sets their number for all lanes.
 HWY_INLINE Signals by_quadrature(V low, V width) {
   constexpr double negligible = truncated::negligible_exponent;
   const V reach =
@@ -105,7 +105,7 @@ HWY_INLINE Signals signal_likelihood(V e, V s, double quantum) {
   const V width = hn::Div(splat(quantum), root);
   const M quadrature =
       hn::Or(hn::Lt(width, splat(truncated::least_width)), hn::Gt(low, splat(truncated::largest_start)));
-  // Lanes that use the other method get values that are cheap to compute.
+  // Lanes that use the other method get an interval that is cheap to compute.
   Signals result;
   if (hn::AllTrue(D(), quadrature)) {
     result = by_quadrature(low, width);

@@ -1,4 +1,4 @@
-// Update with a measurement, and whole stretches of steps, one mode per lane. Included once per instruction set
+// Update with a measurement, and filtering of whole stretches, one mode per lane. Included once per instruction set
 // (Highway's foreach_target.h).
 #if defined(MODEBANK_VECTOR_IMM_UPDATE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MODEBANK_VECTOR_IMM_UPDATE_INL
@@ -15,20 +15,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace modebank::vector_imm::HWY_NAMESPACE {
 
-/// If the largest exponent is above this limit, densities are far above the smallest numbers.
+/// If the largest exponent is above this limit, no density is near the smallest numbers.
 inline constexpr double far_exponent = -100.0;
 
-/// Log density of a measurement whose weights sum to `sum`, relative to the exponent `reference`.
+/// Log density of a measurement. The weights sum to `sum` and are relative to the exponent `reference`.
 template <std::size_t NY, class Tag>
 HWY_INLINE hn::Vec<Tag> log_density(Tag d, hn::Vec<Tag> sum, hn::Vec<Tag> reference) {
   const auto constant = hn::Set(d, -0.5 * static_cast<double>(NY) * log_two_pi);
   return hn::Add(hn::MulAdd(hn::Set(d, ln_2), reference, hn::Log(d, sum)), constant);
 }
 
-/// Updates every mode with y: state, p.decorrelated, exponents (base 2, of densities) and weights (prior over the
-/// square root of S's determinant). `predicted` has the prediction of each register. Returns the reference of the
-/// exponents. This is the largest exponent. If the largest exponent is not very low, zero is returned instead, which
-/// avoids waiting for it.
+/// Updates every mode with y: state, p.decorrelated, exponents (base 2, of densities) and weights (prior divided by the
+/// square root of det S). `predicted` has the prediction of each register. Returns the reference of the exponents: the
+/// largest exponent if it is very low, else zero. With zero, the computation need not wait for the largest exponent.
 template <std::size_t N, std::size_t NY, std::size_t R, class Predicted>
 HWY_INLINE V correct(const ModeRows& p, const Sensor& sensor, const double* y, const Predicted& predicted,
                      Row<R>& exponents, Row<R>& weights) {
@@ -67,7 +66,7 @@ HWY_INLINE double bayes(const ModeRows& p, V reference, const Row<R>& exponents,
   return sum_of(sum);
 }
 
-/// Computes p.probability from weights that sum to `sum`. The floor keeps every mode alive. Also updates p.parts.
+/// Computes p.probability from weights that sum to `sum`. The floor lets every mode recover. Also updates p.parts.
 template <std::size_t N, std::size_t R>
 HWY_INLINE void floor_probabilities(const ModeRows& p, double sum, Row<R>& weights) {
   const V floor = splat(mode_probability_floor * sum);
@@ -93,7 +92,7 @@ HWY_INLINE void floor_probabilities(const ModeRows& p, double sum, Row<R>& weigh
   });
 }
 
-/// Sums for adaptive noise (adapt_noise_scale of noise_scale.hpp), from weights that sum to `sum`.
+/// Sums for adaptive noise (see adapt_noise_scale of noise_scale.hpp), from weights that sum to `sum`.
 template <std::size_t N, std::size_t NY>
 HWY_NOINLINE void explain(const ModeRows& p, const Sensor& sensor, const double* y, double noise_scale, double sum,
                           UpdateResult& result) {
@@ -125,7 +124,7 @@ UpdateResult update(const ModeRows& p, const Sensor& sensor, const double* y, do
   return result;
 }
 
-/// One sample of a stretch: predict and update of R registers. With R = 0, any number of registers in memory.
+/// One sample of a stretch: `predict` and `update` of R registers. If R = 0, any number of registers in memory.
 template <std::size_t N, std::size_t NY, std::size_t R>
 HWY_INLINE double step(const ModeRows& p, const Sensor& sensor, const double* v, const double* y, double& reference) {
   Row<R> exponents(p.exponent), weights(p.weight);
@@ -147,7 +146,7 @@ HWY_INLINE double step(const ModeRows& p, const Sensor& sensor, const double* v,
   return sum;
 }
 
-/// Predicts and updates through a stretch. Logarithms are computed for many samples at once.
+/// Filters a stretch of samples. Logarithms are computed for many samples at once.
 template <std::size_t N, std::size_t NY, std::size_t R>
 void follow_registers(const ModeRows& p, const Sensor& sensor, const CompleteSamples& stretch) {
   constexpr std::size_t block = 64;

@@ -111,7 +111,7 @@ BankGradient VectorGradient::go_back() {
   return result();
 }
 
-/// All modes start from the same moments. The mean of the modes' means then does not depend on the bank.
+/// At the start all modes have the same moments. The mean of the modes' means then does not depend on the bank.
 void VectorGradient::back_to_start() {
   for (Index a = 0, row = 0; a < n_; ++a)
     for (Index b = 0; b <= a; ++b, ++row) {

@@ -29,7 +29,7 @@ class VectorGradient {
 
  private:
   enum class Kind { start, skip, step };
-  /// The step to a moment, and the noise scale after the step.
+  /// The step to one moment, and the noise scale after the step.
   struct Moment {
     Kind kind;
     double weight = 0.0;

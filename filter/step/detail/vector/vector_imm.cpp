@@ -99,7 +99,7 @@ void VectorImm::lay_out() {
   rows_.mean = take(n_);
   rows_.covariance = take(p);
   rows_.probability = take(1);
-  rows_.center = take(1);  // has room for n numbers
+  rows_.center = take(1);  // starts with room for n numbers
   rows_.parts = take(n_ + p);
   rows_.predicted_probability = take(1);
   rows_.predicted_mean = take(n_);
@@ -147,7 +147,7 @@ void VectorImm::start(const Vector& y) {
   noise_samples_ = adaptation_.prior_samples;
 }
 
-/// noise_of_step of imm.hpp. start_ is not needed between starts, so it is the workspace here.
+/// Like noise_of_step of imm.hpp. `start_` is not needed between starts, so it serves as workspace here.
 double VectorImm::scale_of_step(const Vector& v) {
   if (factor_.empty()) return noise_scale_;
   for (Index a = 0; a < n_; ++a) {
@@ -168,7 +168,7 @@ void VectorImm::predict(const Vector& v) {
   kernels_.predict(rows_, sensor_, v.data(), applied_scale_);
 }
 
-/// Like in PartialSensor, a missing signal becomes one that is always zero, with variance one and no correlation.
+/// As in PartialSensor, a missing signal is replaced by one that is always zero, with variance one and no correlation.
 vector_imm::Sensor VectorImm::detach_missing(const Vector& y, Index missing) {
   partial_C_ = C_;
   partial_R_ = R_;
@@ -206,7 +206,7 @@ double VectorImm::update(const Vector& y) {
 void VectorImm::follow(const Columns& inputs, const Columns& measurements, Eigen::Ref<Eigen::VectorXd> log_density) {
   const Index samples = measurements.cols();
   for (Index k = 0; k < samples;) {
-    Index end = k;  // end of the complete samples from k on
+    Index end = k;  // first sample from k on that is not complete
     while (!adaptive_ && factor_.empty() && !sensor_.quantum && end < samples &&
            missing_entries(measurements.col(end)) == 0)
       ++end;

@@ -12,9 +12,9 @@ namespace vector_imm {
 inline std::size_t count_of(Eigen::Index n) { return static_cast<std::size_t>(n); }
 }  // namespace vector_imm
 
-/// The interacting multiple model filter with one mode per lane of the vector registers (Highway, chosen at run time),
-/// for the sizes of most robots. Up to rounding it equals equations/filter_step.hpp, with the same mixing, floors,
-/// adaptive noise and treatment of impossible modes. Only the order of summation differs.
+/// The interacting multiple model filter for the sizes of most robots, with one mode per lane of the vector registers
+/// (Highway, chosen at run time). Mixing, floors, adaptive noise and treatment of impossible modes are those of
+/// equations/filter_step.hpp. Results differ only by rounding, because sums have another order.
 class VectorImm final : public Stepper {
  public:
   /// Whether kernels exist for this bank with these options.
@@ -33,7 +33,7 @@ class VectorImm final : public Stepper {
   void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override;
   Eigen::Map<const Eigen::VectorXd> predicted_probability() const override { return row(rows_.predicted_probability); }
   Eigen::Map<const Eigen::VectorXd> mode_probability() const override { return row(rows_.probability); }
-  /// Call after update. Innovation of signal i of mode j minus its prediction from earlier signals. Also the variance
+  /// Call after `update`. Innovation of signal i of mode j, minus its prediction from earlier signals; and the variance
   /// of this difference.
   double decorrelated(Eigen::Index i, Eigen::Index j) const { return rows_.decorrelated[at(i, j)]; }
   double variance(Eigen::Index i, Eigen::Index j) const { return rows_.D[at(i, j)]; }
@@ -43,7 +43,7 @@ class VectorImm final : public Stepper {
   void restore(const FilterMemory& memory) override;
 
  private:
-  friend class VectorGradient;  // computes the adjoint of the same steps
+  friend class VectorGradient;  // computes the adjoint of these steps
   struct Free {
     void operator()(double* memory) const;
   };
@@ -52,13 +52,14 @@ class VectorImm final : public Stepper {
   bool adaptive_;
   Eigen::VectorXd quantum_, partial_quantum_;  // empty if nothing is quantised
   NoiseAdaptation adaptation_;
-  NoiseFactor factor_;                              // empty if the factor is one
+  NoiseFactor factor_;                              // empty without a noise factor
   double applied_scale_ = 1.0;                      // scale of the last prediction: noise_scale_ times the factor
-  double noise_scale_ = 1.0, noise_samples_ = 0.0;  // noise scale and its samples, as in FilterMemory
+  double noise_scale_ = 1.0, noise_samples_ = 0.0;  // noise scale, and discounted number of samples that determine it,
+                                                    // as in FilterMemory
   vector_imm::UpdateResult last_;                   // results of the last update
   vector_imm::Kernels kernels_;
   std::unique_ptr<double[], Free> memory_;
-  vector_imm::ModeRows rows_;              // point into memory_
+  vector_imm::ModeRows rows_;              // pointers into memory_
   Eigen::MatrixXd C_, R_;                  // transposed: row-major
   Eigen::MatrixXd partial_C_, partial_R_;  // C and R of the available signals
   vector_imm::Sensor sensor_;              // views of C_ and R_
