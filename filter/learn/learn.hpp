@@ -47,7 +47,7 @@ NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& record
 /// The competitor with one motion, learned like the bank. Expectation-maximisation with one theta shared by all modes
 /// starts from `most_levels` noise scales and fewer, down to one. Its own cross-validation chooses among them
 /// (refine_bank), with measurement noise as in `options`. One more start has the noises and transitions of `rival`, the
-/// bank that it competes with. `global`: in linear form. `filter`: filter of the competitor.
+/// bank that it competes with. `global`: the global model in linear form. `filter`: filter of the competitor.
 Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
                             const Bank& rival, const Eigen::MatrixXd& R, Eigen::Index most_levels,
                             const BankOptions& options, const FilterOptions& filter);
@@ -65,9 +65,9 @@ std::vector<Bank> level_starts(const Recording& recording, const LinearStructure
                                Eigen::Index most, double kept, const NoiseFactor& factor = {});
 
 /// Converts clustered windows into a bank (method: section 4). `R` is used unless options.measurement_variance is set.
-/// `motion`: motion model of the windows, null for linear ones; its modes are linearised at their mean state and input.
-/// If every component is screened out, the bank has one mode, merged from all components. Throws DataError if that mode
-/// is screened out, too.
+/// `motion`: motion model of the windows, null for linear models. Its modes are linearised at their mean state and
+/// input. If every component is screened out, the bank has one mode, merged from all components. Throws DataError if
+/// that mode is screened out, too.
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
 
@@ -81,10 +81,10 @@ Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, co
                           const BankOptions& options, const Eigen::MatrixXd& R,
                           const std::optional<FilterOptions>& filter, const MotionModel* motion);
 
-/// Calls learn_bank, then refine_bank. Starts are the mixture's bank and smaller banks. For these the closest
-/// components are merged (merge_components) to three quarters of the modes, repeatedly, down to one. If more modes do
-/// not gain on training runs that were left out, as with little data, one mode wins. The mixture's own bank is `start`
-/// of the result.
+/// Calls learn_bank, then refine_bank. Starts are the mixture's bank and smaller banks. Smaller banks come from merging
+/// the closest components (merge_components), each time to three quarters of the modes, down to one. One mode wins if
+/// more modes do not gain on training runs that were left out, for example with little data. The mixture's own bank is
+/// `start` of the result.
 Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                               const BankOptions& options, const Eigen::MatrixXd& R, const FilterOptions& filter);
 

@@ -14,9 +14,9 @@ struct RefineTuning {
   /// has used all training runs, so a fit needs some iterations to forget the left-out runs. Earlier checkpoints made
   /// results on ICE worse.
   std::array<std::ptrdiff_t, 7> checkpoints{10, 20, 35, 60, 100, 200, 1000};
-  /// A start is dropped after this number of checkpoints in a row at least least_gain below its best score. On ICE,
-  /// FLOORING and DRIVE (training runs; 13, 13 and 10 starts) no start recovered after two checkpoints, but some
-  /// recovered after one.
+  /// A start is dropped if its score is at least least_gain below its best score for this number of checkpoints in a
+  /// row. On ICE, FLOORING and DRIVE (training runs; 13, 13 and 10 starts) no start recovered after two checkpoints,
+  /// but some recovered after one.
   int falls = 2;
   /// Candidate memories of the noise scale: 20, 50 and 200 samples, and the whole run.
   std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
@@ -43,8 +43,8 @@ struct RefineTuning {
   // The prior.
   double Q_transitions = 4.0;                            ///< weight of the prior on Q while starts are compared, in
                                                          ///< transitions
-  std::array<double, 2> other_Q_transitions{1.0, 16.0};  ///< also tried for the best start; one is a quarter of the
-                                                         ///< value above, the other four times
+  std::array<double, 2> other_Q_transitions{1.0, 16.0};  ///< also tried for the best start: a quarter of the value
+                                                         ///< above, and four times that value
   double Q_transitions_unvalidated = 1.0;                ///< used if no run can be left out; one transition is unit
                                                          ///< information
   double Q_transitions_with_R = 1.0;  ///< number of additional transitions with the harmonic mean of the modes' Q, for

@@ -15,13 +15,14 @@
 
 namespace modebank {
 
-/// Row-stochastic matrix of mode transitions, T(i, j) = P(mode j next | mode i now). A separate type, so that it cannot
-/// be confused with mixing weights, whose columns sum to one. Checked once, at construction.
+/// Row-stochastic matrix of mode transitions, T(i, j) = P(mode j next | mode i now). It has its own type, because
+/// mixing weights (whose columns sum to one) must not be passed instead. Checked once, at construction.
 class TransitionMatrix {
  public:
   TransitionMatrix() : matrix_(Eigen::MatrixXd::Identity(1, 1)) {}
   /// Throws std::invalid_argument unless the matrix is square and its rows are nonnegative with sum one within 1e-9.
-  /// Rows are then normalised, unless they already are up to rounding. So construction from matrix() keeps every bit.
+  /// Rows are then normalised if their sum differs from one by more than rounding. So construction from matrix() keeps
+  /// every bit.
   explicit TransitionMatrix(Eigen::MatrixXd row_stochastic);
   /// `stay` on the diagonal; the other entries of a row are equal. K = 1 gives 1.
   static TransitionMatrix sticky(Eigen::Index modes, double stay);

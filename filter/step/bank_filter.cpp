@@ -22,7 +22,7 @@ const Bank& validated(const Bank& bank) {
   return bank;
 }
 
-/// Throws std::invalid_argument unless the memory fits a filter of n states and K modes.
+/// Throws std::invalid_argument if the memory does not fit a filter of n states and K modes.
 void check_memory(const FilterMemory& memory, Index n, Index K) {
   if (memory.means.rows() != n || memory.means.cols() != K || memory.covariances.rows() != n * n ||
       memory.covariances.cols() != K || memory.mode_probability.size() != K)

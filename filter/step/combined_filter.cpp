@@ -83,8 +83,9 @@ FilterEstimate CombinedFilter::forecast(double time_s, const Eigen::VectorXd& in
   std::vector<double> known;
   for (const auto& filter : filters_) {
     FilterEstimate& one = ahead.emplace_back(filter->forecast(time_s, input));
-    one.innovation = -one.prediction.head(one.innovation.size());  // with a measurement of zero, differences of
-                                                                   // innovations are those between the filters
+    one.innovation = -one.prediction.head(one.innovation.size());  // innovation for a measurement of zero; differences
+                                                                   // of innovations are then differences of the
+                                                                   // filters' predictions
     known.push_back(one.prediction.array().isNaN().any() ? not_a_number : 0.0);
   }
   for (std::size_t i = 0; i < ahead.size(); ++i) said_[i] = &ahead[i];

@@ -22,8 +22,8 @@ struct GridTuning {
   double log_score = 0.0;    ///< log score of the training runs [nats/sample]
   Eigen::Index samples = 0;  ///< scored training samples
 
-  /// Settings at the end of their grid; the optimum may lie beyond. Names: "q", "p0", "leak", "lam", "nu", "floor",
-  /// "horizon_factor".
+  /// Settings at the end of their grid; the best value may lie beyond the grid. Names: "q", "p0", "leak", "lam", "nu",
+  /// "floor", "horizon_factor".
   std::vector<std::string> at_grid_end;
 };
 

@@ -15,15 +15,17 @@ namespace modebank {
 /// A_i / rho^i. rho > 1 is the largest modulus of the polynomial's roots, so every root is divided by rho. theta0 is
 /// contracted in the same way; otherwise the leak towards theta0 would undo the contraction.
 ///
-/// Variance to first order in the errors of coefficients and samples. e is the error of a sample and d that of theta:
-///   e[j] = h[j]' d[j] + phi[j]' (e[j-1], e[j-2], ...) + noise of variance v,  d[j] = leak d[j-1] + w,  cov(w) = q v W.
+/// Variance to first order in the errors of coefficients and samples. e is the error of a sample, and d is the error of
+/// theta:
+///   e[j] = h[j]' d[j] + phi[j]' (e[j-1], e[j-2], ...) + noise of variance v,
+///   d[j] = leak d[j-1] + w,  cov(w) = q v W.
 /// phi are the coefficients of the lagged samples. v and the joint covariance of d and the lagged e start with their
 /// values at the origin.
 class DriftingForecast {
  public:
   explicit DriftingForecast(const Bank& bank);
 
-  /// z and coefficients are those of the filter after a sample (DriftingRecursion).
+  /// The filter's z and coefficients after a sample (DriftingRecursion).
   void start(const Eigen::Ref<const Eigen::VectorXd>& z, DriftState origin);
   void step(const Eigen::Ref<const Eigen::VectorXd>& inputs);
 

@@ -50,7 +50,7 @@ void ForecastWeights::observe(const std::vector<double>& log_densities) {
   if (log_densities.size() != evidence_.size())
     throw std::invalid_argument(std::to_string(log_densities.size()) + " log densities of " +
                                 std::to_string(evidence_.size()) + " forecasters");
-  // Forecasters without a value get the density of the mixture. Their weights then do not depend on the scores of the
+  // A forecaster without a value gets the density of the mixture. Its weight then does not depend on the scores of the
   // other forecasters.
   const double together = mixed_log_density(weights_, log_densities);
   if (std::isnan(together)) return;

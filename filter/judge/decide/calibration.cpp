@@ -12,8 +12,8 @@ namespace modebank {
 namespace {
 
 constexpr double nis_level = 0.99;     // level of the confidence interval that decides the verdict
-constexpr double nis_tolerance = 0.1;  // as a share of the variance; a tenth of the variance changes the band's width
-                                       // by a twentieth
+constexpr double nis_tolerance = 0.1;  // tolerated deviation of the mean NIS, as a share of its expected value;
+                                       // corresponds to a twentieth of the band's width
 constexpr double outside_level = 0.99;
 
 bool within(double value, double least, double largest) { return value >= least && value <= largest; }

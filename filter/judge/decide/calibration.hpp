@@ -22,9 +22,9 @@ namespace modebank {
 /// and differ from the expected mean by more than a tenth. This rule holds only if every prediction is one Gaussian of
 /// known variance. Otherwise (mixture, adaptive noise) the NIS is not chi-square and only sets a flag.
 ///
-/// Autocorrelated samples count as fewer. The effective number follows from an autocorrelation time with a margin for
-/// its own error. Two times are computed: that of the band's misses, and that of the sizes of all samples, because
-/// short runs have too few misses. The longer one is used.
+/// Autocorrelated samples count as fewer independent samples. Their number follows from an autocorrelation time with a
+/// margin for its own error. Two times are computed: from the band's misses, and from the sizes of all samples. The
+/// second is needed because short runs have few misses. The longer time is used.
 enum class Calibration { undecided, calibrated, overconfident, underconfident };
 
 template <>
@@ -43,7 +43,7 @@ inline constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 
 using HitsByRun = std::vector<std::vector<char>>;
 SeriesByRun as_numbers(const HitsByRun& hits);
 
-/// Counts over the scored signals of some samples. A verdict is based on them.
+/// Counts over the scored signals of some samples, from which a verdict follows.
 struct BandCounts {
   std::array<HitsByRun, coverage_levels.size()> outside;  ///< 1 where a signal lies outside the band, else 0
   HitsByRun far, close;         ///< 1 where z^2 lies above the 97.5 % or below the 2.5 % quantile of chi-square(1)

@@ -10,7 +10,7 @@ enum class CalibrationReason { band, close, nis, few_samples };
 
 CalibrationReason reason_of(const DiagnosticsRow& row);
 
-/// The band has an interval that excludes the nominal share.
+/// Whether the band is too wide or too narrow. If so, the confidence interval of its share excludes the nominal share.
 enum class BandWidth { as_stated, too_wide, too_narrow };
 BandWidth width_of(double level, double coverage_lower, double coverage_upper);
 

@@ -46,7 +46,7 @@ class Collector {
   }
 
  private:
-  /// Reserves memory for all samples of a run; without it, growing series would take up to twice as much.
+  /// Reserves memory for all samples of a run. Without this, growing series would take up to twice the memory.
   void make_room(const RunEvaluation& e, OutputSeries& z) {
     BandCounts& counts = sums.counts;
     const auto samples = static_cast<std::size_t>(e.log_density.size()), all = samples * z.size();

@@ -24,8 +24,8 @@ struct Collected {
 };
 
 /// Collects the samples of the runs of a role for one filter (mode -1) or one of its modes. A sample belongs to the
-/// mode that was most probable before the measurement. `scores`: of all evaluations. `nees_states`: the states of the
-/// NEES.
+/// mode that was most probable before the measurement. `scores`: scores of all evaluations. `nees_states`: the states
+/// of the NEES.
 Collected collect(const Bank& bank, Eigen::Index mode, Role role, bool chi_square_nis,
                   const std::vector<Eigen::Index>& nees_states, const std::vector<Trajectory>& runs,
                   const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores);

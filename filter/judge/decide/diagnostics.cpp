@@ -94,7 +94,7 @@ DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   return row;
 }
 
-constexpr double takes_all = 0.99;              // usage of a mode above which it is flagged
+constexpr double takes_all = 0.99;              // limit of a mode's usage; a mode above the limit is flagged
 constexpr double unused = 1e-3;                 // usage
 constexpr double flat_entropy = 0.95;           // as a share of log K
 constexpr double dominating_differences = 0.5;  // as a share of the trace of S

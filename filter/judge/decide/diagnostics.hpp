@@ -14,9 +14,9 @@ namespace modebank {
 /// One row of /evaluation/diagnostics: a filter, or one of its modes, on the pooled runs of a role. A mode is judged on
 /// those samples where it was the most probable mode before the measurement. If the model is correct, these samples are
 /// calibrated, too, because the transform is uniform given all earlier information (Rosenblatt 1952; Diebold, Gunther &
-/// Tay 1998). Intervals have 95 % confidence. Fractions: Clopper & Pearson (1934), for the effective number of
-/// independent samples (calibration.hpp). Mean NIS and NEES: chi-square (squared_distances.hpp). The intervals hold for
-/// a correct model; they exclude the error of a learned filter. NaN means unknown.
+/// Tay 1998). Intervals have 95 % confidence. Those of fractions follow Clopper & Pearson (1934), with the effective
+/// number of independent samples (calibration.hpp). Those of mean NIS and NEES use chi-square (squared_distances.hpp).
+/// The intervals hold for a correct model; they do not include the error of a learned filter. NaN means unknown.
 struct DiagnosticsRow {
   std::string filter;
   Role role = Role::train;
@@ -26,7 +26,8 @@ struct DiagnosticsRow {
                              ///< probable mode
   double entropy = 0.0;      ///< mean entropy of the probabilities after the measurement, divided by log K; 0 for K = 1
   double dwell = 0.0;  ///< mean stay in a mode along viterbi_mode (without it, along the most probable modes) [samples]
-  double dwell_model = 0.0;  ///< 1 / (1 - T_jj), the stay by the transition matrix; NaN for the whole filter
+  double dwell_model = 0.0;  ///< 1 / (1 - T_jj), the mean stay according to the transition matrix; NaN for the whole
+                             ///< filter
 
   // Share of the signals inside the central bands, with intervals that allow for autocorrelation.
   double coverage_50 = 0.0, coverage_50_lower = 0.0, coverage_50_upper = 0.0;
@@ -42,7 +43,8 @@ struct DiagnosticsRow {
                                                                ///< state then equals the measurement
   Eigen::VectorXd state_rmse;                                  ///< n_y, state minus truth; NaN without truth
   double whiteness_p = 0.0;                                    ///< p value of Ljung & Box's test, as in the summary
-  double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value, at this lag; 0 for a mode
+  double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value, found at autocorrelation_lag; 0
+                                 ///< for a mode
   Eigen::Index autocorrelation_lag = 0;
   double spread_share = 0.0;  ///< mean share of the trace of S that comes from differences between the modes
   Calibration verdict = Calibration::undecided;
@@ -50,7 +52,7 @@ struct DiagnosticsRow {
 };
 
 /// Rows of one filter. Each role with runs has a row for the whole filter, then one for each mode if there are several
-/// modes. `options`: of the filter that made the evaluations; `scores`: of the evaluations (score_runs).
+/// modes. `options`: options of the filter that made the evaluations. `scores`: scores of the evaluations (score_runs).
 std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
                                      const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
                                      const std::vector<RunScores>& scores);

@@ -38,7 +38,7 @@ const Densities* named(const std::vector<Densities>& all, const std::string& fil
   return found == all.end() ? nullptr : &*found;
 }
 
-/// Finds the competitor with the highest score, which has the smallest gain of the bank.
+/// Finds the competitor with the highest score. The bank gains least over this competitor.
 void set_best_competitor(Finding& finding) {
   finding.gain = finding.standard_error = not_a_number;
   for (const PairedGain& gain : finding.gains) {
@@ -92,7 +92,7 @@ bool is_coarse(const Resolution& state) {
   return state.repeated > repeated_share || state.quantum > coarse_share * state.innovation_sd;
 }
 
-/// The answer by scores, if neither lags nor time steps raise an objection.
+/// The answer by scores, if lags and time steps allow an answer.
 Answer answer_by_scores(const Finding& finding) {
   if (finding.modes < 2 || finding.without_noise) return Answer::one_mode;
   if (!finding.coarse.empty()) return Answer::not_comparable;

@@ -36,8 +36,8 @@ inline constexpr std::array<const char*, 5> competitor_names{"baseline", "noise_
 /// `one_motion_drifts`: whether the theta of `one_motion` drifts.
 const char* description_of(const std::string& competitor, bool one_motion_drifts);
 
-/// The simplest description of the judged runs' motion that the scores allow. none: nothing was judged, or the result
-/// is inconclusive.
+/// The simplest description of the judged runs' motion that the scores allow. none: no run was judged, or the result is
+/// inconclusive.
 enum class Description { none, one_linear_motion, one_drifting_motion, one_nonlinear_motion, several_modes };
 
 template <>
@@ -125,9 +125,9 @@ struct Finding {
   std::string better_description;  ///< competitor that describes the runs instead of modes; empty if no competitor does
   double description_loss = 0.0;   ///< loss of that competitor against the best competitor [nats/sample]
 
-  /// The better of the competitors baseline and noise_only, if several modes and one nonlinear motion both predict
-  /// better than it. Set only if one of these two descriptions holds, else empty. Modes that switch by state and input
-  /// are also a nonlinear motion.
+  /// The better one of the competitors baseline and noise_only. Set only if several modes or one nonlinear motion
+  /// describe the runs, and both descriptions are better than this competitor; else empty. (Modes that switch by state
+  /// and input are also a nonlinear motion.)
   std::string over_linear;
   double bank_over_linear = 0.0, nonlinear_over_linear = 0.0;  ///< [nats/sample]
   std::vector<BetterMean> better_means;

@@ -10,9 +10,9 @@
 /// Expectation-maximisation with measurement noise takes its expectations from this smoother.
 namespace modebank {
 
-/// The filter's estimates at every moment of a run. Exactly known rows (those beyond Gaussian::uncertain) are stored
-/// once for all modes, without covariances. The lags of an exact sensor then take n numbers per moment instead of K (n
-/// + n^2).
+/// The filter's estimates at every moment of a run. Exactly known rows (from Gaussian::uncertain on) are stored once
+/// for all modes, without covariances. The lags of an exact sensor then take n numbers per moment instead of K (n +
+/// n^2).
 template <int N, int NY>
 class FilteredHistory {
  public:
@@ -42,8 +42,8 @@ class FilteredHistory {
 
  private:
   Eigen::Index n_, K_;
-  std::vector<double> values_;  ///< per moment: means of the known rows; then mean and covariance of the other rows,
-                                ///< per mode
+  std::vector<double> values_;  ///< per moment: means of the known rows, then for each mode mean and covariance of the
+                                ///< uncertain rows
   Eigen::VectorX<Eigen::Index> first_;  ///< index of the first value of each moment
   Eigen::MatrixXd probability_;
   Eigen::VectorXd noise_scale_;
@@ -84,7 +84,7 @@ struct SmoothedPair {
   const Eigen::Matrix<double, N, N>& gain;  ///< Cov(now, next) = gain next.covariance
 };
 
-/// Kim's backward pass: from the smoothed estimates of moment t + 1 to those of moment t.
+/// Kim's backward pass: computes the smoothed estimates of moment t from those of moment t + 1.
 template <int N, int NY>
 class BackwardPass {
  public:
@@ -207,7 +207,7 @@ class BackwardPass {
   void smooth_pair(const Gaussian<N>& filtered, const U& input, std::size_t k, double noise_scale) {
     const auto& mode = model_.modes[k];
     Gaussian<N>& result = pairs_[k];
-    if (filtered.uncertain == 0) {  // known exactly; later samples add nothing
+    if (filtered.uncertain == 0) {  // states are known exactly, so later samples add no information
       result = filtered;
       gain_.setZero();
       return;

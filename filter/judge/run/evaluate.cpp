@@ -49,8 +49,8 @@ void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
   e.spread_share(k) = estimate.spread_share;
 }
 
-/// Runs the filter only. Calls take(first, log densities) for every stretch of scored samples. A log density is NaN if
-/// nothing was measured.
+/// Runs the filter only. Calls take(first, log densities) for every stretch of scored samples. If no signal was
+/// measured, a log density is NaN.
 template <class Take>
 void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions& options, Take take) {
   const std::unique_ptr<Stepper> stepper = make_stepper(bank, options);

@@ -50,7 +50,7 @@ RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& 
 void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation);
 
 /// Sum of log predictive densities over the scored samples of a run [nats]: the log-likelihood of theta, Q, R and T.
-/// Stores nothing, so maximum likelihood can call it thousands of times. Conditions as for evaluate_run.
+/// Stores nothing, so maximum likelihood can call it thousands of times. The conditions are those of evaluate_run.
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 /// The log predictive density of every sample of a run [nats], N; NaN where it does not exist.

@@ -14,8 +14,8 @@ namespace modebank {
 
 /// Method of a bank's free run. moments: probability, mean and covariance of every mode, exact for a constant
 /// transition matrix. Bands and densities treat every mode's distribution as Gaussian. paths: sample paths. Bands are
-/// quantiles of the paths; densities use the moments of the paths as above. Both have the sampling noise of that number
-/// of paths.
+/// quantiles of the paths. Densities use the moments of each mode's paths, treated as Gaussian. Both have sampling
+/// noise, because the number of paths is finite.
 enum class FreeRunMethod { moments, paths };
 
 template <>
@@ -46,8 +46,8 @@ struct FreeRunOptions {
 /// Smallest number of measured samples that a model can start from.
 inline Eigen::Index fewest_start_samples(const LinearStructure& structure) { return structure.first_transition() + 1; }
 
-/// Predictions of a run from its first samples and the inputs alone. Column k belongs to sample k; NaN (-1) where
-/// nothing was predicted. The free run restarts after each gap at which filters restart.
+/// Predictions of a run from its first samples and the inputs alone. Column k belongs to sample k; a value is NaN (a
+/// mode is -1) if the sample was not predicted. The free run restarts after each gap at which filters restart.
 struct FreeRun {
   Eigen::MatrixXd mean;          ///< n_y x N
   Eigen::MatrixXd deviation;     ///< n_y x N, standard deviation of the measurement about `mean`
@@ -59,9 +59,9 @@ struct FreeRun {
   std::vector<std::string> notes;  ///< reasons for missing predictions
 };
 
-/// Computes a free run. Conditions as for evaluate_run; throws std::invalid_argument for fewer samples than the model
-/// needs. Banks with running noise always use moments; their coefficients decay as in predictions at a horizon
-/// (DriftingForecast).
+/// Computes a free run. The conditions are those of evaluate_run. Throws std::invalid_argument for fewer samples than
+/// the model needs. Banks with running noise always use moments; their coefficients decay as in predictions at a
+/// horizon (DriftingForecast).
 FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& filter, const FreeRunOptions& options);
 
 /// One row of /evaluation/free_run: scores over samples that are predicted and measured. All scores are per signal,

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Sums the scores of predictions over horizons, for every sample, one origin after the other.
+/// Sums the scores of predictions over the horizons, for every sample. Processes one origin after the other.
 template <int N, int NY>
 class FarScores {
  public:

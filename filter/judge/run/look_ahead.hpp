@@ -18,15 +18,14 @@ struct LookAhead {
   bool is_likelihood() const { return samples == 1 && !counts_errors(); }
 };
 
-/// Scores of look-ahead learning, N; NaN where a filter has no score.
-/// Densities: for each sample the mean of its log predictive densities 1, 2, ... h samples ahead [nats]. Their sum is a
-/// composite likelihood (Varin, Reid & Firth 2011, Statistica Sinica 21(1)). h = 1 equals log_densities.
-/// Errors: minus half the squared errors of the predicted means in given units. This is the objective of simulation
-/// error methods (Farina & Piroddi 2010, International Journal of Control 83(7)). 0 where no prediction exists.
-/// Near a run's start a sample has fewer predictions; missing predictions count as zero. Predictions from neighbouring
-/// origins are nearly the same. So beyond one sample ahead only every look_ahead_stride(h)-th origin is used, from the
-/// filter's start on; for errors this applies to all horizons. Conditions are those of evaluate_run; throws
-/// std::invalid_argument for h below 1.
+/// Scores of look-ahead learning, N; NaN where a filter has no score. Densities: for each sample the mean of its log
+/// predictive densities 1, 2, ... h samples ahead [nats]. Their sum is a composite likelihood (Varin, Reid & Firth
+/// 2011, Statistica Sinica 21(1)). h = 1 equals log_densities. Errors: minus half the squared errors of the predicted
+/// means in given units. This is the objective of simulation error methods (Farina & Piroddi 2010, International
+/// Journal of Control 83(7)). The score is 0 if no prediction exists. Near a run's start a sample has fewer
+/// predictions; missing predictions count as zero. Predictions from neighbouring origins are nearly the same. So beyond
+/// one sample ahead only every look_ahead_stride(h)-th origin is used, from the filter's start on; for errors this
+/// applies to all horizons. Conditions are those of evaluate_run; throws std::invalid_argument for h below 1.
 Eigen::VectorXd look_ahead_scores(const Bank& bank, const Trajectory& run, const FilterOptions& options,
                                   const LookAhead& look);
 

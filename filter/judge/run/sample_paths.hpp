@@ -28,7 +28,7 @@ class SamplePaths {
   SamplePaths(const Bank& bank, Eigen::Index paths, std::uint64_t seed, TransitionRow row = {});
 
   void start(const FilterMemory& origin);
-  /// Advances every path by one model step. Removes a path that leaves the finite range (beyond largest_mean).
+  /// Advances every path by one model step. Removes a path if its values exceed largest_mean.
   void step(const Vector& inputs);
 
   Eigen::Index lost() const { return lost_; }

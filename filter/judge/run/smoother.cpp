@@ -40,7 +40,7 @@ void smooth(const Bank& bank, const Trajectory& run, const FilterOptions& option
   }
 }
 
-/// The noise factors of the filter at every moment; ones unless noise adapts or depends on state and input.
+/// The noise factors of the filter at every moment. They are one unless noise adapts or depends on state and input.
 template <int N, int NY>
 Eigen::VectorXd noise_scales(const FilterModel<N, NY>& model, const RunInstants& run, const Trajectory& trajectory) {
   Eigen::VectorXd scales = Eigen::VectorXd::Ones(run.count());
@@ -158,8 +158,8 @@ class BestHistories {
     });
   }
 
-  /// Finds the best history into every mode. `most(mode)`: upper bound of the log density of a step into the mode,
-  /// because S is at least that of the mode's own noise. The bound excludes histories that cannot reach the best one.
+  /// Finds the best history into every mode. `most(mode)`: upper bound of the log density of a step into the mode. (S
+  /// is at least the S of the mode's own noise.) The bound excludes histories that cannot be the best.
   /// `take_in(estimate)`: updates with the measurement after the prediction and returns the log density of the
   /// measurement.
   template <class U, class Most, class TakeIn>

@@ -17,7 +17,7 @@ namespace modebank {
 /// a forecast are those at its origin, so no later information enters.
 struct CombinedForecasts {
   HorizonEvaluation predictions;
-  /// F x N per horizon: the filters' weights in the forecast of a sample; NaN where nothing was scored.
+  ///   x N per horizon: the filters' weights in the forecast of a sample; NaN if the sample was not scored.
   std::vector<Eigen::MatrixXd> weight;
 };
 /// Combines forecasts. `members`: at least one forecast; all have the same run and horizons. A sample is scored if the
@@ -55,8 +55,7 @@ struct LeftOutRow {
 /// bank first) the forecasts of all runs.
 std::vector<LeftOutRow> left_out_rows(const std::vector<std::string>& filters,
                                       const std::vector<std::vector<HorizonEvaluation>>& forecasts);
-/// The weights found by left_out_rows, in the form that ForecastTables expects; empty unless the rows have all filters
-/// and horizons.
+/// The weights that left_out_rows found, in the form for ForecastTables. Empty if the rows lack a filter or a horizon.
 std::vector<std::vector<double>> start_weights(const std::vector<LeftOutRow>& rows,
                                                const std::vector<Eigen::Index>& horizons,
                                                const std::vector<std::string>& filters);
@@ -81,8 +80,8 @@ class ForecastTables {
                  std::vector<std::vector<double>> start = {});
   /// Adds every filter's predictions of the i-th run. Different runs may be added from different threads.
   void add(std::size_t run, const std::vector<HorizonEvaluation>& of_filters);
-  /// Sets the starting weights of all runs added later, unless weights were given. They are the most likely weights on
-  /// the training runs so far.
+  /// Sets the starting weights of all runs added later, unless the caller gave weights. They are the most likely
+  /// weights on the training runs so far.
   void start_as_trained();
 
   /// Rows of all runs, filter by filter. If there are two or more filters, rows of combined_name follow.
@@ -97,9 +96,9 @@ class ForecastTables {
   };
   std::vector<std::string> filters_;  ///< filters to combine
   const std::vector<Trajectory>& runs_;
-  std::vector<std::vector<std::vector<HorizonSums>>> sums_;  ///< per filter (the combination last) and run
+  std::vector<std::vector<std::vector<HorizonSums>>> sums_;  ///< per filter and run; the combination is the last filter
   std::vector<Weights> weights_;                             ///< per run
-  std::vector<std::vector<Eigen::MatrixXd>> densities_;      ///< per training run and horizon: filters x some samples
+  std::vector<std::vector<Eigen::MatrixXd>> densities_;      ///< per training run and horizon: filters x stored samples
   Eigen::Index every_ = 1;                                   ///< one of this many samples is kept in densities_
   std::vector<std::vector<double>> start_;                   ///< per horizon; if empty, weights are equal
 

@@ -33,7 +33,7 @@ struct SummaryRow {
 };
 
 /// Rows of one filter: each run of the role in order, then the pooled "*" row; training runs first. A role without runs
-/// has no rows. `scores`: of the evaluations (score_runs).
+/// has no rows. `scores`: scores of the evaluations (score_runs).
 std::vector<SummaryRow> summarize(const std::string& filter, const std::vector<Trajectory>& runs,
                                   const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores);
 /// The rows of one role. Only the runs of this role need an evaluation.
@@ -53,7 +53,7 @@ struct MergingCost {
   double loss = 0.0;  ///< loss of log score due to the limit; negative if the limit helps
 };
 
-/// One row per role that has runs. `components`: of the mixture of both banks.
+/// One row per role that has runs. `components`: number of components of the mixture of both banks.
 std::vector<MergingCost> merging_costs(const Bank& unlimited, const Bank& limited, Eigen::Index components,
                                        const Recording& recording, const FilterOptions& options);
 

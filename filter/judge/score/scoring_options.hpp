@@ -8,7 +8,7 @@
 
 namespace modebank {
 
-/// Options for evaluating a filter. FilterOptions has those of its steps.
+/// Options for evaluating a filter. Options of the filter's steps are in FilterOptions.
 struct ScoringOptions {
   static inline const std::vector<Eigen::Index> default_horizon{1, 10};
   std::vector<Eigen::Index> horizon = default_horizon;  ///< horizons in samples; the summary already has horizon 1

@@ -19,7 +19,7 @@ struct SquaredDistances {
   SeriesByRun degrees;  ///< degrees of freedom of each distance
 
   void begin_run();
-  /// `d`: degrees of freedom; 0 adds nothing.
+  /// `d`: degrees of freedom. If `d` is 0, nothing is added.
   void add(double distance, Eigen::Index d);
 };
 
@@ -44,7 +44,7 @@ double dispersion(const SquaredDistances& distances);
 Interval mean_distance_interval(const SquaredDistances& distances, double of_all, bool chi_square, double level = 0.95);
 
 /// NIS of every sample on the scale of all signals, N. So one region applies to all samples. If signals are missing,
-/// the NIS is converted to the value for all signals with the same tail probability. NaN where nothing was measured.
+/// the NIS is converted to the value for all signals with the same tail probability. NaN if no signal was measured.
 Eigen::VectorXd nis_of_all_signals(const RunEvaluation& evaluation);
 
 }  // namespace modebank

@@ -12,7 +12,7 @@ namespace modebank {
 /// and all judgements use them.
 struct RunScores {
   /// n_y x N, Phi^-1(pit): standard normal and white if the model is correct (innovations of a mixture are not
-  /// Gaussian). NaN where nothing was measured.
+  /// Gaussian). NaN if the signal was not measured.
   Eigen::MatrixXd z;
   /// N, mode most probable before the measurement; 0 for samples without a score.
   Eigen::VectorXi likeliest;

@@ -46,7 +46,7 @@ struct OneMotionInputs {
   FilterOptions filter;             ///< its filter
   std::vector<Index> horizon = {};  ///< horizons at which left-out training runs are predicted, in addition to one
                                     ///< sample ahead
-  std::optional<Lags> lags = {};    ///< if empty, the lags of the windows
+  std::optional<Lags> lags = {};    ///< if empty, the lags of the windows are used
 };
 
 struct BankInputs {
@@ -69,7 +69,7 @@ struct StructureInputs {
 
 /// The inputs of all stages of learning.
 struct LearningInputs {
-  std::optional<StructureInputs> structure;  ///< empty if nothing is searched
+  std::optional<StructureInputs> structure;  ///< empty if no lags are searched
   WindowInputs windows;
   MixtureInputs mixture;
   CompetitorInputs competitors;

@@ -34,7 +34,7 @@ struct OneModel {
   LinearStructure structure;
   GlobalModel global;
 };
-/// Fits one model with these lags; if no lags are given, with those of the windows. `motion`: motion model of the
+/// Fits one model with these lags. If no lags are given, uses those of the windows. `motion`: motion model of the
 /// windows, null for linear models.
 OneModel one_model(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
                    const std::optional<Lags>& lags);
@@ -67,8 +67,8 @@ Refinement learn_one_motion(const LearnedFrom& from, const Bank& bank, const Ban
 std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& inputs, const Bank& limited);
 
 /// Scores of bank, competitors and their combination on the training runs. Each run is scored by filters learned
-/// without it. Empty if no run was left out. `of_splits`: banks and one_motion per split; the other filters are learned
-/// here.
+/// without it. Empty if no run was left out. `of_splits`: banks and `one_motion` of each split. The other filters are
+/// learned here.
 std::vector<LeftOutRow> score_left_out(const Recording& recording, const CompetitorsPart& learned,
                                        const BankInputs& inputs,
                                        const std::vector<std::pair<std::string, std::vector<Bank>>>& of_splits,

@@ -52,8 +52,8 @@ void take_own_variance(Bank& bank, const Recording& recording) {
   bank.noise_variance() = bank.noise_variance().unaryExpr(&positive_variance).eval();
 }
 
-/// Settings at the ends of the grid; their optimum may lie beyond the grid. A floor does not count if the next floor
-/// has the same score, because it then has no effect.
+/// Settings at the ends of the grid; their optimum may lie beyond the grid. A floor does not count if its neighbour in
+/// the grid has the same score, because the floor then has no effect.
 std::vector<std::string> grid_ends(const DriftingGrid& grid, const DriftingScores& scores, Index best) {
   const std::array<Index, 6> at = grid.point(best), size = grid.sizes();
   const auto last = [&](std::size_t i) { return size[i] > 1 && at[i] == size[i] - 1; };

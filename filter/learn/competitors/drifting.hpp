@@ -52,8 +52,8 @@ Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructur
 
 /// Learns the competitor `drifting`. `global`: least squares of this structure on the training runs. The settings are
 /// those of the grid with the best log score of the training runs one sample ahead. Each of `horizons` from 2 on has a
-/// factor on the variance: the one of 2^(-4), 2^(-3.75), ..., 2^8 that makes the training errors most likely. All
-/// samples have equal weight. If one common factor drifts, v0 is the variance of the drifting model's own errors.
+/// factor on the variance. Of 2^(-4), 2^(-3.75), ..., 2^8, it is the factor that makes the training errors most likely.
+/// All samples have equal weight. If one common factor drifts, v0 is the variance of the drifting model's own errors.
 /// Errors of a model with constant coefficients would include the drift.
 Bank learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
                     const std::vector<Eigen::Index>& horizons, const DriftingGrid& grid = {},
@@ -70,10 +70,10 @@ DriftingGrid coarse_drifting_grid();
 double drifting_training_score(const Recording& recording, Eigen::Index latest, const LinearStructure& structure,
                                const DriftingGrid& grid, Wandering wandering = Wandering::all);
 
-/// learn_drifting with the choice of drifting coefficients that is most likely on the training runs. The candidates
-/// are: all coefficients of `structure`; its constant (added if absent); one factor on its input coefficients; or each
-/// of these with one lag. The causal score of at most 20,000 transitions and settings of the coarse grid decides. All
-/// coefficients of `structure` stay unless another candidate gains 0.02 nats per sample.
+/// Like learn_drifting, but also chooses which coefficients drift. Candidates are: all coefficients of `structure`; its
+/// constant (added if absent); one factor on its input coefficients; or each of these with one lag. The causal score of
+/// at most 20,000 transitions decides, with settings of the coarse grid. All coefficients of `structure` drift unless
+/// another candidate gains 0.02 nats per sample.
 Bank learn_likeliest_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
                               const std::vector<Eigen::Index>& horizons);
 

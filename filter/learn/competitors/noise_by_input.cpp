@@ -72,7 +72,8 @@ MatrixXd standardised(const MatrixXd& residuals) {
   return E(Eigen::all, kept);
 }
 
-/// Returns g of the scales exp(z'g); the last column of z is one. Fisher scoring for a Student t, with a small ridge.
+/// Returns g of the scales exp(z'g). The last column of z is one. Uses Fisher scoring for a Student t, with a small
+/// ridge.
 VectorXd fit_scales(const MatrixXd& z, const MatrixXd& E) {
   VectorXd g = VectorXd::Zero(z.cols());
   const double per_sample = 2.0 * nu / (nu + 3.0) * static_cast<double>(E.cols());

@@ -42,7 +42,7 @@ std::optional<ParameterPrior> prior_of(const WindowFits& fits) {
   return ParameterPrior{fits.global.theta, fits.prior_sd};
 }
 
-/// A component's linear estimate, and the motion model's estimate if there is one.
+/// A linear estimate for a component, and the estimate of the motion model if there is a motion model.
 struct ComponentEstimate {
   ModeEstimate linear;
   std::optional<MotionMode> motion;

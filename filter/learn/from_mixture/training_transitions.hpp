@@ -18,8 +18,8 @@ struct RunRows {
 };
 
 /// All transitions of the training runs, run by run. A transition with a missing (non-finite) sample keeps its row, so
-/// that positions match the run. Such a row holds zeros and is not usable. A row of sample weight zero is not usable
-/// either. Sample weights are stored in `usable` and not applied to the rows.
+/// that positions match the run. Such a row holds zeros and is not usable. A row of sample weight zero is also not
+/// usable. Sample weights are stored in `usable` and not applied to the rows.
 struct TrainingTransitions {
   LinearStructure structure;
   Transitions data;           ///< N rows

@@ -48,8 +48,8 @@ std::size_t best_candidate(const std::vector<LeftOutScores>& candidates);
 bool as_good(const LeftOutScores& candidate, const LeftOutScores& best, const Eigen::VectorXd& samples,
              const RefineTuning& tuning);
 
-/// The candidate with the fewest modes that is as good as the best one. If several have this number of modes, the best
-/// of these.
+/// The candidate with the fewest modes that is as good as the best one. If several have this number of modes, takes the
+/// one with the highest score.
 std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,
                                  const RefineTuning& tuning);
 

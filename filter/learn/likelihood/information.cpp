@@ -26,7 +26,7 @@ Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::Vec
 
 /// Inverse variances of Q and T by the prior alone. The prior on Q counts as a scatter of its number of transitions.
 /// The prior on T counts as its number of switches, for every pair of modes. The most frequent switch of a row has no
-/// coordinate, because it balances the others.
+/// coordinate of its own, because rows sum to one.
 Eigen::VectorXd information_of_noise_and_switches(const BankCoordinates& around, const SwitchingPrior& prior) {
   const ParameterPlaces at = around.places();
   const Bank& bank = around.origin();

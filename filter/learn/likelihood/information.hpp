@@ -27,8 +27,8 @@ struct SampleGradients {
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                  const Recording& recording, const FilterOptions& filter, const LookAhead& look = {});
 
-/// Gradients for exactly measured states (R = 0) and equal sample weights, by the switching regression. The densities
-/// equal those of the filter, at a fraction of the cost. The saving grows with the number of lags.
+/// Gradients by the switching regression. They require exactly measured states (R = 0) and equal sample weights. The
+/// densities equal those of the filter, but cost far less, especially with many lags.
 SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                        const TrainingTransitions& transitions);
 

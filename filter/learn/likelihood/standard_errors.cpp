@@ -92,8 +92,8 @@ std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordi
   return observed;
 }
 
-/// Standard errors given the smoothed modes. For theta from its posterior covariance, for Q from that of a normal
-/// scatter, (Q_ii Q_jj + Q_ij^2) / W, for T from that of a binomial distribution.
+/// Standard errors given the smoothed modes. Those of theta come from its posterior covariance, those of Q from the
+/// variance of a normal scatter, (Q_ii Q_jj + Q_ij^2) / W, and those of T from a binomial distribution.
 void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior, bool with_R, Bank& bank) {
   const std::vector<Eigen::MatrixXd> covariances = parameter_covariances(sums, prior, switching_model(bank));
   for (std::size_t j = 0; j < bank.modes.size(); ++j) {
@@ -114,9 +114,9 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
     bank.R_standard_error = Eigen::VectorXd::Constant(bank.R.rows(), not_a_number).asDiagonal().toDenseMatrix();
 }
 
-/// Whether the training runs contradict borders between modes that are twice as sharp. The test doubles all log odds,
-/// which does not move any border. If no sample lies near a border, the runs do not contradict, even if the prior makes
-/// standard errors small.
+/// Whether the training runs contradict sharper borders between modes. The test doubles all log odds, which makes
+/// borders twice as sharp and does not move them. If no sample lies near a border, the runs do not contradict, even if
+/// the prior makes standard errors small.
 bool against_harder_borders(const LikelihoodTarget& target, const Bank& bank) {
   constexpr double clearly = 1.92;  // nats: 95 % of a chi-square with one degree of freedom
   Bank harder = bank;

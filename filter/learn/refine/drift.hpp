@@ -10,7 +10,7 @@
 namespace modebank {
 
 /// Decides whether the theta of each mode drifts within a run (equations/drift.hpp). Also decides the rate of the drift
-/// and the adaptation of the noise scale. With `other_sizes` this is tried for the best fit of each number of modes,
+/// and the adaptation of the noise scale. With `other_sizes`, drift is tried for the best fit of each number of modes,
 /// else only for the chosen fit. The settings are searched on the grids of RefineTuning. The search maximises the score
 /// of left-out runs, one setting after the other, until no setting gains. Then the fewest modes that are as good as the
 /// best are chosen (fewest_modes_as_good). Empty if is_worth_it rejects the gain over the chosen fit without drift, or

@@ -19,10 +19,10 @@ struct MeasurementNoise {
   Index failed_starts = 0;  ///< number of starts that failed: the likelihood is not finite, or no step raised it
 };
 
-/// The bank with maximum-likelihood R (diagonal). The target is maximised over R and one factor on every Q, because Q
-/// contained the measurement noise before. theta and T are constant. Several starting shares of Q are tried and the
-/// best result is taken. Empty unless it gains more than least_gain nats per sample over the bank without R. For R > 0
-/// the likelihood of an IMM is itself approximate.
+/// The bank with maximum-likelihood R (diagonal). The target is maximised over R and one factor on every Q. (Q must
+/// become smaller, because it included the measurement noise.) theta and T are constant. Several starting shares of Q
+/// are tried, and the best result is taken. Empty unless it gains more than least_gain nats per sample over the bank
+/// without R. For several modes and R > 0 the likelihood of an IMM is itself approximate.
 MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
                                             const RefineTuning& tuning);
 

@@ -25,7 +25,8 @@ Bank frame_of(const Bank& start, const RefineOptions& options) {
   return frame;
 }
 
-/// Numbers of modes for starts from random stretches: that of the mixture's bank and, if requested, larger numbers.
+/// Numbers of modes for starts from random stretches: the number in the mixture's bank and, if requested, larger
+/// numbers.
 std::vector<Index> stretch_modes(const RefineOptions& options, Index of_mixture) {
   std::vector<Index> counts;
   const double kept = refine_tuning.modes_kept;

@@ -51,7 +51,7 @@ struct Refinement {
 /// - Q has 1, 4 or 16 additional transitions of the global residual covariance, chosen by cross-validation.
 /// - Every count of T and of first modes has 0.1 added.
 ///
-/// States first count as measured exactly, which is exact for R = 0. Otherwise Q contains the measurement noise and
+/// States first count as measured exactly, which is right for R = 0. Otherwise Q contains the measurement noise and
 /// theta is biased (errors in variables). R and the remaining Q are then estimated by the filter's likelihood
 /// (measurement_noise.hpp) and kept if the result is better. If R is estimated or given, the fit continues with unknown
 /// states: theta, Q, R and T together maximise the filter's likelihood of the training runs. This likelihood is exact

@@ -37,7 +37,7 @@ struct LeftOutRuns {
   VectorXd log_likelihood, transitions;
 };
 
-/// Predicts the left-out runs by one fit to the other runs.
+/// Predicts the left-out runs by one fit that was learned from the other runs.
 LeftOutRuns predict(const TrainingTransitions& learned, const TrainingTransitions& left_out,
                     const SwitchingPrior& prior, const ModesAndStart& fit, bool one_theta, std::uint64_t seed) {
   const Index length = std::max(shortest_start, start_per_regressor * learned.structure.regressors());

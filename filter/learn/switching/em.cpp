@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-/// Maximises over theta and Q of all modes alternately, each with the other fixed.
+/// Maximises over theta and Q of all modes alternately: over theta with Q fixed, then over Q with theta fixed.
 class ConditionalMaximiser {
  public:
   ConditionalMaximiser(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,

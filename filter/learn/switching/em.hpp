@@ -26,7 +26,7 @@ class ExpectationMaximisation {
   ExpectationMaximisation(const TrainingTransitions& transitions, const SwitchingPrior& prior,
                           const SwitchingEmOptions& options, SwitchingRegression start);
 
-  /// Makes one iteration. Does nothing after convergence.
+  /// Makes one iteration. After convergence it has no effect.
   void step();
 
   bool converged() const { return converged_; }

@@ -69,7 +69,7 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& columns, Index drop) {
   return rest;
 }
 
-/// Removes one mode. Its transitions are distributed over the other modes in proportion.
+/// Removes one mode. The probabilities of switching to it are distributed over the other modes in proportion.
 void drop_mode(Index mode, SwitchingRegression& model) {
   model.theta = without(model.theta, mode);
   if (!model.logit.empty()) model.logit.weights = without(model.logit.weights.transpose(), mode).transpose();

@@ -30,8 +30,8 @@ void multiply_transposed(Out& out, const A& a, const B& b) {
 }
 
 /// out = a b. Rows i >= `full` of `a` are shifts: row i is e_{i - full}'. b is zero outside its first `inner` rows and
-/// columns; `out` is not written in the other columns. The bits equal those of `multiply` if b is finite. With full =
-/// a.rows(), `a` may be any matrix.
+/// columns. Only the first `inner` columns of `out` are written. The bits equal those of `multiply` if b is finite.
+/// With full = a.rows(), `a` may be any matrix.
 template <class Out, class A, class B>
 void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
   for (Index j = 0; j < std::min(inner, b.cols()); ++j) {

@@ -10,8 +10,8 @@
 #include "filter/step/equations/salvi2025.hpp"
 
 /// One step of the filters of FilterVariant, as a function of model, state, input and measurement. Only FilterState
-/// persists between calls. Nothing is allocated once FilterState and FilterStep exist. After start, call predict for
-/// each sample, then update, or skip_measurement if nothing was measured.
+/// persists between calls. Nothing is allocated once FilterState and FilterStep exist. Call `start` first. For each
+/// sample call `predict`, then `update`, or `skip_measurement` if no signal was measured.
 namespace modebank {
 
 /// A state of the model's sizes.

@@ -43,12 +43,11 @@ struct FilterModel {
   MotionTerms terms;                                    ///< nonlinear terms; empty if there are none
   NoiseFactor noise_factor;                             ///< factor on every mode's Q; empty without a factor
 
-  /// Number of rows of F that are not shifts of older samples. With lags these are the measured states, else all n
-  /// rows.
+  /// Number of rows of F that are not shifts of older samples: the measured states if there are lags, else all n rows.
   Eigen::Index full_rows;
   /// Number of leading columns of C outside which all entries are zero.
   Eigen::Index seen_columns;
-  /// Whether a measurement determines the state exactly, and the other rows are lags of it. Covariances are then zero.
+  /// Whether covariances are zero: a measurement determines the newest state exactly, and the other rows are its lags.
   bool exact;
 
   /// Requires check_sizes(bank). Throws std::invalid_argument for FilterVariant::kf with several modes.

@@ -11,8 +11,8 @@
 /// A recorded run as filters need it: sample by sample, or moment by moment for random access.
 namespace modebank {
 
-/// Throws std::invalid_argument if the sizes of the bank do not fit each other or the run. Throws DataError for an
-/// input that is not finite.
+/// Throws std::invalid_argument if sizes of the bank do not fit each other, or do not fit the run. Throws DataError for
+/// an input that is not finite.
 void check_run(const Bank& bank, const Trajectory& run);
 
 /// Time of a sample; NaN for a run without times.
@@ -111,7 +111,7 @@ struct RunInstants {
   }
 };
 
-/// Advances `state` from the previous moment to moment t of a run. Returns false if nothing was measured at t.
+/// Advances `state` from the previous moment to moment t of a run. Returns false if no signal was measured at t.
 template <int N, int NY>
 bool step_to(const FilterModel<N, NY>& model, const RunInstants& run, Eigen::Index t, const Trajectory& trajectory,
              FilterState<N>& state, FilterStep<N, NY>& step) {

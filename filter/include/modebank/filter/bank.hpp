@@ -85,13 +85,13 @@ struct BankDescription {
   double dt_s = 0.0;                                    ///< sample period of one step [s]; 0 if it is not fixed
   std::ptrdiff_t inputs = 0;                            ///< number of input channels
   std::ptrdiff_t state_lags = 1;                        ///< number of state samples that predict the next one
-  std::ptrdiff_t input_lags = 1;                        ///< input samples that act on one transition
-  std::ptrdiff_t input_delay = 1;                       ///< samples from an input to its first effect
+  std::ptrdiff_t input_lags = 1;                        ///< number of input samples that act on one transition
+  std::ptrdiff_t input_delay = 1;                       ///< number of samples from an input to its first effect
   bool intercept = false;                               ///< whether c is part of theta
   NoiseMemory noise_memory;                             ///< used by filters with adaptive noise
   NoiseByState noise_by_state;                          ///< empty: constant
   CoefficientDrift drift;                               ///< empty: none
-  RunningNoise running_noise;                           ///< an empty value means that the noise is Q
+  RunningNoise running_noise;                           ///< if empty, the noise is Q
 };
 
 /// A bank of modes; immutable and cheap to copy.

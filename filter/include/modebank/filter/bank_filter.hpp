@@ -70,7 +70,7 @@ class BankFilter {
   /// - input_delay columns are enough. Throws std::invalid_argument for steps below 1 and for missing or non-finite
   /// inputs. Allocates.
   std::vector<Forecast> forecast(const Matrix& inputs, std::ptrdiff_t steps) const;
-  /// The complete state of the filter as numbers for storage; some are NaN. Excludes estimate().
+  /// The complete state of the filter as numbers for storage; some are NaN. It does not contain estimate().
   std::vector<double> snapshot() const;
   /// Continues from a snapshot of a filter with the same bank and options. Later steps are bit-identical to those of
   /// that filter. Throws std::invalid_argument for a snapshot of another bank and for invalid numbers; the filter is

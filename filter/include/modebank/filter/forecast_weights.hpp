@@ -29,8 +29,9 @@ class ForecastWeights {
   void restart();
 
   /// Constant weights that maximise the likelihood of these forecasts (stacking: Yao, Vehtari, Simpson & Gelman 2018,
-  /// Bayesian Analysis 13(3)), all at least 0.001. Use them as starting weights of other runs. `log_densities` [nats]:
-  /// the same number of values per forecaster, NaN where missing. Without data the weights are equal.
+  /// Bayesian Analysis 13(3)). Every weight is at least 0.001. Use them as starting weights of other runs.
+  /// `log_densities` [nats]: the same number of values per forecaster, NaN where missing. Without data the weights are
+  /// equal.
   static std::vector<double> stacked(const std::vector<std::vector<double>>& log_densities);
 
   /// Weights of the forecasters that have a value (not NaN), normalised to sum one. The other forecasters have weight

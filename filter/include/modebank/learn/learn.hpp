@@ -31,7 +31,7 @@ struct Uncertainty {
 
 /// How the bank was learned from M windows.
 struct Origin {
-  WindowAudit windows;                ///< windows per solver, and tolerances
+  WindowAudit windows;                ///< number of windows per solver, and tolerances
   std::vector<std::string> features;  ///< F, clustered features of a window
   mixture::Mixture mixture;           ///< mixture of the windows
   std::vector<Candidate> candidates;  ///< candidates for the mixture
@@ -59,7 +59,8 @@ struct Learned {
 /// DataError (modebank/base/error.hpp) if nothing can be learned from these runs.
 Learned learn_bank(const RecordedRuns& runs, const LearnOptions& options = {});
 
-/// learn_bank for the caller's own motion model; options.window.model is ignored. Refinement is for linear models only.
+/// Like `learn_bank`, but for the caller's own motion model; options.window.model is ignored. Refinement is for linear
+/// models only.
 Learned learn_bank(const RecordedRuns& runs, const LearnOptions& options, const MotionModel& model);
 
 }  // namespace modebank::learn

@@ -39,8 +39,9 @@ struct EnumNames<TransitionSource> {
 };
 
 /// Refinement after the mixture: none, or expectation-maximisation of the switching model. automatic: em, unless it is
-/// impossible or would undo a request. em is impossible for the modes of a motion model. It would undo a theta, Q or T
-/// that is given or taken from the mixture (ThetaSource::mean, NoiseSource::shared or fixed, TransitionSource::stay).
+/// impossible or would undo another option. em is impossible for the modes of a motion model. It would undo a theta, Q
+/// or T that is given or taken from the mixture (ThetaSource::mean, NoiseSource::shared or fixed,
+/// TransitionSource::stay).
 enum class Refine { automatic, none, em };
 
 template <>
@@ -70,8 +71,8 @@ struct EnumNames<LookAheadScore> {
 struct RefineOptions {
   std::ptrdiff_t max_iterations = 100;  ///< iteration limit of expectation-maximisation
   double tolerance = 1e-6;              ///< stopping tolerance: smallest gain of the objective [nats per transition]
-  std::ptrdiff_t restarts = 2;    ///< random starts from stretches of the runs, in addition to the mixture's start, for
-                                  ///< each number of modes
+  std::ptrdiff_t restarts = 2;    ///< number of random starts from stretches of the runs, for each number of modes; the
+                                  ///< mixture's start is tried in addition
   std::ptrdiff_t most_modes = 0;  ///< largest number of modes of the random starts. The search tries this number, three
                                   ///< quarters of it and so on, down to the mixture's number. With 0, it tries only the
                                   ///< mixture's number
@@ -79,13 +80,15 @@ struct RefineOptions {
                                   ///< scored
   LookAheadScore look_ahead_score = LookAheadScore::density;  ///< `density` also serves to choose starts, modes and
                                                               ///< iterations
-  std::ptrdiff_t folds = 6;  ///< parts of the cross-validation; 1 turns it off, and every start runs to convergence
+  std::ptrdiff_t folds = 6;       ///< number of parts of the cross-validation; 1 turns it off, and every start runs to
+                                  ///< convergence
   bool measurement_noise = true;  ///< true: R maximises the filter's likelihood of the training runs; false: R of the
                                   ///< start is kept
   bool screen = true;             ///< whether unstable, starved and duplicate modes are removed
   bool state_dependent_transition = false;  ///< whether transition probabilities may depend on state and input
                                             ///< (TransitionSource::logit)
-  bool one_theta = false;                   ///< all modes share theta and differ in Q: the competitor with one motion
+  bool one_theta = false;                   ///< whether all modes share theta and differ only in Q (the competitor with
+                                            ///< one motion)
   bool noise_by_input = false;         ///< whether all Q share one factor that follows state and input; R then stays
                                        ///< negligible
   std::uint64_t seed = 1;              ///< seed of the random starts
@@ -124,10 +127,9 @@ struct LearnOptions {
   bool search_lags = false;  ///< whether lags and delay are chosen by cross-validation on training runs; replaces those
                              ///< in `window`; not for motion models
   bool automatic_length = false;  ///< whether window.length is set from the number of regressors
-  bool automatic_step = false;    ///< whether process noise may have a factor that follows states and inputs. The
+  bool automatic_step = false;    ///< whether window.step is set so that there are about 100,000 windows
+  bool noise_by_input = true;     ///< whether process noise may have a factor that follows states and inputs. The
                                   ///< factor must gain on training runs that were left out
-  bool noise_by_input = true;     ///< whether process noise may have one factor that follows states and inputs, if the
-                                  ///< factor gains on training runs that were left out
 };
 
 }  // namespace modebank

@@ -23,13 +23,13 @@ struct RefineCandidate {
   std::string start;                                        ///< start: "mixture" or "stretches 1"
   std::ptrdiff_t modes = 0;                                 ///< number of modes of the start
   double noise_transitions = 0.0;                           ///< weight of the prior on Q, in transitions
-  std::ptrdiff_t iterations = 0;                            ///< iterations of expectation-maximisation
+  std::ptrdiff_t iterations = 0;                            ///< number of iterations of expectation-maximisation
   double score = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs that were left out
                                                             ///< [nats/sample]; NaN without cross-validation
   double loss = std::numeric_limits<double>::quiet_NaN();  ///< loss against the best row on the same runs [nats/sample]
   double loss_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< standard error of the loss, clustered by
-                                                                          ///< run (by stretch with fewer than three
-                                                                          ///< runs)
+                                                                          ///< run; by stretch if there are fewer than
+                                                                          ///< three runs
   bool selected = false;                                                  ///< whether the bank comes from this row
   double theta_transitions = 0.0;  ///< weight of the prior that draws theta towards one motion, in
                                    ///< transitions
@@ -71,7 +71,8 @@ struct DriftStage {
   double rate = 0.0;   ///< rate of the drift: variance that a step adds to every coefficient, in units of the mode's
                        ///< noise. Each regressor is divided by its root mean square
   double start = 0.0;  ///< start of the drift: variance of every coefficient at the start of a run
-  double leak = 1.0;   ///< leak of the drift: factor per step on the difference from the mode's coefficients
+  double leak = 1.0;   ///< leak of the drift: factor by which each step multiplies a coefficient's difference from the
+                       ///< mode's coefficient
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs without
                                                                    ///< drift
   double gain = std::numeric_limits<double>::quiet_NaN();  ///< gain of the drift [nats/sample]; NaN if it was not

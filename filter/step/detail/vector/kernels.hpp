@@ -69,7 +69,7 @@ struct CompleteSamples {
 
 /// The kernels for one pair of sizes.
 struct Kernels {
-  /// Call after mean, covariance and probability were set. Computes everything else that the next prediction reads.
+  /// Call after setting mean, covariance and probability. Computes all other values that the next prediction reads.
   void (*prepare)(const ModeRows&) = nullptr;
   /// Computes everything from `predicted_probability` to `D_inverse`: mixing, prediction and predicted measurement.
   /// `v`: inputs.

@@ -6,8 +6,8 @@
 /// values against overflow; the limits are ignored here.
 namespace modebank::vector_imm {
 
-/// Derivatives of all later terms, in rows like those of ModeRows. For a symmetric matrix, row (a, b) holds the
-/// derivative with respect to each of the entries (a, b) and (b, a).
+/// Derivatives of all later terms, in the layout of ModeRows. For a symmetric matrix, row (a, b) holds the derivative
+/// with respect to the single entry (a, b), which equals that for (b, a).
 struct ReverseRows {
   const double* transition_to = nullptr;  ///< T, one row per next mode
 

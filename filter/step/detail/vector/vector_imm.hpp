@@ -50,7 +50,7 @@ class VectorImm final : public Stepper {
 
   Eigen::Index n_, n_y_, K_;
   bool adaptive_;
-  Eigen::VectorXd quantum_, partial_quantum_;  // empty if nothing is quantised
+  Eigen::VectorXd quantum_, partial_quantum_;  // empty if no signal is quantised
   NoiseAdaptation adaptation_;
   NoiseFactor factor_;                              // empty without a noise factor
   double applied_scale_ = 1.0;                      // scale of the last prediction: noise_scale_ times the factor
