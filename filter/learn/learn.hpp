@@ -71,8 +71,8 @@ std::vector<Bank> level_starts(const Recording& recording, const LinearStructure
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
 
-/// Replaces Refine::automatic by em or none (see Refine); keeps other values. `linear`: whether the model of the
-/// windows is linear.
+/// Replaces Refine::automatic by em or none (see Refine); other values do not change. `linear`: whether the model of
+/// the windows is linear.
 Refine refinement_asked(const BankOptions& options, bool linear);
 
 /// Calls learn_refined_bank or learn_bank, as refinement_asked decides. Only learn_refined_bank needs `filter`. Throws

@@ -58,7 +58,7 @@ class DriftingRecursion {
   Eigen::VectorXd inverse_scale_;           ///< r
   Eigen::MatrixXd theta0_, direction_;      ///< r x n, for scaled regressors
   Eigen::MatrixXd theta_;                   ///< r x n
-  std::vector<Eigen::MatrixXd> P_;          ///< n of r x r, lower triangles; the first P_count_ are in use
+  std::vector<Eigen::MatrixXd> P_;          ///< n matrices r x r, lower triangles; the first P_count_ are in use
   std::vector<Eigen::Index> P_of_;          ///< n, index of each output's P
   Eigen::Index P_count_ = 1;                ///< one P is shared by all outputs until a signal is missing
   Eigen::VectorXd z_, v_;

@@ -32,10 +32,10 @@ struct EnumNames<Calibration> {
   static constexpr Names<4> values{"undecided", "calibrated", "overconfident", "underconfident"};
 };
 
-/// Limits for `calibrated`: share outside the deciding band, and share too close to the middle.
+/// Limits for `calibrated`: share of signals outside the deciding band, and share of signals too close to the middle.
 inline constexpr double least_outside = 0.025, largest_outside = 0.075, least_close = 0.01, largest_close = 0.04;
 
-/// Shares outside the band that decide a verdict if they are significant (calibration_of).
+/// Shares of signals outside the band. If significant, they decide a verdict (calibration_of).
 inline constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 0.025;
 
 /// 1 where a signal is a hit, else 0; run by run, in time order. An element has one byte, because each sample has six

@@ -38,10 +38,11 @@ struct DiagnosticsRow {
   double too_close = 0.0, too_close_lower = 0.0, too_close_upper = 0.0;  ///< share of z^2 below its 2.5 % quantile
   double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< `mean_distance` of the NIS, and the interval in
                                                                ///< which it lies for a correct model
-  double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< NEES of the state after the measurement, if the
-                                                               ///< truth is known. NaN if R is negligible, because the
+  double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< NEES of the state after the measurement, if the true
+                                                               ///< state is known. NaN if R is negligible, because the
                                                                ///< state then equals the measurement
-  Eigen::VectorXd state_rmse;                                  ///< n_y, state minus truth; NaN without truth
+  Eigen::VectorXd state_rmse;                                  ///< n_y, RMSE of the state against the true state; NaN
+                                                               ///< if the true state is unknown
   double whiteness_p = 0.0;                                    ///< p value of Ljung & Box's test, as in the summary
   double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value, found at autocorrelation_lag; 0
                                  ///< for a mode

@@ -112,8 +112,9 @@ struct Finding {
                                ///< false
   double step_scatter = 0.0;   ///< standard deviation of the time steps over their median
   ErrorPattern pattern;        ///< pattern in the errors of the bank
-  double stay = not_a_number;  ///< stay in a mode, harmonic mean over the judged samples [samples]; NaN if unknown
-  double stay_asked = 0.0;     ///< stay required for evidence [samples]
+  double stay = not_a_number;  ///< mean stay in a mode (harmonic mean over the judged samples) [samples]; NaN if
+                               ///< unknown
+  double stay_asked = 0.0;     ///< smallest stay for evidence [samples]
   std::vector<Resolution> coarse;  ///< states for which densities are not comparable
   bool without_noise = false;      ///< whether one linear model explains the runs up to rounding
   bool one_motion_drifts = false;  ///< whether the competitor `one_motion` drifts within a run, as the bank does
@@ -161,7 +162,7 @@ struct FindingInputs {
   const std::vector<Resolution>& states;
   const std::vector<FreeRunRow>& free_runs;
   bool one_motion_drifts = false;
-  double step_scatter = 0.0;  ///< same meaning as in Finding
+  double step_scatter = 0.0;  ///< as in Finding
   std::vector<DiagnosticsRow> diagnostics = {};
   ErrorPattern pattern = {};
 };

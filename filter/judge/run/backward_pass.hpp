@@ -118,7 +118,7 @@ class BackwardPass {
   void step(Eigen::Index t, const U& input) {
     step(t, input, [](const SmoothedPair<N>&) {});
   }
-  /// The same step; calls visit(pair) for every pair of modes that is not negligible.
+  /// Makes the same step. Calls visit(pair) for every pair of modes that is not negligible.
   template <class U, class Visit>
   void step(Eigen::Index t, const U& input, Visit visit) {
     next_ = modes;
@@ -201,7 +201,7 @@ class BackwardPass {
     probability = weights_.rowwise().sum();
   }
 
-  /// Step of the Rauch-Tung-Striebel smoother if mode k is next. The covariance is a sum of squares, so it stays
+  /// One step of the Rauch-Tung-Striebel smoother, if mode k is next. The covariance is a sum of squares, so it remains
   /// definite under rounding.
   template <class U>
   void smooth_pair(const Gaussian<N>& filtered, const U& input, std::size_t k, double noise_scale) {

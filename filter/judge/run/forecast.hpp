@@ -16,7 +16,7 @@ class Forecast {
   virtual ~Forecast() = default;
   /// Advances by one model step under these acting inputs.
   virtual void step(const Eigen::Ref<const Eigen::VectorXd>& inputs) = 0;
-  /// Call this before the queries below for a sample; `samples`: number of samples ahead, at least 1.
+  /// Call this for each sample, before the queries below. `samples`: number of samples ahead, at least 1.
   virtual void arrive(Eigen::Index /*samples*/) {}
 
   virtual Eigen::VectorXd mean() const = 0;                ///< n_y

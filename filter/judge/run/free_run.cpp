@@ -99,7 +99,7 @@ class Given {
     }
   }
 
-  /// The moments of the filter's start and of sample `last`; -1 without a start between them.
+  /// The moments of the filter's start and of sample `last`; -1 if there is no start between them.
   std::pair<Index, Index> moments(Index first, Index last) const {
     Index start = -1;
     for (Index t = 0; t < instants_->count(); ++t) {

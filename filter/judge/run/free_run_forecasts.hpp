@@ -83,7 +83,7 @@ class PathForecast final : public Forecast {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
-  /// `row`: same meaning as for SamplePaths.
+  /// `row`: as in SamplePaths.
   PathForecast(const Bank& bank, Eigen::Index paths, std::uint64_t seed, TransitionRow row = {});
   void start(const FilterMemory& origin) { paths_.start(origin); }
   void step(const Vector& inputs) override { paths_.step(inputs); }

@@ -184,7 +184,7 @@ class BestHistories {
       step(likely);
       for (Index i = 0; i < K_; ++i)
         if (i != likely && reach(i) - least_reach >= best) step(i);
-      if (!(best > -std::numeric_limits<double>::infinity())) {  // no predecessor: the mode stays
+      if (!(best > -std::numeric_limits<double>::infinity())) {  // no predecessor is possible, so the mode stays
         kalman_.predict(modes_[static_cast<std::size_t>(j)], model_, mode, u, scale);
         take_in(next_modes_[static_cast<std::size_t>(j)]);
       }

@@ -44,7 +44,7 @@ std::vector<SummaryRow> summarize_role(const std::string& filter, Role role, con
 /// Cost of a limit on the number of modes, for the runs of one role. One row of /bank/merged.
 struct MergingCost {
   Role role = Role::train;
-  Eigen::Index components = 0;       ///< components of the mixture before merging
+  Eigen::Index components = 0;       ///< number of components of the mixture before merging
   Eigen::Index modes_unlimited = 0;  ///< modes of the bank without the limit
   Eigen::Index modes = 0;            ///< modes of the bank with the limit
   Eigen::Index samples = 0;          ///< scored samples

@@ -16,7 +16,7 @@ struct WindowInputs {
 };
 
 struct MixtureInputs {
-  FitOptions window;  ///< used to fit the same windows with one lag
+  FitOptions window;  ///< needed to fit the same windows with one lag
   ClusterOptions mixture;
   std::uint64_t seed = 1;
 };

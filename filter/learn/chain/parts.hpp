@@ -39,9 +39,9 @@ struct BankPart {
   std::optional<Bank> one_motion;  ///< `one_motion`: learned like the bank, with one theta
   std::optional<Bank> unrefined;   ///< the bank before expectation-maximisation
   MeasuredFit measured_fit = MeasuredFit::none;
-  Index learned_transitions = 0;  ///< number of transitions that the refinement used; 0 means all training transitions
+  Index learned_transitions = 0;  ///< number of transitions that refined the bank; 0 means all training transitions
   std::vector<LeftOutRow> left_out = {};  ///< present if filters were learned without some training runs
-  std::vector<MergingCost> merging = {};  ///< present if bank.modes merged components
+  std::vector<MergingCost> merging = {};  ///< present if the limit bank.modes caused components to be merged
 };
 
 /// All results of learning from runs.

@@ -21,7 +21,7 @@ struct Wanderer {
   Wandering wandering;
 };
 
-/// The candidates. The first one is kept if no other gains.
+/// The candidates. The first one is kept if no other candidate gains.
 std::vector<Wanderer> candidates_of(const LinearStructure& structure) {
   const LinearStructure one_lag = structure.with_one_lag();
   std::vector<Wanderer> candidates{{structure, Wandering::all}};

@@ -50,8 +50,8 @@ struct Regression {
   Eigen::MatrixXd coefficients, standard_error;
 };
 
-/// Huber's regression; least squares for rounded states. If many values repeat, Huber's scale is zero and x[k+1] = x[k]
-/// looks exact.
+/// Huber's regression, or least squares if states are rounded. (With rounding many values repeat. Huber's scale is then
+/// zero, and x[k+1] = x[k] looks exact.)
 Regression regression(const Recording& recording, const LinearStructure& structure, const Transitions& transitions) {
   if (recording.quantum.size() == 0) {
     const RobustRegression fit = huber_regression(transitions);

@@ -155,7 +155,7 @@ TransitionMatrix learn_transition(const WindowFits& fits, const Eigen::VectorXi&
   return transition_from_counts(count_label_transitions(fits, labels, kept), fits.step);
 }
 
-/// The bank's mode. For a motion model the windows' parameter covariance is propagated to the linear parameters.
+/// The mode for the bank. For a motion model, the windows' parameter covariance is converted to the linear parameters.
 Mode bank_mode(const LinearStructure& structure, const ComponentEstimate& estimate,
                const Eigen::MatrixXd& parameter_covariance, double weight) {
   const ModeEstimate& linear = estimate.linear;

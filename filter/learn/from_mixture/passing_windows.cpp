@@ -8,7 +8,7 @@
 namespace modebank {
 namespace {
 
-/// Successive clustered windows of one run with the same label, in order of start: [first, end) of `windows`.
+/// Successive clustered windows with the same label in one run. They are [first, end) of `windows`, in order of start.
 struct SameLabel {
   std::size_t first = 0, end = 0;
 };

@@ -34,7 +34,7 @@ class CrossValidation {
   /// One row per start; the row of `selected` is marked.
   std::vector<RefineCandidate> table(std::size_t selected) const;
 
-  /// The best fit from every start, in decreasing order of score.
+  /// The best fit of every start, in decreasing order of score.
   std::vector<Fit> best_of_starts() const;
   /// The best fit of every number of modes, in decreasing order of score.
   std::vector<Fit> best_of_each_size() const;

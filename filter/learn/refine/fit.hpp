@@ -19,8 +19,9 @@ struct RefineStart {
   double theta_transitions = 0.0;  ///< weight of the prior towards one motion, in transitions (switching/shrinkage.hpp)
 };
 
-/// The model accepted so far, with all additions. Each refinement step takes a Fit and returns a Fit. A Fit contains
-/// the same fit for every split of the cross-validation; the rule (left_out/rule.hpp) decides by these.
+/// The model accepted so far, with all additions. Each refinement step takes a Fit and returns a Fit. A Fit also
+/// contains the fit to the training part of every split of the cross-validation. The rule (left_out/rule.hpp) decides
+/// by these fits.
 struct Fit {
   RefineStart start;
   SwitchingRegression model;         ///< start of expectation-maximisation, or a model with a logit

@@ -31,8 +31,8 @@ struct Refinement {
   SwitchingStage switching = {};
   DriftStage drift = {};
   LookAheadStage look_ahead = {};
-  /// The same fit to the training part of each split (validation_splits), in the order of the splits, for scores on
-  /// unseen runs. Empty if no run was left out.
+  /// The fits to the training part of each split (validation_splits), in the order of the splits. They are used for
+  /// scores on unseen runs. Empty if no run was left out.
   std::vector<Bank> of_splits = {};
   Eigen::Index learned_transitions = 0;  ///< number of transitions in the part of the training runs that was used
                                          ///< (learning_part.hpp); 0 means all

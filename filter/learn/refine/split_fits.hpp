@@ -16,7 +16,7 @@ namespace modebank {
 struct SplitData {
   ValidationSplit runs;
   TrainingTransitions transitions;  ///< of runs.training
-  GlobalModel global;               ///< global model of the same transitions
+  GlobalModel global;               ///< global model of the split's training transitions
 };
 
 std::vector<SplitData> split_data(const RefineInput& in);

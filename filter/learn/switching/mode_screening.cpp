@@ -32,7 +32,8 @@ double cost(const RegressionSums& sums) {
 std::vector<RegressionSums> sums_of_modes(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                           const SwitchingRegression& model) {
   const Eigen::MatrixXd& X = transitions.data.regressors;
-  const Eigen::VectorXd middle = model.theta.rowwise().mean();  // a point near every mode, which limits loss of digits
+  const Eigen::VectorXd middle = model.theta.rowwise().mean();  // sums are taken about a point near every mode, so that
+                                                                // few digits are lost
   const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, middle);
   std::vector<RegressionSums> modes;
   for (Index j = 0; j < model.modes(); ++j)

@@ -19,9 +19,9 @@ SwitchingPrior switching_prior(const TrainingTransitions& transitions, const Glo
 Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const Eigen::MatrixXd& Q,
                                  double least_information);
 
-/// A start with `modes` modes. Each is the regression, regularised by the prior, of a random stretch of `length`
-/// transitions. Stretches do not overlap if there is room. The transition matrix favours staying. Restart `index`
-/// derives its generator from the seed.
+/// A start with `modes` modes. Each mode is fitted to a random stretch of `length` transitions, with the prior.
+/// Stretches do not overlap if there is room. The transition matrix favours staying. Restart `index` derives its
+/// generator from the seed.
 SwitchingRegression start_from_stretches(const TrainingTransitions& transitions, const SwitchingPrior& prior,
                                          Index modes, Index length, std::uint64_t seed, Index index,
                                          const RefineTuning& tuning = {});

@@ -14,7 +14,7 @@ namespace modebank {
 /// It is the bank's model with exactly measured states (R = 0). Its likelihood is exact.
 struct SwitchingRegression {
   Eigen::MatrixXd theta;           ///< p x K
-  std::vector<Eigen::MatrixXd> Q;  ///< K of n x n, covariances of the measured states' noise
+  std::vector<Eigen::MatrixXd> Q;  ///< K covariances of the measured states' noise, n x n each
   Eigen::MatrixXd transition;      ///< K x K; row i: the mode before a switch is i
   Eigen::VectorXd initial;         ///< K, probabilities before the first transition of a run, as in the filter
   TransitionLogit logit = {};      ///< dependence of T on x[k] and the acting inputs; empty if T is constant
@@ -47,10 +47,11 @@ struct SwitchingPrior {
 /// Smoothed mode probabilities given all transitions of the runs.
 struct ModePosterior {
   Eigen::MatrixXd probability;  ///< N x K; also has rows for unusable transitions
-  Eigen::MatrixXd switches;     ///< K x K expected counts of (i, then j)
+  Eigen::MatrixXd switches;     ///< K x K, expected counts of the switch from i to j
   Eigen::VectorXd first;        ///< K, expected counts of each run's first mode
   double log_likelihood = 0.0;  ///< log-likelihood of all runs [nats]
-  Eigen::MatrixXd pairs = {};   ///< K*K x N, P(i, then j) at each transition, column-major; only with a logit
+  Eigen::MatrixXd pairs = {};   ///< K*K x N, probability of the switch from i to j at each transition, column-major;
+                                ///< only with a logit
 };
 
 /// Forward-backward algorithm over every run. Each step is scaled by the largest density of a possible mode (log
@@ -67,7 +68,7 @@ Eigen::VectorXd predictive_log_densities(const TrainingTransitions& transitions,
 /// mean. Transitions are weighted with the mode's probability. Also the expected counts of switches and first modes.
 struct SwitchingSums {
   std::vector<RegressionSums> modes;  ///< K
-  Eigen::MatrixXd switches;           ///< K x K expected counts of (i, then j)
+  Eigen::MatrixXd switches;           ///< K x K, expected counts of the switch from i to j
   Eigen::VectorXd first;              ///< K, expected counts of each run's first mode
 };
 

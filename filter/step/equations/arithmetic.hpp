@@ -55,8 +55,8 @@ void multiply(Out& out, const A& a, const B& b) {
     }
 }
 
-/// out += a b'. b is as above; the columns of `a` from `inner` on are zero. The product must be symmetric (see
-/// add_symmetric_product).
+/// out += a b'. b is as in multiply_shifting. The columns of `a` from `inner` on are zero. The product must be
+/// symmetric (see add_symmetric_product).
 template <class Out, class A, class B>
 void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
   const Index rows = std::min(a.rows(), inner + full);
@@ -86,7 +86,7 @@ void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
     }
 }
 
-/// out += a b', with a and b as above. The product must be symmetric (see add_symmetric_product).
+/// out += a b', with `a` and b as in multiply_seeing. The product must be symmetric (see add_symmetric_product).
 template <class Out, class A, class B>
 void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.rows(); ++j)

@@ -13,7 +13,8 @@ inline constexpr double mode_probability_floor = 1e-12;
 /// A mode with a smaller probability before a measurement is impossible (T forbids it). The filter skips such a mode.
 inline constexpr double impossible_probability = 1e-100;
 
-/// Upper bound of variances in a diverging prediction, so that squares stay finite. Its square root bounds the means.
+/// Upper bound of variances in a diverging prediction, so that squares stay finite. Means are bounded by the square
+/// root of this bound.
 inline constexpr double largest_variance = 1e60;
 inline constexpr double largest_mean = 1e30;
 

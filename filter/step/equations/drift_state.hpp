@@ -17,9 +17,9 @@ struct FilterModel;
 /// regressors, each output has its own P (r x r, lower triangle) divided by its variance, and cross is empty.
 struct DriftState {
   Eigen::MatrixXd theta = {};               ///< p x K
-  std::vector<Eigen::MatrixXd> P = {};      ///< K of p x p
-  std::vector<Eigen::MatrixXd> cross = {};  ///< K of p x n: covariance of theta with the state's error; 0 if the state
-                                            ///< is known exactly
+  std::vector<Eigen::MatrixXd> P = {};      ///< K matrices p x p
+  std::vector<Eigen::MatrixXd> cross = {};  ///< K matrices p x n: covariance of theta with the state's error; 0 if the
+                                            ///< state is known exactly
   Eigen::VectorXd variance = {};            ///< n, running noise variance; empty without running noise
 };
 
@@ -28,8 +28,8 @@ struct DriftModel {
   double leak = 1.0;
   bool shared = false;              ///< whether modes differ only in noise and share theta with its updates
   Eigen::MatrixXd theta0;           ///< p x K; p x 1 if modes share theta; empty without drift
-  std::vector<Eigen::MatrixXd> W;   ///< K (1) of p x p, added to P per step
-  std::vector<Eigen::MatrixXd> P0;  ///< K (1) of p x p, P at a start
+  std::vector<Eigen::MatrixXd> W;   ///< K matrices p x p (one if modes share theta), added to P per step
+  std::vector<Eigen::MatrixXd> P0;  ///< K matrices p x p (one if modes share theta), P at a start
 
   /// W_k = q Q_k (x) D^-2 and P0_k = p0 Q_k (x) D^-2. D holds the scales of the regressors; Q_k is the process noise of
   /// the measured states. Modes that share theta use their mean Q, weighted with the weights of the modes.
@@ -85,8 +85,8 @@ struct DriftModel {
 template <int N, int NY>
 struct DriftWorkspace {
   std::vector<typename FilterModel<N, NY>::Mode> modes;  ///< K modes with their present coefficients
-  std::vector<Eigen::MatrixXd> cross;                    ///< K of p x n, covariance of theta with the predicted state's
-                                                         ///< error
+  std::vector<Eigen::MatrixXd> cross;                    ///< K matrices p x n, covariance of theta with the predicted
+                                                         ///< state's error
   Eigen::VectorXd regressor, move, together;             ///< sizes: r, p, p
   Eigen::MatrixXd mixed;              ///< p x n, covariance of theta with the state at which a prediction starts
   Eigen::MatrixXd through;            ///< states x n, (I (x) phi') cross

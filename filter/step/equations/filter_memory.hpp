@@ -8,7 +8,7 @@
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/equations/imm.hpp"
 
-/// Conversion between the state of the equations and the memory common to all filters.
+/// Converts between the state of the equations and the memory that all filters share.
 namespace modebank {
 
 template <int N>

@@ -14,7 +14,7 @@
 /// sample call `predict`, then `update`, or `skip_measurement` if no signal was measured.
 namespace modebank {
 
-/// A state of the model's sizes.
+/// A state with the sizes of the model.
 template <int N, int NY>
 FilterState<N> initial_state(const FilterModel<N, NY>& model) {
   return {std::vector<Gaussian<N>>(model.modes.size(), Gaussian<N>(model.structure.dimension())),

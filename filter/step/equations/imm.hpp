@@ -134,11 +134,11 @@ bool has_one_mean(std::span<const Gaussian<N>> parts, Eigen::Index row) {
 }
 
 /// Steps 2 and 5: mean and covariance of the mixture sum_i weights(i) N(parts[i]) (moment matching). With weights
-/// mu_{i|j} the result is the start of mode j (11.6.6-9, -10). With mu it is the combined estimate (11.6.6-17, -18).
-/// Differences of means are relative to the final mean. The sum of the weights may differ from one, because the filter
-/// of [S25, eq. 12-13] uses other weights. The inner loops run over parts, so that sums stay in registers. `exact`: see
-/// FilterModel. With it, a row with the same mean in all parts keeps this mean without rounding. Rounding errors would
-/// look like differences between the parts.
+/// mu_{i|j} the result is the start of mode j (11.6.6-9, -10). With weights mu it is the combined estimate (11.6.6-17,
+/// -18). Differences of means are relative to the final mean. The sum of the weights may differ from one, because the
+/// filter of [S25, eq. 12-13] uses other weights. The inner loops run over parts, so that sums stay in registers.
+/// `exact`: see FilterModel. With it, a row with the same mean in all parts keeps this mean without rounding. Rounding
+/// errors would look like differences between the parts.
 template <int N, class Weights>
 void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights, Gaussian<N>& merged,
            bool exact = false) {

@@ -148,7 +148,7 @@ TEST(Diagnostics, ASwitchingBankIsCalibratedModeByMode) {
     samples += rows[i].samples;
     EXPECT_NEAR(rows[i].usage, 1.0 / 3.0, 0.1);
     EXPECT_NEAR(rows[i].dwell_model, 20.0, 1e-9);
-    EXPECT_GT(rows[i].dwell, 15.0);  // the most probable sequence lacks the shortest stays
+    EXPECT_GT(rows[i].dwell, 15.0);  // the most probable sequence does not contain the shortest stays
     EXPECT_LT(rows[i].dwell, 40.0);
   }
   EXPECT_NEAR(usage, 1.0, 1e-12);

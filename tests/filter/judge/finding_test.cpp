@@ -284,8 +284,8 @@ TEST(Finding, ModesAndABendThatBothGainAreBothNamed) {
   EXPECT_TRUE(modes.judged().over_linear.empty()) << "the bend gains next to nothing";
 }
 
-// Gains over competitors that lack the same lags are weak evidence for modes. The pattern must gain 0.02 nats and two
-// standard errors.
+// Gains over competitors that lack the same lags are weak evidence for modes. A pattern counts if it gains 0.02 nats
+// and two standard errors.
 TEST(Finding, APatternThatLagsWouldTakeAwayComesBeforeModes) {
   Case patterned;
   patterned.pattern = {0.021, 0.01};

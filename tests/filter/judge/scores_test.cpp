@@ -62,7 +62,7 @@ TEST(Calibration, KolmogorovDistanceOfKnownSamples) {
   EXPECT_TRUE(std::isnan(kolmogorov_distance({})));
 }
 
-/// Scores of the filter `bank` on data drawn from `truth`.
+/// Scores of the filter `bank` on data that were drawn from `truth`.
 SummaryRow score(const Bank& bank, const Bank& truth, Eigen::Index samples, std::uint64_t seed) {
   const std::vector<Trajectory> runs{test::simulate_bank(truth, samples, seed)};
   const std::vector<RunEvaluation> evaluations{evaluate_run(bank, runs[0], {})};

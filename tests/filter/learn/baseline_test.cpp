@@ -90,7 +90,7 @@ Eigen::VectorXd noise_standard_errors(const Baseline& fit, const Recording& reco
   return information.inverse().diagonal().cwiseSqrt();
 }
 
-/// (estimate - truth) / standard error of every entry of noise_vector.
+/// (estimate - true value) / standard error, for every entry of noise_vector.
 Eigen::VectorXd standardised_errors(const Baseline& fit, const Recording& recording, const Bank& truth) {
   const Eigen::VectorXd expected = noise_vector(truth.modes[0].Q, truth.R);
   const Eigen::VectorXd error = noise_standard_errors(fit, recording);

@@ -156,7 +156,7 @@ TEST(LearnBank, NoiseMayBeSharedOrFixed) {
 }
 
 TEST(LearnBank, TransitionsComeFromLabelsOrStay) {
-  const Case data({-0.2, -0.8}, 2);  // 16 windows in each run, 15 pairs
+  const Case data({-0.2, -0.8}, 2);  // 16 windows in each run give 15 pairs
   const double stay = std::sqrt(15.1 / 15.2);
   Eigen::Matrix2d expected;
   expected << stay, 1 - stay, 1 - stay, stay;

@@ -121,7 +121,8 @@ TEST(MeanSquareGrowth, OfDefectiveSystemsIsTheSquaredRadius) {
       EXPECT_NEAR(growth, radius * radius, 1e-3) << K << '\n' << F;
       EXPECT_EQ(growth > 1.0 + refine_tuning.growth_slack, radius > 1.0) << "on the safe side of the threshold";
     }
-  // Integrators with different steps have the same eigenvector. So triangular modes grow like their diagonals.
+  // Integrators with different steps have the same eigenvector. So a system of triangular modes grows like their
+  // diagonals.
   const double several =
       growth_of({twice, MatrixXd{{1.0, 0.3}, {0.0, 1.0}}, MatrixXd{{1.0, -0.2}, {0.0, 1.0}}}, sticky(3, 0.9));
   EXPECT_NEAR(several, 1.0, 1e-4);

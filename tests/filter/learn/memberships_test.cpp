@@ -41,8 +41,8 @@ TEST(Memberships, UncoveredTransitionsTakeTheNearestClusteredWindow) {
   const Recording recording = two_runs(12, 1);
   const WindowFits fits = test::windows_of(recording, 2, 1);  // starts 0 .. 10
   Eigen::MatrixXd gamma = Eigen::MatrixXd::Constant(2, fits.count(), not_a_number);
-  gamma.col(2) << 1.0, 0.0;  // covers 2, 3
-  gamma.col(8) << 0.0, 1.0;  // covers 8, 9
+  gamma.col(2) << 1.0, 0.0;  // covers transitions 2 and 3
+  gamma.col(8) << 0.0, 1.0;  // covers transitions 8 and 9
   const TrainingTransitions transitions = gather_training_transitions(recording, fits.structure);
   const Eigen::MatrixXd g = transition_memberships(transitions, fits, test::mixture_of(fits, gamma));
   Eigen::VectorXd first(13);  // transition 5 is two from the first window and 6 is two from the second; 12 is in the
@@ -56,8 +56,8 @@ TEST(Memberships, TheEarlierOfTwoEquallyNearWindowsWins) {
   const Recording recording = two_runs(5, 1);
   const WindowFits fits = test::windows_of(recording, 2, 1);  // starts 0 .. 3
   Eigen::MatrixXd gamma = Eigen::MatrixXd::Constant(2, fits.count(), not_a_number);
-  gamma.col(0) << 1.0, 0.0;  // covers 0, 1
-  gamma.col(3) << 0.0, 1.0;  // covers 3, 4
+  gamma.col(0) << 1.0, 0.0;  // covers transitions 0 and 1
+  gamma.col(3) << 0.0, 1.0;  // covers transitions 3 and 4
   const TrainingTransitions transitions = gather_training_transitions(recording, fits.structure);
   const Eigen::MatrixXd g = transition_memberships(transitions, fits, test::mixture_of(fits, gamma));
   EXPECT_TRUE(near(g.row(2), Eigen::RowVector2d(1.0, 0.0), weight_rounding));
@@ -79,7 +79,7 @@ TEST(Memberships, NoiseTeachesNoMode) {
   const Recording recording = two_runs(5, 3);
   const WindowFits fits = test::windows_of(recording, 3, 1);
   Eigen::MatrixXd gamma = Eigen::MatrixXd::Constant(2, fits.count(), 0.5);
-  gamma.col(fits.count() - 1) << 0.06, 0.02;  // the only window of the second run: noise with probability 0.92
+  gamma.col(fits.count() - 1) << 0.06, 0.02;  // the second run has one window, which is noise with probability 0.92
   MixtureResult mixture = test::mixture_of(fits, gamma);
   mixture.mixture.noise = {0.1, -Eigen::VectorXd::Ones(3), Eigen::VectorXd::Ones(3)};
   mixture.mixture.weights *= 0.9;

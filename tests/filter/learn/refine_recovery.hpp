@@ -18,7 +18,7 @@
 /// Refinement of simulated systems with measurement noise, compared with the true parameters.
 namespace modebank::test {
 
-/// A bank for simulation. `theta`: one column per mode; `stay`: diagonal of T; `R`: diagonal.
+/// A bank for simulation. `theta`: one column per mode. `stay`: diagonal of T. `R`: diagonal of R.
 inline Bank true_bank(const LinearStructure& structure, const Eigen::MatrixXd& theta,
                       const std::vector<Eigen::MatrixXd>& Q, const Eigen::VectorXd& R, double stay) {
   Bank bank = bank_frame(empty_recording(structure.states, structure.inputs), structure, R.asDiagonal());
@@ -86,8 +86,8 @@ inline Refinement refine_blurred(const Bank& truth, const Recording& recording, 
   return refine_bank(recording, windows_of(recording, 25, 1), {blurred(truth, recording)}, options, {});
 }
 
-/// Errors of all learned parameters in standard errors: theta, Q (lower triangles), R, T's diagonal. Modes are in the
-/// order of the truth, which the starts preserve.
+/// Errors of all learned parameters in standard errors: theta, Q (lower triangles), R, T's diagonal. Modes have the
+/// order of the true modes, because the starts preserve it.
 inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
   std::vector<double> z;
   const Index n = truth.structure.states;

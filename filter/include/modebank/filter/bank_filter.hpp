@@ -33,7 +33,7 @@ struct Estimate {
 /// Prediction of one later sample, all modes combined. State and covariance are NaN before the filter's start.
 struct Forecast {
   std::vector<double> state;             ///< n
-  Matrix covariance;                     ///< n x n
+  Matrix covariance;                     ///< n x n, covariance of the predicted state
   std::vector<double> mode_probability;  ///< K
 };
 

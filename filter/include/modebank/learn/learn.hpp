@@ -21,7 +21,7 @@ struct Uncertainty {
   std::vector<std::string> parameter_names;         ///< p
   Matrix theta;                                     ///< p x K
   Matrix theta_standard_error;                      ///< p x K
-  std::vector<Matrix> Q_standard_error;             ///< K of n x n; empty without refinement
+  std::vector<Matrix> Q_standard_error;             ///< K standard errors of Q, n x n each; empty without refinement
   Matrix R_standard_error;                          ///< n_y x n_y; empty unless R was estimated with the bank
   Matrix transition_standard_error;                 ///< K x K; empty without refinement
   std::vector<std::string> motion_parameter_names;  ///< parameters of a motion model; empty for linear models
@@ -46,7 +46,7 @@ struct Origin {
 /// A bank, ready for BankFilter, with its uncertainty and origin.
 struct Learned {
   filter::Bank bank;            ///< the modes
-  filter::Bank baseline;        ///< reference competitor: one Kalman filter of all runs
+  filter::Bank baseline;        ///< reference competitor: one Kalman filter for all runs
   double log_likelihood = 0.0;  ///< log-likelihood of the bank with LearnOptions::filter on the training runs [nats]
   double baseline_log_likelihood = 0.0;  ///< log-likelihood of the baseline on the same samples [nats]
   Uncertainty uncertainty;               ///< uncertainty of the bank

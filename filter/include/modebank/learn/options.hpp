@@ -29,8 +29,8 @@ struct EnumNames<NoiseSource> {
 };
 
 /// Source of the transition matrix. labels: transitions between labels of neighbouring windows. stay:
-/// BankOptions::stay. logit: like labels; in a refined bank the transitions also depend on state and input, if that
-/// raises the score of training runs that were left out.
+/// BankOptions::stay. logit: like labels; in a refined bank the transition probabilities also depend on state and
+/// input, if this raises the score of training runs that were left out.
 enum class TransitionSource { labels, stay, logit };
 
 template <>

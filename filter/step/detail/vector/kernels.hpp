@@ -4,7 +4,7 @@
 
 /// Interface between vector_imm.cpp and its kernels, which are compiled once per instruction set. Rows hold `stride`
 /// numbers, one per mode, and begin at multiples of 64 bytes. Symmetric matrices are packed: entry (a, b), a >= b, is
-/// row a (a + 1) / 2 + b. Entries beyond the last mode are zero, and no mode can switch to them.
+/// row a (a + 1) / 2 + b. Entries beyond the last mode are zero; no mode can switch to one of them.
 namespace modebank::vector_imm {
 
 struct ModeRows {
@@ -27,7 +27,8 @@ struct ModeRows {
   double *expected = nullptr, *innovation_covariance = nullptr;       ///< n_y: C x; packed n_y: S
   double *L = nullptr, *D = nullptr, *D_inverse = nullptr;            ///< packed n_y; n_y: S = L D L'
   double* decorrelated = nullptr;                                     ///< n_y: L^-1 (y - C x)
-  double *exponent = nullptr, *weight = nullptr;  ///< 1: -e' S^-1 e / (2 log 2); 1: posterior before normalisation
+  double *exponent = nullptr, *weight = nullptr;  ///< exponent of each mode, -e' S^-1 e / (2 log 2), one row; posterior
+                                                  ///< before normalisation, one row
 
   /// Only for quantised measurements. Holds the numbers of SignalLikelihood for every signal given the previous
   /// signals, n_y rows per number. `decorrelated` and `D` then hold the innovation and its variance given the previous
