@@ -109,7 +109,8 @@ void DriftingRecursion::skip() {
   pass_time();
 }
 
-/// If outputs that share a P are measured only in part, the other outputs get a copy of P.
+/// If some outputs that share a P are measured and others are not, the outputs without a measurement get their own copy
+/// of P.
 void DriftingRecursion::split_partial() {
   const Index before = P_count_;
   for (Index g = 0; g < before; ++g) {

@@ -20,10 +20,10 @@ using Eigen::Index;
 constexpr double coarse_share = 0.25;  // largest quantum, as a share of the innovation's standard deviation. With a
                                        // larger quantum, a density has peaks between the rounded values
 constexpr Index free_run_horizon = 0;
-constexpr double noticeable_rmse = 1e-3;  // relative difference of two RMSE that is visible in a table with three
-                                          // digits
-constexpr double rounding_rmse = 1e-8;    // RMSE as a share of a state's standard deviation; corresponds to half of a
-                                          // double's digits
+constexpr double noticeable_rmse = 1e-3;  // smallest relative difference of two RMSE that counts; it is visible in a
+                                          // table with three digits
+constexpr double rounding_rmse = 1e-8;    // limit of an RMSE that is only rounding, as a share of a state's standard
+                                          // deviation; half of a double's digits
 
 // samples; 60 systems with modes had stays of at least 8.4 samples, systems without modes 1.6 samples
 constexpr double fewest_stay = 5.0;

@@ -123,7 +123,7 @@ struct Finding {
   std::string best_competitor;     ///< competitor with the highest log score; empty without competitors
   double gain = 0.0, standard_error = 0.0;  ///< gain over best_competitor [nats/sample]; NaN if unknown
   Description description = Description::none;
-  std::string better_description;  ///< competitor that describes the runs instead of modes; empty if no competitor does
+  std::string better_description;  ///< competitor that describes the runs in place of modes; empty if there is none
   double description_loss = 0.0;   ///< loss of that competitor against the best competitor [nats/sample]
 
   /// The better one of the competitors baseline and noise_only. Set only if several modes or one nonlinear motion

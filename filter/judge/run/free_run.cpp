@@ -62,8 +62,8 @@ class Given {
   const Trajectory& run() const { return run_; }
   const RunInstants& instants() const { return *instants_; }
 
-  /// Calls from(first, last, end) for every stretch that can be predicted. first to last are the moments from the
-  /// filter's start to the last measured sample; end is the end of the predictions. Records the reason for stretches
+  /// Calls from(first, last, end) for every stretch that can be predicted. `first` to `last` are the moments from the
+  /// filter's start to the last measured sample. `end` is the end of the predictions. Records the reason for stretches
   /// that cannot be predicted.
   template <class From>
   void for_each(FreeRun& out, From from) const {
@@ -99,7 +99,7 @@ class Given {
     }
   }
 
-  /// The moments of the filter's start and of sample `last`; -1 if there is no start between them.
+  /// The moments of the filter's start and of sample `last`; -1 without a start between them.
   std::pair<Index, Index> moments(Index first, Index last) const {
     Index start = -1;
     for (Index t = 0; t < instants_->count(); ++t) {

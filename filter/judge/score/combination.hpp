@@ -17,7 +17,7 @@ namespace modebank {
 /// a forecast are those at its origin, so no later information enters.
 struct CombinedForecasts {
   HorizonEvaluation predictions;
-  ///   x N per horizon: the filters' weights in the forecast of a sample; NaN if the sample was not scored.
+  /// F x N per horizon: the filters' weights in the forecast of a sample; NaN if the sample was not scored.
   std::vector<Eigen::MatrixXd> weight;
 };
 /// Combines forecasts. `members`: at least one forecast; all have the same run and horizons. A sample is scored if the

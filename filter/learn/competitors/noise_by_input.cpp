@@ -184,8 +184,8 @@ FoundNoiseFactor find_noise_factor(const Recording& all, const LinearStructure& 
   if (all.quantum.size() > 0 || all.weighted() || folds < 2) return found;
   const std::optional<Recording> part = learning_part(all, most_transitions, seed);
   const Recording training = training_part(part ? *part : all);
-  // The runs that chose the factor gain more than runs that are left out. If even these runs gain too little, the
-  // factor is rejected without cross-validation.
+  // The runs that chose the factor gain more than left-out runs would. If even the runs that chose it gain too little,
+  // the factor is rejected without cross-validation.
   const auto [of_all, rows] = gains(training, training, structure);
   const PairedLoss seen = paired_loss(of_all, VectorXd::Zero(of_all.size()), rows);
   found.gain = seen.mean;

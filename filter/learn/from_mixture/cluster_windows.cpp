@@ -17,7 +17,7 @@ bool begin_with(const std::vector<std::string>& names, const std::vector<std::st
   return names.size() >= first.size() && std::equal(first.begin(), first.end(), names.begin());
 }
 
-/// The features of every window that has them, F x M, in the order of `clustered`.
+/// F x M features of the windows that have features, in the order of `clustered`.
 Eigen::MatrixXd features_of_all(const WindowFits& fits, const std::vector<Channel>& states,
                                 const FeatureCloud& clustered) {
   const FeatureCloud all =

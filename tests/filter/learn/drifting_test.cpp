@@ -61,7 +61,7 @@ TEST(DriftingLearning, TheGridScoresWhatTheFilterScores) {
   recording.runs[0].state(1, 30) = std::nan("");
   recording.runs[1].time_s.tail(40).array() += 0.3;
   recording.runs[1].time_s.tail(10).array() += 100.0;
-  recording.runs[1].state.col(50) *= 1e6;  // so large that a product of eight such values overflows
+  recording.runs[1].state.col(50) *= 1e6;  // so large that the product of eight such values would overflow
   const GlobalModel global = fit_global(recording, model.structure);
   model = learn_drifting(recording, global, model.structure, {});
   const DriftingGrid grid;

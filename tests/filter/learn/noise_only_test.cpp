@@ -50,7 +50,7 @@ TEST_P(NoiseOnly, StayIsTheMostLikelyOne) {
   EXPECT_TRUE(near(bank.R, test::golden_rows(golden.at("R")), 0.0));
   for (std::size_t i = 0; i < golden.at("stays").size(); ++i) {
     bank.transition = TransitionMatrix::sticky(8, golden.at("stays")[i].get<double>());
-    // Sum over a hundred samples; each density agrees to 1e-10.
+    // tolerance for a sum over a hundred samples; each density agrees to 1e-10
     EXPECT_NEAR(training_log_likelihood(bank, recording, {}), golden.at("log_likelihood")[i].get<double>(), 1e-8);
   }
 }

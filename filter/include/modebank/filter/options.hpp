@@ -27,7 +27,7 @@ struct FilterOptions {
   FilterVariant variant = FilterVariant::imm;  ///< how the modes' estimates are mixed
   FilterNoise noise = FilterNoise::gaussian;   ///< whether the noise scale follows the run
 
-  /// Equality of all members.
+  /// Two objects are equal if all members are equal.
   bool operator==(const FilterOptions&) const = default;
 };
 

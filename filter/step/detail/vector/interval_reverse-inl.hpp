@@ -34,8 +34,8 @@ class IntervalUncorrection {
   }
 
   /// Converts derivatives with respect to the corrected moments to those with respect to the predicted moments. Adds
-  /// derivatives with respect to R and Q. The objective is `by_log` times the log density, plus share and square times
-  /// the sums for the noise scale.
+  /// derivatives with respect to R and Q. The objective is `by_log` times the log density, plus `share` and `square`
+  /// times the sums for the noise scale.
   HWY_INLINE void back(V by_log, V share, V square, const V (&Q)[packed_size(N)], Moments<N>& by,
                        V (&by_Q)[packed_size(N)], double* by_R) const {
     for (std::size_t i = NY; i-- > 0;) {
