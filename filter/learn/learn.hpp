@@ -18,7 +18,7 @@ namespace modebank {
 /// One Kalman filter on the global model with maximum-likelihood Q and R. Also contains the result of that search.
 struct Baseline {
   Bank bank;                    ///< K = 1
-  double log_likelihood = 0.0;  ///< log-likelihood of the training runs, from each run's second sample
+  double log_likelihood = 0.0;  ///< log-likelihood of the training runs, without each run's first sample
   bool converged = false;
   bool at_bound = false;  ///< whether R is at its lower bound (1e-8 of the residual variance), or is 0 because there
                           ///< are many lags

@@ -18,9 +18,10 @@ namespace modebank {
 ///   outside, and more than 4 % lie in the central band that should hold 2.5 % (too_close), with 95 % confidence.
 /// - calibrated: 2.5 to 7.5 % lie outside, 1 to 4 % lie too close, and neither interval contains its whole band.
 /// - undecided: all other cases, such as a few hundred samples.
-/// If neither of the first two applies, the mean NIS decides. It must lie outside the 99 % interval for a correct model
-/// and differ from the expected mean by more than a tenth. This rule holds only if every prediction is one Gaussian of
-/// known variance. Otherwise (mixture, adaptive noise) the NIS is not chi-square and only sets a flag.
+/// If the filter is neither overconfident nor underconfident by these rules, the mean NIS decides. It must lie outside
+/// the 99 % interval for a correct model and differ from the expected mean by more than a tenth. This rule holds only
+/// if every prediction is one Gaussian of known variance. Otherwise (mixture, adaptive noise) the NIS is not chi-square
+/// and only sets a flag.
 ///
 /// Autocorrelated samples count as fewer independent samples. Their number follows from an autocorrelation time with a
 /// margin for its own error. Two times are computed: from the band's misses, and from the sizes of all samples. The

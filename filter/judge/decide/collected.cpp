@@ -31,7 +31,7 @@ class Collector {
     for (HitsByRun& hits : counts.outside) hits.emplace_back();
     counts.sizes.emplace_back();
     for (SquaredDistances* distances : {&counts.nis, &sums.nees}) distances->begin_run();
-    OutputSeries z(static_cast<std::size_t>(e.pit.rows()));  // samples of one mode
+    OutputSeries z(static_cast<std::size_t>(e.pit.rows()));  // samples of one mode only
     if (mode_ < 0) make_room(e, z);
     for (Index k = 0; k < e.log_density.size(); ++k) {
       if (std::isnan(e.log_density(k))) continue;

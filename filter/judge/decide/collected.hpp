@@ -17,7 +17,7 @@ struct Collected {
   double usage = 0.0, entropy = 0.0, differences = 0.0, visits = 0.0, visited = 0.0;
   BandCounts counts;
   SquaredDistances nees;
-  SeriesByRun z;  ///< only for the whole filter: one series per run and measurement
+  SeriesByRun z;  ///< only for the whole filter: one series per run and measured signal
   std::vector<double> whiteness;
   Eigen::VectorXd squared_state_error;
   Eigen::Index state_errors = 0;

@@ -67,9 +67,9 @@ inline constexpr double negligible_gain = 0.02;
 
 /// The part of a bank's training errors that can be predicted from past errors and inputs.
 struct ErrorPattern {
-  double gain = not_a_number;  ///< gain from predicting the errors, on parts that were left out [nats/sample]; NaN
+  double gain = not_a_number;  ///< gain from predicting the errors, on left-out parts of the runs [nats/sample]; NaN
                                ///< means unknown
-  double standard_error = not_a_number;  ///< standard error of the gain, over those parts [nats/sample]
+  double standard_error = not_a_number;  ///< standard error of the gain over these parts [nats/sample]
 
   /// Whether the gain is not negligible and exceeds two standard errors.
   bool told() const { return gain >= negligible_gain && gain > 2.0 * standard_error; }
@@ -110,7 +110,7 @@ struct Finding {
   bool modes_differ = false;   ///< whether the modes differ in theta by more than their errors
   bool errors_known = true;    ///< `errors_known` of the bank. If false, modes may differ although `modes_differ` is
                                ///< false
-  double step_scatter = 0.0;   ///< standard deviation of the time steps over their median
+  double step_scatter = 0.0;   ///< standard deviation of the time steps, divided by their median
   ErrorPattern pattern;        ///< pattern in the errors of the bank
   double stay = not_a_number;  ///< mean stay in a mode (harmonic mean over the judged samples) [samples]; NaN if
                                ///< unknown
@@ -124,7 +124,7 @@ struct Finding {
   double gain = 0.0, standard_error = 0.0;  ///< gain over best_competitor [nats/sample]; NaN if unknown
   Description description = Description::none;
   std::string better_description;  ///< competitor that describes the runs in place of modes; empty if there is none
-  double description_loss = 0.0;   ///< loss of that competitor against the best competitor [nats/sample]
+  double description_loss = 0.0;   ///< loss of better_description against best_competitor [nats/sample]
 
   /// The better one of the competitors baseline and noise_only. Set only if several modes or one nonlinear motion
   /// describe the runs, and both descriptions are better than this competitor; else empty. (Modes that switch by state
@@ -134,7 +134,8 @@ struct Finding {
   std::vector<BetterMean> better_means;
   std::vector<std::pair<std::string, double>> coefficients;  ///< coefficients of one linear model; empty if the model
                                                              ///< leaves noise
-  std::vector<std::string> equations;  ///< equations of the nonlinear motion that describes the runs instead of modes
+  std::vector<std::string> equations;  ///< equations of the nonlinear motion, if it describes the runs in place of
+                                       ///< modes
   std::string text;                    ///< the finding in plain sentences, filled in by the output
 
   bool held_out() const { return role == Role::test; }
@@ -173,13 +174,13 @@ struct FindingInputs {
 /// - evidence: the gain over each competitor is significant (paired_gain.hpp) and not negligible, the modes differ,
 ///   and stays are long enough. A stay must last at least five samples and the memory of the model. Shorter stays
 ///   appear with noisy inputs or a delay that differs between runs; competitors do not model these effects.
-/// - no evidence: a competitor has at least the score of the bank, the gain over one is known to be negligible, or
-///   all modes have the same theta.
+/// - no evidence: a competitor has at least the score of the bank, or its loss is known to be negligible, or all
+///   modes have the same theta.
 /// - cannot tell: all other cases, such as no held-out runs, too few samples for a margin, or modes with unknown
 ///   errors.
 /// If the bank is not significantly better than the best competitor, better_description is the simplest competitor that
-/// is as good as both. A competitor is as good if it loses less than 0.02 nats, or if neither a t-test nor Wilcoxon's
-/// test over runs separates the two.
+/// is as good as these two. A competitor is as good if it loses less than 0.02 nats, or if neither a t-test nor
+/// Wilcoxon's test over runs separates the two.
 Finding judge_modes(const FindingInputs& in);
 
 }  // namespace modebank

@@ -97,7 +97,7 @@ double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptio
   check_run(bank, run);
   double total = 0.0;
   score_samples(bank, run, options, [&](Index, const Eigen::VectorXd& log_density) {
-    double sum = total;  // summed sample by sample, so the rounding does not depend on the stretches
+    double sum = total;  // summed sample by sample, so that rounding does not depend on the stretches
     for (const double value : log_density) sum += std::isnan(value) ? 0.0 : value;
     total = sum;
   });

@@ -62,7 +62,8 @@ struct NormalMixture {
   }
 
  private:
-  static constexpr double negligible_weight = 1e-9;  ///< weight of a part that no band in use can show
+  static constexpr double negligible_weight = 1e-9;  ///< smallest weight of a part that can matter at the edge of a
+                                                     ///< band
 };
 
 }  // namespace modebank

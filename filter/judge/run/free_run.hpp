@@ -33,8 +33,8 @@ struct EnumNames<FreeRunStart> {
 };
 
 struct FreeRunOptions {
-  Eigen::Index samples = 0;  ///< measured samples at the beginning; 0 turns free runs off
-  Eigen::Index horizon = 0;  ///< samples to predict after them; 0 predicts to the end of the run
+  Eigen::Index samples = 0;  ///< number of measured samples at the beginning; 0 turns free runs off
+  Eigen::Index horizon = 0;  ///< number of samples to predict after the measured ones; 0 predicts to the end of the run
   FreeRunStart start = FreeRunStart::estimated;
   FreeRunMethod method = FreeRunMethod::moments;
   Eigen::Index paths = 400;
@@ -71,7 +71,7 @@ struct FreeRunRow {
   Role role = Role::train;
   std::string run;  ///< name of the run; "*": all runs of the role pooled
   FreeRunMethod method = FreeRunMethod::moments;
-  Eigen::Index start = 0;    ///< measured samples at the beginning
+  Eigen::Index start = 0;    ///< number of measured samples at the beginning
   Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample]
   Eigen::VectorXd rmse;      ///< n_y [state unit]

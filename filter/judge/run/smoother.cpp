@@ -109,7 +109,7 @@ class BestHistories {
   PartialSensor<N, NY> partial_;
   small::Ldl<NY> least_;
   Eigen::VectorXd score_;                        ///< score of every mode's best history
-  std::vector<Gaussian<N>> modes_, next_modes_;  ///< states at the end of these histories
+  std::vector<Gaussian<N>> modes_, next_modes_;  ///< states at the end of the best histories
 
   /// Row j holds for the state of mode j's best history.
   template <class U>

@@ -19,8 +19,8 @@ class ScoreBands {
  public:
   struct Hits {
     std::array<bool, coverage_levels.size()> outside;  ///< whether |z| lies outside each central band
-    bool far, close;                                   ///< z^2 above the upper or below the lower true_tail quantile of
-                                                       ///< chi-square(1)
+    bool far, close;                                   ///< whether z^2 is above the upper, or below the lower true_tail
+                                                       ///< quantile of chi-square(1)
   };
   ScoreBands();
   Hits of(double z) const;

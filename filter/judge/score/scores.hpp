@@ -45,8 +45,8 @@ std::vector<SummaryRow> summarize_role(const std::string& filter, Role role, con
 struct MergingCost {
   Role role = Role::train;
   Eigen::Index components = 0;       ///< number of components of the mixture before merging
-  Eigen::Index modes_unlimited = 0;  ///< modes of the bank without the limit
-  Eigen::Index modes = 0;            ///< modes of the bank with the limit
+  Eigen::Index modes_unlimited = 0;  ///< number of modes of the bank without the limit
+  Eigen::Index modes = 0;            ///< number of modes of the bank with the limit
   Eigen::Index samples = 0;          ///< scored samples
   double log_score_unlimited = 0.0;  ///< mean log predictive density [nats/sample]
   double log_score = 0.0;

@@ -36,8 +36,10 @@ struct LearningOptions {
   FilterOptions filter = {};
   ScoringOptions scoring = {};
   std::uint64_t seed = 1;
-  SearchedLags searched_lags = {};          ///< lags are chosen on runs that were left out; replaces those in `window`
-  AutomaticWindows automatic_windows = {};  ///< derived from the data; replaces the value in `window`
+  SearchedLags searched_lags = {};          ///< which lags are chosen on runs that were left out; these replace the
+                                            ///< lags in `window`
+  AutomaticWindows automatic_windows = {};  ///< which values are derived from the data; these replace the values in
+                                            ///< `window`
   std::string terms = "auto";               ///< terms of `nonlinear`: auto, none, or a list for
                                             ///< read_terms
   NoiseByInput noise_by_input = NoiseByInput::automatic;  ///< whether noise may depend on state and input

@@ -16,7 +16,7 @@
 namespace modebank {
 
 struct StructurePart {
-  std::optional<FoundStructure> structure;  ///< result of the search for lags, if there was one
+  std::optional<FoundStructure> structure;  ///< result of the search for lags; absent without a search
 };
 
 struct WindowsPart {
@@ -40,7 +40,7 @@ struct BankPart {
   std::optional<Bank> unrefined;   ///< the bank before expectation-maximisation
   MeasuredFit measured_fit = MeasuredFit::none;
   Index learned_transitions = 0;  ///< number of transitions that refined the bank; 0 means all training transitions
-  std::vector<LeftOutRow> left_out = {};  ///< present if filters were learned without some training runs
+  std::vector<LeftOutRow> left_out = {};  ///< present if filters were learned without some of the training runs
   std::vector<MergingCost> merging = {};  ///< present if the limit bank.modes caused components to be merged
 };
 

@@ -37,7 +37,7 @@ std::vector<GridRun> training_instants(const Bank& bank, const Recording& record
 /// signal, by output. Also the restarts of the running variance.
 struct DriftTrace {
   std::vector<std::vector<double>> ratio;       ///< per output
-  std::vector<std::vector<std::size_t>> start;  ///< per output: positions in `ratio`
+  std::vector<std::vector<std::size_t>> start;  ///< per output: indices into `ratio`
   double log_variance = 0.0;                    ///< sum of log (v0 (1 + h'Ph)) over all scored signals
   Index samples = 0;
 

@@ -30,9 +30,9 @@ NoiseFactor fit_noise_factor(const Recording& recording, const LinearStructure& 
 
 /// The factor, if training runs that were left out gain by it.
 struct FoundNoiseFactor {
-  NoiseFactor factor;          ///< empty: rejected
-  double gain = not_a_number;  ///< gain on left-out runs [nats/sample]. If the gain on all runs is already too small,
-                               ///< that gain
+  NoiseFactor factor;                    ///< empty: rejected
+  double gain = not_a_number;            ///< gain on left-out runs [nats/sample]. If the factor was rejected without
+                                         ///< cross-validation, gain on all runs
   double standard_error = not_a_number;  ///< standard error of the gain over the left-out runs; NaN if no run was left
                                          ///< out
 };

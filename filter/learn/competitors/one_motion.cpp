@@ -53,7 +53,7 @@ Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, 
   RefineOptions em = options.em;
   em.one_theta = true;
   em.state_dependent_transition = options.transition == TransitionSource::logit;
-  em.restarts = 0;  // random stretches give different theta, but this model has one theta
+  em.restarts = 0;  // random stretches differ in theta, but this model has one theta
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   std::vector<Bank> starts =
       level_starts(recording, fits.structure,

@@ -15,7 +15,8 @@
 namespace modebank {
 namespace {
 
-constexpr double smallest_weight = 1e-9;         // transitions; a smaller sum has no information about Q
+constexpr double smallest_weight = 1e-9;         // number of transitions; a smaller sum of weights has no information
+                                                 // about Q
 constexpr double alternation_tolerance = 1e-12;  // relative change of Q; rounding errors are a thousand times smaller
 constexpr int max_alternations = 500;
 

@@ -106,7 +106,8 @@ Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::
 
 RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& weights,
                                const Eigen::MatrixXd& residuals) {
-  constexpr double negligible = 1e-12;  // most transitions have a smaller weight than this in any mode
+  constexpr double negligible = 1e-12;  // smaller weights are skipped; in any mode, most transitions have a smaller
+                                        // weight
   const Index q = regressors.cols(), n = residuals.cols();
   std::vector<Index> rows;
   for (Index k = 0; k < weights.size(); ++k)

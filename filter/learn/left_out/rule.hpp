@@ -18,7 +18,7 @@ struct LeftOutScores {
 /// Difference of two candidates' scores, sample by sample on the same runs.
 struct PairedLoss {
   double mean = 0.0;            ///< nats per sample; infinite if a score is not finite
-  double standard_error = 0.0;  ///< standard error of the mean, clustered by run; 0 for a single run
+  double standard_error = 0.0;  ///< standard error of the mean, clustered by run; 0 if there is a single run
 };
 
 /// Computes m = sum d_r / N and its standard error sqrt(R / (R - 1) sum (d_r - m n_r)^2) / N. d_r is the difference of

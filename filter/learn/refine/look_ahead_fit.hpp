@@ -15,8 +15,8 @@ namespace modebank {
 /// The result is kept if left-out runs, each scored by a fit without that run, gain more than least_gain. With
 /// options.folds = 1 it is always kept. Otherwise the result is empty. `stage` records the gain. The result has no
 /// standard errors, because a composite likelihood does not have the usual information.
-/// Expectation-maximisation cannot look further than one step. This search can, at h / 2 times the cost of a likelihood
-/// per coordinate. So it makes few iterations, and none for a bank of more than 50 coordinates.
+/// Expectation-maximisation cannot look further than one step. This search can. For each coordinate it costs h / 2
+/// times as much as a likelihood. So it makes few iterations, and none for a bank of more than 50 coordinates.
 std::optional<Fit> fit_looking_ahead(const RefineInput& in, const CrossValidation& validation, const Fit& fit,
                                      LookAheadStage& stage);
 

@@ -20,9 +20,10 @@ struct ScreenedModel {
 /// - "unstable": the spectral radius of I + A is above 1 and the switching system with the mode is not mean-square
 ///   stable. The largest radius comes first. (A mode that never lasts may be unstable by itself.)
 /// - "duplicate" of another mode: pooling the transitions of both costs less than a likelihood-ratio test at 5 %
-///   would detect. Pooling is the moment-preserving merge of Runnalls 2007, IEEE Trans. AES 43(3). The cost is its
-///   bound, the increase of 1/2 sum W log det Q. The other mode also receives the transitions in T.
-/// `one_theta`: modes differ in Q alone, and the test counts only Q.
+///   would detect. Pooling is the moment-preserving merge of Runnalls 2007, IEEE Trans. AES 43(3). The cost is the
+///   bound of Runnalls: the increase of 1/2 sum W log det Q. In T, the other mode receives the transitions of the
+///   removed mode.
+/// `one_theta`: modes differ only in Q, and the test counts only the parameters of Q.
 std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
                                                 const SwitchingRegression& model, bool one_theta,
                                                 const RefineTuning& tuning);

@@ -17,7 +17,7 @@
 ///
 /// Without a measurement the error of the state is correlated with the error of theta (`cross`). Predictions several
 /// steps ahead include this correlation to first order, like the extended Kalman filter of (theta, x). With W = P0 = 0
-/// the filter equals that of the bank without drift. With one mode of diagonal Q it equals DriftingRecursion.
+/// the filter equals the filter of the bank without drift. With one mode of diagonal Q it equals DriftingRecursion.
 ///
 /// Modes that share theta (`one_motion`) have one common Gaussian. g_k and D_k are the change of mean and covariance if
 /// mode k ruled the step:

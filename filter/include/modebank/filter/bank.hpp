@@ -36,7 +36,7 @@ struct StateDependentTransition {
 /// log(|directions_i z| + 0.1) - offset). The factor on Q is limited to 0.2 to 5. z holds the state and the acting
 /// inputs. If empty, Q is constant.
 struct NoiseByState {
-  Matrix directions;            ///< d x (n + acting inputs)
+  Matrix directions;            ///< d x (n + acting inputs), one direction per row
   std::vector<double> weights;  ///< d
   double offset = 0.0;          ///< offset, subtracted in the exponent
 };
@@ -84,7 +84,8 @@ struct BankDescription {
   std::vector<std::string> input_names;                 ///< names of the inputs; may be empty
   double dt_s = 0.0;                                    ///< sample period of one step [s]; 0 if it is not fixed
   std::ptrdiff_t inputs = 0;                            ///< number of input channels
-  std::ptrdiff_t state_lags = 1;                        ///< number of state samples that predict the next one
+  std::ptrdiff_t state_lags = 1;                        ///< number of state samples from which the next one is
+                                                        ///< predicted
   std::ptrdiff_t input_lags = 1;                        ///< number of input samples that act on one transition
   std::ptrdiff_t input_delay = 1;                       ///< number of samples from an input to its first effect
   bool intercept = false;                               ///< whether c is part of theta

@@ -27,7 +27,8 @@ struct Estimate {
   double log_density = 0.0;                        ///< log density of the measurement under the prediction [nats]
   double spread_share = 0.0;                       ///< share of the trace of the innovation covariance that comes from
                                                    ///< differences between the modes
-  std::ptrdiff_t steps = 0;  ///< model steps since the previous sample; 0 means that the filter (re)started here
+  std::ptrdiff_t steps = 0;  ///< number of model steps since the previous sample; 0 means that the filter (re)started
+                             ///< here
 };
 
 /// Prediction of one later sample, all modes combined. State and covariance are NaN before the filter's start.

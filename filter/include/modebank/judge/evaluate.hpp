@@ -20,7 +20,7 @@ struct Evaluation {
   Matrix covariance;             ///< n*n x N, covariance of the state after the measurement
   std::vector<double> nis;       ///< N, normalised innovation squared
   Matrix pit;  ///< n_y x N, probability integral transform (Rosenblatt 1952), uniform if the model is correct. For a
-               ///< quantised signal it is drawn uniformly within its interval
+               ///< quantised signal it is drawn uniformly within the transform's interval
   std::vector<double> log_density;  ///< N [nats]
   Matrix mode_probability;          ///< K x N, mode probabilities after the measurement
 };

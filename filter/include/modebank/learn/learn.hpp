@@ -39,7 +39,8 @@ struct Origin {
                             ///< component
   std::vector<ScreenedMode> screened;        ///< components and fits that did not become modes
   std::vector<RefineCandidate> refinements;  ///< starts of the refinement and their scores; empty without refinement
-  std::vector<double> objective;             ///< penalised log-likelihood before each iteration of the refinement
+  std::vector<double> objective;             ///< penalised log-likelihood, one value per iteration of the refinement,
+                                             ///< before the iteration
   MeasurementStage measurement;              ///< results of the refinement with measurement noise
 };
 

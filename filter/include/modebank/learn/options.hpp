@@ -19,7 +19,7 @@ struct EnumNames<ThetaSource> {
   static constexpr Names<2> values{"pooled", "mean"};
 };
 
-/// Source of the modes' process noise Q: each mode's own residuals, the residuals of all modes together, or a given
+/// Source of the modes' process noise Q: the mode's own residuals, the residuals of all modes together, or a given
 /// variance.
 enum class NoiseSource { per_mode, shared, fixed };
 
@@ -118,14 +118,14 @@ struct BankOptions {
 /// All options of learning from runs. `modebank run` finds lags, delay and windows from the data unless they are given.
 /// Here search_lags, automatic_length and automatic_step request this search.
 struct LearnOptions {
-  FitOptions window;         ///< how windows are cut and fitted
-  ClusterOptions mixture;    ///< how windows are clustered
-  BankOptions bank;          ///< how the mixture becomes a bank
-  FilterOptions filter;      ///< filter of the bank; with variant `kf`, the bank is the baseline (a single Kalman
-                             ///< filter)
-  std::uint64_t seed = 1;    ///< the only seed: replaces those in `window` and `bank`
-  bool search_lags = false;  ///< whether lags and delay are chosen by cross-validation on training runs; replaces those
-                             ///< in `window`; not for motion models
+  FitOptions window;              ///< how windows are cut and fitted
+  ClusterOptions mixture;         ///< how windows are clustered
+  BankOptions bank;               ///< how the mixture becomes a bank
+  FilterOptions filter;           ///< filter of the bank; with variant `kf`, the bank is the baseline (a single Kalman
+                                  ///< filter)
+  std::uint64_t seed = 1;         ///< the only seed; it replaces the seeds in `window` and `bank`
+  bool search_lags = false;       ///< whether lags and delay are chosen by cross-validation on training runs. They then
+                                  ///< replace those in `window`. Not for motion models
   bool automatic_length = false;  ///< whether window.length is set from the number of regressors
   bool automatic_step = false;    ///< whether window.step is set so that there are about 100,000 windows
   bool noise_by_input = true;     ///< whether process noise may have a factor that follows states and inputs. The

@@ -26,7 +26,8 @@ struct RefineCandidate {
   std::ptrdiff_t iterations = 0;                            ///< number of iterations of expectation-maximisation
   double score = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the runs that were left out
                                                             ///< [nats/sample]; NaN without cross-validation
-  double loss = std::numeric_limits<double>::quiet_NaN();  ///< loss against the best row on the same runs [nats/sample]
+  double loss = std::numeric_limits<double>::quiet_NaN();   ///< loss against the best row, on the same runs
+                                                            ///< [nats/sample]
   double loss_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< standard error of the loss, clustered by
                                                                           ///< run; by stretch if there are fewer than
                                                                           ///< three runs
