@@ -79,13 +79,13 @@ struct RefineTuning {
   // Switching by state and input.
   double weight_width = 30.0;  ///< prior sd of the weights in units of the regressors' standard deviation. With the
                                ///< largest, a border is a thirtieth of a standard deviation wide
-  std::array<double, 2> other_weight_widths{3.0, 300.0};  ///< tried for the chosen number of modes
+  std::array<double, 2> other_weight_widths{3.0, 300.0};  ///< tried after the number of modes has been chosen
   double little_memory_sd = 0.1;  ///< prior sd of log odds, tried with the chosen width; with a small value the
                                   ///< previous mode hardly matters
 
   // Modes that drift: values to try, the middle ones first.
-  std::array<double, 5> drift_rates{1e-5, 1e-4, 1e-3, 1e-2, 1e-1};       ///< variance added per step
-  std::array<double, 6> drift_starts{0.0, 0.01, 0.1, 1.0, 10.0, 100.0};  ///< variance at a run's start
+  std::array<double, 5> drift_rates{1e-5, 1e-4, 1e-3, 1e-2, 1e-1};       ///< variance that a step adds to a coefficient
+  std::array<double, 6> drift_starts{0.0, 0.01, 0.1, 1.0, 10.0, 100.0};  ///< variance of a coefficient at a run's start
   std::array<double, 3> drift_leaks{1.0, 0.97, 0.9};                     ///< factor per step on a coefficient's
                                                                          ///< difference from the mode's coefficient
 

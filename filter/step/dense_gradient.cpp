@@ -70,7 +70,7 @@ class DenseGradient {
   FilterModel<any, any> model_;
   RunInstants instants_;
   FilterStep<any, any> step_;
-  ByState by_;         ///< derivatives of all later moments
+  ByState by_;         ///< derivatives with respect to the state, of all later moments
   VectorXd by_prior_;  ///< derivatives with respect to the mode probabilities before the measurement
   BankGradient sum_;
 

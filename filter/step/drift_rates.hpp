@@ -20,7 +20,7 @@ struct DriftRates {
 /// Log score of the settings that were chosen on a grid, on the training runs. Also whether the grid was wide enough.
 struct GridTuning {
   double log_score = 0.0;    ///< log score of the training runs [nats/sample]
-  Eigen::Index samples = 0;  ///< scored training samples
+  Eigen::Index samples = 0;  ///< number of scored training samples
 
   /// Settings at the end of their grid; the best value may lie beyond the grid. Names: "q", "p0", "leak", "lam", "nu",
   /// "floor", "horizon_factor".

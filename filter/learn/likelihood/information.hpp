@@ -18,8 +18,9 @@ inline constexpr double difference_step = 1e-2;
 /// origin.
 struct SampleGradients {
   Eigen::VectorXd sum;          ///< gradient of the training runs' log-likelihood [nats per coordinate]
-  Eigen::MatrixXd information;  ///< sum of their outer products: Berndt, Hall, Hall & Hausman (1974, Annals of Economic
-                                ///< and Social Measurement 3(4)), the observed information if the model is true
+  Eigen::MatrixXd information;  ///< sum of the outer products of the samples' gradients: Berndt, Hall, Hall & Hausman
+                                ///< (1974, Annals of Economic and Social Measurement 3(4)), the observed information if
+                                ///< the model is true
 };
 
 /// Gradients by central differences with `steps` (one per coordinate) in the bank's filter. A sample of weight w,

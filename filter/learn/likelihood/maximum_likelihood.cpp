@@ -17,7 +17,7 @@ namespace modebank {
 namespace {
 
 constexpr double step_share = 1e-2;       // step of central differences, as a share of a standard error
-constexpr double first_step = 1e-3;       // step until standard errors are known
+constexpr double first_step = 1e-3;       // step of central differences until standard errors are known
 constexpr double least_curvature = 1e-2;  // curvature added to every coordinate, because some may be undetermined
 constexpr double remaining_gain = 1e-3;   // nats
 constexpr Index iterations_per_metric = 40;
@@ -113,7 +113,7 @@ class WhitenedTarget final : public ceres::FirstOrderFunction {
 /// The gradient at a bank, and the standard errors that serve as units.
 struct Metric {
   Eigen::VectorXd steps;               ///< steps of central differences for the rest of the search
-  Eigen::MatrixXd by_standard_errors;  ///< maps whitened coordinates to coordinates
+  Eigen::MatrixXd by_standard_errors;  ///< matrix that maps whitened coordinates to coordinates
   Eigen::VectorXd gradient;            ///< gradient with respect to whitened coordinates
 
   /// Expected gain of a Newton step.

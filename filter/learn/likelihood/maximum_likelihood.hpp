@@ -22,10 +22,10 @@ inline constexpr Eigen::Index most_lags_beside_R = 8;
 /// the approximation of the IMM.
 struct LikelihoodTarget {
   const Recording& recording;
-  FilterOptions filter;                 ///< variant imm for several modes
-  std::optional<SwitchingPrior> prior;  ///< if empty, the target is only the likelihood
+  FilterOptions filter;                 ///< variant `imm` if there are several modes
+  std::optional<SwitchingPrior> prior;  ///< if empty, the target is the likelihood without a prior
   bool one_theta = false;               ///< whether the prior on theta counts only once
-  LookAhead look = {};                  ///< replaces the likelihood in look-ahead learning
+  LookAhead look = {};                  ///< score of look-ahead learning; it then replaces the likelihood
 
   /// Value of the objective; minus infinity for a bank with non-finite numbers.
   double value(const Bank& bank) const;

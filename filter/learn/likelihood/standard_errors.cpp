@@ -118,7 +118,7 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
 /// borders twice as sharp and does not move them. If no sample lies near a border, the runs do not contradict, even if
 /// the prior makes standard errors small.
 bool against_harder_borders(const LikelihoodTarget& target, const Bank& bank) {
-  constexpr double clearly = 1.92;  // nats: 95 % of a chi-square with one degree of freedom
+  constexpr double clearly = 1.92;  // nats: 95 % quantile of chi-square with one degree of freedom, halved
   Bank harder = bank;
   harder.transition_logit.weights *= 2.0;
   const Eigen::MatrixXd squared = bank.transition.matrix().cwiseAbs2();
@@ -131,8 +131,8 @@ bool against_harder_borders(const LikelihoodTarget& target, const Bank& bank) {
 /// data only show that weights are large. The standard error of such a weight is then about the prior's standard
 /// deviation, or the weight was still growing at the end of expectation-maximisation. Such errors become NaN.
 Eigen::VectorXd determined(const Eigen::VectorXd& error, const Eigen::VectorXd& step, const Eigen::VectorXd& prior_sd) {
-  constexpr double most = 0.5;  // limit of the standard error as a share of the prior's standard deviation, and of the
-                                // remaining step as a share of the standard error
+  constexpr double most = 0.5;  // limit on two shares: standard error / prior's standard deviation, and remaining step
+                                // / standard error
   const bool all = (error.array() < most * prior_sd.array()).all() && (step.array().abs() < most * error.array()).all();
   return all ? error : Eigen::VectorXd::Constant(error.size(), not_a_number);
 }

@@ -15,7 +15,7 @@ namespace modebank {
 
 /// Gain of a look-ahead fit (look_ahead_fit.hpp).
 struct LookAheadStage {
-  double score_before = 0.0;         ///< mean look-ahead score of the left-out runs before [nats per sample]
+  double score_before = 0.0;         ///< mean look-ahead score of the left-out runs before the fit [nats per sample]
   double score = 0.0;                ///< mean look-ahead score after the fit; equal to score_before if no fit was tried
   double gain_standard_error = 0.0;  ///< standard error of the difference, clustered by run
   bool taken = false;
@@ -26,7 +26,8 @@ struct Refinement {
   Bank bank;
   Bank start;                               ///< the bank of the mixture
   std::vector<RefineCandidate> candidates;  ///< best number of iterations for each start
-  std::vector<double> objective;  ///< penalised log-likelihood of the training transitions before each iteration
+  std::vector<double> objective;  ///< penalised log-likelihood of the training transitions, one value per iteration,
+                                  ///< before the iteration
   MeasurementStage measurement;
   SwitchingStage switching = {};
   DriftStage drift = {};

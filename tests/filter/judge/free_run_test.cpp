@@ -111,7 +111,7 @@ TEST(FreeRun, PredictsThroughGapsAndMissingSamples) {
   Bank bank = single_mode(example_bank(1, 1, 1), 0);
   bank.dt_s = 1.0;
   Trajectory run = simulate_bank(bank, 20, 8);
-  run.time_s.tail(10).array() += 3.0;  // adds three model steps with the input held
+  run.time_s.tail(10).array() += 3.0;  // adds three model steps, with the input held
   run.state(0, 15) = std::nan("");
   const FreeRun found = free_run(bank, run, {}, after(4));
   double x = found.mean(0, 9);
@@ -152,7 +152,7 @@ TEST(FreeRunScores, HaveTheirClosedForms) {
   EXPECT_DOUBLE_EQ(rows[0].coverage_90(0), 0.5);
   EXPECT_DOUBLE_EQ(rows[0].coverage_95(0), 0.75);
   EXPECT_DOUBLE_EQ(rows[0].coverage_99(0), 0.75);
-  EXPECT_TRUE(std::isnan(rows[1].nrmse(0)));  // undefined if there is one sample
+  EXPECT_TRUE(std::isnan(rows[1].nrmse(0)));  // undefined for a run of one sample
   EXPECT_EQ(rows[2].run, "*");
   EXPECT_DOUBLE_EQ(rows[2].rmse(0), 1.0);
   EXPECT_DOUBLE_EQ(rows[2].fit(0), 100.0 * (1.0 - std::sqrt(5.0 / 50.0)));  // y = 1 2 3 4 10 with mean 4

@@ -71,7 +71,7 @@ TEST(PairedGain, OnlySamplesThatBothScoredCount) {
   const PairedGain gain = paired_gain("other", bank, other);
   EXPECT_EQ(gain.samples, 13);
   EXPECT_NEAR(gain.gain, (1.0 + 3.0 * 14.0) / 13.0, 1e-15);
-  EXPECT_EQ(gain.degrees_of_freedom, 4.0);  // the sixth run has no sample with both scores
+  EXPECT_EQ(gain.degrees_of_freedom, 4.0);  // no sample of the sixth run has both scores
   EXPECT_EQ(paired_gain("other", other, bank).gain, -gain.gain);
 }
 

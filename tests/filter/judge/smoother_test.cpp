@@ -89,7 +89,7 @@ TEST(Smoother, IdenticalModesAreOneSmoother) {
 double rms(const Eigen::MatrixXd& a) { return std::sqrt(a.squaredNorm() / static_cast<double>(a.size())); }
 
 TEST(Smoother, IsCloserToTheTruthThanTheFilter) {
-  Bank bank = example_bank(2, 1, 2, 4e-3);  // the measurement noise is as large as the steps
+  Bank bank = example_bank(2, 1, 2, 4e-3);  // the measurement noise is as large as a step of the state
   bank.transition = TransitionMatrix::sticky(2, 0.97);
   for (const std::uint64_t seed : {1, 2, 3}) {
     const auto [run, mode] = simulate_truth(bank, 2000, seed);

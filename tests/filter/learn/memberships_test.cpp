@@ -66,7 +66,7 @@ TEST(Memberships, TheEarlierOfTwoEquallyNearWindowsWins) {
 TEST(Memberships, MissingSamplesBelongToNoMode) {
   Recording recording = two_runs(5, 3);
   const WindowFits fits = test::windows_of(recording, 3, 1);
-  recording.runs[0].state(0, 2) = not_a_number;  // transitions 1 and 2
+  recording.runs[0].state(0, 2) = not_a_number;  // makes transitions 1 and 2 unusable
   const TrainingTransitions transitions = gather_training_transitions(recording, fits.structure);
   const Eigen::MatrixXd gamma = Eigen::MatrixXd::Constant(2, fits.count(), 0.5);
   const Eigen::MatrixXd g = transition_memberships(transitions, fits, test::mixture_of(fits, gamma));

@@ -153,7 +153,7 @@ TEST(NoiseFactor, OfSamplePathsIsThatOfEachPathsOwnState) {
   paths.step(VectorXd::Constant(1, 1.4));
   const Eigen::ArrayXd x = paths.states().row(0).transpose().array();
   const double Q = 4e-4 * std::exp(std::log(1.5) - 0.3);
-  EXPECT_NEAR((x - x.mean()).square().mean(), Q, 0.03 * Q);  // four standard errors
+  EXPECT_NEAR((x - x.mean()).square().mean(), Q, 0.03 * Q);  // tolerance: four standard errors
   std::vector<Index> all(static_cast<std::size_t>(paths.count()));
   std::iota(all.begin(), all.end(), Index{0});
   EXPECT_NEAR(paths.step_noise(0, all)(0, 0), Q, 1e-12);

@@ -124,7 +124,7 @@ inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, 
 /// is the covariance of the coordinates, the inverse of the training runs' information.
 struct NeesInterval {
   double lower, upper;
-  double parameter_sd, filter_sd;  ///< standard deviations of the logarithm
+  double parameter_sd, filter_sd;  ///< standard deviations of log mean NEES
 };
 
 inline NeesInterval learned_nees_interval(const Bank& bank, const Bank& truth, const Recording& training,

@@ -153,7 +153,8 @@ TEST(BankCoordinates, JacobianIsThatOfTheParameters) {
   ASSERT_EQ(J.rows(), 2 * 2 + 2 + 1 + 4);
   ASSERT_EQ(J.cols(), 2 * 2 + 2 + 1 + 2);
   EXPECT_NEAR(J(at.theta(1) + 1, 3), 0.1, 1e-11);
-  EXPECT_NEAR(J(at.Q(1), 5), 2.0 * truth.modes[1].Q(0, 0), 1e-9);  // exp(z) scales the square root
+  EXPECT_NEAR(J(at.Q(1), 5), 2.0 * truth.modes[1].Q(0, 0), 1e-9);  // in these coordinates exp(z) multiplies the square
+                                                                   // root of Q
   EXPECT_NEAR(J(at.R(), 6), truth.R(0, 0), 1e-9);
   const double T = truth.transition.matrix()(0, 1);
   EXPECT_NEAR(J(at.T(0) + 1, 7), T * (1.0 - T), 1e-9);

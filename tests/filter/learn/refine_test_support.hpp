@@ -13,7 +13,8 @@
 namespace modebank::test {
 
 struct Truth {
-  Eigen::MatrixXd theta{{-0.2, -0.2, -0.6}, {0.3, 1.0, 0.6}};  // a and b of three modes, one per column
+  Eigen::MatrixXd theta{{-0.2, -0.2, -0.6}, {0.3, 1.0, 0.6}};  // coefficients a and b of three modes, one mode per
+                                                               // column
   Eigen::Vector3d Q{0.0025, 0.01, 0.04};
   Eigen::Matrix3d T{{0.96, 0.03, 0.01}, {0.02, 0.96, 0.02}, {0.02, 0.02, 0.96}};
 };

@@ -52,7 +52,7 @@ TEST(Drifting, OneFactorWandersAlongTheInputsCoefficients) {
   const Eigen::MatrixXd d = wandering_direction(model);
   ASSERT_EQ(d.rows(), 4);
   EXPECT_NEAR(d.norm(), 1.0, drift_digits);
-  EXPECT_EQ(d(0, 0), 0.0);  // the coefficient of the state
+  EXPECT_EQ(d(0, 0), 0.0);  // coefficient of the state
   EXPECT_EQ(d(3, 0), 0.0);  // the constant
   EXPECT_NEAR(d(1, 0) / d(2, 0), model.theta(0)(1) * model.drift.scale(1) / (model.theta(0)(2) * model.drift.scale(2)),
               drift_digits);

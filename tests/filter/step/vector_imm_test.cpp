@@ -126,7 +126,7 @@ TEST(VectorImm, TakesIntervalsAsTheGeneralStepsDo) {
             run.state.row(i) = ((run.state.row(i) / quantum).array().round() * quantum).matrix();
         run.state(0, 30) = std::nan("");
         run.state.col(40).setConstant(std::nan(""));
-        run.state(n - 1, 60) += 3.0;  // far out in a tail
+        run.state(n - 1, 60) += 3.0;  // a measurement far out in a tail
         SCOPED_TRACE(testing::Message() << n << " states, " << K << " modes, quantum " << quantum);
         expect_agreement(bank, run, {}, 1e-9);
         expect_agreement(bank, run, adaptive(), 1e-9);

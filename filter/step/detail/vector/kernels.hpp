@@ -10,7 +10,8 @@ namespace modebank::vector_imm {
 struct ModeRows {
   std::size_t modes = 0, stride = 0, inputs = 0;
   // The bank.
-  const double *F = nullptr, *B = nullptr, *c = nullptr, *Q = nullptr;  ///< n*n (row-major), n*inputs, n, packed n
+  const double *F = nullptr, *B = nullptr, *c = nullptr, *Q = nullptr;  ///< number of rows: n*n (row-major), n*inputs,
+                                                                        ///< n, packed n
   const double* transition = nullptr;                                   ///< one row per previous mode
 
   // The filter's state.
@@ -19,14 +20,15 @@ struct ModeRows {
   // Numbers derived from the state, for mixing in the next step.
   double share = 0.0;        ///< 1 / modes
   double* center = nullptr;  ///< n numbers, the mean of the modes' means; moments for mixing are computed about it
-  double* parts = nullptr;   ///< n + packed n: summands of the mixtures
+  double* parts = nullptr;   ///< number of rows: n + packed n; summands of the mixtures
 
   // Results of a step.
   double* predicted_probability = nullptr;                            ///< 1
   double *predicted_mean = nullptr, *predicted_covariance = nullptr;  ///< number of rows: n, packed n
-  double *expected = nullptr, *innovation_covariance = nullptr;       ///< n_y: C x; packed n_y: S
-  double *L = nullptr, *D = nullptr, *D_inverse = nullptr;            ///< packed n_y; n_y: S = L D L'
-  double* decorrelated = nullptr;                                     ///< n_y: L^-1 (y - C x)
+  double *expected = nullptr, *innovation_covariance = nullptr;       ///< n_y rows: C x; packed n_y rows: S
+  double *L = nullptr, *D = nullptr, *D_inverse = nullptr;            ///< number of rows: packed n_y, n_y, n_y; S = L D
+                                                                      ///< L'
+  double* decorrelated = nullptr;                                     ///< n_y rows: L^-1 (y - C x)
   double *exponent = nullptr, *weight = nullptr;  ///< exponent of each mode, -e' S^-1 e / (2 log 2), one row; posterior
                                                   ///< before normalisation, one row
 

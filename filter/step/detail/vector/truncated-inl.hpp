@@ -23,7 +23,7 @@ struct Signals {
 /// Moments of standard normal variables in [low, high], computed from differences. Intervals must be neither narrow nor
 /// far from zero.
 HWY_INLINE Signals by_differences(V low, V high) {
-  const V beyond = splat(38.0);  // for larger arguments the density is denormal
+  const V beyond = splat(38.0);  // beyond this argument the density is denormal
   low = hn::Max(low, hn::Neg(beyond));
   high = hn::Min(high, beyond);
   const V mass = hn::Sub(normal_cdf(hn::Neg(low)), normal_cdf(hn::Neg(high)));

@@ -44,7 +44,7 @@ class VectorGradient {
   std::vector<double> states_, inputs_, measured_;  ///< state_numbers_, m_ and n_y_ numbers per moment
   Eigen::VectorXd memory_;                          ///< memory for rows_ and probability_after_
   vector_imm::ReverseRows rows_;
-  double* probability_after_ = nullptr;  ///< a row in memory_
+  double* probability_after_ = nullptr;  ///< points to a row in memory_
   Eigen::VectorXd by_R_;
   Eigen::MatrixXd by_start_covariance_;
   double by_noise_scale_ = 0.0, by_noise_samples_ = 0.0;

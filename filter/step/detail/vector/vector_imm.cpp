@@ -99,7 +99,7 @@ void VectorImm::lay_out() {
   rows_.mean = take(n_);
   rows_.covariance = take(p);
   rows_.probability = take(1);
-  rows_.center = take(1);  // starts with room for n numbers
+  rows_.center = take(1);  // one row, which has room for n numbers
   rows_.parts = take(n_ + p);
   rows_.predicted_probability = take(1);
   rows_.predicted_mean = take(n_);
