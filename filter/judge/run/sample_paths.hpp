@@ -32,12 +32,9 @@ class SamplePaths {
   void step(const Vector& inputs);
 
   Eigen::Index lost() const { return lost_; }
-  Eigen::Index count() const { return states_.cols(); }      ///< remaining paths
-  const Eigen::MatrixXd& states() const { return states_; }  ///< n x count
-  const Eigen::MatrixXd& predicted() const {
-    return predicted_;
-  }                                                                  ///< n x count, states before the noise of the last
-                                                                     ///< step is added
+  Eigen::Index count() const { return states_.cols(); }              ///< remaining paths
+  const Eigen::MatrixXd& states() const { return states_; }          ///< n x count
+  const Eigen::MatrixXd& predicted() const { return predicted_; }    ///< n x count, without the last step's noise
   const std::vector<Eigen::Index>& modes() const { return modes_; }  ///< count, mode of each path in the last step
 
   /// Q of a mode in the last step: the mean over the paths `in_mode`.

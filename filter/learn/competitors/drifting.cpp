@@ -151,9 +151,7 @@ Bank relearn_drifting(const Bank& like, const Recording& recording, const Global
   Bank bank = like;
   bank.modes.front().model = own.modes.front().model;
   bank.drift.scale = own.drift.scale;
-  if (like.drift.wandering == Wandering::gain)
-    return bank;  // the variance of this model comes from the model's own
-                  // errors
+  if (like.drift.wandering == Wandering::gain) return bank;  // the variance of this model comes from its own errors
   const Eigen::ArrayXd share = like.running_noise.floor.array() / like.noise_variance().array();
   bank.running_noise.floor = share * own.noise_variance().array();
   bank.modes.front().Q = own.modes.front().Q;
