@@ -41,7 +41,7 @@ void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Arc
   std::vector<std::string> names;
   for (const Forecaster& one : all) names.push_back(one.name);
   std::vector<Index> horizons = scoring.horizon;
-  horizons.push_back(1);  // live filters are weighted by one step ahead
+  horizons.push_back(1);  // the live filters need the weights for one step ahead
   std::sort(horizons.begin(), horizons.end());
   horizons.erase(std::unique(horizons.begin(), horizons.end()), horizons.end());
   ForecastTables tables(names, runs, start_weights(archive.left_out, horizons, names));
@@ -58,7 +58,7 @@ void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Arc
   }
   archive.horizons.clear();
   if (scoring.horizon != std::vector<Index>{1})
-    archive.horizons = tables.horizons();  // the summary has the scores of one step
+    archive.horizons = tables.horizons();  // the archive's summary contains the one-step scores
   std::erase_if(archive.horizons, [&](const HorizonRow& row) {
     return std::find(scoring.horizon.begin(), scoring.horizon.end(), row.horizon) == scoring.horizon.end();
   });

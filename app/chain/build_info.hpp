@@ -2,7 +2,7 @@
 
 namespace modebank::build_info {
 
-/// Origin of this program's build; defined by a generated file.
+/// Origin of this program's build. A generated file defines these constants.
 extern const char* const version;
 extern const char* const git_revision;
 extern const char* const date;  ///< date of the revision, or of the build

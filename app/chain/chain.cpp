@@ -17,7 +17,7 @@ namespace modebank {
 
 namespace {
 
-/// Moves the part of type P out of an archive into an archive of its own.
+/// Moves the part of type P from an archive into a new archive.
 template <class P>
 Archive part_out_of(Archive& archive) {
   Archive part;
@@ -36,9 +36,9 @@ void Chain::provide(Stage stage, const StagePart& part) {
   std::string& held = held_[index_of(stage)];
   const std::string& wanted = wanted_[index_of(stage)];
   if (held == wanted) return;
-  held.clear();  // if this throws, the archive belongs to no run
+  held.clear();  // if the computation throws, no key matches this stage's result
   const Stopwatch watch;
-  // Results that are written to a file while they are made are not in memory. So a later run cannot reuse them.
+  // Results that are written to a file during the computation are not in memory, so a later run cannot reuse them.
   const bool streamed = sink_ && (stage == Stage::competitor_scores || stage == Stage::bank_scores);
   if (streamed)
     part.compute();
@@ -111,7 +111,8 @@ void Chain::learn(const ChainOptions& options, Stage last) {
     wanted_[index_of(Stage::data)] = data_key;
     provide_learned(stage, compute);
   };
-  // Scattered sample periods look like modes of one motion; only least squares keeps its time constant.
+  // Scattered sample periods make one motion look like several modes. Then only the time constant of least squares is
+  // right.
   const bool one_model = archive_.step_scatter > most_step_scatter;
   learn_all(*archive_.recording, options, last, one_model, hooks, listener_, archive_);
 }
@@ -144,7 +145,7 @@ void Chain::provide_learned(Stage stage, const std::function<void()>& compute) {
 }
 
 void Chain::provide_windows(const std::function<void()>& compute) {
-  constexpr double written_per_s = 1e5;  // windows written per second, with their samples, on a slow disk
+  constexpr double written_per_s = 1e5;  // windows that a slow disk writes per second, with their samples
   const WindowInputs& inputs = inputs_.windows;
   const auto in_time = [&] {
     tell_if_long(listener_, "windows", expected_windows_s(*archive_.recording, inputs.window),

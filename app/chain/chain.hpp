@@ -16,23 +16,25 @@ namespace modebank {
 /// How a stage's result enters and leaves the chain's archive. No part of the result is copied.
 struct StagePart {
   std::function<void()> compute;
-  std::function<Archive()> give;        ///< an archive with only the result, which `take` must receive again
-  std::function<void(Archive&&)> take;  ///< puts the result of such an archive back in its place
-  double writing_s = 0.0;               ///< expected time to write it; a result computed faster is not worth a file
+  std::function<Archive()> give;        ///< an archive with only the stage's result; `take` must receive this archive
+                                        ///< later
+  std::function<void(Archive&&)> take;  ///< moves the result from the archive of `give` back into the chain's archive
+  double writing_s = 0.0;               ///< expected time to write the result; a result that was computed faster is not
+                                        ///< stored
 };
 
 /// Decides where the results of stages come from: this base class computes all of them.
 class StageSource {
  public:
   virtual ~StageSource() = default;
-  /// Calls part.compute, or part.take with the result of an earlier part.give for the same key.
+  /// Calls `part.compute`, or `part.take` with a result that `part.give` returned earlier for the same key.
   virtual void provide(Stage, const std::string& /*key*/, const StagePart& part) { part.compute(); }
 };
 
-/// Takes data and stages up to `until` from an archive, as far as the archive has them. All other stages are computed.
+/// Takes the data and the stages up to `until` from an archive. Stages that the archive lacks are computed.
 class StoredStages : public StageSource {
  public:
-  /// Throws DataError when the archive holds no data.
+  /// Throws DataError if the archive contains no data.
   StoredStages(const std::filesystem::path& file, Stage until);
   const Archive& stored() const { return stored_; }
   void provide(Stage stage, const std::string& key, const StagePart& part) override;
@@ -42,23 +44,23 @@ class StoredStages : public StageSource {
   Stage until_;
 };
 
-/// An archive's statements about itself. The chain adds the data's hash.
+/// Facts about the execution that the archive stores. The chain adds the data's hash.
 struct Execution {
   std::string config;  ///< the resolved configuration
   Provenance provenance;
 };
 
-/// The one order of stages, from data to scores. A stage is skipped if its key equals that of the last run. So a series
-/// of options is fastest if neighbours share early stages.
+/// Runs the stages in their order, from data to scores. A stage is skipped if its key equals that of the last run. A
+/// series of runs is therefore fastest if consecutive runs share their early stages.
 class Chain {
  public:
-  /// All arguments must outlive the chain. `memory`: runs in memory; null: the data are files.
+  /// All arguments must outlive the chain. `memory`: the runs in memory; null if the data are files.
   Chain(StageSource& source, const Listener& listener, const MemoryTables* memory = nullptr)
       : source_(source), listener_(listener), memory_(memory) {}
 
-  /// The archive after the stage `last` (bank_scores: all stages). `last` must not be earlier than in the run before.
-  /// Throws the exceptions of the stages; earlier results are then not reused. `sink` receives evaluations as they are
-  /// made, and the archive then has none; null: the archive has them.
+  /// Returns the archive after the stage `last` (bank_scores: after all stages). `last` must not be earlier than in the
+  /// run before. Throws the exceptions of the stages; earlier results are then not reused. If `sink` is not null, it
+  /// receives each evaluation at once, and the archive contains no evaluations.
   const Archive& run(const ChainOptions& options, Stage last, const Execution& execution,
                      const EvaluationSink* sink = nullptr);
 
@@ -67,7 +69,7 @@ class Chain {
   const Archive& judge_stored(const std::filesystem::path& banks, const ChainOptions& options,
                               const Execution& execution, const EvaluationSink* sink = nullptr);
 
-  /// Inputs of the last run, with the structure that was found.
+  /// Inputs of the last run, with the structure that the chain found.
   const ChainInputs& inputs() const { return inputs_; }
 
   /// Seconds that the last run spent on each stage; 0 for a stage that was skipped.

@@ -1,4 +1,4 @@
-// Scores of filters: of those that the chain learned, and of those from another archive.
+// Scores of filters: of filters that the chain learned, and of filters from another archive.
 #include <fmt/format.h>
 
 #include "app/chain/chain.hpp"
@@ -19,7 +19,7 @@ void Chain::score(const std::string& filter, const FilterOptions& options, const
     put(score_filter(filter, *bank, *archive_.recording, options, scoring, stream ? &*stream : nullptr));
 }
 
-/// Scores of predictions several steps ahead, of combined filters, and the finding.
+/// Computes the scores of predictions several steps ahead, the scores of combined filters, and the finding.
 void Chain::conclude(const FilterOptions& filter, const ScoringOptions& scoring) {
   score_ahead(filter, scoring, archive_);
   forget(combined_name);
@@ -73,7 +73,7 @@ void Chain::forget(const std::string& filter) {
   put_rows<ResidualTestSet>(filter, {}, archive_.residual_tests);
 }
 
-/// A run may have fewer filters than the run before.
+/// A run may have fewer competitors than the run before, so the old results are removed.
 void Chain::forget_competitors() {
   for (const char* filter : competitor_names) forget(filter);
 }
@@ -112,7 +112,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   wanted_ = stage_keys(chain_inputs(options), "");
   import({options.data});
   const Stopwatch watch;
-  // As in learning, a single model is the global one.
+  // For a single model (`FilterVariant::kf`) this reads the global model, as the stages of learning do.
   StoredBanks stored = read_banks(banks, *archive_.recording, options.filter.variant == FilterVariant::kf, listener_);
   archive_.bank = std::move(stored.bank);
   archive_.baseline = std::move(stored.baseline);

@@ -14,11 +14,12 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr Index rows_per_column = 50;  // a useless column costs half a nat, so here 0.01 nats per sample
+constexpr Index rows_per_column = 50;  // an unneeded column costs half a nat, which is 0.01 nats per sample with 50
+                                       // rows
 constexpr Index most_entries = 1'000'000;
 constexpr Index most_folds = 5;
 
-/// The training runs, with the bank's normal scores z in place of states.
+/// The training runs with the bank's normal scores z in place of the states.
 Recording runs_of_errors(const Recording& recording, const FilterEvaluation& bank) {
   Recording errors{recording.states, recording.inputs, {}, {}};
   for (std::size_t i = 0; i < recording.runs.size(); ++i) {
@@ -34,7 +35,7 @@ Recording runs_of_errors(const Recording& recording, const FilterEvaluation& ban
   return errors;
 }
 
-/// Residuals of a least-squares fit to `z`. Each fold of parts is predicted by a fit to the other folds.
+/// Residuals of a least-squares fit to `z`. The residuals of each fold come from a fit to the other folds.
 MatrixXd left_out_errors(const TermRows& rows, const MatrixXd& z) {
   const Index folds = std::min(most_folds, rows.parts);
   MatrixXd errors = z;
@@ -63,7 +64,7 @@ ErrorPattern error_pattern(const Archive& archive, const FilterEvaluation& bank)
   if (before.state_lags == 0) return {};
   const TermRows rows = gather_term_rows(errors, before, most_entries / before.regressors());
   if (rows.count() < rows_per_column * before.regressors() / 2) return {};
-  const MatrixXd z = rows.Y + rows.X.leftCols(before.states);  // Y are increments of z
+  const MatrixXd z = rows.Y + rows.X.leftCols(before.states);  // the rows' Y are increments of z
   const PartGain gain = gain_over_parts(student_densities(left_out_errors(rows, z)) - student_densities(z), rows);
   return {gain.mean, gain.standard_error};
 }

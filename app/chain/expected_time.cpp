@@ -17,7 +17,7 @@ namespace {
 constexpr double worth_a_line_s = 30.0;
 constexpr double second_per_minute = 60.0;
 
-/// Such as "45 s" or "3 min".
+/// Rounds a time, for example to "45 s" or "3 min".
 std::string rounded_time(double seconds) {
   return seconds < 2.0 * second_per_minute ? fmt::format("{:.0f} s", seconds)
                                            : fmt::format("{:.0f} min", seconds / second_per_minute);
@@ -26,7 +26,8 @@ std::string rounded_time(double seconds) {
 }  // namespace
 
 double expected_windows_s(const Recording& recording, const FitOptions& window) {
-  constexpr double ceres_s = 7e-5, ceres_entry_s = 1.6e-8, batch_entry_s = 5e-9;  // per entry of L products of q x q
+  constexpr double ceres_s = 7e-5, ceres_entry_s = 1.6e-8, batch_entry_s = 5e-9;  // [s]; entry: per entry of L products
+                                                                                  // of q x q
   const LinearStructure s = linear_structure(recording.state_count(), recording.input_count(), window);
   const Index count = count_windows(recording, window);
   const double q = static_cast<double>(s.regressors()), entries = q * q * static_cast<double>(window.length);
@@ -38,7 +39,7 @@ double expected_windows_s(const Recording& recording, const FitOptions& window) 
 }
 
 double expected_mixture_s(const WindowFits& windows, const ClusterOptions& options) {
-  constexpr double number_s = 1.7e-8;  // per number of a component (mean, variances, weight), point and restart
+  constexpr double number_s = 1.7e-8;  // [s] per point, restart and number of a component (mean, variances, weight)
   const Index all = windows.parameter_count() + windows.structure.states;
   const Index features = clusters_one_lag(windows, options.features)
                              ? windows.structure.with_one_lag().parameters() + windows.structure.states
@@ -54,7 +55,8 @@ double expected_mixture_s(const WindowFits& windows, const ClusterOptions& optio
 }
 
 double expected_learning_s(const Recording& recording, const LinearStructure& structure, const RefineOptions& options) {
-  constexpr double coefficient_s = 4e-4;  // per coefficient and transition, with default starts and folds
+  constexpr double coefficient_s = 4e-4;  // [s] per coefficient and transition, with the default number of starts and
+                                          // folds
   const Index all = recording.transitions(Role::train);
   const Index learned = options.transitions > 0 ? std::min(all, options.transitions) : all;
   return coefficient_s * static_cast<double>(learned) * static_cast<double>(structure.parameters());

@@ -5,8 +5,8 @@
 #include "app/chain/listener.hpp"
 #include "app/chain/stage_inputs.hpp"
 
-/// Expected times of stages, so that users can shorten long stages before these begin. They are processor seconds,
-/// fitted to docs/results/cost.md, and right within a factor of three.
+/// Expected times of stages. With this information users can shorten long stages before these begin. The times are
+/// processor seconds, fitted to docs/results/cost.md. They are right within a factor of three.
 namespace modebank {
 
 double expected_windows_s(const Recording& recording, const FitOptions& window);

@@ -20,7 +20,7 @@ Densities densities_of(const FilterEvaluation& evaluation, const Recording& reco
   return densities;
 }
 
-/// For each run and sample of a recording: whether the robot rests.
+/// For each run and sample of a recording: true if the robot rests.
 using Rests = std::vector<std::vector<bool>>;
 
 Rests rests_of(const Recording& recording) {
@@ -51,7 +51,7 @@ double innovation_sd(const FilterEvaluation& bank, const Recording& recording, c
   return std::sqrt(*middle);
 }
 
-/// Standard deviation of the finite values; 0 without any.
+/// Standard deviation of the finite values; 0 if no value is finite.
 double standard_deviation(const Eigen::VectorXd& values) {
   const auto known = values.array().isFinite();
   const auto count = static_cast<double>(known.count());
@@ -68,8 +68,9 @@ std::vector<std::pair<std::string, double>> coefficients_of(const Bank& bank) {
   return coefficients;
 }
 
-/// Resolution of each state over all judged runs. `quantum`: rounding steps of the bank; the scores of such a state
-/// already treat values as intervals. Samples at rest are left out, because fine measurements also repeat at rest.
+/// Resolution of each state over all judged runs. `quantum`: the bank's rounding steps. The scores of a state with a
+/// rounding step already treat its values as intervals. Samples at rest are ignored, because even fine measurements
+/// repeat their values at rest.
 std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Eigen::VectorXd& quantum,
                                     const Recording& recording, Role role) {
   const Rests rests = rests_of(recording);

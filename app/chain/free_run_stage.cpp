@@ -10,7 +10,7 @@ std::vector<std::string> remarks(const std::string& filter, const std::vector<Tr
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < free_runs.size(); ++i) {
     for (const std::string& note : free_runs[i].notes)
-      if (filter == "bank")  // other filters' remarks on the data are the same
+      if (filter == "bank")  // these remarks concern the data, so they are the same for all filters
         lines.push_back(fmt::format("free run of {}: run {} {}", filter, runs[i].run, note));
     if (const Index lost = free_runs[i].lost_paths; lost > 0)
       lines.push_back(fmt::format("free run of {}: run {}: {} sample paths left the finite range and were taken out",

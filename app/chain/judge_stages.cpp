@@ -20,7 +20,7 @@
 namespace modebank {
 namespace {
 
-/// A filter, and the way to score it: `bank` itself, or one of the same sizes.
+/// A filter, and the filter to score: `bank` itself, or a bank of the same sizes.
 struct Scored {
   const std::string& name;
   const Bank& bank;
@@ -32,8 +32,8 @@ struct Scored {
 
 using Positions = std::vector<std::size_t>;
 
-/// The runs of a role in order, in parts whose evaluations fit into memory together. A part has one run per thread, or
-/// more if runs are short.
+/// Splits the runs of a role, in order, into groups whose evaluations fit into memory together. A group has one run per
+/// thread, or more if runs are short.
 std::vector<Positions> parts_of(const std::vector<Trajectory>& runs, Role role) {
   constexpr Index samples_at_once = 200000;
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
@@ -51,8 +51,8 @@ std::vector<Positions> parts_of(const std::vector<Trajectory>& runs, Role role) 
   return parts;
 }
 
-/// Drops arrays that no judge reads. States and covariances are judged only if the truth is known. If there is no
-/// sequence of modes, a state also marks a sample with a mode.
+/// Drops arrays that no judge reads. States and covariances are judged only if the truth is known. Without a sequence
+/// of modes, the state array also marks the samples that have a mode.
 void keep_for_judges(const Trajectory& run, RunEvaluation& e) {
   for (Eigen::MatrixXd* array :
        {&e.prediction, &e.smoothed_state, &e.smoothed_covariance, &e.mode_probability_predicted})
@@ -62,7 +62,7 @@ void keep_for_judges(const Trajectory& run, RunEvaluation& e) {
   if (e.viterbi_mode.size() > 0) e.state.resize(0, 0);
 }
 
-/// After a run is judged, keeps only the arrays that finding and confusion read.
+/// After a run is judged, keeps only the arrays that the stages `finding` and `confusion` read.
 void keep_for_finding(const Scored& scored, const Trajectory& run, bool judged, RunEvaluation& e) {
   RunEvaluation kept;
   if (run.role == Role::train && scored.name == "bank") kept.pit = std::move(e.pit);
@@ -80,7 +80,7 @@ void append(std::vector<Row> rows, std::vector<Row>& all) {
   all.insert(all.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
 }
 
-/// Evaluates the runs of a role, tests their residuals and appends their rows. `evaluate` filters one run.
+/// Evaluates the runs of a role, tests their residuals and appends the rows of scores. `evaluate` filters one run.
 template <class Evaluate>
 void score_role(const Scored& scored, Role role, Evaluate evaluate, FilterScores& result) {
   FilterEvaluation& said = result.evaluation;
@@ -128,7 +128,8 @@ FilterScores score_runs(const Scored& scored, std::vector<FreeRun> free_runs, Ev
 }  // namespace
 
 bool streams_evaluations(const Recording& recording) {
-  constexpr Index most_in_memory = 500000;  // samples; about 0.8 GB for all filters and the file's image
+  constexpr Index most_in_memory = 500000;  // samples; the evaluations of all filters and the image of the file then
+                                            // need about 0.8 GB
   return recording.transitions(Role::train) + recording.transitions(Role::test) > most_in_memory;
 }
 
@@ -137,7 +138,8 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
   const std::vector<Trajectory>& runs = recording.runs;
   FilterOptions judged = filter;
   if (!bank.running_noise.empty())
-    judged.noise = FilterNoise::adaptive;  // its noise scale is learned within the run, so its NIS is not chi-square
+    judged.noise = FilterNoise::adaptive;  // the filter learns its noise scale within the run, so its NIS is not
+                                           // chi-square
   check_free_run(bank.structure, scoring.free_run);
   return score_runs({name, bank, judged, runs, scoring, stream}, free_runs(bank, runs, filter, scoring.free_run),
                     [&](std::size_t i) {
@@ -150,8 +152,8 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
 
 namespace {
 
-/// Free runs of all filters, mixed by the weights that maximise the likelihood of training runs. Adds rows on the
-/// weights.
+/// Free runs of all filters combined. The weights maximise the likelihood of the training runs. Adds rows that contain
+/// the weights.
 std::vector<FreeRun> combined_free_runs(const std::vector<Forecaster>& all, const std::vector<Trajectory>& runs,
                                         const FreeRunOptions& options, std::vector<CombinationRow>& rows) {
   if (options.samples == 0) return {};

@@ -9,7 +9,7 @@ namespace modebank {
 /// Receives messages and results from a running chain.
 class Listener : public Progress {
  public:
-  /// Called when the stage's result has entered the archive.
+  /// Called after the result of the stage was added to the archive.
   virtual void done(Stage, const Archive&) const {}
 };
 

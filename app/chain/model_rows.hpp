@@ -10,10 +10,10 @@
 #include "filter/judge/decide/finding.hpp"
 #include "io/archive/archive.hpp"
 
-/// Functions on an archive's rows of evaluation, by model.
+/// Functions on the rows that an archive's evaluation has for each model.
 namespace modebank {
 
-/// Order of models in the rows of an archive: the global model, the bank, then its competitors in their order.
+/// Order of models in an archive's rows: the global model, the bank, then the competitors in their own order.
 inline std::size_t model_rank(const std::string& model) {
   if (model == "global") return 0;
   if (model == "bank") return 1;
@@ -29,7 +29,7 @@ const std::string& model_of(const Row& row) {
     return row.filter;
 }
 
-/// Replaces the rows of a model.
+/// Replaces all rows of one model.
 template <class Row>
 void put_rows(const std::string& model, std::vector<Row> rows, std::vector<Row>& all) {
   std::erase_if(all, [&](const Row& row) { return model_of(row) == model; });
@@ -49,7 +49,7 @@ std::vector<Row> rows_out_of(std::vector<Row>& all, const std::vector<std::strin
   return rows;
 }
 
-/// Removes all results on these models, and the recording. An archive of scores contains both.
+/// Moves all results on these models, and the recording, into a new archive. An archive of scores contains both.
 inline Archive scores_out_of(Archive& archive, const std::vector<std::string>& models) {
   Archive part;
   part.recording = std::exchange(archive.recording, {});
@@ -61,7 +61,8 @@ inline Archive scores_out_of(Archive& archive, const std::vector<std::string>& m
   return part;
 }
 
-/// Whether a part is stored together with the recording. A part from a file has its own recording with the same data.
+/// If a part is stored together with the recording, moves the recording back. A part from a file has its own recording
+/// with the same data.
 inline void put_back_recording(Archive& part, Archive& archive) {
   if (!archive.recording) archive.recording = std::move(part.recording);
 }

@@ -10,27 +10,29 @@
 /// The steps of `modebank run`, for the program and the Python module.
 namespace modebank::app {
 
-/// A listener that also warns where a stage's result needs attention.
+/// A listener that also prints a warning if a stage's result needs attention.
 class Adviser : public Listener {
  public:
   void done(Stage stage, const Archive& archive) const override;
   void warn_of_windows(const WindowFits& windows, const WindowCounts& counts) const;
 };
 
-/// Checks a configuration before anything is read. Throws ConfigurationError for keys that the command does not have,
-/// values that do not fit each other and files that do not exist. It also throws for an archive that cannot be written
-/// or would replace one of its sources. `file`: path of the configuration; empty: there is none.
+/// Checks a configuration before any file is read. `file` is the path of the configuration, or empty without one.
+/// Throws ConfigurationError for:
+/// - keys that the command does not read, and values that do not fit each other,
+/// - files that do not exist,
+/// - an archive that cannot be written or that would replace one of its sources.
 void check_request(const std::string& command, const Config& config, const std::filesystem::path& file,
                    const MemoryTables* memory = nullptr);
 
-/// Runs the chain's stages up to `last` and writes the result to `output`. With `banks` (else empty), scores the banks
-/// of that archive instead. Evaluations that do not fit into memory are written as they are made. Returns the archive,
-/// in that case without evaluations.
+/// Runs the chain's stages up to `last`, writes the result to `output` and returns the archive. If `banks` is not
+/// empty, scores the banks of that archive instead. Evaluations that do not fit into memory are written at once; the
+/// returned archive then lacks them.
 const Archive& run_and_write(Chain& chain, const ChainOptions& options, Stage last, const std::string& banks,
                              const Execution& execution, const std::filesystem::path& output);
 
-/// Computes all stages and writes them to archive.output. `typed`: command line, for provenance; `memory`: runs in
-/// place of files. Throws what the stages throw.
+/// Computes all stages and writes them to archive.output. `typed`: the command line, for the provenance. `memory`: runs
+/// in memory, used in place of files. Throws the exceptions of the stages.
 void run_all(const Config& config, const std::string& typed, const Listener& listener,
              const MemoryTables* memory = nullptr);
 

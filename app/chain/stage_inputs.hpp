@@ -5,7 +5,7 @@
 #include "app/config/chain_options.hpp"
 #include "filter/learn/chain/inputs.hpp"
 
-/// Options of each stage around learning (for the stages of learning: filter/learn/chain/inputs.hpp).
+/// Options of the stages other than learning. The stages of learning have theirs in filter/learn/chain/inputs.hpp.
 namespace modebank {
 
 struct DataInputs {
@@ -30,12 +30,12 @@ struct ChainInputs : LearningInputs {
   BankScoreInputs bank_scores;
 };
 
-/// Options of scoring; the seed is the chain's where something is drawn.
+/// Options of scoring. If scoring draws random numbers, its seed is the chain's.
 ScoringOptions scoring_inputs(const ChainOptions& options);
 
 /// Splits the options into the inputs of each stage.
 ChainInputs chain_inputs(const ChainOptions& options);
-/// The same, with the inputs of learning already given.
+/// Same as above, for given inputs of learning.
 ChainInputs chain_inputs(const ChainOptions& options, LearningInputs learning);
 
 }  // namespace modebank

@@ -7,7 +7,7 @@
 #include "app/chain/build_info.hpp"
 #include "io/files/sha256.hpp"
 
-// All fields of a struct. A structured binding names each of them, so a field that is missing here does not compile.
+// All fields of a struct. The structured binding lists every field, so code that misses a field does not compile.
 #define MODEBANK_KEY_FIELDS(Struct, ...)            \
   void add(KeyText& key, const Struct& fields_of) { \
     const auto& [__VA_ARGS__] = fields_of;          \
@@ -17,7 +17,7 @@
 namespace modebank {
 namespace {
 
-/// Appends values one after another, such that different values never give the same text.
+/// Appends values one after another. Different sequences of values always give different texts.
 class KeyText {
  public:
   template <class... T>
@@ -93,7 +93,7 @@ template <class T>
 requires std::is_aggregate_v<T>
 void KeyText::put(const T& value) { add(*this, value); }
 
-/// `earlier`: text on the results that the stage starts from.
+/// `earlier`: texts of the earlier results that the stage uses.
 template <class Inputs, class... Earlier>
 std::string key_of(Stage stage, const Inputs& inputs, const Earlier&... earlier) {
   KeyText key;

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether a name has the form of stage_file_name. Only such files are removed from a folder of stages.
+/// Whether a file name has the form that `stage_file_name` makes. Only such files are removed from a folder of stages.
 bool is_stage_file_name(std::string_view name) {
   constexpr std::string_view ending = ".h5";
   const std::size_t dash = name.find('-');
@@ -33,7 +33,7 @@ bool is_stage_file_name(std::string_view name) {
 std::string stage_file_name(Stage stage, std::string_view key) { return fmt::format("{}-{}.h5", name_of(stage), key); }
 
 void StageStore::provide(Stage stage, const std::string& key, const StagePart& part) {
-  // The data stage is not stored, because it would be a second copy of the log.
+  // The data stage is not stored, because the file would be a second copy of the log.
   if (stage == Stage::data || stage > rules_.last || rules_.limit_mb <= 0.0) return part.compute();
   const fs::path file = folder_ / stage_file_name(stage, key);
   if (load(file, part)) return;
@@ -47,7 +47,7 @@ bool StageStore::load(const fs::path& file, const StagePart& part) const {
   if (!fs::is_regular_file(file, error)) return false;
   try {
     part.take(read_archive(file));
-    // Uses the file system's clock, as the other files' times do.
+    // Uses the file system's clock, because the other files' times also come from this clock.
     ::utimensat(AT_FDCWD, file.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);
     if (rules_.kept) rules_.kept();
     spdlog::info("{}: taken from an earlier run", file.string());
@@ -65,7 +65,7 @@ void StageStore::store(const fs::path& file, const StagePart& part) const {
     write_archive(file, result);
     if (rules_.kept) rules_.kept();
     if (std::isfinite(rules_.limit_mb)) make_room();
-  } catch (const std::exception& obstacle) {  // a missing file costs only time
+  } catch (const std::exception& obstacle) {  // a file that was not written costs only time later
     spdlog::debug("{}", obstacle.what());
   }
   part.take(std::move(result));
@@ -95,7 +95,7 @@ void StageStore::clear() const {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error))
     if (is_stage_file_name(entry.path().filename().string())) fs::remove(entry.path(), error);
-  fs::remove(folder_, error);  // fails, as it should, if the folder contains other files
+  fs::remove(folder_, error);  // fails on purpose if the folder contains other files
 }
 
 }  // namespace modebank

@@ -10,15 +10,16 @@
 #include "filter/learn/chain/stages.hpp"
 #include "io/archive/archive.hpp"
 
-/// The stages around learning (filter/learn/chain/stages.hpp): functions of the data, of earlier stages' results and of
-/// their inputs struct. They throw ConfigurationError for inputs that do not fit the data, DataError for unusable data.
+/// The stages around learning (filter/learn/chain/stages.hpp). Each is a function of the data, the results of earlier
+/// stages and its own struct of inputs. Throws ConfigurationError for inputs that do not fit the data, and DataError
+/// for unusable data.
 namespace modebank {
 
-/// Whether there are so many windows that they are written to the file during the fit.
+/// True if there are so many windows that they are written to the file during the fit.
 bool streams_windows(const Recording& recording, const WindowInputs& inputs);
 
-/// Fits windows and writes them to an archive of `before` (data) and windows alone. `report` is called with
-/// each part. Returns what all windows have in common.
+/// Fits windows and writes them to an archive that contains only the data of `before` and the windows. `report` is
+/// called for each block of windows. Returns the properties that all windows share.
 WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const WindowInputs& inputs,
                               const std::function<void(const WindowFits&)>& report);
 
@@ -31,41 +32,41 @@ struct FilterScores {
   ResidualTestSet residual_tests = {};
 };
 
-/// Destination of evaluations that are written as soon as they are made. Memory keeps only the data that find_modes and
+/// Destination of evaluations that are written at once. Memory contains only the arrays that find_modes and
 /// confusion_of need.
 struct EvaluationStream {
   EvaluationSink sink;
-  bool labelled = false;  ///< whether the data have labels, with which the bank's mode probabilities are compared
+  bool labelled = false;  ///< whether the data have labels; the bank's mode probabilities are compared with these
 };
-/// Whether there are so many samples that the evaluations of all filters do not fit into memory.
+/// True if there are so many samples that the evaluations of all filters do not fit into memory.
 bool streams_evaluations(const Recording& recording);
 
-/// `name`: bank, baseline, noise_only, one_motion or nonlinear. `stream`: null keeps all in memory.
+/// `name`: bank, baseline, noise_only, one_motion or nonlinear. `stream`: null keeps all evaluations in memory.
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring,
                           const EvaluationStream* stream = nullptr);
 
-/// Scores the combination of all filters of the archive, after score_ahead; none for a single filter. Adds rows on the
-/// weights in free runs.
+/// Scores the combination of all filters of the archive; call it after score_ahead. Returns nothing if there is only
+/// one filter. Adds rows with the weights of free runs.
 std::optional<FilterScores> score_combined(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive,
                                            const EvaluationStream* stream = nullptr);
 
-/// Adds the predictions of each filter and of their combination, as far ahead as configured.
+/// Adds the predictions of each filter and of the combination, for all configured horizons.
 void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive);
 
-/// Remarks on free runs, one line each: runs without any prediction by the bank, and sample paths that left the finite
-/// range.
+/// Remarks on free runs, one line each. A remark names runs for which the bank makes no prediction, or sample paths
+/// that left the finite range.
 std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,
                                  const std::vector<FreeRun>& free_runs);
 
-/// The finding, from the scores: whether the judged runs give evidence for the modes of the archive's bank. Empty
-/// without a scored bank.
+/// The finding: whether the scores on the judged runs give evidence for the modes of the archive's bank. Empty without
+/// a scored bank.
 std::optional<Finding> find_modes(const Archive& archive);
 
-/// The bank's most probable modes against the labels, on the judged runs; none without labels.
+/// Compares the bank's most probable modes with the labels on the judged runs. Empty without labels.
 std::vector<ConfusionRow> confusion_of(const Archive& archive);
 
-/// Residual tests of the global model one step ahead, on all runs.
+/// Residual tests of the global model's predictions one step ahead, on all runs.
 ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);
 
 }  // namespace modebank

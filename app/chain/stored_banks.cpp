@@ -20,7 +20,7 @@ bool trained_on(const Recording& recording, const Trajectory& run) {
   });
 }
 
-/// Warns of reasons why a stored bank's scores are easily misread.
+/// Warns if the scores of a stored bank can be misread.
 void warn_of_foreign_bank(const std::string& file, const Archive& stored, const Recording& recording,
                           const Listener& listener) {
   std::vector<std::string> trained;
@@ -43,7 +43,7 @@ void warn_of_foreign_bank(const std::string& file, const Archive& stored, const 
 }  // namespace
 
 std::string period_remark(const std::string& file, const Bank& bank, const Recording& recording) {
-  constexpr double tolerated = 0.1;  // time per step, and so increments, may differ by a tenth
+  constexpr double tolerated = 0.1;  // relative tolerance of the time per step, and therefore of increments
   const double dt_s = recording.median_period_s();
   if (std::abs(dt_s - bank.dt_s) <= tolerated * bank.dt_s) return "";
   return fmt::format("{}: a step of its bank is {:.4g} s, but a step of the data is {:.4g} s", file, bank.dt_s, dt_s);

@@ -25,9 +25,9 @@ struct StoredBanks {
 /// A remark if the sample period of the data is not the step of the bank; else empty.
 std::string period_remark(const std::string& file, const Bank& bank, const Recording& recording);
 
-/// `one_model`: the bank is the archive's baseline, for a single Kalman filter. Warns if the scores are easily misread:
+/// `one_model`: for a single Kalman filter, the bank is the archive's baseline. Warns if the scores can be misread:
 /// test runs that trained the bank, other columns, another sample period. Throws DataError if the bank does not exist
-/// or its channels do not fit the data's.
+/// or its channels do not fit the data's channels.
 StoredBanks read_banks(const std::filesystem::path& file, const Recording& recording, bool one_model,
                        const Listener& listener);
 

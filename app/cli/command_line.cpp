@@ -25,7 +25,7 @@ namespace po = boost::program_options;
 namespace modebank::app {
 namespace {
 
-/// Adds each option once: an option of several commands sets the same member.
+/// Adds each option only once: several commands may have an option that sets the same member.
 std::map<std::string, CommandOption> all_options() {
   std::map<std::string, CommandOption> options;
   const auto add = [&](const std::vector<CommandOption>& more) {
@@ -53,11 +53,13 @@ po::options_description describe_options(const std::map<std::string, CommandOpti
   }
   add("words", po::value<std::vector<std::string>>());
   for (const Option& option : option_table())
-    add(option.key.c_str(), po::value<std::vector<std::string>>()->composing());  // given twice, the last wins
+    add(option.key.c_str(), po::value<std::vector<std::string>>()->composing());  // if the option is given twice, the
+                                                                                  // last value is used
   return description;
 }
 
-/// Sets the configuration keys that options stand for. An option with alternatives must have one of them as its value.
+/// Sets the configuration keys that the options set. Throws if an option has a list of choices and its value is not
+/// among these.
 void take_values(const std::map<std::string, CommandOption>& options, const po::variables_map& values,
                  CommandLine& line) {
   for (const auto& [name, option] : options) {
@@ -72,7 +74,7 @@ void take_values(const std::map<std::string, CommandOption>& options, const po::
   }
 }
 
-/// Whether the shell finds this program by its name alone.
+/// Whether the shell finds this program without a path.
 bool is_in_path(const std::filesystem::path& program) {
   const char* const path = std::getenv("PATH");
   std::vector<std::string> folders;
@@ -99,16 +101,16 @@ bool takes_a_value(const po::options_description& description, const std::string
   return option && option->semantic()->max_tokens() > 0;
 }
 
-/// Whether the next word is another option, so that this key lacks its value. Values may begin with dashes, like
-/// options of sbatch.
+/// Whether the next word is another option. If it is, the present key lacks its value. A value may begin with dashes,
+/// as in options of sbatch.
 bool is_option(const po::options_description& description, const std::string& word) {
   const std::string key = word.substr(0, word.find('='));
   const std::string name = key.find('.') == std::string::npos ? word : key;
   return name.rfind("--", 0) == 0 && name != end_of_options && description.find_nothrow(name.substr(2), false);
 }
 
-/// Joins each key and its value into one word, so that Boost accepts any value: --key=value, or two words for an empty
-/// value.
+/// Joins each key and its value into one word (--key=value), so that Boost accepts any value. An empty value stays a
+/// separate word.
 std::vector<std::string> joined_values(int argc, const char* const* argv, const po::options_description& description) {
   std::vector<std::string> words;
   const auto push = [&](const std::string& key, const std::string& value) {
@@ -136,20 +138,20 @@ std::vector<std::string> joined_values(int argc, const char* const* argv, const 
   return words;
 }
 
-/// The key of a command's output file if the command has no -o; empty if there is none.
+/// The key of a command's output file, for a command without -o; empty if there is none.
 std::string output_key(const Command& command) {
   for (const char* key : {"archive.output", "study.output", "simulate.output"})
     if (command.reads(key)) return key;
   return {};
 }
 
-/// Text that names the key to use in place of an option that the command does not have.
+/// Text that names the key to use if the command does not have this option.
 std::string instead_of(const Command& command, const std::string& option) {
   const std::string key = option == "output" ? output_key(command) : "";
   return key.empty() ? "" : fmt::format("--{} PATH says where it writes; ", key);
 }
 
-/// The options and keys that a command reads: "it reads --data.*, --track.filter".
+/// Text with the options and keys that a command reads: "it reads --data.*, --track.filter".
 std::string known_words(const Command& command) {
   std::vector<std::string> known;
   for (const CommandOption& each : command.options) known.push_back("--" + each.long_name());
@@ -161,7 +163,7 @@ std::string known_words(const Command& command) {
   return fmt::format("it reads {}{}", fmt::join(known, ", "), but);
 }
 
-/// Refuses options that the command does not read, such as "-o" and "--window.length x".
+/// Throws for options that the command does not read, such as "-o" and "--window.length x".
 void refuse_unread(const Command& command, const CommandLine& line) {
   std::vector<std::string> unread;
   std::string instead;
@@ -178,7 +180,7 @@ void refuse_unread(const Command& command, const CommandLine& line) {
                                          fmt::join(unread, ", "), instead, known_words(command)));
 }
 
-/// Adds the parser's words to the command line. Throws ConfigurationError with the words that the parser did not
+/// Adds the words from the parser to the command line. Throws ConfigurationError with the words that the parser did not
 /// recognise.
 void take_words(const po::parsed_options& parsed, CommandLine& line) {
   Faults faults;
@@ -210,14 +212,16 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   CommandLine line;
   for (int i = 0; i < argc; ++i) line.typed += (i ? " " : "") + shell_quoted(argv[i]);
   line.program = program_as_called(argc > 0 ? argv[0] : "modebank");
-  if (argc > 1) refuse_gone_command(argv[1]);  // first, because a removed command's options were removed, too
+  if (argc > 1)
+    refuse_gone_command(argv[1]);  // call this first, because the options of a removed command are also
+                                   // removed
   const std::map<std::string, CommandOption> options = all_options();
   const po::options_description description = describe_options(options, line);
   po::positional_options_description positional;
   positional.add("words", -1);
   po::variables_map values;
   try {
-    // Options may not be abbreviated, because a new key could change what an abbreviation means.
+    // Options must not be abbreviated. Otherwise a new key could change the meaning of an abbreviation.
     const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
     const po::parsed_options parsed = po::command_line_parser(joined_values(argc, argv, description))
                                           .options(description)

@@ -6,16 +6,16 @@
 
 namespace modebank::app {
 
-/// The command line, split but not interpreted.
+/// The command line, split into words but not interpreted.
 struct CommandLine {
-  std::string command;                                         ///< empty: none given
+  std::string command;                                         ///< empty: no command was given
   std::vector<std::string> files;                              ///< positional arguments after the command
   std::vector<std::pair<std::string, std::string>> overrides;  ///< configuration keys given as options, in order
   std::vector<std::string> given;                              ///< long names of all other options, in order
   std::string typed;                                           ///< the whole line, for provenance
-  std::string program;  ///< modebank if the shell finds the program by this name, else its path
+  std::string program;  ///< "modebank" if the shell finds the program by this name, else the program's path
 
-  // Values of the options; the table of commands has their meanings.
+  // Values of the options. The table of commands explains each of them.
   bool help = false, version = false, quiet = false, verbose = false;
   bool json = false, dry_run = false, force = false;
   bool schema = false, markdown = false, repair = false, findings = false, apply = false, yes = false;
@@ -25,10 +25,10 @@ struct CommandLine {
   double wheel_separation_m = 0.0, wheel_radius_m = 0.0;  ///< 0: not given
 };
 
-/// A word quoted for a shell.
+/// Returns the word, quoted for a shell.
 std::string shell_quoted(const std::string& word);
 
-/// Throws ConfigurationError for an unknown option (with the nearest known one), an option without its value, and an
+/// Throws ConfigurationError for an unknown option (with the nearest known option), an option without its value, and an
 /// option that the command does not have.
 CommandLine parse_command_line(int argc, const char* const* argv);
 

@@ -9,26 +9,27 @@
 
 namespace modebank::app {
 
-/// Destination of an option's value: a member of CommandLine, or the configuration key that the option stands for.
+/// Destination of an option's value: a member of CommandLine, or the configuration key that the option sets.
 using OptionTarget = std::variant<bool CommandLine::*, std::string CommandLine::*, double CommandLine::*, std::string>;
 
 /// An option of a command that is not a configuration key.
 struct CommandOption {
   std::string name;      ///< without dashes; "output,o" has a short form as well
-  std::string argument;  ///< name of the value, or words to choose from ("increment | full"); empty: a switch
+  std::string argument;  ///< name of the value, or its choices ("increment | full"); empty for an option without a
+                         ///< value
   std::string help;
   OptionTarget target;
-  std::vector<std::string> words = {};  ///< words to choose from, if `argument` is a name for them ("FORM")
+  std::vector<std::string> words = {};  ///< choices, if `argument` is a placeholder such as "FORM"
 
   std::string long_name() const { return name.substr(0, name.find(',')); }
   std::string typed() const;                 ///< "-o FILE, --output FILE"
-  std::vector<std::string> choices() const;  ///< the words to choose from; empty: any text
+  std::vector<std::string> choices() const;  ///< allowed values; empty if any text is allowed
 };
 
 /// The files or words that follow a command's name.
 struct Arguments {
-  std::string text;   ///< as `help` shows them
-  std::string needs;  ///< "needs one archive": the error for fewer or more
+  std::string text;   ///< as shown by `help`
+  std::string needs;  ///< error message for a wrong number of arguments, for example "needs one archive"
   std::size_t fewest, most;
 };
 
@@ -38,7 +39,7 @@ struct Command {
   std::string name;     ///
   Arguments arguments;  ///
   std::string summary;  ///< one line
-  std::string details;  ///< sentences; may be empty
+  std::string details;  ///< more sentences for `help`; may be empty
   std::string example;
   std::vector<std::string> keys;  ///< sections or single keys of the configuration that the command reads
   std::vector<CommandOption> options;
@@ -55,10 +56,10 @@ const std::vector<Command>& command_table();
 /// Options that every command has.
 const std::vector<CommandOption>& common_options();
 
-/// Throws ConfigurationError with the replacement if the command is one of an earlier version.
+/// Throws ConfigurationError if the command existed in an earlier version. The message names the replacement.
 void refuse_gone_command(const std::string& name);
 
-/// Null if no command has that name.
+/// Returns null if no command has that name.
 const Command* find_command(const std::string& name);
 
 }  // namespace modebank::app

@@ -8,18 +8,19 @@
 
 namespace modebank::app {
 
-/// Runs the command and returns the exit status. Throws on errors (ConfigurationError: 2, others: 1).
+/// Runs the command and returns the exit status. On an error it throws: ConfigurationError gives status 2, all other
+/// exceptions give status 1.
 int run_command(const CommandLine& line);
 
-int run_pipeline(const CommandLine& line);    ///< run, identify, cluster, evaluate
-Result do_pipeline(const CommandLine& line);  ///< The same without printing.
-/// The same for a valid configuration. `file` is its path, which need not exist yet.
+int run_pipeline(const CommandLine& line);    ///< the commands run, identify, cluster and evaluate
+Result do_pipeline(const CommandLine& line);  ///< same as run_pipeline, without printing
+/// Same as do_pipeline, for a valid configuration. `file` is the configuration's path, which need not exist yet.
 Result do_configured(const CommandLine& line, const Config& config, const std::filesystem::path& file);
 int run_init(const CommandLine& line);
 int run_demo(const CommandLine& line);
 int run_check(const CommandLine& line);
 int run_simulate(const CommandLine& line);
-Result do_simulate(const CommandLine& line);  ///< The same without printing.
+Result do_simulate(const CommandLine& line);  ///< same as the command simulate, without printing
 int run_report(const CommandLine& line);
 int run_study(const CommandLine& line);
 int run_show(const CommandLine& line);

@@ -22,7 +22,7 @@ namespace {
 constexpr int demo_columns = 100;
 constexpr Index strip_columns = 75;
 
-/// The simulated ground as a bank of one mode, so that the same functions compute both sides.
+/// The simulated ground as a bank of one mode. The same functions can then compute the true and the estimated numbers.
 Bank true_bank(const Config& simulation, std::size_t ground) {
   const SimulationOptions& system = simulation.simulate.system;
   const auto inputs = static_cast<Index>(simulation.data.input.size());
@@ -38,7 +38,7 @@ double noise_error(const Mode& mode, double sd) {
   return mode.Q_standard_error.size() > 0 ? mode.Q_standard_error(0, 0) / (2.0 * sd) : not_a_number;
 }
 
-/// Time constant, gains and noise of a mode, beside the true numbers of its ground.
+/// Time constant, gains and noise of a mode, each with the true number of the mode's ground.
 std::vector<FoundNumber> numbers_beside(const Archive& archive, Index mode, const Bank& truth) {
   const Bank& bank = *archive.bank;
   const ModeDynamics found = mode_dynamics(bank, mode), real = mode_dynamics(truth, 0);
@@ -75,7 +75,7 @@ double agreement_of(const Archive& archive) {
   return static_cast<double>(alike) / static_cast<double>(all);
 }
 
-/// The judged run with the most even shares of grounds, so that all of its grounds can be seen.
+/// The judged run with the most even shares of grounds, so that every ground is visible.
 std::size_t most_varied_run(const Archive& archive) {
   const RunLabels& labels = *archive.labels;
   const auto most_frequent = [&](std::size_t run) {
@@ -89,7 +89,8 @@ std::size_t most_varied_run(const Archive& archive) {
                            [&](std::size_t a, std::size_t b) { return most_frequent(a) < most_frequent(b); });
 }
 
-/// The run's ground, and the ground of the most probable mode; each letter stands for a few samples.
+/// Two rows of letters: the run's ground, and the ground of the most probable mode. Each letter stands for a few
+/// samples.
 std::string ground_strips(const Archive& archive) {
   const std::size_t run = most_varied_run(archive);
   const Eigen::VectorXi& labels = archive.labels->of_runs[run];
@@ -121,7 +122,8 @@ std::string ground_rows(const FoundGround& mode) {
   return mode.ground.empty() ? fmt::format("  mode {} is on no ground for most of its samples\n", mode.mode) : text;
 }
 
-/// States how much better the modes predict. Without evidence, it prints the first screen's finding instead.
+/// States how much better the modes predict. Without evidence for the modes, returns the finding of the first screen
+/// instead.
 std::string worth_text(const FirstScreen& screen) {
   if (screen.answer != Answer::evidence) return wrapped("finding   " + screen.finding, demo_columns) + "\n";
   return fmt::format("With these modes each held-out sample is {:.2g} times as likely as with one linear model ({}).\n",

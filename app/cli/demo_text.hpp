@@ -8,32 +8,32 @@
 #include "app/text/next_step.hpp"
 #include "io/archive/archive.hpp"
 
-/// The modes that `modebank demo` found, beside the truth of the simulated system.
+/// Compares the modes that `modebank demo` found with the true modes of the simulated system.
 namespace modebank::app {
 
-/// A number of a mode, and the true number of its ground.
+/// A number of a mode, with the true number of the mode's ground.
 struct FoundNumber {
   std::string name, unit;
-  double found = 0.0, error = 0.0;  ///< error: standard error; NaN if unknown
+  double found = 0.0, error = 0.0;  ///< error: standard error of `found`; NaN if unknown
   double truth = 0.0;
 };
 
-/// A mode of the bank, and the most frequent ground of its samples.
+/// A mode of the bank, with the most frequent ground of the mode's samples.
 struct FoundGround {
-  std::string ground;  ///< empty: no ground has most of the samples
+  std::string ground;  ///< empty if no ground has more than half of the samples
   Index mode = 0;
   std::vector<FoundNumber> numbers;  ///< time constant, gains, noise
 };
 
-/// Most used mode first. Only a mode with a ground has numbers.
+/// The most used mode is first. Only a mode with a ground has numbers.
 struct DemoFindings {
   std::vector<FoundGround> modes;
   std::size_t grounds = 0;  ///< in truth
-  double agreement = 0.0;   ///< share of the held-out samples whose most probable mode belongs to their ground
+  double agreement = 0.0;   ///< share of held-out samples for which the most probable mode has the sample's ground
 };
 
-/// Whether the archive and the system can be compared: a linear system with one state and named grounds, one bank
-/// with the same channels, scored on labelled runs.
+/// Whether the archive and the system can be compared. The system must be linear, with one state and named grounds. The
+/// archive must have one bank with the same channels, scored on labelled runs.
 bool is_comparable(const Archive& archive, const Config& simulation);
 DemoFindings compare_with_truth(const Archive& archive, const Config& simulation);
 

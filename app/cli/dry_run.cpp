@@ -8,7 +8,7 @@ namespace modebank::app {
 
 Result dry_run(const Config& config, const std::vector<std::filesystem::path>& written) {
   std::vector<std::filesystem::path> read;
-  // With archive.input the data come from that archive.
+  // If archive.input is set, the data come from that archive.
   if (config.archive.input.empty() && !config.data.inputs.empty())
     for (const DataFile& file : data_files(config.data)) read.push_back(file.path);
   for (const std::string& archive : {config.archive.input, config.archive.bank})

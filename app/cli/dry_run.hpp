@@ -8,7 +8,7 @@
 
 namespace modebank::app {
 
-/// Files that a command would read and write, and whether they exist. Throws as the search for the data does.
+/// Files that a command would read and write, and whether these exist. Throws the exceptions of the search for data.
 Result dry_run(const Config& config, const std::vector<std::filesystem::path>& written);
 
 }  // namespace modebank::app

@@ -25,7 +25,7 @@ namespace {
 
 constexpr int help_width = 100;
 
-/// Lines of at most `width` columns, without indentation.
+/// Wraps the text into lines of at most `width` columns, without indentation.
 std::vector<std::string> filled(const std::string& text, int width) {
   std::vector<std::string> lines = lines_of(wrapped(text, width));
   for (std::string& line : lines) boost::trim(line);
@@ -52,7 +52,7 @@ std::string when_text(const Option& option) {
                      fmt::join(filled("When to change it: " + option.when + "." + stage, help_width - 6), "\n      "));
 }
 
-/// Two columns; the second is wrapped below itself.
+/// A row of two columns. The text of the second column is wrapped within this column.
 std::string row(const std::string& left, const std::string& right, std::size_t left_width) {
   std::string text;
   for (const std::string& line : filled(right, help_width - static_cast<int>(left_width) - 4))
@@ -74,10 +74,10 @@ std::string options_of(const Command& command) {
   return command.options.empty() ? "" : text;
 }
 
-/// The most common keys, and the sections with all others.
+/// The most common keys, and the sections that contain all other keys.
 std::string keys_paragraph(const Command& command) {
   if (command.keys.empty()) return "";
-  constexpr std::size_t key_width = 23;  // of "--track.checkpoint" and the like
+  constexpr std::size_t key_width = 23;  // enough for names such as "--track.checkpoint"
   std::string text;
   int count = 0;
   for (const Option& option : option_table())
@@ -104,7 +104,7 @@ std::string section_text(const std::string& section) {
   return text.empty() ? "" : fmt::format("[{}]\n{}", section, text);
 }
 
-/// "read: what the data are ...": the definition of a label of the screen; empty for other words.
+/// The definition of a label on the first screen, for example "read: what the data are ..."; empty for other words.
 std::string label_text(const std::string& name) {
   for (const ScreenLabel& label : screen_labels())
     if (label.name == name) return fmt::format("{} (a line of the screen): {}\n", label.name, label.means);
@@ -113,14 +113,14 @@ std::string label_text(const std::string& name) {
 
 using Terms = std::vector<nlohmann::json>;
 
-/// The names of a term, or (`not`) the names that are not used for it.
+/// The names of a term. With `not`, the words that are not used for this term.
 std::vector<std::string> names_of_term(const nlohmann::json& entry, const char* member) {
   std::vector<std::string> names = entry.at(member);
   if (member == std::string("also")) names.push_back(entry.at("term"));
   return names;
 }
 
-/// The first entry with a name for which `is` is true; null if there is none.
+/// The first entry that has a name for which `is` returns true; null if there is none.
 template <class Is>
 const nlohmann::json* find_term(const Terms& terms, const char* member, Is is) {
   for (const nlohmann::json& entry : terms)
@@ -135,8 +135,8 @@ std::string definition(const nlohmann::json& entry) {
                      avoided.empty() ? "" : fmt::format(" Not called: {}.", fmt::join(avoided, ", ")));
 }
 
-/// The definition of a term; empty for other words. Words that are not used for a term also find it. The exact spelling
-/// comes first, because Q and q are two terms.
+/// The definition of a term; empty for other words. Words that are not used for a term also lead to its definition. The
+/// exact spelling is tried first, because Q and q are two terms.
 std::string term_text(const Terms& terms, const std::string& name) {
   const auto exactly = [&](const std::string& other) { return other == name; };
   const auto loosely = [&](const std::string& other) { return boost::algorithm::iequals(other, name); };

@@ -32,7 +32,7 @@ void import_and_cut(const Config& config) {
 
 struct Remedy {
   std::string words;
-  std::function<bool(Proposal&)> apply;  ///< false: there is nothing to change
+  std::function<bool(Proposal&)> apply;  ///< returns false if there is nothing to change
 };
 
 std::vector<Remedy> remedies() {
@@ -55,7 +55,7 @@ std::vector<Remedy> remedies() {
       {"rows keep their own rate",
        [=](Proposal& proposal) {
          const ProposedKey* const time =
-             proposal.find("time");  // without a column of times the configuration has a rate instead
+             proposal.find("time");  // without a column of times, the configuration states the rate
          return (time == nullptr || time->value != " ") && dropped("rate_hz")(proposal);
        }},
       {"rows are sorted by time", set("disorder", "sort", "times repeat or go backwards")},
@@ -101,7 +101,7 @@ void make_it_run(Proposal& proposal, const fs::path& target) {
     return true;
   };
   const std::vector<Remedy> all = remedies();
-  for (const Remedy& remedy : all)  // stop at the first change that helps
+  for (const Remedy& remedy : all)  // only the first change that helps is kept
     if (Proposal changed = proposal; remedy.apply(changed) && take_if_it_runs(changed, remedy.words)) return;
   Proposal changed = proposal;
   std::string words;

@@ -7,12 +7,12 @@
 
 namespace modebank::app {
 
-/// The error with which `run` would refuse the configuration before any fit; empty if `run` accepts it. Reads the
-/// configuration, imports the data and cuts windows, without an estimate of the lag. `target`: the configuration's
-/// file.
+/// Returns the error with which `run` would refuse the configuration before any fit; empty if `run` accepts it. Reads
+/// the configuration, imports the data and cuts windows, but does not estimate the lag. `target`: path of the
+/// configuration file.
 std::string refusal(const Proposal& proposal, const std::filesystem::path& target);
 
-/// Removes keys that no longer exist. Quotes values that a line of the configuration would cut or trim.
+/// Removes keys that no longer exist. Quotes values that the parser of a configuration line would cut or trim.
 void state_values(Proposal& proposal);
 
 /// Changes the proposal until `run` accepts it. Each change adds a doubt with the reason. Throws DataError with the

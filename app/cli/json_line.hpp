@@ -6,11 +6,12 @@
 
 namespace modebank::app {
 
-/// A line of NDJSON; is_discarded() for other text. Many programs write NaN and Infinity; these become null.
+/// Parses a line of NDJSON. The result is_discarded() for other text. Many programs write NaN and Infinity; these
+/// become null.
 nlohmann::json parse_json_line(std::string_view line);
 
-/// A member of an object as text, like a field of a CSV file. Empty if the member is null or missing. Throws DataError
-/// for a member that is neither a number nor a text.
+/// The member of an object as text, as in a field of a CSV file. Empty if the member is null or missing. Throws
+/// DataError if the member is neither a number nor a text.
 std::string json_field(const nlohmann::json& object, const std::string& name);
 
 }  // namespace modebank::app

@@ -7,7 +7,7 @@
 /// Numbers for JSON.
 namespace modebank::app {
 
-/// A number, or null for NaN, which JSON lacks.
+/// The number; null for NaN, because JSON has no NaN.
 inline nlohmann::json json_number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array signals{SIGINT, SIGTERM};
 
-/// Message for the signal handler. It is made beforehand, because a handler may not allocate memory.
+/// Message of the signal handler. It is prepared in advance, because a signal handler must not allocate memory.
 std::array<char, 4096> kept_message;
 std::atomic<std::size_t> kept_size = 0;
 
@@ -52,7 +52,7 @@ KeptStages::KeptStages(const fs::path& output)
     before_[i] = std::signal(signals[i], say_what_is_kept);
     if (before_[i] == SIG_IGN)
       std::signal(signals[i],
-                  SIG_IGN);  // a signal that was ignored stays ignored, as under nohup and for background jobs
+                  SIG_IGN);  // ignored signals stay ignored, as under nohup or in background jobs
   }
   if (folder_is_link())
     spdlog::warn("{} is a symbolic link, so no stage is kept there; remove the link", folder_.string());

@@ -8,13 +8,13 @@
 
 namespace modebank::app {
 
-/// Stores slow stages in a folder beside the future archive. If a run is stopped, by Ctrl-C or a power cut, the same
-/// command continues from these stages. If the folder is a symbolic link, nothing is stored.
+/// Stores slow stages in a folder beside the future archive. After a stop (Ctrl-C, power cut) the same command
+/// continues from these stages. If the folder is a symbolic link, nothing is stored.
 class KeptStages : public StageSource {
  public:
-  /// Installs a signal handler: Ctrl-C prints the folder of the stored stages.
+  /// Installs a signal handler. On Ctrl-C, it prints the path of the folder with the stored stages.
   explicit KeptStages(const std::filesystem::path& output);
-  /// Removes the folder when the run ends, with or without an error, and restores the signal handlers.
+  /// Removes the folder at the end of the run, even after an error, and restores the signal handlers.
   ~KeptStages() override;
   KeptStages(const KeptStages&) = delete;
   KeptStages& operator=(const KeptStages&) = delete;

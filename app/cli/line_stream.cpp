@@ -36,14 +36,14 @@ timespec duration(double seconds) {
   return {static_cast<time_t>(whole), static_cast<long>(1e9 * (seconds - whole))};
 }
 
-/// Waits for input; signals are allowed meanwhile.
+/// Waits for input. Signals can arrive during the wait.
 Waited wait_for_input(double wait_s) {
   pollfd input{STDIN_FILENO, POLLIN, 0};
   const timespec most = std::isfinite(wait_s) ? duration(wait_s) : timespec{};
   while (stop_asked == 0) {
     const int ready = ppoll(&input, 1, std::isfinite(wait_s) ? &most : nullptr, &outside_mask);
     if (ready == 0) return Waited::quiet;
-    if (ready > 0 || errno != EINTR) return Waited::input;  // `read` will report the error
+    if (ready > 0 || errno != EINTR) return Waited::input;  // the next `read` reports the error
   }
   return Waited::stop;
 }

@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* stream_name = "standard input";
 
-/// A reader with columns for a plan, but without rows.
+/// A table reader that has only columns and no rows, for a plan.
 class ColumnsAlone final : public TableReader {
  public:
   explicit ColumnsAlone(TableInfo table) : table_(std::move(table)) {}
@@ -42,7 +42,7 @@ bool holds(const std::vector<std::string>& all, const std::string& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
-/// Options for one stream with all columns: without files, runs or roles. Every value may be missing.
+/// Options for a single stream with all columns. There are no files, runs or roles. Every value may be missing.
 DataOptions of_a_stream(DataOptions data) {
   for (std::string* text : {&data.inputs, &data.states, &data.run, &data.label, &data.weight}) text->clear();
   for (std::vector<std::string>* names : {&data.truth, &data.train, &data.test}) names->clear();
@@ -55,7 +55,7 @@ DataOptions of_a_stream(DataOptions data) {
   return data;
 }
 
-/// Removes derived channels that are columns of the stream.
+/// Removes the formula of each derived channel that the stream has as a column.
 void derive_what_lacks(DataOptions& data, const std::vector<std::string>& columns) {
   std::erase_if(data.derive, [&](const std::string& line) { return holds(columns, parse_derived(line).name); });
 }
@@ -89,7 +89,7 @@ bool LineTable::open(const std::string& line) {
   return !after_header_;
 }
 
-/// Uses the archive's format; a stream in another format is detected.
+/// Reads a stream in the archive's CSV format. The format of any other stream is detected.
 void LineTable::open_csv() {
   FormatOptions& format = data_.format;
   try {
@@ -107,7 +107,7 @@ bool LineTable::starts_with_a_row() const {
   try {
     return rows_of({}, data_.time_unit).rows() > 0;
   } catch (const DataError&) {
-    return true;  // a missing value
+    return true;  // a missing value throws, but the line is still a row of numbers
   }
 }
 
@@ -160,7 +160,9 @@ Table LineTable::rows_of(const std::vector<std::string>& lines, TimeUnit unit) c
   std::string text = head_;
   for (const std::string& line : lines) {
     text += line;
-    if (std::count(line.begin(), line.end(), '"') % 2 != 0) text += '"';  // an unclosed quote ends with the line
+    if (std::count(line.begin(), line.end(), '"') % 2 != 0)
+      text += '"';  // an unclosed quote ends at the end of the
+                    // line
     text += '\n';
   }
   return parse_csv(stream_name, text, request, data_.format);
@@ -183,7 +185,7 @@ std::vector<std::string> LineTable::fields_in(const std::string& line) const {
   return fields_of(line, dialect.separator == Separator::blank ? ' ' : dialect.delimiter());
 }
 
-/// Takes the line after the header as units if it has text in each column and no number.
+/// If the line after the header has a text in each column and no number, takes it as the row of units.
 bool LineTable::take_units(const std::string& line) {
   if (!std::exchange(after_header_, false)) return false;
   const std::vector<std::string> fields = fields_in(line);
@@ -235,7 +237,7 @@ void LineTable::begin(const std::string& line, const Table& table) {
   if (format_ == Format::csv) data_.format.separator = find_dialect(head_ + line + "\n", true, data_.format).separator;
 }
 
-/// Two rows determine the unit of times. The unit that the reader finds applies to all later rows.
+/// Finds the unit of times from the first two rows. This unit applies to all later rows.
 void LineTable::learn_unit(const std::vector<std::string>& lines, const Table& table) {
   std::vector<std::string> all{first_row_};
   all.insert(all.end(), lines.begin(), lines.end());
@@ -266,7 +268,7 @@ double LineTable::rest_s(const Table& table, std::size_t row) const {
   return static_cast<double>(table.time_ns[row] - static_cast<std::int64_t>(whole) * billion) / 1e9 - (seconds - whole);
 }
 
-/// Days before this batch: the reader counts days from the batch's first row.
+/// Adds the days before this batch, because the reader counts days from the first row of a batch.
 void LineTable::pass_midnights(Table& table) {
   for (std::int64_t& time_ns : table.time_ns)
     if (time_ns != missing_stamp) time_ns = days_.on(time_ns / billion) * billion + time_ns % billion;
@@ -276,7 +278,8 @@ void LineTable::derive(Table& table) {
   const SourcePlan& source = plan_->sources.front();
   if (source.derived.empty()) return;
   if (!origin_ns_ && !table.time_ns.empty()) origin_ns_ = table.time_ns.front();
-  std::vector<double> seconds;  // relative to the first row, because nanoseconds since 1970 would lose precision
+  std::vector<double> seconds;  // relative to the first row, because a double of nanoseconds since 1970 would lose
+                                // precision
   for (std::size_t row = 0; row < table.rows(); ++row)
     seconds.push_back(!has_times() || table.time_ns[row] == missing_stamp
                           ? time_s(table, row)

@@ -11,53 +11,55 @@
 
 namespace modebank::app {
 
-/// Lines of a log that arrive one by one. They become the same rows as in import of a file with these lines: reader,
-/// times and derived channels are shared. CSV may have a header and a row of units; NDJSON has one object per line.
+/// Lines of a log that arrive one by one. They become the same rows as in the import of a file with these lines,
+/// because reader, times and derived channels are the same code. CSV may have a header and a row of units. NDJSON has
+/// one object per line.
 class LineTable {
  public:
   /// `data`: channels, times and formats of the archive.
   explicit LineTable(const DataOptions& data);
 
-  /// Takes lines until the columns are known and is_open() is true. Returns true for a row, which must then be passed
-  /// to read(). Throws ConfigurationError with the existing columns if a needed column is missing.
+  /// Takes lines until the columns are known; is_open() is then true. Returns true if the line is a row, which must
+  /// then be passed to read(). Throws ConfigurationError with the existing columns if a needed column is missing.
   bool open(const std::string& line);
   bool is_open() const { return plan_.has_value(); }
-  /// Whether lines are JSON objects with names; otherwise they are CSV.
+  /// True if lines are JSON objects, false if they are CSV.
   bool has_objects() const { return format_ == Format::objects; }
-  /// One row per line, with derived channels. A line of units after the header gives no row. Throws std::runtime_error,
-  /// without a line number, if a line is not a row. Pass one line at a time until the first row.
+  /// Returns one row per line, with derived channels. A line of units after the header gives no row. Throws
+  /// std::runtime_error if a line is not a row; the message has no line number. Pass one line at a time until the first
+  /// row.
   Table read(const std::vector<std::string>& lines);
   bool has_rows() const { return !first_row_.empty(); }
-  /// Columns of states, inputs and data.where in Table::numbers.
+  /// Positions of the columns of states, inputs and data.where in Table::numbers.
   const FilePlan& plan() const { return *plan_; }
   /// Time of a row in the last table [s]; NaN if it is missing.
   double time_s(const Table& table, std::size_t row) const;
-  /// Remainder of time_s, since a double of seconds since 1970 cannot hold nanoseconds.
+  /// Part of the time that time_s lost by rounding: a double of seconds since 1970 cannot hold nanoseconds.
   double rest_s(const Table& table, std::size_t row) const;
-  /// Whether rows have times; otherwise row k has the time k / data.rate_hz.
+  /// Whether rows have times. Otherwise the time of row k is k / data.rate_hz.
   bool has_times() const { return !plan_->sources.front().request.time.column.empty(); }
-  /// The first row's corrected time, if the second row shows that its unit was guessed wrongly. Returned only once.
+  /// The corrected time of the first row, if the second row shows that the unit was wrong. Returned only once.
   std::optional<double> corrected_first_s() { return std::exchange(corrected_first_s_, std::nullopt); }
-  /// The reader's remarks since the last call.
+  /// Remarks of the reader since the last call.
   std::vector<std::string> notes() { return std::exchange(notes_, {}); }
-  /// Whether a line without a line break is complete.
+  /// Whether a line without a final newline is complete.
   bool is_whole(const std::string& line) const;
 
  private:
   DataOptions data_;
   enum class Format { unknown, csv, objects };
-  Format format_ = Format::unknown;   ///< from the first line
+  Format format_ = Format::unknown;   ///< format of the first line
   std::string head_;                  ///< for CSV: the lines before the first row, with their line breaks
-  std::vector<std::string> columns_;  ///< for CSV all columns, for NDJSON the members that the program reads
+  std::vector<std::string> columns_;  ///< for CSV all columns; for NDJSON only the members that the program reads
   std::optional<FilePlan> plan_;
-  std::string first_row_;  ///< these lines precede later CSV rows, so that the reader finds the same format
-  std::size_t rows_ = 0, rows_before_ = 0;  ///< rows_before_: before the table of the last read
+  std::string first_row_;                   ///< precedes later CSV rows, so that the reader finds the same format
+  std::size_t rows_ = 0, rows_before_ = 0;  ///< rows_before_: number of rows before the last read
   double first_s_ = 0.0;
   std::optional<double> corrected_first_s_;
   bool unit_known_ = false, after_header_ = false;
   std::vector<Expression::Memory> memory_;  ///< per derived channel
   std::optional<std::int64_t> origin_ns_;
-  DayCount days_;  ///< for times of day, over all rows so far
+  DayCount days_;  ///< counts days of times of day, over all rows so far
   std::vector<std::string> notes_;
 
   void open_csv();

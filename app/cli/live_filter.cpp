@@ -21,7 +21,7 @@
 namespace modebank::app {
 namespace {
 
-/// Throws for a filter without snapshots before the first sample is read (open_filter).
+/// A filter without snapshots throws earlier, in open_filter, before the first sample is read.
 BankFilter& kept(AnyFilter& filter) {
   if (BankFilter* const bank = filter.of_bank()) return *bank;
   throw ConfigurationError(
@@ -44,10 +44,12 @@ Resumed resume(AnyFilter& filter, const std::string& file, const std::string& id
   }
   if (snapshot.samples.samples == 0) return {not_a_number, 0, {}};
   if (!std::isfinite(snapshot.samples.time_s)) throw DataError(file + ": the last sample has no time");
-  return {snapshot.samples.time_s, snapshot.samples.samples, snapshot.samples.inputs.col(0)};  // the newest samples
+  return {snapshot.samples.time_s, snapshot.samples.samples,
+          snapshot.samples.inputs.col(0)};  // time of the last sample, number of
+                                            // samples, last inputs
 }
 
-/// kf always uses the global model.
+/// The filter kf always uses the global model.
 std::string tracked_bank(const Config& config) {
   TrackedFilter filter = config.track.filter == TrackedFilter::combined ? TrackedFilter::bank : config.track.filter;
   if (filter == TrackedFilter::bank && config.filter.variant == FilterVariant::kf) filter = TrackedFilter::baseline;
@@ -90,7 +92,7 @@ OpenedFilter open_one(const OpenArchive& archive, const std::string& which, cons
   return open_bank(archive, which, options);
 }
 
-/// The filters that the archive combines one sample ahead, the bank first, with their weights after training.
+/// The filters that the archive combines one sample ahead, with their weights after training. The bank is the first.
 OpenedFilter open_combined(const OpenArchive& archive, const Config& config) {
   const CombinedMembers members = combined_members(archive, 1);
   std::vector<std::unique_ptr<AnyFilter>> filters;

@@ -10,7 +10,7 @@
 
 namespace modebank::app {
 
-/// The point at which a filter continues: time of the last sample (NaN without samples), number of samples since its
+/// Point from which a filter continues: time of the last sample (NaN without samples), number of samples since the
 /// start, and the last inputs.
 struct Resumed {
   double time_s;
@@ -18,12 +18,13 @@ struct Resumed {
   Eigen::VectorXd input;
 };
 
-/// Save and restore the filter's state. Both throw as save_checkpoint and load_checkpoint do, and ConfigurationError
-/// for a filter that is not a bank.
+/// Save and restore the filter's state. They throw the exceptions of save_checkpoint and load_checkpoint, and
+/// ConfigurationError for a filter that is not a bank.
 void save(AnyFilter& filter, const std::string& file, const std::string& identity);
 Resumed resume(AnyFilter& filter, const std::string& file, const std::string& identity);
 
-/// The configured filter. `bank` gives its sizes and period; `lags` is the number of samples before it starts.
+/// The configured filter. `bank` determines its sizes and period. `lags` is the number of samples that it needs before
+/// it starts.
 struct OpenedFilter {
   Bank bank;
   FilterOptions options;
@@ -32,20 +33,20 @@ struct OpenedFilter {
 };
 /// Throws ConfigurationError for filters that are not banks. `what`: the action, for the error message.
 void require_bank(const Config& config, const std::string& what);
-/// Name of the archive's bank that the configuration selects; for combined filters the first of them.
+/// Name of the archive's bank that the configuration selects. For combined filters, the name of the first one.
 std::string tracked_bank(const Config& config);
-/// Options of the filter; for competitors those of `evaluate`.
+/// Options of the filter. Competitors use the options that `evaluate` uses.
 FilterOptions tracked_options(const Config& config);
-/// Throws ConfigurationError unless the number of columns is that of the bank.
+/// Throws ConfigurationError unless the configured columns are as many as the bank's channels.
 void check_columns(const Config& config, const Bank& bank, const OpenArchive& archive);
-/// The filters that an archive combines at a horizon (0: free run), the bank first, with their start weights. If the
-/// archive lacks this horizon, the longest one is used. Throws DataError for an archive without combinations.
+/// The filters that an archive combines at a horizon (0: free run), with their start weights. The bank is the first. If
+/// the archive lacks this horizon, the longest horizon is used. Throws DataError for an archive without combinations.
 struct CombinedMembers {
   std::vector<std::string> names;
   std::vector<double> weights;
 };
 CombinedMembers combined_members(const OpenArchive& archive, Eigen::Index horizon);
-/// Throws as load_bank does, and ConfigurationError for options that the filter does not have.
+/// Throws the exceptions of load_bank, and ConfigurationError for options that the filter does not have.
 OpenedFilter open_filter(const OpenArchive& archive, const Config& config);
 
 }  // namespace modebank::app

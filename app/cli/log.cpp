@@ -15,7 +15,7 @@
 namespace modebank::app {
 namespace {
 
-/// "warning: " before a warning, in the level's colour. Lines of progress have no prefix.
+/// Prefix of a message: "warning: " in the level's colour for a warning, nothing for progress.
 class Mark : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
@@ -33,7 +33,7 @@ class Mark : public spdlog::custom_flag_formatter {
   }
 };
 
-/// Names from files are escaped, so that a terminal does not execute them.
+/// Control characters in names from files are escaped, because a terminal would execute them.
 class Message : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
@@ -63,7 +63,7 @@ void set_up_log(Verbosity verbosity) {
   auto logger = std::make_shared<spdlog::logger>("modebank", std::move(sink));
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
   formatter->add_flag<Mark>('*').add_flag<Message>('#').set_pattern(
-      isatty(STDERR_FILENO) == 1 ? "%*%#\x1b[K" : "%*%#");  // erases the rest of a progress meter's line
+      isatty(STDERR_FILENO) == 1 ? "%*%#\x1b[K" : "%*%#");  // erases the rest of the line of a progress meter
   logger->set_formatter(std::move(formatter));
   logger->set_level(verbosity == Verbosity::quiet      ? spdlog::level::err
                     : verbosity == Verbosity::warnings ? spdlog::level::warn

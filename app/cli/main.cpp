@@ -33,7 +33,7 @@ int fail_to_print(const std::string& reason) {
   return fail(run_failure, ("cannot write the results to standard output: " + reason).c_str());
 }
 
-/// Prints an error; after --json also as JSON.
+/// Prints an error. With --json it is also printed as JSON.
 int fail_as_asked(int argc, char** argv, int status, const char* what) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   const auto command = std::find_if(words.begin(), words.end(), [](const std::string& w) { return w[0] != '-'; });
@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
     return modebank::app::run_study_worker(argc, argv);
   try {
     const int status = modebank::app::run_command(modebank::app::parse_command_line(argc, argv));
-    // A full disk or a closed pipe is an error.
+    // A full disk or a closed pipe is also an error.
     return std::fflush(stdout) == 0 ? status : fail_to_print(std::generic_category().message(errno));
   } catch (const modebank::ConfigurationError& error) {
     return fail_as_asked(argc, argv, usage_error, error.what());

@@ -9,16 +9,17 @@
 
 namespace modebank::app {
 
-/// Whether the key is on the command line.
+/// Whether the command line sets the key.
 bool given(const CommandLine& line, const std::string& key);
 
-/// Prepares an archive's data section for other files, which have other roles, places and labels; their measurements
-/// may end early. Throws ConfigurationError where the archive's states came from separate files and none are given.
+/// Prepares an archive's data section for other files. These have other roles, folders and labels, and their
+/// measurements may end early. Throws ConfigurationError if the archive's states came from separate files but none are
+/// given.
 void turn_to_new_files(const CommandLine& line, DataOptions& data);
 
-/// How new data are brought to the archive's rate: the columns to average. If the archive's lag was estimated, sets
-/// data.lag_s to the pooled one, as for held-out runs, taken in the middle of each step of `period_s`. A stated lag
-/// stays.
+/// Prepares the sampling of new data at the archive's rate and returns the columns to average. If the archive's lag was
+/// estimated, data.lag_s becomes the pooled lag, as for held-out runs. It then refers to the middle of each step of
+/// `period_s`. A stated lag stays as it is.
 AveragedColumns take_sampling(const CommandLine& line, const OpenArchive& archive, double period_s, DataOptions& data);
 
 }  // namespace modebank::app

@@ -6,15 +6,15 @@
 
 #include "filter/judge/run/free_run.hpp"
 
-/// Output of `predict`; samples without a prediction are left out.
+/// Output of `predict`. It omits samples without a prediction.
 namespace modebank::app {
 
 Index predicted_samples(const std::vector<FreeRun>& predicted);
 
-/// One line per predicted sample, with columns of the prediction, its standard deviation and its band per state.
+/// One line per predicted sample. For each state, the columns are the prediction, its standard deviation and its band.
 std::string predicted_csv(const Recording& recording, const std::vector<FreeRun>& predicted);
 
-/// The same per run, with one array per column.
+/// The same values for each run, as one array per column.
 nlohmann::json predicted_json(const Recording& recording, const std::vector<FreeRun>& predicted);
 
 }  // namespace modebank::app

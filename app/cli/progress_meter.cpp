@@ -47,7 +47,7 @@ void ProgressMeter::watch() {
   }
 }
 
-/// The cursor stays at the start of the line, so that the next message overwrites it.
+/// The cursor returns to the start of the line, so that the next message overwrites the line.
 void ProgressMeter::tell(const WorkDone& work) {
   const std::string text = printable_name(progress_text(work));
   say(terminal_ ? fmt::format("\r{}\x1b[K\r", text) : text + "\n");

@@ -9,8 +9,8 @@
 
 namespace modebank::app {
 
-/// While it exists, prints the progress of loops that last over a second to standard error. On a terminal it rewrites
-/// one line; elsewhere it adds a line every ten seconds.
+/// As long as this object exists, loops that last over a second print their progress to standard error. A terminal
+/// shows one line that is rewritten; other outputs get a line every ten seconds.
 class ProgressMeter {
  public:
   explicit ProgressMeter(bool wanted);
@@ -28,7 +28,8 @@ class ProgressMeter {
   std::thread thread_;
 };
 
-/// "windows: 12000 of 50000, 3.1e+04 per s, 1.2 s left". Before the first item the time left is missing.
+/// Text such as "windows: 12000 of 50000, 3.1e+04 per s, 1.2 s left". Before the first item it does not contain the
+/// time left.
 std::string progress_text(const WorkDone& work);
 
 }  // namespace modebank::app

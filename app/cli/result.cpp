@@ -19,7 +19,7 @@ void print(json object, const std::string& command, int status) {
   object["command"] = command;
   object["modebank"] = build_info::version;
   object["status"] = status;
-  // Names come from files, so bytes that are not UTF-8 are replaced.
+  // Names come from files, so they may contain bytes that are not UTF-8. These bytes are replaced.
   fmt::print("{}\n", object.dump(2, ' ', false, json::error_handler_t::replace));
 }
 

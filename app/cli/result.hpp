@@ -6,7 +6,7 @@
 
 #include "app/cli/command_line.hpp"
 
-/// A command's result on standard output: text, or with --json one JSON object. docs/reference/json.md lists the
+/// Result of a command on standard output: text, or one JSON object with --json. docs/reference/json.md lists the
 /// members of each command's object.
 namespace modebank::app {
 
@@ -16,7 +16,7 @@ void print_text(const CommandLine& line, std::string_view text);
 /// Prints the JSON object, only with --json. Adds `command`, `modebank` (its version) and `status` to the members.
 void print_json(const CommandLine& line, nlohmann::json members, int status = 0);
 
-/// Result of a command. The command prints it, or another command that contains this one.
+/// Result of a command. It is printed by this command, or by another command that calls this one.
 struct Result {
   std::string text;
   nlohmann::json members;
@@ -25,7 +25,7 @@ struct Result {
 /// Prints the result and returns the exit status 0.
 int print_result(const CommandLine& line, const Result& result);
 
-/// With --json prints the error as a JSON object with the member `error`, unless the command has already printed an
+/// With --json, prints the error as a JSON object with the member `error`, unless the command has already printed an
 /// object.
 void print_json_error(const std::string& command, const std::string& error, int status);
 

@@ -72,7 +72,7 @@ nlohmann::json structure_json(const FoundStructure& found) {
           {"scores", scores}};
 }
 
-/// Prints findings at once, and suggestions as soon as they are scored.
+/// Prints findings at once, and each suggestion as soon as it is scored.
 Suggestions tell(const CommandLine& line, const Config& config, const DataCheck& check, nlohmann::json& page) {
   const std::vector<std::string> findings = findings_of(check, config);
   print_text(line, check_text(check, findings));

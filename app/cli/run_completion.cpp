@@ -11,7 +11,7 @@
 #include "app/config/option_table.hpp"
 #include "modebank/base/error.hpp"
 
-/// Scripts that complete commands, options, keys and allowed values without starting the program.
+/// Makes shell scripts that complete commands, options, keys and allowed values without a start of the program.
 namespace modebank::app {
 namespace {
 
@@ -21,7 +21,7 @@ std::vector<std::string> command_names() {
   return names;
 }
 
-/// A description or a word, in single quotes for a shell.
+/// The text in single quotes, for a shell.
 std::string quoted(std::string text) {
   boost::replace_all(text, "'", "");
   boost::replace_all(text, "[", "(");
@@ -63,7 +63,7 @@ std::vector<Word> keys_of(const Command& command) {
   return words;
 }
 
-/// The command's own options, the options of all commands, and its keys.
+/// The options of the command, the options that all commands have, and the keys of the command.
 std::vector<Word> words_after(const Command& command) {
   std::vector<Word> all = options_in(command.options);
   for (const std::vector<Word>& more : {options_in(common_options()), keys_of(command)})
@@ -71,8 +71,8 @@ std::vector<Word> words_after(const Command& command) {
   return all;
 }
 
-/// One branch of a script for each option and key with a list of allowed values. {} in `action` stands for these
-/// values.
+/// The branches of a completion script: one for each option and key with a list of allowed values. In `action`, {}
+/// stands for these values.
 std::string value_branches(fmt::format_string<std::string> action) {
   std::map<std::string, std::vector<std::string>> choices;
   for (const Command& command : command_table())

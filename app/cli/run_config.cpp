@@ -21,7 +21,7 @@ std::vector<std::string> lines_in(const std::string& text) {
   return lines;
 }
 
-/// The resolved configuration. The origin of each value is a comment, so that the text is a valid configuration.
+/// The resolved configuration as a valid configuration file. Comments state the origin of each value.
 std::string text_with_origins(const Config& config, const Origins& origins) {
   std::string text, section;
   for (const Option& option : option_table()) {
@@ -49,7 +49,7 @@ nlohmann::json keys_json(const Config& config, const Origins& origins) {
   return keys;
 }
 
-/// A list of alternatives becomes an enumeration. Any other value is text, as in the file.
+/// A list of alternatives becomes an enumeration. Every other value is a text, as in the configuration file.
 nlohmann::ordered_json schema_of(const Option& option) {
   nlohmann::ordered_json schema{{"type", "string"}, {"description", option.help}, {"default", option.get(Config{})}};
   if (const std::vector<std::string> choices = option.choices(); !choices.empty())

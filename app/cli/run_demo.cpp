@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The files of a demo, all in one folder. The configurations are part of the program.
+/// The files of a demo, all in one folder. Their configurations are built into the program.
 struct DemoFolder {
   fs::path folder;
   std::string name, simulation_name;
@@ -35,7 +35,7 @@ struct DemoFolder {
   fs::path archive() const { return folder / (name + ".h5"); }
 };
 
-/// The two linear grounds, or with the word `tyres` the nonlinear grounds of a tyre model.
+/// The demo of two linear grounds, or with the word `tyres` the demo of a tyre model with nonlinear grounds.
 DemoFolder demo_of(const CommandLine& line) {
   const bool tyres = !line.files.empty();
   if (tyres && line.files.front() != "tyres")
@@ -66,8 +66,8 @@ bool is_of_a_demo(const fs::path& path, const DemoFolder& demo) {
   return path == demo.archive() && fs::is_regular_file(path);
 }
 
-/// A demo may be repeated in the folder of an earlier one, which contains the demo's configuration. All other files
-/// belong to someone else and are not replaced.
+/// A demo may run again in the folder of an earlier demo, which contains the demo's configuration. It does not replace
+/// other files.
 void refuse_foreign_files(const DemoFolder& demo) {
   if (!fs::exists(demo.folder)) return;
   if (!fs::is_directory(demo.folder))
@@ -83,11 +83,12 @@ void refuse_foreign_files(const DemoFolder& demo) {
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
-  fs::create_directory(folder, error);  // sets no error for an existing folder
+  fs::create_directory(folder, error);  // an existing folder gives no error
   if (error) throw ConfigurationError(fmt::format("cannot make folder {}: {}", folder.string(), error.message()));
 }
 
-/// Passes each option of the demo to the command that reads it. The demo alone decides in which folder the files are.
+/// Passes each option of the demo to the command that reads it. The folder of the files is not an option: the demo sets
+/// it.
 std::vector<std::string> options_for(const std::string& command, const CommandLine& line) {
   std::vector<std::string> options;
   for (const auto& [key, value] : line.overrides) {
@@ -100,7 +101,7 @@ std::vector<std::string> options_for(const std::string& command, const CommandLi
   return options;
 }
 
-/// The command as a user would type it, shown so that users can learn and repeat it.
+/// The command as a user would type it. It is printed so that users can learn and repeat it.
 CommandLine typed_command(const CommandLine& demo, const std::vector<std::string>& words) {
   std::vector<std::string> all{demo.program};
   all.insert(all.end(), words.begin(), words.end());
@@ -123,7 +124,7 @@ void write_configurations(const CommandLine& line, const DemoFolder& demo) {
   replace_file(demo.configuration(), {demo.configuration_text});
 }
 
-/// Prints the modes beside the truth in place of the first screen, if the two can be compared.
+/// If the archive and the true system can be compared, prints this comparison in place of the first screen.
 void add_truth(const DemoFolder& demo, const CommandLine& simulate, Result& result) {
   Config simulation = load_config(demo.simulation(), simulate.overrides);
   read_system(demo.folder, simulation);
@@ -153,7 +154,7 @@ int run_demo(const CommandLine& line) {
       line, {"simulate", demo.simulation().string(), fmt::format("--simulate.output={}", demo.data().string())});
   CommandLine run = typed_command(
       line, {"run", demo.configuration().string(), fmt::format("--archive.output={}", demo.archive().string())});
-  run.force = true;  // --force: the archive in the demo's folder is its own
+  run.force = true;  // --force is safe: the archive in the demo's folder was made by a demo
   run.quiet = run.quiet || (first && !line.verbose);
   write_configurations(line, demo);
   if (run.quiet && !line.quiet) set_up_log(Verbosity::warnings);

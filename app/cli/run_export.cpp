@@ -28,16 +28,16 @@ void check_export(const CommandLine& line, const path& output, const FileForm& f
   check_output({"-o", output, form}, {line.files.front()});
 }
 
-/// Exports to C, Python and YAML begin with the verdict on the bank.
+/// An exported file in C, Python or YAML begins with the verdict on the bank.
 FileForm bank_form() { return form_by_front("an export of a bank", " Calibration: ", 16); }
 
-/// How much earlier than recorded the bank uses its inputs.
+/// Time by which the bank uses its inputs earlier than recorded.
 double input_lag_of(const Archive& archive, const Config& config) {
   if (!config.data.lag_auto) return config.data.lag_s;
   return archive.lag && archive.lag->correction != LagCorrection::none ? archive.lag->lag.mean : 0.0;
 }
 
-/// The filter with the options of the archive: with other options it would not be the filter that was judged.
+/// Reads the filter with the options of the archive, because the scores belong to these options.
 ExportedBank read_bank(const CommandLine& line) {
   const OpenArchive file(line.files.front());
   const Config config = stored_config(load_configuration(file), line.overrides);
@@ -53,13 +53,13 @@ ExportedBank read_bank(const CommandLine& line) {
   return bank;
 }
 
-/// -o, or the archive's name with another extension in the current folder.
+/// The path given by -o; without -o the archive's name with another extension, in the current folder.
 path output_of(const CommandLine& line, const std::string& ending) {
   if (!line.output.empty()) return line.output;
   return file_stem(path(line.files.front()).stem().string()) + ending;
 }
 
-/// Writes a form that is one text; without -o to standard output. Returns the members for --json.
+/// Writes an export that is a single text. Without -o it is written to standard output. Returns the members for --json.
 template <class Make>
 json write_text(const CommandLine& line, const FileForm& form, Make make) {
   if (!line.output.empty()) check_export(line, line.output, form);
@@ -86,7 +86,7 @@ json export_casadi(const CommandLine& line) {
   return write_text(line, bank_form(), [&] { return to_casadi(read_bank(line)); });
 }
 
-/// All arrays of a group over the samples of a run, as a table with one row per sample.
+/// All arrays of a group as a table with one row per sample of a run.
 json samples_of(const OpenArchive& archive, const std::string& group, const std::string& run, const json& members) {
   json table = {{"columns", json::array()}, {"value", json::array()}};
   const auto add = [&](const std::string& name) {
@@ -100,7 +100,7 @@ json samples_of(const OpenArchive& archive, const std::string& group, const std:
   return table;
 }
 
-/// The object that the command line selects; for a run without a path, all of its data.
+/// The object that the command line selects. For a run without a path, the object contains all data of this run.
 json asked_table(const CommandLine& line, const std::string& path) {
   const OpenArchive archive(line.files.front());
   json object = inspect(archive, path, line.run);
@@ -130,7 +130,7 @@ json export_mat(const CommandLine& line) {
   return {{"written", {output.string()}}};
 }
 
-/// Both texts are complete before either file is written.
+/// Both texts are made before the first file is written.
 json export_c(const CommandLine& line) {
   path source = output_of(line, ".c");
   if (std::filesystem::is_directory(source)) source /= file_stem(path(line.files.front()).stem().string()) + ".c";
@@ -181,7 +181,7 @@ const std::map<std::string, json (*)(const CommandLine&)> forms{
     {"c", export_c},     {"casadi", export_casadi},   {"csv", export_csv},  {"json", export_json},
     {"mat", export_mat}, {"regimes", export_regimes}, {"ros2", export_ros2}};
 
-/// Refuses options that belong to another form.
+/// Throws for options that apply only to another form.
 void check_form_options(const CommandLine& line) {
   const std::map<std::string, std::string> belongs{
       {"table", "csv"}, {"run", "csv"}, {"wheel_separation_m", "ros2"}, {"wheel_radius_m", "ros2"}};

@@ -24,7 +24,7 @@
 namespace modebank::app {
 namespace {
 
-/// Whether standard input and output are a terminal, so that a person can answer questions.
+/// Whether standard input and output are both a terminal, so that a person can answer questions.
 bool is_asked(const CommandLine& line) {
   return !line.yes && !line.json && isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1;
 }

@@ -31,7 +31,7 @@
 namespace modebank::app {
 namespace {
 
-/// Throws unless the reused stages were computed with the configuration's settings. The new archive will state these
+/// The new archive will state the configuration's settings. Throws if the reused stages were computed with other
 /// settings.
 void check_same_settings(const Config& config, const std::string& stored, Stage taken) {
   const std::map<std::string, std::string> before = resolved_values(stored),
@@ -47,12 +47,12 @@ void check_same_settings(const Config& config, const std::string& stored, Stage 
   }
 }
 
-/// The last stage that a command takes from --archive.input.
+/// The last stage that a command reads from --archive.input.
 Stage last_taken(const std::string& command) {
   return command == "identify" ? Stage::data : command == "cluster" ? Stage::windows : Stage::mixture;
 }
 
-/// Earlier stages from --archive.input; stages that the file lacks are computed.
+/// Earlier stages from --archive.input. Stages that this file lacks are computed.
 StoredStages earlier_stages(const Config& config, const std::string& command) {
   StoredStages source(config.archive.input, last_taken(command));
   const Archive& stored = source.stored();
@@ -61,8 +61,8 @@ StoredStages earlier_stages(const Config& config, const std::string& command) {
   return source;
 }
 
-/// Throws if an archive of other data would be replaced. This is checked before any fit, as soon as the data's hash is
-/// known.
+/// Throws if the output would replace an archive of other data. This is checked before any fit, as soon as the hash of
+/// the data is known.
 void check_replaces_same_data(const std::string& output, const std::string& data_hash) {
   std::error_code error;
   if (!std::filesystem::exists(output, error)) return;
@@ -85,7 +85,7 @@ void check_replaces_same_data(const std::string& output, const std::string& data
 /// Prints a chain's messages to the log.
 class Log : public Adviser {
  public:
-  /// `output` is checked when the data are read; if it is empty, any file is replaced.
+  /// `output` is checked as soon as the data are read. If `output` is empty, any file may be replaced.
   explicit Log(std::string output) : output_(std::move(output)) {}
 
   void done(Stage stage, const Archive& archive) const override {
@@ -104,7 +104,7 @@ std::string archive_line(const Config& config) { return fmt::format("\narchive  
 
 nlohmann::json written(const Config& config) { return {{"written", {config.archive.output}}}; }
 
-/// Writes windows as they are fitted, if there are too many for memory.
+/// If there are too many windows for memory, writes them to the file during the fit.
 Result identify_many(const Config& config, const Chain& chain, const Archive& data, const Log& log) {
   const Stopwatch watch;
   WindowCounts counts;
@@ -118,7 +118,7 @@ Result identify_many(const Config& config, const Chain& chain, const Archive& da
   return {data_text(*data.recording) + windows_text(common, counts, labels) + archive_line(config), written(config)};
 }
 
-/// Throws for options of learning: they have no effect on a stored bank.
+/// Throws for options of learning, because they have no effect on a stored bank.
 void refuse_learning_options(const CommandLine& line, const Config& config) {
   if (config.archive.bank.empty()) return;
   for (const auto& [key, value] : line.overrides)

@@ -30,7 +30,7 @@ double period_of(const OpenArchive& archive, const Config& config) {
   return load_bank(archive, tracked_bank(config)).dt_s;
 }
 
-/// Free runs by one filter of the archive.
+/// Free runs of one filter of the archive.
 std::vector<FreeRun> predict_alone(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const FilterOptions options = tracked_options(config);
   const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
@@ -39,8 +39,8 @@ std::vector<FreeRun> predict_alone(const OpenArchive& archive, const Config& con
   return free_runs(bank, recording.runs, options, how);
 }
 
-/// Free runs by all filters combined. The weights maximise the likelihood of the training runs' free runs, and stay
-/// constant because there are no measurements to adapt them.
+/// Free runs of all filters combined. The weights maximise the likelihood of free runs on the training runs. They stay
+/// constant, because a free run has no measurements that could adapt them.
 std::vector<FreeRun> predict_together(const OpenArchive& archive, const Config& config, const Recording& recording) {
   const CombinedMembers members = combined_members(archive, 0);
   std::vector<std::vector<FreeRun>> of_filters;
@@ -76,7 +76,7 @@ FileForm predictions_form() {
           }};
 }
 
-/// One prediction: its configuration and the sampling of its data.
+/// One prediction: its configuration, and the sampling of the new data.
 struct Task {
   Config config;
   AveragedColumns averaged;

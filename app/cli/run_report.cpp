@@ -16,13 +16,13 @@
 namespace modebank::app {
 namespace {
 
-/// Whether the command line has one folder that is not a study's.
+/// Whether the command line has a single folder that does not contain a study.
 bool is_site(const CommandLine& line) {
   const std::filesystem::path folder = line.files.front();
   return line.files.size() == 1 && std::filesystem::is_directory(folder) && !report::holds_a_study(folder);
 }
 
-/// Path of the page or site: -o, or the name of the archive or folder in the current folder.
+/// Path of the page or site. Without -o it has the name of the archive or folder and is in the current folder.
 std::filesystem::path page_path(const CommandLine& line) {
   if (!line.output.empty()) return line.output;
   std::filesystem::path named = std::filesystem::path(line.files.front()).lexically_normal();

@@ -41,13 +41,13 @@ void print_overview(const CommandLine& line) {
   fmt::print("{}{}", modes_in_words(archive, width), mode_diagnostics_text(archive, width));
 }
 
-/// Adds I to A in datasets A (K, n, n).
+/// Adds I to A in the datasets of A (K, n, n).
 void add_identity(json& matrices) {
   for (json& matrix : matrices)
     for (std::size_t i = 0; i < matrix.size(); ++i) matrix[i][i] = matrix[i][i].get<double>() + 1.0;
 }
 
-/// Adds I to rows of theta = vec of [A B (c)]: entry (i, i) of A has the index i (q + 1).
+/// Adds I to rows of theta = vec of [A B (c)]. Entry (i, i) of A has the index i (q + 1).
 void add_identity_to_theta(json& rows, const LinearStructure& structure) {
   for (json& row : rows)
     for (Index i = 0; i < structure.states; ++i) {

@@ -11,7 +11,7 @@
 namespace modebank::app {
 namespace {
 
-/// The system's sizes follow from the columns' names and from the length of a mode's parameters.
+/// The system's sizes follow from the names of the columns and from the number of parameters of a mode.
 SimulationOptions system_of(const Config& config) {
   SimulationOptions system = config.simulate.system;
   system.states = static_cast<Index>(config.data.state.size());
@@ -45,7 +45,7 @@ VehicleSimulationOptions vehicle_of(const Config& config) {
   return vehicle;
 }
 
-/// One name per kind of ground, or none.
+/// One name per kind of ground, or an empty list.
 const std::vector<std::string>& grounds_of(const SimulateConfig& options) {
   const bool vehicle = options.kind == SimulatedSystem::vehicle;
   const std::size_t kinds = vehicle ? options.vehicle.friction.size() : options.system.modes.size();

@@ -16,7 +16,7 @@
 namespace modebank::app {
 namespace {
 
-/// Reads runs as `run` does, but does not split them at missing values: the filter predicts these.
+/// Reads runs as `run` does, but does not split them at missing values, because the filter predicts missing values.
 std::vector<Trajectory> read_runs(const OpenArchive& archive, const Config& config, const Bank& bank,
                                   const AveragedColumns& averaged) {
   const ImportedData data = import_data(data_options_of(config), nullptr, &averaged);
@@ -26,7 +26,7 @@ std::vector<Trajectory> read_runs(const OpenArchive& archive, const Config& conf
   return data.recording.runs;
 }
 
-/// A new checkpoint may replace the checkpoint from which the filter resumed.
+/// A new checkpoint may replace the checkpoint from which the filter continues.
 void check_checkpoint(const std::string& archive, const Config& config, bool reads_files) {
   if (config.track.checkpoint.empty()) return;
   std::vector<std::filesystem::path> sources{archive};

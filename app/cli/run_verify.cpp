@@ -14,12 +14,12 @@ namespace {
 
 using nlohmann::json;
 
-/// A problem, with the name of its file in front unless the text begins with it.
+/// The problem as text. The file's name is put in front, unless the text already begins with the name.
 std::string named_problem(const std::string& file, const std::string& what) {
   return what.rfind(file + ": ", 0) == 0 ? what : fmt::format("{}: {}", file, what);
 }
 
-/// Problems of one archive or study, and remarks on this file.
+/// Problems of one archive or study, and remarks on it.
 json report_archive(const CommandLine& line, const std::string& file) {
   const Verification result = verify_archive(file);
   if (result.ok()) print_text(line, fmt::format("{}: ok\n", file));

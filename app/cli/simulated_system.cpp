@@ -20,7 +20,7 @@ namespace modebank::app {
 namespace {
 
 struct SystemText {
-  std::string text, name;  ///< the name for messages
+  std::string text, name;  ///< name: the parameter's name in messages
 };
 
 SystemText system_text(const std::string& system, const std::filesystem::path& folder) {
@@ -41,8 +41,8 @@ const Option& parameter(const std::string& where, const std::string& key) {
   throw ConfigurationError(fmt::format("{}: unknown key {}{}", where, key, did_you_mean(key, keys)));
 }
 
-/// Refuses a parameter or key that belongs to another kind of system, since it would have no effect. `where`: file and
-/// line of each key.
+/// Throws for a parameter or key of another kind of system, because it would have no effect. `where`: file and line of
+/// each key.
 void refuse_other_kinds(const Config& config, const std::map<std::string, std::string>& where) {
   const Config defaults{};
   for (const std::vector<Option>* table : {&system_parameters(), &option_table()})

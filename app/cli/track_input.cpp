@@ -17,7 +17,7 @@
 namespace modebank::app {
 namespace {
 
-/// Removes the reader's line number, because it counts from the start of the batch and not of the input.
+/// Removes the reader's line number from a message, because it counts from the start of the batch and not of the input.
 std::string without_place(std::string message) {
   const std::string place = "standard input:";
   if (!message.starts_with(place)) return message;
@@ -76,7 +76,7 @@ void SampleReader::read_head(std::string line, std::size_t position, const Take&
     take(position, table_.is_open() ? Line::header : Line::blank);
 }
 
-/// One malformed line makes the whole batch fail. So the batch is halved until the malformed line is alone.
+/// One malformed line makes the whole batch fail. The batch is then halved until the malformed line is alone.
 void SampleReader::read_rows(const Rows& rows, const Take& take) {
   if (rows.lines.empty()) return;
   Table table;
@@ -91,7 +91,7 @@ void SampleReader::read_rows(const Rows& rows, const Take& take) {
     return read_rows(
         {{rows.lines.begin() + half, rows.lines.end()}, {rows.positions.begin() + half, rows.positions.end()}}, take);
   }
-  if (table.rows() == 0) return take(rows.positions.front(), Line::header);  // a row of units
+  if (table.rows() == 0) return take(rows.positions.front(), Line::header);  // the line is a row of units
   for (std::size_t row = 0; row < rows.lines.size(); ++row) take(rows.positions[row], accept(table, row));
 }
 
@@ -101,7 +101,7 @@ void SampleReader::leave_out(double& value, const std::string& name, const char*
   value = not_a_number;
 }
 
-/// A missing input repeats the last value, since the command still acts.
+/// For a missing input the last value is repeated, because the command is still in effect.
 SampleReader::Line SampleReader::accept(const Table& table, std::size_t row) {
   const FilePlan& plan = table_.plan();
   remarks_.clear();

@@ -11,15 +11,16 @@
 
 namespace modebank::app {
 
-/// Reads samples from lines as they arrive. Samples are rows of a LineTable; a missing input repeats its last value.
+/// Reads samples from lines as they arrive. Samples are rows of a LineTable. For a missing input the last value is
+/// repeated.
 class SampleReader {
  public:
   explicit SampleReader(const DataOptions& data);
 
   enum class Line { sample, header, blank, left_out, malformed };
-  /// Reads lines and calls `take` for each in order, with its number.
-  /// - `sample`: sample() returns the sample during the call.
-  /// - `malformed`: reason() states the fault, and nothing is kept of the line.
+  /// Reads lines. Calls `take` for each line in order, with its number and one of:
+  /// - `sample`: sample() returns the sample during the call;
+  /// - `malformed`: reason() states the fault, and the line has no other effect;
   /// - `left_out`: data.where is false.
   ///
   /// Throws ConfigurationError with the existing columns if the header lacks a needed column.
@@ -29,7 +30,7 @@ class SampleReader {
   const std::string& reason() const { return reason_; }
   /// Remarks on values of the last sample that are too large for a filter.
   const std::vector<std::string>& remarks() const { return remarks_; }
-  /// Sets the inputs before the first line. They replace missing inputs of the first samples.
+  /// Sets the inputs before the first line. They are used if the first samples lack inputs.
   void remember(const Eigen::VectorXd& input);
   LineTable& table() { return table_; }
 

@@ -14,8 +14,8 @@
 
 namespace modebank::app {
 
-/// Messages of a live filter on standard error. They never block or fail. If standard error does not accept a message,
-/// the message is dropped. The next message states how many were dropped.
+/// Messages of a live filter on standard error. Printing never blocks and never fails. A message that standard error
+/// does not accept is dropped. The next message states how many were dropped.
 class LiveMessages {
  public:
   void say(std::string_view text) {
@@ -32,7 +32,7 @@ class LiveMessages {
     }
     repeats.last = place;
   }
-  /// Prints remarks on the stream, each only once; repetitions are not counted.
+  /// Prints remarks on the stream, each only once. Repetitions are not counted.
   void say_note(const std::string& place, const std::string& text) {
     if (notes_.insert(text).second) say(fmt::format("{}: {}", place, text));
   }
@@ -48,7 +48,7 @@ class LiveMessages {
  private:
   struct Repeats {
     std::size_t count = 0;
-    std::string first, last;  ///< positions of the first and the last message
+    std::string first, last;  ///< positions of the first and the last message in the input
   };
   std::size_t dropped_ = 0;
   std::map<std::string, Repeats> repeats_;

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-/// In the order of the columns.
+/// the names of the flags, in the order of the columns
 constexpr std::array<std::pair<const char*, bool ValidityFlags::*>, 4> flag_names{
     {{"warming_up", &ValidityFlags::warming_up},
      {"input_beyond_training", &ValidityFlags::input_beyond_training},
@@ -63,7 +63,7 @@ void EstimateWriter::header(fmt::memory_buffer& out) const {
   fmt::format_to(to, "\n");
 }
 
-/// The numbers of a state: fields of CSV, or a JSON object with the state's name.
+/// The numbers of a state, as CSV fields or as a JSON object with the state's name.
 void EstimateWriter::signal(std::size_t state, std::initializer_list<double> values,
                             std::initializer_list<const char*> names, fmt::memory_buffer& out) const {
   auto to = std::back_inserter(out);

@@ -14,11 +14,11 @@ namespace modebank::app {
 /// Format of the output lines, and their optional fields.
 struct EstimateLines {
   bool json = false;      ///< NDJSON instead of CSV with a header
-  bool run = false;       ///< lines have the run's name
+  bool run = false;       ///< lines contain the name of the run
   bool forecast = false;  ///< lines contain a forecast for the time of the newest sample
 };
 
-/// A forecast from an estimate for the time of the newest sample.
+/// A forecast that starts from an estimate. It is for the time of the newest sample.
 struct Forecast {
   double time_s;
   LiveVerdict expected;
@@ -29,9 +29,9 @@ class EstimateWriter {
  public:
   EstimateWriter(std::vector<std::string> states, Eigen::Index modes, const EstimateLines& lines);
 
-  /// Appends the CSV header; nothing for NDJSON.
+  /// Appends the CSV header. NDJSON has no header.
   void header(fmt::memory_buffer& out) const;
-  /// `forecast`: null if the lines contain none.
+  /// `forecast`: null if the lines have no forecast.
   void line(const std::string& run, double time_s, const FilterEstimate& estimate, const LiveVerdict& verdict,
             const ValidityFlags& flags, const Forecast* forecast, fmt::memory_buffer& out) const;
 

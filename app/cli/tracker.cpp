@@ -14,7 +14,8 @@
 namespace modebank::app {
 namespace {
 
-/// Identifies the archive and all options that affect the filter's steps. A checkpoint must have the same identity.
+/// Text that identifies the archive and all options that affect the filter's steps. A checkpoint has to have the same
+/// text.
 std::string identity_of(const OpenArchive& archive, const Config& config, const FilterOptions& options) {
   return fmt::format("{} {} {} {}", archive.digest(), name_of(config.track.filter), name_of(options.variant),
                      name_of(options.noise));
@@ -53,7 +54,7 @@ void Tracker::restart() {
 
 void Tracker::follow_runs(const std::vector<Trajectory>& runs, bool named) {
   constexpr Eigen::Index flushed_after = 1000;
-  std::signal(SIGPIPE, SIG_IGN);  // the stream ends if the reader of standard output is gone
+  std::signal(SIGPIPE, SIG_IGN);  // if the reader of standard output has closed it, the stream ends without a signal
   open_writer({config_.track.json, named, config_.track.forecast});
   bool goes_on = resumed_s_.has_value();
   for (const Trajectory& run : runs) {
@@ -123,7 +124,7 @@ void Tracker::step(const TimedSample& sample) {
 void Tracker::write(const TimedSample& sample, const FilterEstimate& estimate, const ValidityFlags& flags) {
   if (!config_.track.forecast)
     return writer_->line(run_, sample.time_s, estimate, judge_.judge(estimate), flags, nullptr, out_);
-  made_ = estimate;  // the filter forecasts instead
+  made_ = estimate;  // keep a copy, from which the filter forecasts
   const double now_s = std::max(sample.time_s, samples_.newest_s());
   const bool ahead = now_s > sample.time_s && filter_.started();
   const Forecast forecast{now_s, forecast_judge_.judge(ahead ? filter_.forecast(now_s, sample.input) : made_)};

@@ -23,23 +23,23 @@
 
 namespace modebank::app {
 
-/// Runs a live filter from samples to standard output.
+/// Runs a live filter: reads samples and writes estimates to standard output.
 class Tracker {
  public:
-  /// `alignment`: alignment of the coming samples. Throws as resume does, and ConfigurationError if the bank has other
-  /// columns or a checkpoint cannot be written.
+  /// `alignment`: how the coming samples are aligned. Throws the exceptions of `resume`. Throws ConfigurationError if
+  /// the bank has other columns or a checkpoint cannot be written.
   Tracker(const OpenArchive& archive, const Config& config, OpenedFilter opened, const Alignment& alignment);
 
   /// Filters samples from standard input, line by line, until the input ends.
   void follow_lines();
-  /// Filters samples of recorded runs. `named`: lines contain the run's name.
+  /// Filters the samples of recorded runs. `named`: lines contain the run's name.
   void follow_runs(const std::vector<Trajectory>& runs, bool named);
   /// Ends the stream, also after an error: writes the remaining estimates and the checkpoint. Throws DataError if no
   /// sample could be used.
   void finish(bool failed);
 
  private:
-  /// The state before a jump in time after which the filter started anew.
+  /// The filter's state before a jump in time. After the jump the filter started anew.
   struct BeforeLeap {
     double time_s;
     AlignedSamples samples;
@@ -52,7 +52,7 @@ class Tracker {
   AnyFilter& filter_ = *opened_.filter;
   LiveJudge judge_, forecast_judge_;
   ValidityJudge validity_;
-  FilterEstimate made_;  ///< the last estimate, from which the filter forecasts
+  FilterEstimate made_;  ///< the last estimate, from which forecasts are made
   SampleReader reader_;
   std::optional<EstimateWriter> writer_;
   std::string identity_, run_, place_;
@@ -60,10 +60,10 @@ class Tracker {
   Alignment alignment_;
   double stepped_s_ = 0.0;           ///< time of the last estimate
   std::optional<double> last_s_;     ///< time of the last sample
-  std::optional<double> resumed_s_;  ///< estimates up to this time were written before the checkpoint
+  std::optional<double> resumed_s_;  ///< the last run wrote the estimates up to this time, before its checkpoint
   std::optional<BeforeLeap> before_leap_;
-  std::optional<TimedSample> first_;     ///< the first sample, until a second one arrives
-  std::optional<std::size_t> first_at_;  ///< position of the first estimate in out_; empty once it was written
+  std::optional<TimedSample> first_;     ///< the first sample; kept until the second one arrives
+  std::optional<std::size_t> first_at_;  ///< position of the first estimate in out_; empty after it was written
   std::size_t line_number_ = 0, came_ = 0, refused_ = 0, estimates_ = 0;
   fmt::memory_buffer out_;
   std::optional<LineStream> lines_;  ///< set while standard input is read

@@ -22,9 +22,9 @@ void Tracker::go_on() {
 
 void Tracker::save() const { app::save(filter_, config_.track.checkpoint, identity_); }
 
-/// Saves a checkpoint while the filter runs. The estimates up to this checkpoint are written first, so that a program
-/// that resumes loses none. If the checkpoint cannot be written, the filter continues and tries again when the next one
-/// is due.
+/// Saves a checkpoint while the filter runs. Before this, it writes the estimates up to this checkpoint, so that a
+/// program that continues loses none. If the checkpoint cannot be written, the filter continues and tries again at the
+/// next checkpoint.
 void Tracker::keep() {
   checkpoint_due_ = false;
   try {

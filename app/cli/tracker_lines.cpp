@@ -61,7 +61,7 @@ void Tracker::take_lines(std::vector<std::string>& lines) {
   lines.clear();
 }
 
-/// The writing program may have ended inside the last line.
+/// The last line may be incomplete, because the writing program may have stopped inside it.
 void Tracker::take_last_line(const std::string& line) {
   const bool whole = reader_.table().is_open() && reader_.table().is_whole(line);
   messages_.say(fmt::format("line {}: the last line has no line break at its end: {}", line_number_ + 1,

@@ -1,5 +1,5 @@
-// Samples that a live filter uses: in order of time, and one per step. A gap or a jump of the clock starts the filter
-// anew.
+// Selects the samples that a live filter uses: in order of time, and one per step. After a gap or a jump of the clock,
+// the filter starts anew.
 #include <utility>
 
 #include "app/cli/tracker.hpp"
@@ -26,7 +26,7 @@ void Tracker::take_sample(const TimedSample& sample) {
     if (is_taken(ready->time_s)) step(*ready);
 }
 
-/// The second sample shows the unit of times, so the first one is filtered again.
+/// The second sample shows that the unit of times was wrong, so the first sample is filtered again.
 void Tracker::correct_first(double time_s) {
   if (!first_) return;
   const bool has_left = !first_at_ && estimates_ > 0;
@@ -53,9 +53,9 @@ bool Tracker::is_gap(double from_s, double to_s) const {
   return SampleFeed::steps_between(from_s, to_s, bank_.dt_s) > longest_gap_steps;
 }
 
-/// If a sample jumps ahead and the next one follows the sample before the jump, its time was wrong. The filter then
-/// returns to the state before the jump. A time that goes back by more than the filter's memory belongs to another
-/// clock.
+/// If a sample jumps ahead but the next sample continues from before the jump, the time of the jumping sample was
+/// wrong. The filter then returns to its state before the jump. A time that goes back by more than the filter's memory
+/// belongs to another clock.
 bool Tracker::comes_in_time(double time_s) {
   if (!last_s_ || time_s > *last_s_) return true;
   if (before_leap_ && time_s > before_leap_->time_s && !is_gap(before_leap_->time_s, time_s)) {
@@ -79,7 +79,8 @@ bool Tracker::comes_in_time(double time_s) {
   return false;
 }
 
-/// For example a log at 100 Hz for a model that was learned at 10 Hz.
+/// Some samples are ignored if the stream is faster than the model. Example: a log at 100 Hz for a model that was
+/// learned at 10 Hz.
 bool Tracker::is_taken(double time_s) {
   if (resumed_s_ && time_s <= *resumed_s_) return false;
   if (thinning_.takes(time_s)) return true;

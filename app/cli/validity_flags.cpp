@@ -5,13 +5,16 @@
 namespace modebank::app {
 namespace {
 
-/// Mean log score of the first five predictions of a run, the next five, and numbers 11 to 30: 1.27, 1.41, 1.46 on
-/// DRIVE (201 runs), 2.34, 2.76, 3.15 on ICE (24), 2.19, 2.39, 2.66 on FLOORING (16).
+/// Number of predictions before a filter has settled. Mean log scores of predictions 1 to 5, 6 to 10 and 11 to 30 of a
+/// run:
+/// - DRIVE (201 runs): 1.27, 1.41, 1.46
+/// - ICE (24): 2.34, 2.76, 3.15
+/// - FLOORING (16): 2.19, 2.39, 2.66
 constexpr Eigen::Index unsettled_samples = 10;
 
-/// Tail probability on either side, under the mixture of all modes. One mode with probability 0.001 that predicts the
-/// measurement prevents the flag. On held-out runs the flag is set for 0 of 5,533 samples of ICE, 1 of 10,300 of DRIVE,
-/// 3 of 7,138 of FLOORING.
+/// Tail probability on either side, under the mixture of all modes. The flag is not set if even one mode with
+/// probability 0.001 predicts the measurement. On held-out runs the flag is set for 0 of 5,533 samples of ICE, 1 of
+/// 10,300 of DRIVE, 3 of 7,138 of FLOORING.
 constexpr double unlike_tail = 1e-6;
 
 }  // namespace
@@ -29,11 +32,13 @@ ValidityFlags ValidityJudge::judge(double time_s, const Eigen::VectorXd& input, 
   flags.warming_up = !started || samples_ <= lags_ + unsettled_samples;
   flags.input_beyond_training = is_beyond_training(input);
   for (const double pit : estimate.pit)
-    if (pit < unlike_tail || pit > 1.0 - unlike_tail) flags.unlike_any_mode = true;  // false for NaN, a missing signal
+    if (pit < unlike_tail || pit > 1.0 - unlike_tail)
+      flags.unlike_any_mode = true;  // comparisons with NaN (a missing signal)
+                                     // are false
   return flags;
 }
 
-/// A missing input repeats the last one, which was judged on arrival.
+/// A missing input is a repeated value, which was judged when it arrived.
 bool ValidityJudge::is_beyond_training(const Eigen::VectorXd& input) const {
   for (Eigen::Index i = 0; i < std::min(input.size(), trained_.least.size()); ++i)
     if (input(i) < trained_.least(i) || input(i) > trained_.largest(i)) return true;

@@ -8,15 +8,15 @@
 
 namespace modebank::app {
 
-/// Reasons not to rely on an output line of `track`.
+/// Reasons not to trust an output line of `track`.
 struct ValidityFlags {
-  bool warming_up = false;  ///< the filter has not started, or has made fewer than ten predictions since its start
-  bool input_beyond_training = false;  ///< an input is outside its range in the training runs
-  bool unlike_any_mode = false;        ///< no mode predicts the measurement
-  bool stamp_late = false;             ///< at least one and a half model steps since the sample before
+  bool warming_up = false;  ///< the filter has not started, or has made fewer than ten predictions since the start
+  bool input_beyond_training = false;  ///< an input is outside the range of the training runs
+  bool unlike_any_mode = false;        ///< no mode predicts the measurement well
+  bool stamp_late = false;             ///< at least one and a half model steps passed since the sample before
 };
 
-/// Sets the flags for a stream of samples. Its state follows from SampleFeed, so a filter that continues from a
+/// Sets the flags for a stream of samples. Its state is derived from SampleFeed, so a filter that continues from a
 /// checkpoint sets the same flags.
 class ValidityJudge {
  public:
@@ -26,7 +26,7 @@ class ValidityJudge {
 
   /// To be called when the filter starts anew.
   void restart() { samples_ = 0; }
-  /// Continues after this number of samples; the last one has this time.
+  /// Continues after `samples` samples; `time_s` is the time of the last one.
   void go_on(Eigen::Index samples, double time_s) {
     samples_ = samples;
     last_s_ = time_s;

@@ -10,13 +10,13 @@
 
 namespace modebank {
 
-/// The options of every stage. With the data they determine all numbers of a chain.
+/// The options of every stage. Together with the data they determine all numbers of a chain.
 struct ChainOptions : LearningOptions {
   DataOptions data = {};
-  std::vector<std::string> mode_names = {};  ///< names of the bank's modes; they change no number
+  std::vector<std::string> mode_names = {};  ///< names of the bank's modes; they affect no number
 };
 
-/// Refinement's starts from random parts of runs: three for every ten restarts of the mixture.
+/// Number of refinement's starts from random parts of runs: three for every ten restarts of the mixture.
 inline std::ptrdiff_t refinement_restarts(int restarts) { return std::lround(0.3 * restarts); }
 
 }  // namespace modebank

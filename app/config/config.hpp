@@ -22,24 +22,24 @@ struct TrackConfig {
   Index checkpoint_interval = 0;
   std::string resume;
   bool forecast = false;
-  double watchdog_s = 0.0;  ///< period of the status lines on standard error; 0: none
-  bool json = false;        ///< --json: output lines are JSON objects for any form of input
+  double watchdog_s = 0.0;  ///< period of the status lines on standard error; 0: no status lines
+  bool json = false;        ///< set by --json: output lines are JSON objects, whatever the form of the input
 };
 
-/// The [report] section: limits of a page.
+/// The [report] section, which limits the size of a page.
 struct ReportConfig {
   double size_mb = 64.0;  ///< largest page [1e6 bytes]
   Index runs = 10;        ///< number of a study's runs that get pages of their own
 };
 
 struct ArchiveConfig {
-  std::string output;  ///< empty: the configuration file's name with .h5, in the current folder
-  std::string input;   ///< archive that supplies earlier stages
+  std::string output;  ///< empty: the name of the configuration file with the extension .h5, in the current folder
+  std::string input;   ///< archive from which earlier stages are read
   std::string bank;    ///< archive whose bank is evaluated
 };
 
 struct JobConfig {
-  int threads = 0;  ///< 0: all cores
+  int threads = 0;  ///< 0: one thread per core
   std::uint64_t seed = 1;
 
   std::size_t thread_count() const {
@@ -51,9 +51,9 @@ enum class SimulatedSystem { linear, vehicle };
 
 struct SimulateConfig {
   std::string name =
-      "husky_ice";  ///< name of a built-in system, or a system file, which sets all members down to ground_names
+      "husky_ice";  ///< name of a built-in system, or a system file; it sets all members from here to ground_names
   SimulatedSystem kind = SimulatedSystem::linear;
-  SimulationOptions system;               ///< the linear system; a vehicle also uses its commands, runs and outliers
+  SimulationOptions system;               ///< the linear system; a vehicle also uses these commands, runs and outliers
   VehicleSimulationOptions vehicle;       ///< parameters that only a vehicle has
   std::vector<std::string> ground_names;  ///< names of the kinds of ground, or of the linear system's modes
   std::string output = "simulated";
@@ -61,22 +61,22 @@ struct SimulateConfig {
   double state_rate_hz = 65.0;
 };
 
-/// Origin of a number of lags, of the delay or of the windows' length.
+/// How the number of lags, the delay or the length of windows is set.
 enum class LagChoice { by_model, automatic, number };
 
-/// Whether the number is searched for. `by_model`: the configuration does not state the key, so the model decides.
+/// Whether the number is searched for. `by_model`: what the model decides if the configuration does not state the key.
 inline bool is_automatic(LagChoice choice, bool by_model) {
   return choice == LagChoice::automatic || (choice == LagChoice::by_model && by_model);
 }
 
-/// Which numbers of the model's structure are searched for, and the window length that follows from them.
+/// Which numbers of the model's structure are searched for, and how the length of windows is set.
 struct StructureConfig {
-  bool automatic_model = true;  ///< window.model = auto: by_model means automatic
+  bool automatic_model = true;  ///< window.model = auto: the choice by_model then means automatic
   LagChoice state = LagChoice::by_model, input = LagChoice::by_model, delay = LagChoice::by_model;
   LagChoice length = LagChoice::by_model, step = LagChoice::by_model;  ///< length and step of windows
 };
 
-/// Options of every stage, as one configuration file states them. The option table lists their keys.
+/// Options of every stage from one configuration file. The option table lists their keys.
 struct Config {
   DataOptions data;
   FitOptions window;
@@ -87,7 +87,7 @@ struct Config {
   BankOptions bank;
   std::vector<std::string> mode_names;
   FilterOptions filter;
-  ScoringOptions scoring;  ///< keys of [filter] that do not change a filter's steps
+  ScoringOptions scoring;  ///< keys of [filter] that do not affect a filter's steps
   TrackConfig track;
   ReportConfig report;
   ArchiveConfig archive;
@@ -99,17 +99,19 @@ struct Config {
 /// The options that determine the numbers of a run.
 ChainOptions chain_options(const Config& config);
 
-/// The data section. It includes the gap between blocks of data.split, which depends on a window and its lags.
+/// The options of the data section. They include the gap between blocks of data.split, which depends on the length and
+/// lags of a window.
 DataOptions data_options_of(const Config& config);
 
-/// The window section as used for a fit before lags are searched for.
+/// The options of the window section for a fit before the search for lags.
 FitOptions window_options_of(const Config& config);
-/// Which of its lags are searched for.
+/// Which lags of the configuration are searched for.
 SearchedLags searched_lags_of(const Config& config);
-/// Which numbers of windows follow from the structure and the data.
+/// Which numbers of the windows are computed from the structure and the data.
 AutomaticWindows automatic_windows_of(const Config& config);
 
-/// Checks values against each other, before any file of data is opened. Throws ConfigurationError naming the keys.
+/// Checks values against each other before any data file is opened. Throws ConfigurationError with the names of the
+/// keys.
 void validate(const Config& config);
 
 }  // namespace modebank::app

@@ -64,13 +64,13 @@ void apply(Config& config, const std::string& where, const std::string& key, con
   set_option(config, known_option(where, key), where, value, has_comment);
 }
 
-/// A repeatable key on the command line replaces all of the file's lines of this key.
+/// If the command line sets a repeatable key, all lines of this key in the file are ignored.
 void clear_overridden(Config& config, const KeyValues& overrides) {
   for (const auto& [key, value] : overrides)
     if (const Option* option = find_option(key); option && option->repeatable) option->set(config, "");
 }
 
-/// With window.model = auto on the command line, lags of the file are ignored.
+/// If the command line sets window.model = auto, the lags in the file are ignored.
 void forget_lags(Config& config, const KeyValues& overrides) {
   if (std::find(overrides.begin(), overrides.end(), KeyValues::value_type("window.model", "auto")) == overrides.end())
     return;
@@ -94,7 +94,7 @@ void apply_overrides(Config& config, const KeyValues& overrides, Faults& faults)
   for (const auto& [key, value] : overrides) faults.collect([&] { apply_override(config, key, value); });
 }
 
-/// Defaults that follow from the file's folder and name.
+/// Sets the defaults that depend on the file's folder and name.
 void apply_defaults_of_file(Config& config, const std::filesystem::path& path, Origins& origins) {
   if (config.data.root.empty()) {
     const char* environment = std::getenv("MODEBANK_DATA");
@@ -170,7 +170,7 @@ class FileLines {
       spdlog::warn(
           "{}: {} is cut to '{}': # starts a comment{}", where, entry.key, entry.value,
           takes_quotes(entry.key) ? "; a value that holds one stands in double quotes" : ", so no value can hold one");
-    // A relative root in a file means relative to that file, wherever the program is started.
+    // A relative data.root in a file is relative to the folder of that file, not to the current folder.
     if (entry.key == "data.root" && !config_.data.root.empty())
       config_.data.root = (std::filesystem::absolute(path_).parent_path() / config_.data.root).string();
   }
@@ -179,7 +179,7 @@ class FileLines {
   const std::filesystem::path& path_;
   Config& config_;
   Origins& origins_;
-  std::map<std::string, int> seen_;  ///< by key, the line that sets it
+  std::map<std::string, int> seen_;  ///< line that sets each key
 };
 
 }  // namespace
@@ -203,7 +203,7 @@ Config config_of_text(const std::string& bytes, const std::filesystem::path& pat
 
 namespace {
 
-/// The keys of a resolved configuration that exist today and for which `wanted` is true.
+/// The keys of a resolved configuration that still exist and for which `wanted` returns true.
 template <class Wanted>
 Config config_of(const std::string& resolved, Wanted wanted) {
   Config config;

@@ -29,7 +29,7 @@ void put(KeyEdit edit, std::vector<KeyEdit>& edits) {
   edits.push_back(std::move(edit));
 }
 
-/// Keeps the folder that relative data paths start from, even if the new file is in another folder.
+/// Relative data paths keep their meaning, even if the new file is in another folder.
 void keep_root(const Config& config, const std::filesystem::path& output, std::vector<KeyEdit>& edits,
                const std::filesystem::path& file, const std::string& text) {
   const auto folder_of = [](const std::filesystem::path& path) {

@@ -22,19 +22,19 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double least_resolved = 0.25;  // sample periods; data cannot resolve a shorter time constant
+constexpr double least_resolved = 0.25;  // in sample periods; the data cannot resolve a shorter time constant
 
-/// Data that several parts of the report use.
+/// Intermediate results that several parts of the report use.
 struct Material {
   std::vector<RunStreams> recorded;
   std::vector<RunPair> ordered;
-  std::vector<Trajectory> parts;  // joined runs of all roles, split at gaps
+  std::vector<Trajectory> parts;  // joined runs of all roles, each split at gaps
   LinearStructure structure;
   VectorXd still_level;                                      // per input
-  std::vector<std::vector<bool>> states_rest, inputs_still;  // per run and sample
+  std::vector<std::vector<bool>> states_rest, inputs_still;  // for each run and sample, true at rest
 };
 
-/// Joins the runs as `run` would if all correctable faults were corrected.
+/// Joins the runs as if all correctable faults were corrected.
 void join_parts(const CheckOptions& options, Material& material, DataCheck& check) {
   DataOptions lenient = options.data;
   lenient.missing = Missing::gap;
@@ -47,7 +47,7 @@ void join_parts(const CheckOptions& options, Material& material, DataCheck& chec
     ordered[i].inputs.stream = material.ordered[i].inputs;
     ordered[i].truth.clear();
   }
-  std::vector<std::string> notes;  // `run` repeats these notes
+  std::vector<std::string> notes;  // not used here: `run` prints these notes
   const LogSampling sampling = choose_sampling(ordered, lenient, nullptr, notes);
   for (std::size_t i = 0; i < ordered.size(); ++i) {
     try {
@@ -73,7 +73,8 @@ std::vector<VectorXd> rows_of(const std::vector<RunPair>& runs, bool of_states, 
 
 double share_beyond(const VectorXd& values, const SaturationLimits& limits) {
   if (values.size() == 0) return 0.0;
-  const auto beyond = (values.array() <= limits.low || values.array() >= limits.high).count();  // NaN compares false
+  const auto beyond =
+      (values.array() <= limits.low || values.array() >= limits.high).count();  // a comparison with NaN is false
   return static_cast<double>(beyond) / static_cast<double>(values.size());
 }
 
@@ -88,7 +89,7 @@ VectorXd joined(const std::vector<VectorXd>& rows) {
   return all;
 }
 
-/// Checks one channel in every run, and over all of them.
+/// Checks one channel, first in each run and then over all runs.
 void check_channels(const Material& material, const std::string& name, const std::string& unit, bool is_state,
                     Index row, DataCheck& check) {
   ChannelSummary& summary = check.channels.emplace_back();
@@ -99,7 +100,7 @@ void check_channels(const Material& material, const std::string& name, const std
   summary.values = check_channel(all);
   summary.values.outliers = 0;
   summary.limits = saturation_limits(rows);
-  if (summary.limits.soft && is_state)  // a smooth motion lingers where it reverses, which looks like a limit
+  if (summary.limits.soft && is_state)  // a smooth motion stays long near its turning points, which looks like a limit
     summary.limits = {not_a_number, not_a_number, false};
   summary.saturated = share_beyond(all, summary.limits);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -120,7 +121,7 @@ void check_all_channels(const DataOptions& data, const Material& material, DataC
     check_channels(material, data.input[i], unit(data.input_unit, i), false, static_cast<Index>(i), check);
 }
 
-/// Share of repeated samples in motion, over all runs or over those of a role.
+/// Share of repeated samples in motion, over all runs or over the runs of a role.
 double repeats_of(const Material& material, bool is_state, Index row, const std::optional<Role>& role = {}) {
   std::vector<VectorXd> rows;
   std::vector<bool> at_rest;
@@ -170,7 +171,7 @@ void check_lags(const CheckOptions& options, const Material& material, DataCheck
   if (!check.has_lag) return;
   try {
     check.lag = choose_lag(material.ordered, {options.data.lag_range_s, options.data.rate_hz});
-  } catch (const DataError&) {  // too few data to fit; find_unusable reports this
+  } catch (const DataError&) {  // there are too few data for a fit; find_unusable reports this
     check.has_lag = false;
     return;
   }
@@ -184,8 +185,8 @@ double median_of(std::vector<double> values) {
   return values.empty() ? 0.0 : median(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
 }
 
-/// Largest share of repeated values in motion, over the measured inputs. Commands do not count, because they are coarse
-/// or switched, while measurements take many values. An input that never changes does not count.
+/// Largest share of repeated values in motion among the measured inputs. Commands are ignored, because they are coarse
+/// or switched and so repeat often. Inputs that never change are also ignored.
 double repeated_inputs(const Material& material) {
   double most = 0.0;
   for (Index i = 0; i < material.structure.inputs; ++i) {
@@ -208,7 +209,7 @@ Recording training_of(const Material& material, const DataCheck& check) {
   return training;
 }
 
-/// Uses training runs alone, since held-out runs must not affect the settings.
+/// Uses only training runs, because held-out runs must not affect the settings.
 void advise(const Material& material, const Recording& training, DataCheck& check) {
   std::vector<double> inputs_hz, states_hz, jitter, time_constants;
   for (const RunReport& run : check.runs) {
@@ -234,7 +235,7 @@ Index longest_training_stretch(const Material& material) {
   return longest;
 }
 
-/// Reason why identification would fail; empty if it would not.
+/// Reason why identification would fail; empty if it would succeed.
 std::string find_unusable(const DataCheck& check, const Recording& training) {
   for (const RunReport& run : check.runs)
     if (!run.problem.empty()) return run.problem;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_names = 8;
 
-/// "00, 03 and 5 more": runs that meet a condition; empty if none does.
+/// Names of the runs that meet a condition, for example "00, 03 and 5 more"; empty if there is none.
 std::string runs_where(const DataCheck& check, const std::function<bool(const RunReport&)>& condition) {
   std::vector<std::string> names;
   for (const RunReport& run : check.runs)
@@ -74,7 +74,7 @@ void time_findings(const DataCheck& check, const Config& config, std::vector<std
   }
 }
 
-/// Joint excitation of the inputs in the run with the least excitation; empty if a run has none.
+/// Joint excitation of the inputs in the run with the lowest value; empty if the value is missing for some run.
 std::string excitation_words(const DataCheck& check) {
   Index least = check.runs.empty() ? 0 : check.runs.front().excitation;
   for (const RunReport& run : check.runs) least = std::min(least, run.excitation);

@@ -12,13 +12,13 @@ namespace modebank::app {
 /// Reason why the data cannot be used as configured; empty if they can.
 std::string unusable_text(const DataCheck& check);
 
-/// Findings, each with the key that accepts or corrects it.
+/// Findings. Each names the key that accepts or corrects it.
 std::vector<std::string> findings_of(const DataCheck& check, const Config& config);
 
 std::string check_text(const DataCheck& check, const std::vector<std::string>& findings);
 nlohmann::json check_json(const DataCheck& check, const std::vector<std::string>& findings);
 
-/// Reason for the advice on the rate.
+/// Reason for the recommended rate.
 std::string rate_reason(const Advice& advice);
 std::string length_reason(const Advice& advice);
 std::string loss_reason(const Advice& advice);

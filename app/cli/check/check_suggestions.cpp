@@ -93,7 +93,7 @@ json gain_json(const PairedGain& gain) {
 }  // namespace
 
 KeyValues changed_keys(const Config& config, const Settings& from, const Settings& to) {
-  Config stated = config;  // the value is a number even if the key is `auto`
+  Config stated = config;  // the settings contain a number, even if the key's value is `auto`
   if (from.window_length != to.window_length) stated.structure.length = LagChoice::number;
   if (from.window_step != to.window_step) stated.structure.step = LagChoice::number;
   const Config before = with(stated, from), after = with(stated, to);

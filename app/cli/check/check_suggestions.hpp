@@ -10,20 +10,20 @@
 
 namespace modebank::app {
 
-/// Keys and values that change the first settings into the second.
+/// Keys and values that turn the settings `from` into `to`.
 KeyValues changed_keys(const Config& config, const Settings& from, const Settings& to);
 
 /// Reason for a trial.
 std::string reason_text(const Trial& trial);
 
-/// The trial's gain with the number of runs and the reason; without a gain, the reason for that.
+/// The trial's gain, the number of runs and the reason. Without a gain, the reason why there is none.
 std::string gain_reason(const Suggestions& suggestions, const Trial& trial);
 
-/// Text on the suggestions with their gains, and on trials without improvement.
+/// Text on the suggestions with their gains, and on the trials that gained nothing.
 std::string suggestions_text(const Suggestions& suggestions, const Config& config);
 nlohmann::json suggestions_json(const Suggestions& suggestions, const Config& config);
 
-/// The configuration file with the keys of the command line and the suggestions, as the content of `output`. Throws
+/// Content of the file `output`: the configuration file with the keys of the command line and the suggestions. Throws
 /// ConfigurationError for a path that a configuration cannot contain.
 std::string applied_text(const Suggestions& suggestions, const Config& config, const std::filesystem::path& file,
                          const KeyValues& overrides, const std::filesystem::path& output);

@@ -15,13 +15,13 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Each part is a chain of its own, so more parts cost more than they add.
+/// Every part needs its own learning, so more parts would cost more than they are worth.
 constexpr Index most_parts = 3;
 
-/// Whether periods are equal up to the rounding of rates.
+/// Whether periods are equal. The tolerance allows for rounded rates.
 bool as_long(double a, double b) { return std::abs(a - b) <= 0.02 * b; }
 
-/// The recording as `run` would import it with the part held out.
+/// The recording as `run` would import it if the part were held out.
 ValidationSplit split_of(const DataOptions& data, const LeftOutPlan& plan, std::size_t part) {
   DataOptions options = data;
   options.test = plan.parts[part];
@@ -43,13 +43,13 @@ std::vector<ValidationSplit> splits_of(const DataOptions& data, const LeftOutPla
   return splits;
 }
 
-/// Number of samples that last `common_s`; 0 if it is not a whole number.
+/// Number of samples in a time of `common_s`; 0 if this is not a whole number.
 Index samples_ahead(double common_s, double period_s) {
   const double ahead = std::round(common_s / period_s);
   return ahead >= 1.0 && as_long(ahead * period_s, common_s) ? static_cast<Index>(ahead) : 0;
 }
 
-/// Index of the run to which a part belongs. Import and validation_splits name parts RUN.2 and RUN[40].
+/// Index of the run to which a part belongs. A part has a name such as RUN.2 or RUN[40].
 std::size_t owner_of(const std::string& part, const std::vector<std::string>& runs) {
   std::size_t owner = runs.size();
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -73,7 +73,7 @@ VectorXd joined(const std::vector<const VectorXd*>& pieces) {
   return all;
 }
 
-/// Joins the parts of one run, in order of time.
+/// Joins the parts of one run in the order of time.
 LeftOutRun in_one(std::vector<LeftOutRun> parts) {
   std::erase_if(parts, [](const LeftOutRun& part) { return part.time_s.size() == 0; });
   std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.time_s(0) < b.time_s(0); });
@@ -99,7 +99,7 @@ LeftOut predict_all(const ChainOptions& options, const LeftOutPlan& plan, double
   return left_out;
 }
 
-/// Index of the time nearest to `at_s`; -1 if none lies within half a period.
+/// Index of the time that is nearest to `at_s`; -1 if no time is within half a period.
 Index nearest(const VectorXd& time_s, double at_s, double period_s) {
   const double* const begin = time_s.data();
   const Index after = std::lower_bound(begin, begin + time_s.size(), at_s) - begin;
@@ -109,7 +109,8 @@ Index nearest(const VectorXd& time_s, double at_s, double period_s) {
   return best >= 0 && std::abs(time_s(best) - at_s) <= half * period_s ? best : -1;
 }
 
-/// Log densities of one run in pairs: one per sample of the slower rate, with the nearest sample of the faster one.
+/// Pairs of log densities of one run. Each sample of the slower rate is paired with the nearest sample of the faster
+/// rate.
 struct Beside {
   VectorXd slower, faster;
 };

@@ -1,4 +1,4 @@
-// Settings that suggestions change: the options of a chain, and values that suit the data.
+// Settings that `check` can suggest: options of a chain with values that suit the data.
 #include <algorithm>
 #include <cmath>
 

@@ -15,7 +15,7 @@
 namespace modebank {
 namespace {
 
-/// Every addition to a model must gain this much; a smaller gain would not repeat on other runs.
+/// Every change of a model must gain this much, because a smaller gain would not repeat on other runs.
 bool is_taken(const PairedGain& gain) {
   return is_worth_it(PairedLoss{gain.gain, gain.standard_error},
                      Eigen::VectorXd::Constant(1, static_cast<double>(gain.samples)));
@@ -25,7 +25,8 @@ CheckOptions check_options(const ChainOptions& options) {
   return {options.data, options.window.length, options.window.intercept};
 }
 
-/// The sequence of trials. Keeps the predictions of all accepted settings, those of the present settings first.
+/// The sequence of trials. Keeps the predictions of all accepted settings; the first entry belongs to the present
+/// settings.
 class Search {
  public:
   Search(const ChainOptions& options, const DataCheck& check, const SuggestionScope& scope, const Listener& listener)
@@ -65,7 +66,7 @@ class Search {
 
   Settings& held() { return found_.suggested; }
 
-  /// Without a column of times the rate is stated in the configuration and cannot be changed.
+  /// Without a column of times, the configuration states the rate, so the rate cannot be changed.
   bool has_times() const { return !options_.data.time.empty(); }
 
   double wanted_hz() const { return check_.advice.rate.rate_hz; }
@@ -73,17 +74,17 @@ class Search {
     return found_.present.rate_hz > 0.0 ? found_.present.rate_hz : check_.advice.rate_facts.inputs_hz;
   }
 
-  /// The slower period of the two rates to compare.
+  /// The longer sample period of the two rates to compare.
   double common_time_s() const {
     return 1.0 / (wanted_hz() > 0.0 ? std::min(wanted_hz(), present_hz()) : present_hz());
   }
 
-  /// Whether refinement has random starts. They take at least half of the time.
+  /// Whether refinement has random starts, which need at least half of its time.
   bool has_random_starts() const {
     return !scope_.one_motion && options_.bank.em.restarts > 0 && chain_inputs(options_).bank.bank.refine == Refine::em;
   }
 
-  /// Names of the settings that differ from the present ones, for messages.
+  /// Names of the settings that differ from the present settings, for messages.
   std::string other_words(const Settings& settings) const {
     std::string words;
     if (settings.measurement_variance != found_.present.measurement_variance)
@@ -133,7 +134,8 @@ class Search {
     if (whole_.empty()) whole_.push_back(has_random_starts() ? predict(found_.present, true) : held_.front());
   }
 
-  /// A gain without random starts must repeat with them. Otherwise it came from an optimum that `run` does not reach.
+  /// A gain without random starts must be confirmed with random starts. Otherwise the gain could come from an optimum
+  /// that `run` does not reach.
   void confirm(LeftOut said, Trial& trial) {
     start_whole();
     LeftOut whole = has_random_starts() ? predict(trial.to, true) : said;
@@ -151,7 +153,7 @@ class Search {
     DataCheck then;
     try {
       then = checked(to, to.lag_s);
-    } catch (const std::runtime_error& error) {  // the blocks are too short for windows at that rate
+    } catch (const std::runtime_error& error) {  // at that rate the blocks are too short for windows
       return found_.trials.push_back({Change::rate, held(), to, check_.advice, {}, error.what(), false});
     }
     if (then.advice.length.length > 0) to.window_length = then.advice.length.length;
@@ -170,14 +172,14 @@ class Search {
     to.lag_auto = true;
     Trial unscored{Change::lag, held(), to, check_.advice, {}, "there are fewer than three training runs", false};
     if (plan_.parts.empty())
-      return found_.trials.push_back(unscored);  // without parts the lag of a run would be estimated on itself
+      return found_.trials.push_back(unscored);  // without parts, a run's lag would be estimated from the run itself
     attempt(Change::lag, to, check_.advice);
     if (found_.trials.back().accepted) check_ = checked(to, check_.lag.lag.mean);
   }
 
   void try_length() {
     const bool with_rate =
-        held().rate_hz != found_.present.rate_hz;  // the rate and the windows' length are changed together
+        held().rate_hz != found_.present.rate_hz;  // the rate and the length of windows change together
     Settings to = held();
     to.window_length = check_.advice.length.length;
     if (to.window_length == 0 || to.window_length == held().window_length || with_rate) return;
@@ -190,7 +192,7 @@ class Search {
     if (check_.advice.loss.tails.transitions > 0 && to.loss != held().loss) attempt(Change::loss, to, check_.advice);
   }
 
-  /// Tries the state's variance at rest as R. Not with drift, which needs exactly measured states.
+  /// Tries the state's variance at rest as R. Not used with drift, because drift needs exactly measured states.
   void try_noise() {
     const RestNoise rest = rest_noise(check_);
     if (held().measurement_variance || !(rest.variance > 0.0) || options_.bank.em.drift != Drift::none) return;
@@ -199,7 +201,7 @@ class Search {
     attempt(Change::noise, to, check_.advice);
   }
 
-  /// The trial changes the random starts, so it is judged with them at once.
+  /// The trial changes the random starts, so it is judged with random starts at once.
   void try_restarts() {
     using app::many_restarts;
     if (held().restarts >= many_restarts || !has_random_starts()) return;

@@ -13,7 +13,7 @@
 
 namespace modebank {
 
-/// Settings for which `check` tries other values.
+/// Settings whose values `check` varies.
 struct Settings {
   double rate_hz = 0.0;
   bool lag_auto = false;
@@ -32,56 +32,56 @@ enum class Change { rate, lag, length, loss, noise, restarts };
 /// Which settings to try, and how to judge them.
 struct SuggestionScope {
   std::vector<Change> changes{Change::rate, Change::lag, Change::length, Change::loss};
-  bool one_motion = false;  ///< whether a bank of one mode judges the trial; otherwise the bank is learned as by `run`
+  bool one_motion = false;  ///< whether a bank of one mode judges the trial; otherwise a bank is learned as in `run`
 
   bool has(Change change) const { return std::find(changes.begin(), changes.end(), change) != changes.end(); }
 };
 
 /// Variance of a single state in the training runs while all inputs rest.
 struct RestNoise {
-  double duration_s = 0.0;  ///< 0: the state never rests, or there are several states
+  double duration_s = 0.0;  ///< time at rest; 0 if the state never rests or if there are several states
   double variance = 0.0;    ///< [state unit^2]
 };
 RestNoise rest_noise(const DataCheck& check);
 
-/// A change of settings, compared with the settings accepted so far.
+/// A change of settings. It is compared with the settings accepted so far.
 struct Trial {
   Change change = Change::rate;
   Settings from, to;
-  Advice advice;  ///< computed for the data with the settings of the trial
-  PairedGain
-      gain;  ///< gain of `to` over `from` on training runs left out; for an accepted trial with all starts of `run`
-  std::string unscored;  ///< reason of a missing gain; else empty
+  Advice advice;    ///< advice for the data with the settings of the trial
+  PairedGain gain;  ///< gain of `to` over `from` on training runs left out; an accepted trial was computed with all
+                    ///< starts of `run`
+  std::string unscored;  ///< reason why there is no gain; empty if there is one
   bool accepted = false;
-  RestNoise rest = {};  ///< basis of a stated measurement noise
+  RestNoise rest = {};  ///< source of the suggested measurement noise
 };
 
 struct Suggestions {
   Settings present, suggested;
   std::vector<Trial> trials;
-  PairedGain together;     ///< of `suggested` over `present`
+  PairedGain together;     ///< gain of `suggested` over `present`
   Index runs = 0;          ///< number of training runs that were left out in turn
   bool whole_runs = true;  ///< false: there are too few runs, so parts of runs were left out
-  std::string unscored;    ///< reason why no setting could be tried; else empty
+  std::string unscored;    ///< reason why no setting could be tried; empty if one could
 
   bool any() const;
 };
 
 /// Tries settings that suit the data, one after the other.
 /// - Each trial starts from the accepted settings, on data with the accepted rate and lag.
-/// - The order is: the rate with a suitable window length and step; the lag found by cross-validation; the window
-///   length; the loss; the measurement noise by the state's variance at rest; many_restarts.
+/// - The order is: the rate with suitable windows, the lag by cross-validation, the window length, the loss, the
+///   measurement noise, and many_restarts. The state's variance at rest serves as measurement noise.
 /// - A trial is accepted if its paired gain on training runs left out (left_out.hpp) exceeds one standard error and
-///   0.001 nats per sample. It must gain first with refinement's starts from the mixture alone, then with all starts of
+///   0.001 nats per sample. This must hold with refinement's starts from the mixture alone, and then with all starts of
 ///   `run`.
 /// - If all accepted trials together gain less, the last ones are withdrawn.
 ///
-/// `check`: the check of the data with `options`.
+/// `check`: result of check_data for `options`.
 Suggestions suggest(const ChainOptions& options, const DataCheck& check, const SuggestionScope& scope,
                     const Listener& listener);
 
-/// Structure that `window.model` or lags of `auto` found, before suggestions are tried with this structure. Empty if no
-/// key is `auto`.
+/// Finds the structure for `window.model = auto` or lags of `auto`. Suggestions are then tried with this structure.
+/// Empty if no key is `auto`.
 std::optional<FoundStructure> find_structure(const ChainOptions& options, const Listener& listener);
 /// The options with this structure, if there is one.
 ChainOptions with_found(ChainOptions options, const std::optional<FoundStructure>& found);

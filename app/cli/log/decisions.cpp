@@ -13,11 +13,11 @@
 namespace modebank::app {
 namespace {
 
-/// A change to try, and the key that decides it if the user sets this key.
+/// A change to try, and its key. If the user sets this key, the change is not tried.
 struct Decision {
   const char* key;
   Change change;
-  Effort from;  ///< the lowest effort at which the change is tried
+  Effort from;  ///< lowest effort at which the change is tried
 };
 constexpr Decision decisions[]{
     {"data.lag_s", Change::lag, Effort::normal},      {"bank.measurement_variance", Change::noise, Effort::normal},
@@ -75,7 +75,7 @@ std::vector<std::string> decide(const Config& config, Effort effort, const KeyVa
   const SuggestionScope scope = scope_of(effort, stated);
   if (scope.changes.empty()) return {};
   const DataCheck check = check_data({data_options_of(config), config.window.length, config.window.intercept});
-  if (!check.unusable.empty()) return {};  // `run` prints this
+  if (!check.unusable.empty()) return {};  // `run` prints the reason
   const ChainOptions options = chain_options(config);
   const Suggestions suggestions =
       suggest(with_found(options, find_structure(options, listener)), check, scope, listener);

@@ -10,8 +10,8 @@
 
 namespace modebank::app {
 
-/// The configuration that `run LOG` writes: the proposal of `init` for the data, and keys of other sections, each with
-/// its reason.
+/// The configuration that `run LOG` writes. It contains the proposal of `init` for the data and keys of other sections,
+/// each with its reason.
 class LogConfiguration {
  public:
   LogConfiguration(Proposal proposal, std::string command)
@@ -21,11 +21,11 @@ class LogConfiguration {
 
   /// Sets a key or changes its reason. An empty `value` writes only a comment.
   void set(const std::string& key, const std::string& value, const std::string& why);
-  /// Changes the reason of a key in the configuration.
+  /// Changes the reason of an existing key.
   void explain(const std::string& key, const std::string& why);
 
   std::string text() const;
-  /// The configuration as the program reads it from `file`, with that archive.
+  /// The configuration as the program would read it from `file`, with `archive` as the output.
   Config config(const std::filesystem::path& file, const std::filesystem::path& archive) const;
 
  private:

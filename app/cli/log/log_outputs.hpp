@@ -8,14 +8,15 @@
 
 namespace modebank::app {
 
-/// The three files of `run LOG`.
+/// The three files that `run LOG` writes.
 struct LogOutputs {
   std::filesystem::path configuration, archive, page;
 
   std::vector<std::filesystem::path> all() const { return {configuration, archive, page}; }
 };
 
-/// Names them after archive.output, else after the logs, in the current folder.
+/// The names come from archive.output if it is set, else from the logs. In the second case the files are in the current
+/// folder.
 LogOutputs log_outputs(const CommandLine& line, const std::vector<FileSet>& sets);
 
 /// Throws ConfigurationError if one of the files

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether a folder is one recording: a ROS 2 recording, or one in several parts.
+/// Whether a folder is a single recording: a ROS 2 recording, or a recording in several parts.
 bool is_recording(const fs::path& folder) {
   if (fs::exists(folder / "metadata.yaml")) return true;
   return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const fs::directory_entry& entry) {
@@ -27,8 +27,8 @@ bool is_recording(const fs::path& folder) {
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
-/// The logs in a folder, in natural order: recordings in folders of their own, and files with the extension of a log. A
-/// text file counts as a log only if there are no other logs, because it may describe them.
+/// The logs in a folder, in natural order: folders that are recordings, and files with the extension of a log. A text
+/// file counts as a log only if there are no other logs, because it may be a description of the logs.
 std::vector<std::string> logs_in(const fs::path& folder) {
   std::vector<std::string> logs, texts;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {

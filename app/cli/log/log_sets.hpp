@@ -6,10 +6,10 @@
 
 #include "app/init/file_sets.hpp"
 
-/// The logs given to `init` and `run`.
+/// The logs that are given to `init` and `run`.
 namespace modebank::app {
 
-/// file_sets of files that a configuration can name. A folder is replaced by the logs in it, unless it is one
+/// The result of file_sets, for files that a configuration can name. A folder is replaced by its logs, unless it is one
 /// recording. Throws ConfigurationError for a file that no configuration can name, and for a folder without logs.
 std::vector<FileSet> nameable_sets(const std::vector<std::string>& logs);
 

@@ -23,7 +23,7 @@ std::string value_of(const Proposal& proposal, const std::string& key) {
   return found == nullptr ? "" : found->value;
 }
 
-/// "husky.bag", or for several files the first name and their number.
+/// "husky.bag" for one file; for several files the first name and the number of files.
 std::string files_text(const std::vector<FileSet>& sets) {
   std::vector<std::string> all;
   for (const FileSet& set : sets) {
@@ -40,7 +40,7 @@ std::string time_text(const SurveyedTable& table) {
                      table.sampling.gaps > 0 ? fmt::format(", {} gaps", table.sampling.gaps) : "");
 }
 
-/// The names of a key's channels, and the formulas of derived ones.
+/// The names of the channels that a key lists, and the formulas of derived channels.
 std::string channels_text(const Proposal& proposal, const std::string& key) {
   std::string text = value_of(proposal, key);
   if (text.empty()) return "none: the system moves by itself";

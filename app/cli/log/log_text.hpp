@@ -9,11 +9,12 @@
 
 namespace modebank::app {
 
-/// The times, states, inputs and runs that `run LOG` uses, and its doubts: labelled paragraphs as on the first screen.
+/// Times, states, inputs and runs that `run LOG` uses, and its doubts. These are labelled paragraphs as on the first
+/// screen.
 std::string taken_text(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                        const Proposal& proposal);
 
-/// Sentences on the corrections of the log that a robot must also make when it runs the model live.
+/// Sentences on the corrections of the log. A robot that runs the model live must make the same corrections.
 std::vector<std::string> robot_advice(const Guess& guess, const Archive& archive);
 
 /// A labelled paragraph, wrapped at the width of the terminal or of the first screen.

@@ -38,7 +38,7 @@ bool is_log(const fs::path& path) {
   return looks_like_log(path) || !is_configuration(path);
 }
 
-/// Keys that `run LOG` sets itself, from the logs.
+/// Throws for keys that `run LOG` itself sets from the logs.
 void refuse_keys(const KeyValues& overrides) {
   for (const auto& [key, value] : overrides)
     for (const char* const decided :
@@ -50,7 +50,7 @@ void refuse_keys(const KeyValues& overrides) {
             key));
 }
 
-/// Keys of the command line, in the form of the configuration file.
+/// Copies the keys of the command line into the proposal, in the form of the configuration file.
 void take_data_keys(const KeyValues& overrides, Proposal& proposal) {
   for (const auto& [key, value] : overrides) {
     if (!key.starts_with("data.")) continue;
@@ -66,7 +66,7 @@ void take_other_keys(const KeyValues& overrides, LogConfiguration& configuration
       configuration.set(key, boost::trim_copy(value), "from the command line");
 }
 
-/// The logs before any fit.
+/// What is known about the logs before any fit.
 struct LookedInto {
   std::vector<FileSet> sets;
   std::vector<SurveyedFile> surveyed;

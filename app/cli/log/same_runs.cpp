@@ -15,12 +15,12 @@ namespace {
 
 std::string name_of_first(const FileSet& set) { return printable_name(set.files.front().string()); }
 
-/// Common time of two tables, and the duration of each [s].
+/// Time span that two tables have in common, and the duration of each table [s].
 struct Overlap {
   double common_s, shorter_s, longer_s;
 };
 
-/// The overlap in time of the states' and the inputs' file, if each is a single file with times.
+/// The common time of the states' and the inputs' file, if both are single files with times.
 std::optional<Overlap> overlap_of(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed,
                                   const Guess& guess) {
   if (guess.inputs.empty() || guess.inputs.front().file == guess.states.front().file) return std::nullopt;
