@@ -51,12 +51,13 @@ bool decides_numbers(const std::string& key);
 /// SHA-256 of the resolved keys that determine numbers, in the order of their names.
 std::string config_hash(const Config& config);
 
-/// Throws ConfigurationError, beginning with `where`, for a text outside the option's range. `has_comment`: a comment
-/// followed in the same line.
+/// Throws ConfigurationError for a value outside the option's range; the message begins with `where`. `has_comment`:
+/// whether a comment followed in the same line.
 void set_option(Config& config, const Option& option, const std::string& where, const std::string& value,
                 bool has_comment);
 
-/// ", did you mean window.length?", or the replacement of a key that was removed; empty when no known key is close.
+/// End of a message: ", did you mean window.length?", or the replacement of a key that was removed. Empty if no known
+/// key is similar.
 std::string nearest_key_hint(const std::string& key);
 
 }  // namespace modebank::app

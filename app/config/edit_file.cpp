@@ -6,9 +6,9 @@
 namespace modebank::app {
 namespace {
 
-/// A line of a file, with the section around it.
+/// A line of a file, with the section that contains it.
 struct Line {
-  std::string text, section, name;  ///< name: the key that the line sets; empty: none
+  std::string text, section, name;  ///< name: the key that the line sets, or empty
   bool blank = false;
 };
 
@@ -40,7 +40,7 @@ std::string written(const KeyEdit& edit, const std::string& name) {
   return text;
 }
 
-/// Whether a line set the key.
+/// Replaces the lines that set the key. Returns false if there are none.
 bool replace_key(std::vector<Line>& lines, const KeyEdit& edit) {
   bool found = false;
   for (Line& line : lines) {

@@ -8,10 +8,10 @@
 
 namespace modebank::app {
 
-/// The faults of a configuration or a command line. All are collected, so that users can correct them at once.
+/// Collects the faults of a configuration or a command line, so that users can correct all of them at once.
 class Faults {
  public:
-  /// Calls `read` and keeps the message of a ConfigurationError that it throws.
+  /// Calls `read`. If it throws a ConfigurationError, keeps the message.
   template <class Read>
   void collect(Read&& read) {
     try {
@@ -22,7 +22,8 @@ class Faults {
   }
   void add(std::string message) { messages_.push_back(std::move(message)); }
 
-  /// Throws ConfigurationError. A single fault is the whole message; several faults are one line each.
+  /// Throws ConfigurationError if there is a fault. The message of a single fault is unchanged. Several faults become
+  /// one line each.
   void refuse() const {
     if (messages_.empty()) return;
     if (messages_.size() == 1) throw ConfigurationError(messages_.front());

@@ -5,7 +5,8 @@
 
 namespace modebank {
 
-/// Throws ConfigurationError with the key if a free run of this model needs more measured samples at its start.
+/// Throws ConfigurationError with the key if a free run of this model needs more measured samples at its start than
+/// configured.
 void check_free_run(const LinearStructure& structure, const FreeRunOptions& options);
 
 }  // namespace modebank

@@ -29,7 +29,7 @@ bool takes_quotes(const std::string& key) {
 
 namespace {
 
-/// The value in quotes at the start of `text`. Nullopt if text other than a comment follows the quotes.
+/// The quoted value at the start of `text`. Nullopt if text follows the quotes that is not a comment.
 std::optional<std::string> unquoted(std::string_view text) {
   std::string value;
   std::size_t i = 1;
@@ -53,7 +53,7 @@ std::optional<std::string> unquoted(std::string_view text) {
   return rest.empty() || rest.front() == '#' ? std::optional(value) : std::nullopt;
 }
 
-/// A line whose key takes_quotes and whose value is in quotes. `section` as the file states it, "[data]".
+/// A line with a quoted value, for a key that takes_quotes. `section`: as in the file, "[data]".
 std::optional<FileEntry> quoted_entry(const std::string& section, const std::string& line, int number) {
   const std::size_t equal = line.find('='), quote = equal == std::string::npos ? equal : line.find('"', equal);
   if (quote == std::string::npos || !boost::trim_copy(line.substr(equal + 1, quote - equal - 1)).empty())

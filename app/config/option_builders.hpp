@@ -16,13 +16,13 @@
 #include "app/config/option_table.hpp"
 #include "app/config/option_text.hpp"
 
-/// Functions that build the lines of the option table.
+/// Functions that build the rows of the option table.
 namespace modebank::app {
 
-/// For touch(): the key is one of the few that most users set.
+/// Argument of touch(): the key is one of the few that most users set.
 inline constexpr bool basic = true;
 
-/// A range of numbers: its words for help, and its bounds.
+/// A range of numbers: its text for help, and its bounds.
 struct Range {
   std::string text;
   std::function<bool(double)> contains;
@@ -65,8 +65,8 @@ bool in_range(const Range& range, const std::vector<T>& values) {
   return std::all_of(values.begin(), values.end(), [&range](const T& value) { return in_range(range, value); });
 }
 
-/// Write and read access to a member of a Config. Plain functions, so that code is compiled once per type of member,
-/// not once per key.
+/// Functions that set and get a member of a Config. They are plain functions, so that their code is compiled once per
+/// type and not once per key.
 template <class T>
 struct Field {
   T& (*in)(Config&);
@@ -78,7 +78,7 @@ auto field_of(In in, Of of) {
   return Field<T>{in, of};
 }
 
-/// The Field of a Config's member.
+/// Makes the Field for a member of Config.
 #define MODEBANK_FIELD(member)                                \
   (field_of(                                                  \
       [](Config & config) -> auto& { return config.member; }, \
@@ -135,8 +135,8 @@ inline Option of_several(std::string key, std::string range, std::string unit, s
   return result;
 }
 
-/// A key that may have several lines. Its text has one line per value. Setting it adds lines; an empty text clears
-/// them.
+/// A key that may be set in several lines. Its text has one line per value. Setting the key adds these lines; an empty
+/// text removes all lines.
 inline Option lines(const std::string& key, const std::string& what, const std::string& help,
                     const std::function<void(const std::string&)>& check, Field<std::vector<std::string>> field) {
   Option result;

@@ -11,25 +11,28 @@
 
 namespace modebank::app {
 
-/// The alternatives in a range such as "auto | point | comma"; empty for any other range.
+/// The alternatives in a range such as "auto | point | comma"; empty for a range without alternatives.
 std::vector<std::string> choices_in(const std::string& text);
 
-/// One configuration key: the only place of its name, range, unit, help text and stage. Its default is that of a new
+/// One configuration key. Its name, range, unit, help text and stage are only here. Its default is the value in a new
 /// Config.
 struct Option {
-  std::string key;    ///< "section.name", also the command line's --section.name
-  std::string range;  ///< what is allowed, in words
+  std::string key;    ///< "section.name"; on the command line --section.name
+  std::string range;  ///< allowed values, in words
   std::string unit;   ///< empty: none
   std::string help;
-  std::function<void(Config&, const std::string&)> set;  ///< throws std::invalid_argument when the text is not in range
-  std::function<std::string(const Config&)> get;         ///< text that `set` reads back to the same value
-  std::optional<SimulatedSystem> only_for = {};          ///< the simulated system that has this key; empty: all
-  std::optional<Stage> stage = {};                       ///< earliest stage whose numbers the key changes; empty: none
-  bool basic = false;       ///< one of the few keys that most users set; help shows these first
-  std::string when = {};    ///< when to change it: a sentence without its full stop
-  bool repeatable = false;  ///< may have several lines in a file; `get` joins them by newlines
+  std::function<void(Config&, const std::string&)> set;  ///< throws std::invalid_argument if the text is outside the
+                                                         ///< range
+  std::function<std::string(const Config&)> get;         ///< text from which `set` would set the same value
+  std::optional<SimulatedSystem> only_for = {};          ///< kind of simulated system that has this key; empty if all
+                                                         ///< kinds have it
+  std::optional<Stage> stage = {};                       ///< earliest stage whose numbers the key changes; empty if the
+                                                         ///< key changes none
+  bool basic = false;       ///< one of the few keys that most users set; help lists these first
+  std::string when = {};    ///< when to change the key: a sentence without its full stop
+  bool repeatable = false;  ///< the key may have several lines in a file; `get` separates their values by newlines
 
-  /// The alternatives in `range`, such as "auto | point | comma"; empty where other values are allowed.
+  /// The alternatives in `range`, such as "auto | point | comma"; empty if other values are allowed.
   std::vector<std::string> choices() const { return choices_in(range); }
 
   /// Sets `when`, `stage` and `basic`.
@@ -47,7 +50,7 @@ struct Option {
 /// All options, section by section, in the order of the help text.
 const std::vector<Option>& option_table();
 
-/// The option of that key; null when there is none.
+/// The option with that key; null if there is none.
 const Option* find_option(const std::string& key);
 const Option* find_option(const std::vector<Option>& table, const std::string& key);
 

@@ -73,7 +73,8 @@ void parse_value(const std::string& text, std::optional<double>& value) {
   if (!boost::trim_copy(text).empty()) parse_value(text, value.emplace());
 }
 
-/// Names separated by commas. A name with a comma is in single quotes, with '' for a quote inside, as in data.derive.
+/// Names separated by commas. A name that contains a comma is in single quotes. A quote inside such a name is doubled,
+/// as in data.derive.
 void parse_value(const std::string& text, std::vector<std::string>& value) {
   value.clear();
   std::string_view rest = text;

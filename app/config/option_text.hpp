@@ -10,8 +10,8 @@
 
 namespace modebank::app {
 
-/// Conversion between text and configuration value, one pair per type. parse_value throws std::invalid_argument with
-/// the reason.
+/// Conversion between text and value, one pair of functions per type. parse_value throws std::invalid_argument with the
+/// reason.
 void parse_value(const std::string& text, std::string& value);
 void parse_value(const std::string& text, bool& value);
 void parse_value(const std::string& text, int& value);
@@ -21,10 +21,10 @@ void parse_value(const std::string& text, double& value);
 void parse_value(const std::string& text, std::optional<double>& value);
 void parse_value(const std::string& text, std::vector<std::string>& value);      ///< a, b
 void parse_value(const std::string& text, std::vector<double>& value);           ///< 1, 2
-void parse_value(const std::string& text, std::vector<Eigen::Index>& value);     ///< 3 or 1..12 or 2, 4, 8
+void parse_value(const std::string& text, std::vector<Eigen::Index>& value);     ///< "3", "1..12" or "2, 4, 8"
 void parse_value(const std::string& text, Eigen::VectorXd& value);               ///< 1, 2
-void parse_value(const std::string& text, std::vector<Eigen::VectorXd>& value);  ///< 1, 2 | 3, 4
-void parse_value(const std::string& text, Eigen::MatrixXd& value);               ///< rows: 1, 2 | 3, 4
+void parse_value(const std::string& text, std::vector<Eigen::VectorXd>& value);  ///< "1, 2 | 3, 4"
+void parse_value(const std::string& text, Eigen::MatrixXd& value);               ///< rows of the matrix: "1, 2 | 3, 4"
 
 std::string format_value(const std::string& value);
 std::string format_value(bool value);
@@ -40,7 +40,7 @@ std::string format_value(const Eigen::VectorXd& value);
 std::string format_value(const std::vector<Eigen::VectorXd>& value);
 std::string format_value(const Eigen::MatrixXd& value);
 
-/// The alternatives of an enumeration, as help shows them.
+/// The alternatives of an enumeration, as text for help.
 template <class E>
 std::string words_of() {
   std::string words;

@@ -15,7 +15,7 @@ std::string path_text(const std::string& path) {
   std::string text = "\"";
   for (std::size_t i = 0; i < path.size(); ++i) {
     const char c = path[i];
-    constexpr char second_set = '\xc2';  // first byte of control characters that take two bytes in UTF-8
+    constexpr char second_set = '\xc2';  // first UTF-8 byte of those control characters that have two bytes
     if (is_control(c) || c == second_set || (i > 0 && path[i - 1] == second_set))
       text += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
     else

@@ -4,7 +4,7 @@
 
 namespace modebank::app {
 
-/// A path as a configuration file states it: plain if it reads back the same, else in double quotes.
+/// A path as text for a configuration file. It is in double quotes only if it could not be read back without quotes.
 std::string path_text(const std::string& path);
 
 }  // namespace modebank::app

@@ -7,8 +7,8 @@
 
 namespace modebank {
 
-/// Calls the library and puts the section of the configuration in front of its ConfigurationErrors. These begin with
-/// the name of an option, so "step = 0 is out of range" becomes "window.step = 0 is out of range".
+/// Calls the library. If this throws a ConfigurationError, adds the section of the configuration to the message. The
+/// message begins with the name of an option, so "step = 0 is out of range" becomes "window.step = 0 is out of range".
 template <class Call>
 auto in_section(const std::string& section, Call&& call) {
   try {

@@ -8,27 +8,27 @@
 
 namespace modebank::app {
 
-/// The steps of `modebank study`: one of them, or all.
+/// The steps of `modebank study`. `all` does every step.
 enum class StudyStage { all, plan, run, merge, status, submit };
 
-/// Whether a study goes on after a failed trial.
+/// Whether a study continues after a failed trial.
 enum class OnFailure { record, stop };
 
-/// The [study] section. app/study/space/study_space.hpp parses the texts of vary, together and when.
+/// The [study] section. app/study/space/study_space.hpp parses `vary`, `together` and `when`.
 struct StudyConfig {
-  std::vector<std::string> vary;      ///< "KEY = v1 | v2", one key each
-  std::vector<std::string> together;  ///< "KEY, KEY": keys whose values are paired
+  std::vector<std::string> vary;      ///< "KEY = v1 | v2" for each varied key
+  std::vector<std::string> together;  ///< "KEY, KEY": keys whose values change together
   std::vector<std::string> when;      ///< "KEY if OTHER = v1 | v2"
-  std::int64_t sample = 0;            ///< 0: the full grid
+  std::int64_t sample = 0;            ///< number of sampled points; 0: the full grid
   std::int64_t repeats = 1;
-  std::string output;  ///< folder; empty: the configuration file's name with .study, in the current folder
-  int jobs = 0;        ///< 0: one per core
+  std::string output;  ///< folder of the study; empty: the configuration file's name with .study, in the current folder
+  int jobs = 0;        ///< number of processes; 0: one per core
   double timeout_s = 0.0;
   OnFailure on_failure = OnFailure::record;
   StudyStage stage = StudyStage::all;
   std::int64_t shard_index = 0, shard_count = 1;
   bool flat = false;
-  std::int64_t slurm_tasks = 0;  ///< 0: from the number of runs
+  std::int64_t slurm_tasks = 0;  ///< number of tasks; 0: derived from the number of runs
   std::string slurm_options;     ///< options for sbatch, separated by spaces
 };
 

@@ -21,14 +21,14 @@ bool fits(const Config& config) {
   }
 }
 
-/// A key's default. That of lags and of the windows' length depends on the model.
+/// The default of a key. The defaults of lags and of the windows' length depend on the model.
 std::string standard_of(const Option& option, const Config& config) {
   Config standard;
   if (option.key != "window.model") standard.structure.automatic_model = config.structure.automatic_model;
   return option.get(standard);
 }
 
-/// Keys that the file sets to another value than their defaults, except those that an override replaces.
+/// Keys that the file sets to a value other than the default. Keys that the command line overrides are excluded.
 Options set_by_file(const Config& config, const Origins& origins) {
   Options options;
   for (const Option& option : option_table()) {
@@ -39,7 +39,8 @@ Options set_by_file(const Config& config, const Origins& origins) {
   return options;
 }
 
-/// The smallest set of at most three options whose defaults fit the rest of the configuration; empty if none does.
+/// The smallest set of at most three options that must return to their defaults so that the configuration is valid.
+/// Empty if there is none.
 Options fewest_to_reset(const Config& config, const Options& options, std::size_t first, std::size_t most) {
   for (std::size_t i = first; most > 0 && i < options.size(); ++i) {
     Config changed = config;
@@ -58,7 +59,8 @@ Options fewest_to_reset(const Config& config, const Options& options, std::size_
   return fewest;
 }
 
-/// "; set --window.state_lags 1, too, because robot.ini:12 has 3"; empty without overrides, or if nothing helps.
+/// Advice such as "; set --window.state_lags 1, too, because robot.ini:12 has 3". Empty without overrides, or if no
+/// advice helps.
 std::string what_to_set_too(const Config& config, const KeyValues& overrides, const Origins& origins) {
   constexpr std::size_t most = 3;
   if (overrides.empty()) return "";

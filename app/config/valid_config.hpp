@@ -6,8 +6,8 @@
 
 namespace modebank::app {
 
-/// load_config, then a check that the values fit each other. Where an override does not fit the file, the
-/// ConfigurationError names the file's keys that must be set, too.
+/// Calls load_config, then checks that the values fit each other. If an override does not fit the file, the
+/// ConfigurationError names the keys of the file that must also be set.
 Config load_valid_config(const std::filesystem::path& path, const KeyValues& overrides);
 
 }  // namespace modebank::app

@@ -23,7 +23,7 @@ void check_prior(const FitOptions& window, Index parameters) {
                       parameters));
 }
 
-/// bank.transition = logit needs a refined bank, and a filter that takes other than constant transition matrices.
+/// bank.transition = logit needs a refined bank and a filter that supports state-dependent transition probabilities.
 void check_logit(const Config& config) {
   if (config.bank.transition != TransitionSource::logit) return;
   require(config.bank.refine != Refine::none && is_linear(config.window),
@@ -34,7 +34,7 @@ void check_logit(const Config& config) {
           "use filter.variant = imm");
 }
 
-/// Motion models and linear have no lags to search for.
+/// Motion models and window.model = linear have no lags to search for.
 void check_searched(const Config& config) {
   const SearchedLags searched = searched_lags_of(config);
   if (!searched.any()) return;
@@ -52,7 +52,7 @@ void check_searched(const Config& config) {
           "window.input_lags = auto and window.input_delay = auto need inputs; name them in data.input");
 }
 
-/// Drifting modes are learned by refinement. They need states measured exactly and filter.variant = imm.
+/// Drifting modes need refinement, exactly measured states and filter.variant = imm.
 void check_drift(const Config& config) {
   if (config.bank.em.drift == Drift::none) return;
   const std::string drift = fmt::format("bank.drift = {}", name_of(config.bank.em.drift));

@@ -29,7 +29,7 @@ const Option& variable_option(const std::string& key) {
   return *option;
 }
 
-/// The value in the form of a resolved configuration.
+/// The value in the form that a resolved configuration has.
 std::string canonical(const Option& option, const std::string& value) {
   Config scratch;
   try {
@@ -53,10 +53,10 @@ double number_in(const std::string& text, const std::string& braces) {
   return value;
 }
 
-/// A span between braces: low..high, and how it is divided.
+/// A range in braces: low..high, and how it is divided.
 struct Span {
   double low = 0.0, high = 0.0, argument = 0.0;
-  std::string kind;  ///< step, lin, log or empty
+  std::string kind;  ///< step, lin, log; or empty
   bool has_argument = false;
 };
 
@@ -93,7 +93,7 @@ std::vector<std::string> steps_of(const Span& span, const std::string& text) {
     throw std::invalid_argument(
         fmt::format("has {{{}}}: a step must be above 0 and give at most {} values", text, most_values));
   std::vector<std::string> values;
-  const double slack = 1e-9;  // so that 0..1 step 0.1 ends at 1 despite rounding
+  const double slack = 1e-9;  // tolerance for rounding, so that 0..1 step 0.1 ends at 1
   for (double i = 0; span.low + i * step <= span.high + slack * step; ++i)
     values.push_back(fmt::format("{:.12g}", span.low + i * step));
   return values;
@@ -130,7 +130,7 @@ std::vector<std::string> expand_piece(const std::string& piece) {
   return values;
 }
 
-/// A whole value that is a range without a number of values, such as {0.001..1 log}.
+/// Reads a value that is a range without a number of values, such as {0.001..1 log}.
 bool read_range(const std::string& text, VariedKey& varied) {
   if (text.size() < 2 || text.front() != '{' || text.back() != '}' || text.find('|') != std::string::npos) return false;
   const Span span = parse_span(text.substr(1, text.size() - 2));
@@ -141,7 +141,7 @@ bool read_range(const std::string& text, VariedKey& varied) {
   return true;
 }
 
-/// Splits a line into KEY and the text after the equal sign.
+/// Splits a line at the equal sign into the key and the text after it.
 std::pair<std::string, std::string> split_equation(const std::string& line) {
   const auto equal = line.find('=');
   if (equal == std::string::npos) throw std::invalid_argument("has no =");

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// An unknown number is `nan`, which the module defines.
+/// The number as Python code. An unknown number becomes `nan`, which the module defines.
 std::string python_number(double value) {
   return std::isnan(value) ? "nan" : std::isinf(value) ? (value > 0 ? "inf" : "-inf") : fmt::format("{:.17g}", value);
 }
@@ -33,7 +33,7 @@ std::string python_per_mode(const char* name, const char* comment, Index modes, 
   return text + ")\n";
 }
 
-/// A Python tuple of texts. A tuple of one text ends in a comma.
+/// A Python tuple of texts. A tuple with one text needs a comma at its end.
 std::string python_texts(const std::vector<std::string>& texts) {
   std::string list;
   for (const std::string& text : texts) list += quoted_scalar(text) + ", ";

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A number with all digits; empty if unknown.
+/// A number with all digits; an empty field for an unknown number.
 std::string field(const json& value) {
   if (value.is_null()) return "";
   if (value.is_string()) return csv_field(value.get<std::string>());
@@ -19,7 +19,7 @@ std::string field(const json& value) {
   return value.dump();
 }
 
-/// Appends the fields of a value and their names. A nested list becomes one field per number.
+/// Appends the fields of a value, and the names of the fields. Each number of a nested list becomes a field.
 void append(const std::string& name, const json& value, std::vector<std::string>* names,
             std::vector<std::string>& fields) {
   if (!value.is_array()) {

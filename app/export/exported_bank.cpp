@@ -24,7 +24,7 @@ std::vector<Channel> with_units(const std::vector<std::string>& names, const Uni
   return channels;
 }
 
-/// Standard errors in the order of theta (pack). The companion rows are not estimates, because they only shift samples.
+/// Standard errors in the order of theta (`pack`). The companion rows only shift samples, so they have no errors.
 ModeErrors errors_of(const Bank& bank, const Mode& mode) {
   const LinearStructure& s = bank.structure;
   const Eigen::Index n = s.dimension(), m = s.acting_inputs(), r = s.regressors();
@@ -69,7 +69,8 @@ void add_channels(const Recording& recording, ExportedBank& exported) {
   exported.recorded_inputs.resize(static_cast<std::size_t>(bank.structure.inputs));
 }
 
-/// As in used_modes, for a filter whose use was not counted: use by share of windows, stays by T.
+/// Same result as used_modes, for a filter whose use was not counted. The use is the share of windows, and the stay
+/// follows from T.
 std::vector<UsedMode> modes_by_windows(const Bank& bank) {
   std::vector<UsedMode> modes;
   for (Index k = 0; k < bank.mode_count(); ++k) {

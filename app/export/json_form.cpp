@@ -9,7 +9,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// `remark_of`: remark on the value at an index; empty for a reliable value.
+/// `remark_of`: returns the remark on the value at an index; empty if the value is reliable.
 template <class RemarkOf>
 OrderedJson parameters_json(const VectorXd& values, const VectorXd& errors, const std::vector<std::string>& names,
                             const std::vector<std::string>& units, RemarkOf remark_of) {

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// A MAT-file for writing. The file takes over the variables; matio frees their data.
+/// A MAT-file for writing. The file takes ownership of the variables, and matio frees their data.
 class MatFile {
  public:
   explicit MatFile(const std::filesystem::path& file)
@@ -49,8 +49,8 @@ class MatFile {
   [[noreturn]] void fail(const std::string& what) const {
     throw DataError(fmt::format("{}: {}", file_.string(), what));
   }
-  /// An extent counts characters. SciPy decodes UTF-16 to one character per unit, Octave reads as many bytes of UTF-8
-  /// as the extent. Both read the same text only from UTF-16 without surrogates.
+  /// A dimension in the file counts characters. SciPy decodes one character from each UTF-16 unit. Octave reads that
+  /// number of bytes as UTF-8. Both read the same text only if it is UTF-16 without surrogates.
   static matvar_t* text_variable(const char* name, const std::string& value) {
     std::u16string text = basic_utf16(value);
     std::array<std::size_t, 2> shape{text.empty() ? 0u : 1u, text.size()};
@@ -64,7 +64,7 @@ class MatFile {
   }
 };
 
-/// The modes along MATLAB's third dimension.
+/// An array over all modes. The third dimension is the mode.
 template <class Get>
 void per_mode_numbers(MatFile& file, const char* name, const ExportedBank& bank, Get get) {
   std::vector<double> values;
@@ -88,7 +88,7 @@ void add_channels(MatFile& file, const std::string& kind, const std::vector<Chan
   file.texts((kind + "_units").c_str(), units);
 }
 
-/// The family of each mode, counted from one as in MATLAB.
+/// The family of each mode. Families are numbered from one, as in MATLAB.
 void add_families(MatFile& file, const ExportedBank& exported) {
   MatrixXd family = MatrixXd::Zero(1, exported.bank.mode_count());
   std::vector<std::string> titles;
@@ -100,8 +100,8 @@ void add_families(MatFile& file, const ExportedBank& exported) {
   file.matrix("mode_family", family);
 }
 
-/// MATLAB code that makes a model of mode k, for Control System Toolbox or Octave's control package. c enters as the
-/// gain of a constant input 1.
+/// MATLAB code that makes a state space model of mode k. It works with Control System Toolbox and with Octave's control
+/// package. c becomes the gain of a constant input 1.
 std::string ss_lines(const ExportedBank& exported) {
   const auto list = [](const std::vector<Channel>& channels) {
     std::vector<std::string> names;

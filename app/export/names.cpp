@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// Keywords of C up to C23 and of C++, because both may include a header.
+/// Keywords of C up to C23 and of C++, because programs in both languages may include the header.
 constexpr const char* c_words =
     "alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto bitand bitor bool break case "
     "catch "
@@ -33,14 +33,14 @@ std::set<std::string> words_of(Language language) {
   return words;
 }
 
-/// Names that begin with '_' are reserved for the compiler.
+/// C reserves names that begin with '_' for the compiler.
 std::string identifier(const std::string& name) {
   const std::string result = letters_and_digits(name);
   if (result.empty()) return "unnamed";
   return is_digit(result.front()) ? "n" + result : result;
 }
 
-/// JSON text in ASCII: invalid UTF-8 is replaced, and all other characters become \uXXXX.
+/// JSON text in ASCII. Invalid UTF-8 is replaced. All other characters become \uXXXX.
 std::string ascii_json(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
@@ -63,7 +63,8 @@ std::string comment_text(std::string_view text) {
   std::string result = nlohmann::json::parse(ascii_json(text)).get<std::string>();
   for (char& c : result)
     if (is_control(c) || c == '\\') c = ' ';
-  // Line breaks outside ASCII: NEL, LINE SEPARATOR and PARAGRAPH SEPARATOR. YAML and other formats accept these.
+  // Line breaks that are not ASCII: NEL, LINE SEPARATOR and PARAGRAPH SEPARATOR. YAML and other formats treat them as
+  // line breaks.
   for (const char* breaks : {"\xc2\x85", "\xe2\x80\xa8", "\xe2\x80\xa9"})
     boost::algorithm::replace_all(result, breaks, " ");
   boost::algorithm::replace_all(result, "*/", "* /");

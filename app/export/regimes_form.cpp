@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 
 constexpr std::array gate_shares{0.95, 0.99, 0.999};
 
-/// Standard errors of the block of measured states; empty if there are none.
+/// Standard errors of the measured states' block of Q; empty if there are none.
 MatrixXd measured_error(const ExportedBank& exported, const Mode& mode) {
   const Eigen::Index signals = exported.bank.C.rows();
   if (mode.Q_standard_error.rows() < signals || mode.Q_standard_error.cols() < signals) return {};
@@ -39,7 +39,7 @@ OrderedJson regime_json(const ExportedBank& exported, Eigen::Index k) {
   return regime;
 }
 
-/// Thresholds of the normalised innovation squared, for each number of signals in a sample.
+/// Thresholds of the normalised innovation squared. There is one for each number of signals that a sample may have.
 OrderedJson gates_json(Eigen::Index signals) {
   OrderedJson gates = OrderedJson::array();
   for (Eigen::Index n = 1; n <= signals; ++n)

@@ -13,11 +13,12 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double negligible_R = 1e-6;  // share of the process noise below which R counts as zero, also in diagnostics
+constexpr double negligible_R = 1e-6;  // ratio of R to the process noise below which R counts as zero; the diagnostics
+                                       // use the same ratio
 
 std::string value_text(double value, double error) { return fmt::format("{:.3g} +- {:.2g}", value, error); }
 
-/// "name (0.1 +- 0.3)" for each value with a standard error above the value.
+/// Text such as "name (0.1 +- 0.3)" for each value that is smaller than its standard error.
 template <class Values, class Errors>
 void add_vague(const std::string& prefix, const std::vector<std::string>& names, const Values& values,
                const Errors& errors, std::vector<std::string>& vague) {
@@ -56,7 +57,7 @@ void add_open_parameters(const ExportedBank& exported, std::vector<std::string>&
                                fmt::join(unidentifiable, ", ")));
 }
 
-/// Adds modes in which a parameter has no error for another reason: learning with bank.look_ahead gives none.
+/// Adds modes whose parameters have no standard errors for another reason: learning with bank.look_ahead gives none.
 void add_unknown_errors(const ExportedBank& exported, std::vector<std::string>& list) {
   std::vector<std::string> modes;
   for (Index k = 0; k < exported.bank.mode_count(); ++k)

@@ -21,7 +21,7 @@ std::string names_of(const std::vector<SurveyedFile>& files, const std::vector<C
   return names.empty() ? "none" : printable_name(fmt::format("{}", fmt::join(names, ", ")));
 }
 
-/// Place of a moving channel with this name; the first if there are several.
+/// Place of the moving channel with this name. If several have the name, the first.
 std::optional<ChannelPlace> find_moving(const std::vector<SurveyedFile>& files, const std::string& name) {
   for (std::size_t f = 0; f < files.size(); ++f)
     for (std::size_t t = 0; t < files[f].tables.size(); ++t)
@@ -41,7 +41,7 @@ std::vector<std::string> moving_channels(const std::vector<SurveyedFile>& files)
   return names;
 }
 
-/// Reads the channels that a line names; returns an error message otherwise.
+/// Reads the channels that a line of input names. Returns an error message if one is not found.
 std::optional<std::vector<ChannelPlace>> places_of(const std::vector<SurveyedFile>& files, const std::string& line,
                                                    std::ostream& questions) {
   std::vector<std::string> names;
@@ -60,7 +60,7 @@ std::optional<std::vector<ChannelPlace>> places_of(const std::vector<SurveyedFil
   return places;
 }
 
-/// Returns whether the channels were changed.
+/// Asks the user for channels. Returns whether the user changed any.
 bool ask(const std::vector<SurveyedFile>& files, const char* what, std::vector<ChannelPlace>& places, bool may_be_none,
          std::istream& answers, std::ostream& questions) {
   std::string line;

@@ -6,8 +6,9 @@
 
 namespace modebank::app {
 
-/// Shows the guessed state and inputs and reads others in their place: one line of channels each, where an empty line
-/// keeps the guess. Asks again for a channel that does not exist or does not move. End of input keeps the rest.
+/// Shows the guessed state and inputs, and reads other channels from `answers`: one line for the states and one for the
+/// inputs. An empty line keeps the guess. Asks again if a channel does not exist or does not move. At the end of input,
+/// the other guesses stay.
 void confirm_roles(const std::vector<SurveyedFile>& files, Guess& guess, std::istream& answers,
                    std::ostream& questions);
 

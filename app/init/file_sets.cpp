@@ -14,7 +14,7 @@ using Path = std::filesystem::path;
 
 bool in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
-/// The common length, shortened to the end of a word in all names.
+/// The common length of these names, shortened to the end of a word in every name.
 std::size_t whole_words(const std::vector<std::string>& names, std::size_t common) {
   while (common > 0 && in_word(names.front()[common - 1]) &&
          std::any_of(names.begin(), names.end(),
@@ -63,8 +63,8 @@ void find_pattern(FileSet& set) {
 bool is_of_a_kind(const std::vector<std::string>& a, const std::vector<std::string>& b) {
   const auto shared = std::count_if(
       a.begin(), a.end(), [&](const std::string& name) { return std::find(b.begin(), b.end(), name) != b.end(); });
-  // If two instruments of a robot share a name (the frames of a gyro and of an odometry), their files are still of two
-  // kinds.
+  // If two instruments of a robot have one column name in common (the frame of a gyro and of an odometry), their files
+  // still differ in kind.
   return 5 * shared >= 4 * std::ssize(a) && 5 * shared >= 4 * std::ssize(b);
 }
 

@@ -22,20 +22,20 @@ struct Candidate {
   ChannelPlace place;
   const SurveyedTable* table;
   const SurveyedChannel* channel;
-  NameScore score;  ///< from all hints
-  NameScore named;  ///< from the name alone
+  NameScore score;  ///< score from all hints
+  NameScore named;  ///< score from the name alone
 
   bool is_held() const { return channel->check.repeated > most_repeated; }
 };
 
 bool same_table(const ChannelPlace& a, const ChannelPlace& b) { return a.file == b.file && a.table == b.table; }
 
-/// Adds hints other than names. A value that is held while other channels of its table move indicates a command. Units
-/// such as rad/s indicate measurements, units such as V inputs.
+/// Adds the hints that do not come from names. A channel whose value is held while other channels of its table move is
+/// probably a command. Units such as rad/s indicate measurements, and units such as V indicate inputs.
 void add_hints(std::vector<Candidate>& all) {
   constexpr int held = 3, unit = 2;
   constexpr double moving =
-      0.2;  // largest share of repeated values in a channel that is measured anew in nearly every row
+      0.2;  // an instrument that measures in nearly every row repeats at most this share of its values
   for (Candidate& c : all) {
     const bool others_move = std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
       return same_table(other.place, c.place) && other.channel->check.repeated < moving;
@@ -54,7 +54,7 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
   for (std::size_t f = 0; f < files.size(); ++f)
     for (std::size_t t = 0; t < files[f].tables.size(); ++t) {
       const SurveyedTable& table = files[f].tables[t];
-      // CSV columns do not name their instrument, but the file's name does: imu_03.csv.
+      // CSV columns do not contain the name of their instrument, but the file name does: imu_03.csv.
       const std::string from = table.name.empty() ? files[f].path.stem().string() + " " : "";
       for (std::size_t c = 0; c < table.channels.size(); ++c) {
         const SurveyedChannel& channel = table.channels[c];
@@ -68,8 +68,8 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
   return all;
 }
 
-/// The channels in the table of the best candidate that have nearly as many points: at most `slack` fewer, by all hints
-/// or by the name. The order is that of the file.
+/// The channels in the table of the best candidate whose points are at most `slack` below the best. Points come from
+/// all hints or from the name alone. The order is that of the file.
 std::vector<const Candidate*> best_of(const std::vector<Candidate>& all, int NameScore::*points, int slack,
                                       std::size_t most) {
   const Candidate* best = nullptr;
@@ -93,16 +93,16 @@ bool is_of_axes(const Candidate& c) {
   return false;
 }
 
-/// Used without a hint on any state. In tables of u and y the last channel is usually y, so this takes the last channel
-/// that is least likely an input.
+/// For data in which no hint indicates a state. In tables of u and y, y is usually last. So this takes the channel that
+/// is least likely an input, and the last one of equally likely channels.
 void guess_state_by_place(const std::vector<Candidate>& all, Guess& guess) {
   const auto least = std::min_element(
       all.rbegin(), all.rend(), [](const Candidate& a, const Candidate& b) { return a.score.input < b.score.input; });
   guess.states = {least->place};
 }
 
-/// Used if no name indicates an input. Takes channels beside the state that are not measured together with the state.
-/// They must be held, or the table must have few channels.
+/// For data in which no name indicates an input. Takes channels in the state's table that were not measured together
+/// with the state. They must be held, or the table must have few channels.
 void guess_inputs_by_place(const std::vector<Candidate>& all, bool by_place, Guess& guess) {
   constexpr std::ptrdiff_t few = 4;
   const auto beside = std::count_if(all.begin(), all.end(),
@@ -133,7 +133,7 @@ void guess_inputs(const std::vector<Candidate>& all, Guess& guess) {
   std::vector<Candidate> acting;
   for (const Candidate& c : all) {
     const bool is_state = std::find(guess.states.begin(), guess.states.end(), c.place) != guess.states.end();
-    // A channel that the same instrument measures is not an input.
+    // A channel that the state's instrument measures is not an input.
     const bool beside = same_table(c.place, guess.states.front()) && c.score.input < c.score.state;
     if (!is_state && !beside && c.score.input > 0) acting.push_back(c);
   }
@@ -141,7 +141,7 @@ void guess_inputs(const std::vector<Candidate>& all, Guess& guess) {
     guess.inputs.push_back(input->place);
 }
 
-/// If the gyro is mounted on its side, replaces its rate about z by the rate about the axis that points up.
+/// If the gyro lies on its side, replaces the rate about z by the rate about the axis that points up.
 void turn_upright(const std::vector<SurveyedFile>& files, Guess& guess) {
   for (ChannelPlace& state : guess.states) {
     const SurveyedTable& table = files[state.file].tables[state.table];
@@ -154,14 +154,14 @@ void turn_upright(const std::vector<SurveyedFile>& files, Guess& guess) {
   }
 }
 
-/// Whether a name means a measured speed or rate, not a command.
+/// Whether the name is that of a measured speed or rate, and not of a command.
 bool is_measured_motion(const std::vector<SurveyedFile>& files, const ChannelPlace& place) {
   constexpr int least_of_command = 5;
   const int points = score_name(channel_at(files, place).name).input;
   return points > 0 && points < least_of_command;
 }
 
-/// Reason for leaving out a channel that a user may expect; empty without a reason.
+/// Reason why a channel that a user may expect is not used; empty without a reason.
 std::string why_left(const SurveyedTable& table, const SurveyedChannel& channel) {
   if (!channel.why_text.empty()) return fmt::format("; column {}: {}", channel.name, channel.why_text);
   if (!channel.moves()) return "";

@@ -9,7 +9,7 @@
 
 namespace modebank::app {
 
-/// Position of a channel in the survey.
+/// Position of a channel in the survey's files and tables.
 struct ChannelPlace {
   std::size_t file = 0, table = 0, channel = 0;
   bool operator==(const ChannelPlace&) const = default;
@@ -17,7 +17,7 @@ struct ChannelPlace {
 
 const SurveyedChannel& channel_at(const std::vector<SurveyedFile>& files, const ChannelPlace& place);
 
-/// Mounting of a gyro that lies on its side: gravity acts along another axis than z.
+/// Mounting of a gyro that lies on its side, so that gravity does not act along z.
 struct Mounting {
   Axis up = Axis::z;            ///< axis along which gravity acts
   bool reversed = false;        ///< whether this axis points down
@@ -25,10 +25,10 @@ struct Mounting {
   std::string z_rate, up_rate;  ///< channels of angular rate about z, and about the axis that points up
   /// Correlation of each with the yaw rate of another table, if there is one.
   std::optional<double> z_correlation, up_correlation;
-  std::string other;  ///< name of that yaw rate
+  std::string other;  ///< name of the other table's yaw rate
 };
 
-/// A channel that moves but is neither state nor input.
+/// A channel that moves but is neither a state nor an input.
 struct ChannelLeft {
   std::string name, reason;
 };
@@ -39,11 +39,11 @@ struct Guess {
   std::vector<std::string> reasons;  ///< sentences for the configuration's comments
 };
 
-/// Guesses states and inputs from names, units, movement and position. Each is a hint with a weight. Throws DataError
-/// when no channel moves.
+/// Guesses states and inputs from names, units, movement and position. Each hint has a weight. Throws DataError if no
+/// channel moves.
 Guess guess_roles(const std::vector<SurveyedFile>& files);
 
-/// Moving channels that `guess` leaves out, each with the reason, in the order of the files.
+/// Moving channels that are not in `guess`, each with the reason, in the order of the files.
 std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, const Guess& guess);
 
 }  // namespace modebank::app

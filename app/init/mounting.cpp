@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::VectorXd;
 constexpr std::array axes{Axis::x, Axis::y, Axis::z};
-/// Mean accelerations in this range are gravity, with room for sensors of wrong scale.
+/// [m/s^2] A mean acceleration in this range is gravity. The range allows for wrong sensor scales.
 constexpr double least_gravity = 7.0, most_gravity = 12.5;
 
 const SurveyedChannel* channel_of(const SurveyedTable& table, Axis axis, bool (*names)(std::string_view, Axis)) {
@@ -21,7 +21,7 @@ const SurveyedChannel* channel_of(const SurveyedTable& table, Axis axis, bool (*
   return nullptr;
 }
 
-/// The yaw rate in another table.
+/// The yaw rate in another table than the gyro's.
 std::pair<const SurveyedTable*, const SurveyedChannel*> other_yaw_rate(const std::vector<SurveyedFile>& files,
                                                                        const ChannelPlace& z_rate) {
   for (std::size_t f = 0; f < files.size(); ++f)

@@ -24,10 +24,10 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// Whether a name contains characters with another meaning in a list of names or in a configuration line.
+/// Whether a name contains characters that have another meaning in a list of names or in a configuration line.
 bool needs_quotes(const std::string& name) { return name.find_first_of(",#'\"") != std::string::npos; }
 
-/// The last two parts of a channel's name, as an identifier. Spreadsheets write the unit behind a comma: Flow, l/h.
+/// The last two parts of a channel's name, as an identifier. Spreadsheets write the unit after a comma: Flow, l/h.
 std::string short_name(const std::string& name) {
   if (const std::size_t comma = name.find(','); comma != std::string::npos && comma > 0) {
     std::string result = letters_and_digits(name.substr(0, comma));
@@ -40,7 +40,7 @@ std::string short_name(const std::string& name) {
   return result.empty() || is_digit(result.front()) ? "channel_" + result : result;
 }
 
-/// Builds one configuration from the survey.
+/// Builds the proposed configuration from the survey.
 class Proposer {
  public:
   Proposer(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess)
@@ -62,8 +62,8 @@ class Proposer {
   const std::vector<SurveyedFile>& surveyed_;
   const Guess& guess_;
   Proposal proposal_;
-  std::string turned_;                              // name of the derived yaw rate
-  std::map<std::string, std::string> short_names_;  // short names of channels whose names are long
+  std::string turned_;                              // name of the derived yaw rate, if the gyro lies on its side
+  std::map<std::string, std::string> short_names_;  // short names of the channels that have long names
 
   const ChannelPlace& state() const { return guess_.states.front(); }
   const ChannelPlace& input() const { return guess_.inputs.empty() ? state() : guess_.inputs.front(); }
@@ -84,7 +84,7 @@ class Proposer {
                        set.runs[order.back()]);
   }
 
-  /// The common folder of all files of both sets.
+  /// The folder that contains all files of both sets.
   static Path common_folder(const FileSet& a, const FileSet& b) {
     Path folder = a.files.front().parent_path();
     const auto holds = [&](const Path& file) { return (file.string()).starts_with((folder / "").string()); };
@@ -169,7 +169,7 @@ class Proposer {
     return guess_.mounting && channel(place).name == guess_.mounting->up_rate;
   }
 
-  /// Names made from topics are too long for tables and axes, so these channels get short names.
+  /// Names from topics are too long for tables and axes, so these channels get short names.
   void shorten(const std::vector<ChannelPlace>& places) {
     constexpr std::size_t longest = 24;
     for (const ChannelPlace& place : places) {
@@ -186,7 +186,7 @@ class Proposer {
       while (is_taken(alias)) alias += "_";
       const std::string& own = channel(place).unit;
       std::string unit = own.empty() ? usual_unit(name) : own;
-      if (unit.find(']') != std::string::npos) unit.clear();  // ] would end the unit's bracket
+      if (unit.find(']') != std::string::npos) unit.clear();  // a ] in a unit would end the bracket around the unit
       add("derive", fmt::format("{}{} = {}", alias, unit.empty() ? "" : " [" + unit + "]", quoted_channel_name(name)),
           "");
       short_names_[name] = alias;
@@ -205,7 +205,7 @@ class Proposer {
     return listed_channel_names(all);
   }
 
-  /// Units from the names, where the format has none; empty unless all are found.
+  /// If the format has no units, takes them from the names. Empty unless every channel has one.
   void units(const char* key, const std::vector<ChannelPlace>& places) {
     std::vector<std::string> all;
     bool said = true;
@@ -237,14 +237,14 @@ class Proposer {
     return places.empty() ? 0.0 : least;
   }
 
-  /// A rounded value with few levels also repeats; that does not make its source slow.
+  /// A coarsely rounded value also repeats, but its source need not be slow.
   bool is_coarse(const ChannelPlace& place) const {
     constexpr double few = 200.0;
     const ChannelCheck& check = channel(place).check;
     return check.quantum > 0.0 && check.largest - check.least < few * check.quantum;
   }
 
-  /// The usual rate within 15 %, else the rate rounded to two digits.
+  /// A common rate within 15 % of the given one, else the given rate rounded to two digits.
   static double round_rate(double rate_hz) {
     for (const double usual : {1.0, 2.0, 4.0, 5.0, 10.0, 20.0, 25.0, 30.0, 40.0, 50.0, 100.0})
       if (std::abs(rate_hz - usual) < 0.15 * usual) return usual;

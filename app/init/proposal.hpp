@@ -8,25 +8,25 @@
 
 namespace modebank::app {
 
-/// A key with its value and reason; without a value only a comment.
+/// A key with its value and reason. A key without a value is written as a comment.
 struct ProposedKey {
   std::string key, value, why;
 };
 
-/// The [data] section to propose, key by key.
+/// The proposed [data] section, key by key.
 struct Proposal {
   std::vector<ProposedKey> keys;
-  std::vector<std::string> doubts;  ///< points that the user should check first
-  std::vector<ChannelLeft> left;    ///< moving channels that were left out
+  std::vector<std::string> doubts;  ///< points that users should check first
+  std::vector<ChannelLeft> left;    ///< moving channels that are not used
 
   const ProposedKey* find(const std::string& key) const;
   void add(std::string key, std::string value, std::string why = {});
-  void doubt(const std::string& text);  ///< adds a doubt once
+  void doubt(const std::string& text);  ///< adds a doubt, unless it was added before
   void drop(const std::string& key);
   void set(const std::string& key, const std::string& value, const std::string& why);
 };
 
-/// `surveyed`: the result of survey_set for each set.
+/// `surveyed`: for each set, the result of survey_set.
 Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                  const std::string& config_folder);
 

@@ -9,7 +9,7 @@
 namespace modebank::app {
 namespace {
 
-/// Channels with the same reason share a line; only the first few names are written.
+/// Channels with the same reason share a line. Of many names, only the first few are written.
 std::string left_text(const std::vector<ChannelLeft>& left) {
   constexpr std::size_t named = 8;
   std::vector<std::string> reasons;

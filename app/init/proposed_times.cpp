@@ -8,7 +8,7 @@
 namespace modebank::app {
 namespace {
 
-/// Whether a note only repeats the unit in the column's name. Other notes state what the values showed.
+/// Whether a note only repeats the unit in the column's name. All other notes state what the values showed.
 bool is_of_stated_unit(const SurveyedTable& of, const std::string& note) {
   return of.form.ground == StampForm::Ground::stated && note.starts_with(fmt::format("column {} ", of.time.front()));
 }
@@ -55,7 +55,7 @@ void propose_times(const SurveyedTable& states, const SurveyedTable& inputs, Pro
                                states.time.front(), states.sampling.rate_hz));
   propose_form(states, proposal);
   if (own(states) && own(inputs))
-    return;  // the recording's default stamps are found without data.time, so this key is not written
+    return;  // the default stamps of a recording need no data.time, so this key is not written
   const std::string time = listed_channel_names(states.time);
   if (states.time != inputs.time)
     proposal.doubt(fmt::format("the column of times is {} in one table and {} in the other; data.time takes one name",

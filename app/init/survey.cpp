@@ -23,7 +23,7 @@ namespace {
 /// Surveys the columns of one table.
 class TableSurvey {
  public:
-  /// `columns` as they were read; their values are moved out.
+  /// `columns`: the columns that were read. Their values are moved out.
   TableSurvey(const TableReader& reader, std::size_t position, const TableInfo& info, std::vector<FileColumn>& columns)
       : reader_(reader), position_(position), info_(info), columns_(columns) {}
 
@@ -57,7 +57,7 @@ class TableSurvey {
   std::vector<FileColumn>& columns_;
   std::string time_problem_;
 
-  /// Stamps in seconds.
+  /// The stamps of a column in seconds.
   static Eigen::VectorXd numbers_of(const FileColumn& column) {
     if (const auto* numbers = std::get_if<std::vector<double>>(&column))
       return Eigen::VectorXd::Map(numbers->data(), std::ssize(*numbers));
@@ -70,7 +70,7 @@ class TableSurvey {
     return seconds;
   }
 
-  /// The stamps of a candidate, possibly among those already read.
+  /// The stamps of a candidate. If its column was already read, the values are reused.
   Table stamps_of(const std::vector<std::string>& candidate) {
     Table result;
     for (std::size_t i = 0; candidate.size() == 1 && i < columns_.size(); ++i)
@@ -92,7 +92,7 @@ class TableSurvey {
     }
   }
 
-  /// Columns that may be times, the likeliest first: those typed as times, then those with such names.
+  /// Columns that may be times, the likeliest first. Columns of a time type come before columns with names of times.
   std::vector<std::vector<std::string>> time_candidates(const SurveyedTable& table) const {
     std::vector<std::vector<std::string>> typed, named;
     for (std::size_t i = 0; i < table.channels.size(); ++i) {
@@ -114,13 +114,13 @@ class TableSurvey {
     return typed;
   }
 
-  /// Whether a column of text, whatever its name, begins with a time of day or a date.
+  /// Whether a text column begins with a time of day or a date. Its name does not matter.
   bool begins_with_time(std::size_t column) const {
     const auto* texts = std::get_if<std::vector<std::string>>(&columns_[column]);
     return texts != nullptr && !texts->empty() && is_known_time(texts->front());
   }
 
-  /// The name of the date column beside a column with a time of day, if both are text.
+  /// If a text column has times of day, the name of the text column beside it that has dates.
   static std::string date_beside(const SurveyedTable& table, std::size_t time) {
     for (const std::size_t i : {time - 1, time + 1})
       if (i < table.channels.size() && names_date(table.channels[i].name) && table.channels[i].type == "text" &&
@@ -140,7 +140,8 @@ class TableSurvey {
     return count;
   }
 
-  /// Takes the first candidate that advances. One that jumps back sometimes may contain the times of many runs.
+  /// Takes the first candidate with increasing times. A candidate that sometimes jumps back may contain the times of
+  /// many runs.
   void find_time(SurveyedTable& table) {
     std::optional<std::vector<std::string>> jumping;
     for (const std::vector<std::string>& candidate : time_candidates(table)) {
@@ -173,7 +174,7 @@ class TableSurvey {
     table.time_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(std::max<Eigen::Index>(rows - 1, 0)));
   }
 
-  /// Times rise evenly by any step; row counters rise by whole numbers.
+  /// Times increase in even steps of any size; row counters increase in whole numbers.
   static bool advances_steadily(const Eigen::VectorXd& values) {
     return rises_evenly(values) &&
            (values.tail(values.size() - 1).array() - values.head(values.size() - 1).array() != 1.0).any();
@@ -190,7 +191,7 @@ class TableSurvey {
     return 10 * near > 9 * steps.size();
   }
 
-  /// Uses the channel as times if its rate is a usual one of instruments.
+  /// If the rate of the channel is common for instruments, uses the channel as times.
   bool take_steady(SurveyedTable& table, const std::string& name) {
     constexpr double lowest_hz = 0.01, highest_hz = 20e3;
     if (!take_times(table, stamps_of({name}))) return false;
@@ -207,7 +208,7 @@ class TableSurvey {
     return 0;
   }
 
-  /// Returns false for fewer than two stamps. Stamps from before the clock was set become missing.
+  /// Returns false if there are fewer than two stamps. Stamps from before the clock was set become missing values.
   static bool take_times(SurveyedTable& table, const Table& read) {
     std::vector<std::int64_t> stamps = read.time_ns;
     if (stamps.size() < 2) return false;
@@ -235,8 +236,8 @@ class TableSurvey {
 
   static bool jumps_back(const Eigen::VectorXd& time_s, Eigen::Index k) { return time_s(k) < time_s(k - 1); }
 
-  /// Finds the column that separates runs. It changes wherever time jumps back. Without jumps it is a text that changes
-  /// only at gaps and never returns to an earlier value.
+  /// Finds the column that separates runs. Its value must change wherever time jumps back. Without jumps, it must be a
+  /// text that changes only at gaps and never returns to an earlier value.
   void find_run(SurveyedTable& table) {
     std::vector<Eigen::Index> jumps;
     for (Eigen::Index k = 1; k < table.time_s.size(); ++k)
@@ -277,7 +278,7 @@ class TableSurvey {
            std::all_of(jumps.begin(), jumps.end(), [&](Eigen::Index k) { return values(k) != values(k - 1); });
   }
 
-  /// The rows before time first jumps back.
+  /// The rows before the first jump back in time.
   static Stream one_run(const SurveyedTable& table) {
     Eigen::Index end = std::min<Eigen::Index>(1, table.time_s.size());
     while (end < table.time_s.size() && !(!table.run.empty() && jumps_back(table.time_s, end))) ++end;
@@ -311,7 +312,7 @@ SurveyedFile survey_file(const std::filesystem::path& path) {
   SurveyedFile file{path, {}, {}};
   const std::vector<TableInfo> tables = reader->tables();
   FileColumns columns = read_columns(*reader, tables, [](const TableInfo&, const ColumnInfo& column) {
-    return column.type != "text";  // text is not surveyed further
+    return column.type != "text";  // text columns are not surveyed further
   });
   file.notes = std::move(columns.notes);
   for (std::string& line : reader->left_out()) file.notes.push_back(std::move(line));

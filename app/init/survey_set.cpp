@@ -20,20 +20,21 @@ SurveyedTable* find_table(SurveyedFile& file, const std::string& name) {
   return found == file.tables.end() ? nullptr : &*found;
 }
 
-/// A channel moves if it moves in any file.
+/// A channel of the set moves if it moves in at least one file.
 void widen(ChannelCheck& check, const ChannelCheck& other) {
   check.least = std::min(check.least, other.least);
   check.largest = std::max(check.largest, other.largest);
   check.missing += other.missing;
 }
 
-/// A channel is text if it is text in one of the files.
+/// A channel of the set is text if it is text in at least one file.
 void be_text(SurveyedChannel& ours, const SurveyedChannel& theirs) {
   ours.values.resize(0);
   if (ours.why_text.empty()) ours.why_text = theirs.why_text;
 }
 
-/// Merges another file's table. Channels that are not in both become `partial`.
+/// Merges the same table of another file into `table`. Names of channels that only one of the files has are added to
+/// `partial`.
 void merge(SurveyedTable& table, const SurveyedTable& other, Names& partial) {
   if (!table.form.patterns.empty() && !other.form.patterns.empty()) join_patterns(table.form, other.form);
   std::erase_if(table.channels, [&](const SurveyedChannel& channel) {

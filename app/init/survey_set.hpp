@@ -5,8 +5,8 @@
 
 namespace modebank::app {
 
-/// Survey of all files of a set together: values of the first, ranges and missing values over all. Channels and tables
-/// that are not in every file are left out and named in `notes`. Throws as survey_file does.
+/// Survey of all files of a set. The values come from the first file; ranges and missing values come from all files.
+/// Channels and tables that some file lacks are removed and named in `notes`. Throws the exceptions of survey_file.
 SurveyedFile survey_set(const FileSet& set);
 
 }  // namespace modebank::app

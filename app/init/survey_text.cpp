@@ -10,13 +10,13 @@
 namespace modebank::app {
 namespace {
 
-/// Names come from files, so control characters are replaced.
+/// Names come from files, so control characters in them are replaced.
 std::string shown_name(std::string name) {
   std::replace_if(name.begin(), name.end(), is_control, '?');
   return name;
 }
 
-/// The name of an array's element without its position: covariance[3].
+/// The name of an array element without its index: covariance for covariance[3].
 std::string array_of(const std::string& name) {
   return name.ends_with("]") ? name.substr(0, name.rfind('[')) : std::string();
 }
@@ -42,7 +42,7 @@ Row row_of(const SurveyedChannel& channel, const SurveyedTable& table) {
   return {name, channel.unit, range + notes};
 }
 
-/// Elements of an array share a row if none of them moves.
+/// If no element of an array moves, its elements share a row.
 std::vector<Row> rows_of(const SurveyedTable& table) {
   const std::vector<SurveyedChannel>& channels = table.channels;
   std::vector<Row> rows;
@@ -61,7 +61,7 @@ std::vector<Row> rows_of(const SurveyedTable& table) {
   return rows;
 }
 
-/// Columns as wide as their widest cell.
+/// A text table in which each column is as wide as its widest cell.
 std::string rows_text(const SurveyedTable& table) {
   const std::vector<Row> rows = rows_of(table);
   std::size_t name = 0, unit = 0;

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array command_words{" cmd ", " command ", " commanded ", " setpoint ", " desired ", " target "};
 constexpr std::array measured_words{" wheel ", " measured ", " meas ", " actual ", " encoder ", " feedback "};
 
-/// The name without the first of these words that it has; empty: it has none.
+/// The name without one of these words: the first word that the name contains. Empty if it contains none.
 template <std::size_t size>
 std::string without(const std::array<const char*, size>& list, const std::string& name) {
   std::string words = words_of_name(name);
@@ -33,7 +33,7 @@ double reach_of(const SurveyedChannel& channel) {
   return std::max(std::abs(channel.check.least), std::abs(channel.check.largest));
 }
 
-/// The channel beside the command that measures the same quantity; empty if there is none.
+/// The channel in the command's table that measures the same quantity; empty if there is none.
 std::optional<std::size_t> counterpart(const SurveyedTable& table, const SurveyedChannel& command) {
   const std::string rest = without(command_words, command.name);
   if (rest.empty()) return std::nullopt;
@@ -42,8 +42,8 @@ std::optional<std::size_t> counterpart(const SurveyedTable& table, const Surveye
   return std::nullopt;
 }
 
-/// Whether a tenth of the commands exceeds all measurements by a fifth. Both must have the same unit, and measurements
-/// must follow moderate commands with a slope between a half and two.
+/// Whether a tenth of the commands exceeds all measurements by a fifth. Both must have the same unit. The measurements
+/// must also follow moderate commands, with a slope between 0.5 and 2.
 bool is_beyond_reach(const SurveyedChannel& command, const SurveyedChannel& measured) {
   constexpr double beyond = 1.2, least_share = 0.1, moderate = 0.5, least_slope = 0.5, largest_slope = 2.0;
   const double reach = reach_of(measured);

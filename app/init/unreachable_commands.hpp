@@ -6,11 +6,12 @@
 
 namespace modebank::app {
 
-/// If commands exceed all measurements of them, no linear motion follows from these commands. The measured values in
-/// the same table then become the inputs, with a reason. Example: wheel_left measures cmd_left. On the DRIVE data a
-/// quarter of the commands is out of reach. There, measured inputs predict training runs left out better by 0.006 +-
-/// 0.005 nats per sample one step ahead, and by 0.111 +- 0.046 ten steps ahead. This was computed with three lags of
-/// one linear motion, after removing the lag of the wheels.
+/// If some commands exceed all measurements of the same quantity, no linear model can predict motion from these
+/// commands. The measured values in the same table then become the inputs, with a reason. Example: wheel_left measures
+/// cmd_left.
+/// On the DRIVE data a quarter of the commands is out of reach. There, measured inputs predict training runs left out
+/// better by 0.006 +- 0.005 nats per sample one step ahead, and by 0.111 +- 0.046 ten steps ahead. This was computed
+/// with one linear model of three lags, after removing the lag of the wheels.
 void replace_unreachable_commands(const std::vector<SurveyedFile>& files, Guess& guess);
 
 }  // namespace modebank::app

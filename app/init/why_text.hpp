@@ -5,8 +5,8 @@
 
 namespace modebank::app {
 
-/// The value that makes a column text, with the key that helps. It is the first value that begins like a number, else
-/// the first of all. Empty if all values are equal.
+/// The value that makes a column text, with the key that helps. It is the first value that begins like a number, or the
+/// first value if there is none. Empty if all values are equal.
 std::string why_no_numbers(const std::vector<std::string>& texts);
 
 }  // namespace modebank::app

@@ -10,13 +10,13 @@
 namespace modebank::app {
 namespace {
 
-/// Points for a sequence of words in a name.
+/// Points for a name that contains a sequence of words.
 struct Word {
-  std::string_view words;  ///< with a blank before and behind
+  std::string_view words;  ///< with a blank before and after
   int points;
 };
 
-/// Only the best word of a list counts, so that "angular velocity z" does not score for each of its words.
+/// Only the word with the most points counts. Otherwise "angular velocity z" would score once for each of its words.
 template <std::size_t size>
 int best(const std::array<Word, size>& list, std::string_view words) {
   int points = 0;
@@ -58,7 +58,7 @@ constexpr std::array input_words{
     Word{" thrust ", 7},    Word{" power ", 5},    Word{" drive ", 4},     Word{" actuator ", 7},
 };
 
-/// Points that the table's name adds to all its channels.
+/// Points that all channels of a table get for the table's name.
 constexpr std::array measuring_tables{Word{" imu ", 3}, Word{" gyro ", 3}, Word{" odom ", 1}, Word{" odometry ", 1}};
 constexpr std::array acting_tables{
     Word{" cmd ", 8},      Word{" command ", 8}, Word{" commands ", 8}, Word{" joy ", 3},     Word{" odom ", 2},
@@ -96,7 +96,7 @@ bool ends_with_any(const std::array<const char*, size>& list, std::string_view w
   return false;
 }
 
-/// The last letter of a name, if it names an axis.
+/// Whether the last letter of a name is the letter of this axis.
 bool has_axis(std::string_view words, Axis axis, std::string_view before) {
   constexpr std::array letters{"x", "y", "z"};
   const std::string joint = std::string(before) + letters[static_cast<std::size_t>(axis)] + " ";
@@ -106,7 +106,7 @@ bool has_axis(std::string_view words, Axis axis, std::string_view before) {
 }  // namespace
 
 std::string words_of_name(std::string_view name) {
-  name = split_unit(name).name;  // words in a unit do not count
+  name = split_unit(name).name;  // words in a unit give no points
   std::string words = " ";
   for (std::size_t i = 0; i < name.size(); ++i) {
     const char c = name[i], before = i > 0 ? name[i - 1] : '\0';
@@ -128,7 +128,7 @@ NameScore score_name(std::string_view name, std::string_view type) {
   score.input = best(input_words, words);
   if (score.state > 0) score.state += std::max(best(measuring_tables, words), best(measuring_tables, kind));
   if (score.input > 0) score.input += std::max(best(acting_tables, words), best(acting_tables, kind));
-  if (score.input >= 10) score.state = 0;  // a command, even of a quantity that is usually measured
+  if (score.input >= 10) score.state = 0;  // a command, even if the quantity is usually measured
   return score;
 }
 

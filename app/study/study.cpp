@@ -22,7 +22,7 @@
 namespace modebank::app {
 namespace {
 
-/// One execution of the command.
+/// One execution of `modebank study`.
 struct StudyCommand {
   const StudyCall& call;
   const Config& config;
@@ -34,8 +34,8 @@ bool has_plan(const std::filesystem::path& folder) {
   return std::filesystem::exists(plan_file(folder));
 }
 
-/// Files that the study writes under common names, each with the text that its own files begin with. Links are not
-/// listed: the study's own file replaces them.
+/// Files that the study writes under common names. Each entry has the text with which the study's own file begins.
+/// Links are not listed, because the study's file replaces a link.
 std::vector<OutputFile> files_in_place(const std::filesystem::path& folder) {
   constexpr std::size_t line_bytes = 4096;
   const auto at = [&](const char* name, FileForm form) {
@@ -50,7 +50,8 @@ std::vector<OutputFile> files_in_place(const std::filesystem::path& folder) {
   return files;
 }
 
-/// Checks a folder before the first file of a study is written there: foreign files stay, and data are not overwritten.
+/// Checks a folder before the first file of a study is written there. The study must replace neither foreign files nor
+/// data.
 void check_folder(const StudyCommand& command, const StudyPlan& plan) {
   std::vector<std::filesystem::path> sources{command.call.config_file};
   for (const InputFile& file : plan.provenance.inputs) sources.emplace_back(file.path);
@@ -62,7 +63,8 @@ void check_folder(const StudyCommand& command, const StudyPlan& plan) {
   }
 }
 
-/// Writes the plan of the configuration to the folder. An earlier plan there must be part of it.
+/// Writes the plan of the configuration to the folder. If the folder has an earlier plan, its runs must be part of the
+/// new plan.
 StudyPlan settle_plan(const StudyCommand& command) {
   StudyPlan plan = make_plan(command.config, make_provenance(config_hash(command.config), command.call.typed));
   check_folder(command, plan);
@@ -81,7 +83,7 @@ void print_plan(const StudyCommand& command, const StudyPlan& plan) {
   command.call.say(plan_text(plan, count_stages(command.config, plan), command.config.study.repeats));
 }
 
-/// Throws DataError when the study had to stop.
+/// Throws DataError if the study had to stop.
 RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
   const StudyConfig& study = command.config.study;
   command.store.remove_leftovers();
@@ -111,7 +113,7 @@ bool is_complete(const StudyTable& table) {
   return true;
 }
 
-/// Throws unless there is a plan, which merge and status need.
+/// Throws unless there is a plan. The steps merge and status need one.
 void require_plan(const StudyCommand& command) {
   if (!has_plan(command.store.folder()))
     throw ConfigurationError(fmt::format("{}: the study has no plan yet; run the study, or --study.stage plan, first",
@@ -122,7 +124,8 @@ int merge(const StudyCommand& command, const std::set<std::string>& whole) {
   command.store.look_again();
   require_plan(command);
   const Claim alone = Claim::wait_for(command.store.plan_claim());
-  const StudyPlan plan = read_plan(command.store.folder());  // read anew, because another process may have added values
+  const StudyPlan plan = read_plan(command.store.folder());  // the plan is read again, because another process may have
+                                                             // added values
   check_plan_is_of(plan, command.config, command.store.folder());
   const StudyTable table = collect_table(command.store, plan, whole);
   const Answers answers = answer(table);

@@ -11,14 +11,15 @@ namespace modebank::app {
 /// One call of `modebank study`.
 struct StudyCall {
   Config config;
-  std::filesystem::path config_file;                                        ///< file of the configuration
-  KeyValues overrides;                                                      ///< keys from the command line
-  std::string typed;                                                        ///< the whole command line, for provenance
+  std::filesystem::path config_file;                                        ///< path of the configuration file
+  KeyValues overrides;                                                      ///< keys of the command line
+  std::string typed;                                                        ///< the whole command line, for the
+                                                                            ///< provenance
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< prints progress
 };
 
-/// Executes study.stage and reports the result. Returns 0 when every run is done, else 1. Throws ConfigurationError,
-/// and DataError when the study had to stop.
+/// Executes the step study.stage and reports the result. Returns 0 if every run is done, else 1. Throws
+/// ConfigurationError, or DataError if the study had to stop.
 int do_study(const StudyCall& call);
 
 }  // namespace modebank::app

@@ -12,7 +12,7 @@ std::string passing_words() {
   return fmt::format("{:g} to {:g} % passes", 100.0 * (1.0 - largest_outside), 100.0 * (1.0 - least_outside));
 }
 
-/// "mean NIS 1.21 (0.95 to 1.05 passes)"
+/// Text such as "mean NIS 1.21 (0.95 to 1.05 passes)".
 std::string nis_words(const DiagnosticsRow& row) {
   return fmt::format("mean NIS {:.3g} ({:.3g} to {:.3g} passes)", row.nis_mean, row.nis_lower, row.nis_upper);
 }
@@ -49,7 +49,8 @@ std::string doubt_words(const DiagnosticsRow& row) {
   }
 }
 
-/// "57.5 % of the samples lie in the 50 % band (too wide)" in short form: "50 %: 57.5 % (too wide)".
+/// Short text for another band: "50 %: 57.5 % (too wide)" means that 57.5 % of the samples lie in the 50 % band, which
+/// is therefore too wide.
 std::string other_band(double level, double coverage, double lower, double upper) {
   const BandWidth width = width_of(level, lower, upper);
   return fmt::format("{:g} %: {:.1f} %{}", 100.0 * level, 100.0 * coverage,

@@ -4,13 +4,13 @@
 
 #include "filter/judge/decide/diagnostics.hpp"
 
-/// Sentences on a filter's stated uncertainty, each made from one row of /evaluation/diagnostics.
+/// Sentences on the stated uncertainty of a filter. Each is made from one row of /evaluation/diagnostics.
 namespace modebank::app {
 
-/// The verdict with its reason: "calibrated, you can rely on it (92.5 to 97.5 % passes)".
+/// The verdict with its reason, such as "calibrated, you can rely on it (92.5 to 97.5 % passes)".
 std::string verdict_text(const DiagnosticsRow& row);
-/// "96.6 % (95.6 to 97.4) of the held-out samples lie in the 95 % band: calibrated, ...; 50 %: 57.5 % (too wide), ...".
-/// Brackets hold the 95 % interval of the share.
+/// Text such as "96.6 % (95.6 to 97.4) of the held-out samples lie in the 95 % band: calibrated, ...; 50 %: 57.5 % (too
+/// wide), ...". The brackets contain the 95 % interval of the percentage.
 std::string band_text(const DiagnosticsRow& row);
 
 }  // namespace modebank::app

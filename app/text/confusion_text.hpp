@@ -6,7 +6,7 @@
 
 namespace modebank::app {
 
-/// The table of labels and of the bank's most probable modes; empty without labels.
+/// A table of the labels against the bank's most probable modes; empty without labels.
 std::string confusion_text(const Archive& archive, int width);
 
 }  // namespace modebank::app

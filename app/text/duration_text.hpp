@@ -4,10 +4,10 @@
 
 namespace modebank::app {
 
-/// "3 s", "4.2 min", "1.5 h".
+/// A duration such as "3 s", "4.2 min" or "1.5 h".
 std::string duration_text(double seconds);
 
-/// "12.3 per s", "40 per h".
+/// A rate such as "12.3 per s" or "40 per h".
 std::string rate_text(double per_second);
 
 }  // namespace modebank::app

@@ -32,8 +32,8 @@ const HorizonRow* longest_horizon(const Archive& archive, const std::string& fil
   return longest;
 }
 
-/// For each state, the standard deviation of the judged measurements about their mean; NaN if there are none. Counts
-/// only the samples that are predicted that many steps ahead.
+/// For each state, the standard deviation of the judged measurements; NaN without measurements. Only samples that can
+/// be predicted `steps` steps ahead count.
 Eigen::VectorXd standard_deviation_of_measurements(const Archive& archive, Role role, Index steps) {
   if (!archive.recording || !archive.bank) return {};
   const Recording& recording = *archive.recording;
@@ -50,14 +50,14 @@ Eigen::VectorXd standard_deviation_of_measurements(const Archive& archive, Role 
   return deviation;
 }
 
-/// FIT as in `compare` of Ljung's System Identification Toolbox for MATLAB: 100 (1 - ||y - prediction|| / ||y - mean of
-/// y||) percent. Empty if it is unknown.
+/// FIT as defined by `compare` in Ljung's System Identification Toolbox for MATLAB: 100 (1 - ||y - prediction|| / ||y -
+/// mean of y||) percent. Empty if unknown.
 Eigen::VectorXd fit_percent(const Eigen::VectorXd& rmse, const Eigen::VectorXd& deviation) {
   const bool known = rmse.size() == deviation.size() && (deviation.array() > 0.0).all();
   return known ? Eigen::VectorXd(100.0 * (1.0 - rmse.array() / deviation.array())) : Eigen::VectorXd();
 }
 
-/// "0.0301 rad/s (1.72 deg/s), FIT 92.3 %". With several states, each value follows its state's name.
+/// Text such as "0.0301 rad/s (1.72 deg/s), FIT 92.3 %". With several states, each value follows the name of its state.
 std::string error_words(const ErrorAhead& error, const std::vector<Channel>& states) {
   std::vector<std::string> parts;
   for (Index i = 0; i < error.bank.size(); ++i) {
@@ -69,10 +69,11 @@ std::string error_words(const ErrorAhead& error, const std::vector<Channel>& sta
   return boost::algorithm::join(parts, ", ");
 }
 
-/// "0.0301"; with several states "0.0301, 0.2".
+/// Text such as "0.0301", or "0.0301, 0.2" with two states.
 std::string digits(const Eigen::VectorXd& values) { return fmt::format("{:.3g}", fmt::join(values, ", ")); }
 
-/// The bank's error some steps ahead, beside the other filters' errors. `row_of` returns a filter's scores, or null.
+/// The bank's error some steps ahead, and the errors of other filters. `row_of` returns the scores of a filter, or
+/// null.
 template <class RowOf>
 void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, const std::string& competitor,
                std::vector<ErrorAhead>& errors) {

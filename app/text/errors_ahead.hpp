@@ -10,21 +10,24 @@
 
 namespace modebank::app {
 
-/// Errors of the bank's predictions, beside those of the finding's best competitor and of all filters combined.
+/// Errors of the bank's predictions. For comparison, the errors of the finding's best competitor and of all filters
+/// combined.
 struct ErrorAhead {
   Index steps = 1;
   Eigen::VectorXd bank;                  ///< n_y, root mean square [state unit]
   Eigen::VectorXd competitor, combined;  ///< n_y, root mean square [state unit]; empty if unknown
-  Eigen::VectorXd other;                 ///< n_y, the least error of all competitors for each state; empty if unknown
+  Eigen::VectorXd other;                 ///< n_y, the smallest error of all competitors for each state; empty if
+                                         ///< unknown
   Eigen::VectorXd fit_percent;           ///< n_y, FIT of the bank [%]; empty if unknown
   std::string bank_words,
-      other_words;  ///< errors of the bank with units; errors of the competitor and of `combined` with their names
+      other_words;  ///< texts: the bank's errors with units; the errors of the competitor and of `combined`, each with
+                    ///< its name
 };
 
 /// Errors one step ahead and at the longest scored horizon. `competitor` is empty if there is none.
 std::vector<ErrorAhead> errors_ahead(const Archive& archive, Role role, const std::string& competitor);
 
-/// For each state, the value of the competitor that is best at this state. `value_of` returns a competitor's values, or
+/// For each state, the value of the best competitor for this state. `value_of` returns the values of a competitor, or
 /// null.
 template <class ValueOf, class Better>
 Eigen::VectorXd best_of_competitors(ValueOf value_of, Better better) {
@@ -39,7 +42,7 @@ Eigen::VectorXd best_of_competitors(ValueOf value_of, Better better) {
   return best;
 }
 
-/// "71.2 %"; with several states "71.2 %, 65.0 %".
+/// Text such as "71.2 %", or "71.2 %, 65.0 %" with two states.
 std::string fit_words(const Eigen::VectorXd& fit);
 
 }  // namespace modebank::app

@@ -20,13 +20,13 @@ std::string counted(Eigen::Index count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-/// "6 held-out runs", "held-out run".
+/// Text such as "6 held-out runs" or "held-out run".
 std::string judged(const Finding& finding) {
   const std::string runs = fmt::format("{} run{}", words_for(finding.role), finding.runs == 1 ? "" : "s");
   return finding.runs == 1 ? runs : fmt::format("{} {}", finding.runs, runs);
 }
 
-/// "; error from 12 blocks of the one run" if there are fewer runs than a standard error needs.
+/// Text such as "; error from 12 blocks of the one run", if there are too few runs for a standard error over runs.
 std::string blocks_words(const Finding& finding) {
   for (const PairedGain& gain : finding.gains)
     if (gain.competitor == finding.best_competitor && gain.by_blocks && std::isfinite(gain.standard_error))
@@ -35,7 +35,7 @@ std::string blocks_words(const Finding& finding) {
   return "";
 }
 
-/// "`drifting`: one linear model whose parameters wander"
+/// Text such as "`drifting`: one linear model whose parameters wander".
 std::string described(const Finding& finding, const std::string& competitor) {
   return fmt::format("`{}`: {}", competitor, description_of(competitor, finding.one_motion_drifts));
 }
@@ -56,7 +56,7 @@ bool falls_short_of(const Finding& finding, const std::string& competitor) {
   return gain && gain->falls_short();
 }
 
-/// "; more than 0.103 passes": the threshold of the gain, if the threshold decides.
+/// Text such as "; more than 0.103 passes", if the answer depends on this threshold of the gain.
 std::string passing_gain(const Finding& finding) {
   const PairedGain* const gain = gain_over(finding, finding.best_competitor);
   const bool decides = finding.answer == Answer::evidence || finding.answer == Answer::no_evidence;
@@ -64,9 +64,9 @@ std::string passing_gain(const Finding& finding) {
   return fmt::format("; more than {:.3f} passes", std::max(gain->margin, negligible_gain));
 }
 
-/// "switching between 5 linear models predicts the 6 held-out runs better than the best single model (`one_motion`:
-/// one linear model with changing noise): each sample is 14.4 % more likely (+0.134 +- 0.040 nats per sample; more than
-/// 0.103 passes)."
+/// Sentence on the gain, for example: "switching between 5 linear models predicts the 6 held-out runs better than the
+/// best single model (`one_motion`: one linear model with changing noise): each sample is 14.4 % more likely (+0.134 +-
+/// 0.040 nats per sample; more than 0.103 passes)."
 std::string gain_sentence(const Finding& finding, const char* start) {
   if (finding.best_competitor.empty()) return "";
   const char* const than = falls_short_of(finding, finding.best_competitor) ? "worse than"
@@ -78,15 +78,16 @@ std::string gain_sentence(const Finding& finding, const char* start) {
                      gain_words(finding.gain, finding.standard_error), passing_gain(finding), blocks_words(finding));
 }
 
-/// Text on the single model that describes the runs as well as the bank, or better.
+/// Text on a single model that describes the runs as well as the bank, or better.
 std::string instead_words(const Finding& finding) {
   const std::string& simpler = finding.better_description;
   if (simpler.empty()) return "";
-  // Only a gain beyond its margin counts. A smaller gain leaves open which model is better.
+  // Only a gain beyond its margin counts. A smaller gain does not show which model is better.
   const char* const how = !falls_short_of(finding, simpler)       ? "may describe these runs as well"
                           : finding.answer == Answer::cannot_tell ? "may describe these runs better"
                                                                   : "describes these runs better";
-  // The sentence on the gain describes the best single model already: it states that the bank is worse.
+  // The sentence on the gain already names the best single model and states that the bank is worse. So this text is not
+  // needed.
   if (simpler == finding.best_competitor && falls_short_of(finding, simpler) && finding.answer != Answer::cannot_tell)
     return "";
   if (simpler == finding.best_competitor) return fmt::format(" The single model `{}` {}.", simpler, how);
@@ -98,8 +99,8 @@ std::string gain_words(const PairedGain& gain) {
   return fmt::format("the gain over `{}`, {},", gain.competitor, gain_words(gain.gain, gain.standard_error));
 }
 
-/// "the gain over `one_motion`, +0.849 +- 0.388 nats per sample, may be chance: with 5 runs, only a gain
-/// above 0.911 passes"
+/// Text such as "the gain over `one_motion`, +0.849 +- 0.388 nats per sample, may be chance: with 5 runs, only a gain
+/// above 0.911 passes".
 std::string within_chance_words(const PairedGain& gain, Eigen::Index runs) {
   const std::string clusters =
       gain.by_blocks ? counted(static_cast<Eigen::Index>(gain.degrees_of_freedom) + 1, "block") : counted(runs, "run");
@@ -138,7 +139,7 @@ std::string why_not_told(const Finding& finding) {
   return within_chance_words(*least_beaten(finding), finding.runs);
 }
 
-/// "78 % of the samples of y repeat the one before; ..."
+/// Text such as "78 % of the samples of y repeat the one before; ..."
 std::string coarse_reasons(const Finding& finding) {
   std::vector<std::string> reasons;
   for (const Resolution& state : finding.coarse)
@@ -156,7 +157,7 @@ std::string coarse_words(const Finding& finding) {
       judged(finding), coarse_reasons(finding));
 }
 
-/// "One linear model predicts the 2 held-out runs up to rounding: ..."
+/// Text such as "One linear model predicts the 2 held-out runs up to rounding: ..."
 std::string without_noise_words(const Finding& finding) {
   std::vector<std::string> coefficients;
   for (const auto& [name, value] : finding.coefficients) coefficients.push_back(fmt::format("{} {:.6g}", name, value));
@@ -173,7 +174,7 @@ std::string one_mode_words(const Finding& finding) {
   return text + fmt::format(" Its log scores measure rounding rather than motion: {}.", coarse_reasons(finding));
 }
 
-/// " Over `noise_only` one nonlinear model gains +0.210 nats per sample, the bank +0.450."
+/// Text such as " Over `noise_only` one nonlinear model gains +0.210 nats per sample, the bank +0.450."
 std::string both_words(const Finding& finding) {
   if (finding.over_linear.empty()) return "";
   return fmt::format(" Over `{}` one nonlinear model gains {:+.3f} nats per sample, and the {} gain {:+.3f}.",

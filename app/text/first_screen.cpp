@@ -19,12 +19,12 @@ namespace modebank::app {
 namespace {
 
 constexpr int finding_lines = 5;
-constexpr int least_mode_lines = 4;  // two of them headings
+constexpr int least_mode_lines = 4;  // two of these lines are headings
 constexpr int least_columns = 40;
 
 int line_count(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
-/// Lines of at most the screen's width, even with long names. A tab in a name counts as a space.
+/// Shortens lines to the width of the screen, even with long names. A tab in a name counts as a space.
 std::string narrowed(std::string text, int columns) {
   std::replace(text.begin(), text.end(), '\t', ' ');
   std::vector<std::string> lines = lines_of(text);
@@ -33,7 +33,7 @@ std::string narrowed(std::string text, int columns) {
   return boost::algorithm::join(lines, "\n");
 }
 
-/// A labelled paragraph of at most `most` lines; longer text ends in "..." (`show` prints all of it).
+/// A labelled paragraph of at most `most` lines. A longer text is cut and ends in "..."; `show` prints all of it.
 std::string section(const char* label, const std::string& text, int most, int columns) {
   if (text.empty()) return "";
   std::vector<std::string> lines = lines_of(wrapped(padded_label(label) + text, columns));
@@ -49,7 +49,7 @@ std::string file_line(const std::string& file, int columns) {
   return (columns_of(line + rest) <= columns ? line + rest : line) + "\n";
 }
 
-/// At most `lines` lines, two of them headings.
+/// The section on modes, at most `lines` lines. Two of these are headings.
 std::string modes_section(const Archive& archive, const FirstScreen& screen, int lines, int columns) {
   const std::string indent(2, ' ');
   ShortModes modes = short_modes(archive, lines - 2, columns - static_cast<int>(indent.size()));
@@ -70,7 +70,7 @@ std::string modes_section(const Archive& archive, const FirstScreen& screen, int
   return section("modes", head, 1, columns) + narrowed(indent + table, columns) + "\n";
 }
 
-/// Whether a name is short and needs no quotes in any shell.
+/// Whether a name is short and needs no quotes in a shell.
 bool is_plain(const std::string& name) {
   constexpr std::size_t short_name = 32;
   return !name.empty() && name.size() <= short_name && std::all_of(name.begin(), name.end(), [](char c) {
@@ -78,7 +78,8 @@ bool is_plain(const std::string& name) {
   });
 }
 
-/// The configuration of the command that made the archive, or the one that `run LOG` wrote beside it; empty if unknown.
+/// The configuration of the command that made the archive, or the configuration that `run LOG` wrote beside the
+/// archive. Empty if unknown.
 std::string configuration_of(const Archive& archive, const std::string& file) {
   std::vector<std::string> words;
   boost::algorithm::split(words, archive.provenance.command_line, boost::is_any_of(" "));
@@ -87,7 +88,7 @@ std::string configuration_of(const Archive& archive, const std::string& file) {
   return file.ends_with(".h5") && !words[2].starts_with("-") ? file.substr(0, file.size() - 3) + ".ini" : "";
 }
 
-/// The command that made the archive, with its options if it is short, else without them.
+/// The command that made the archive. It has its options if it is then still short.
 std::string run_command(const Archive& archive, const std::string& program, const std::string& configuration) {
   constexpr std::size_t short_command = 64;
   const std::string& typed = archive.provenance.command_line;
@@ -96,8 +97,8 @@ std::string run_command(const Archive& archive, const std::string& program, cons
   return program + " run " + configuration + (as_typed ? typed.substr(options) : "");
 }
 
-/// Commands that can be typed. They contain the program's name as the user called it, and the names of archive and
-/// configuration unless these are long.
+/// Replaces placeholders, so that the commands can be typed. Commands use the program's name as the user called it.
+/// They also use the names of archive and configuration, unless these are long.
 std::string as_typed(std::string next, const Archive& archive, const std::string& program, const std::string& file) {
   if (const std::string configuration = configuration_of(archive, file); is_plain(configuration)) {
     boost::replace_all(next, "`modebank run CONFIG", "`" + run_command(archive, program, configuration));

@@ -8,7 +8,7 @@
 namespace modebank::app {
 namespace {
 
-/// "95.1 94.8": one number for each state.
+/// Text such as "95.1 94.8": one number for each state.
 std::string percents(const Eigen::VectorXd& shares) { return size_list((100.0 * shares).eval(), 1); }
 
 std::string caption(const FreeRunRow& bank) {

@@ -6,7 +6,7 @@
 
 namespace modebank::app {
 
-/// The table of free runs: every filter on training and held-out runs; empty if filter.simulate is not set.
+/// The table of free runs: every filter on training and held-out runs. Empty if filter.simulate is not set.
 std::string free_run_text(const Archive& archive, int width = 0);
 
 }  // namespace modebank::app

@@ -7,16 +7,16 @@
 
 namespace modebank {
 
-/// The summary's row of a filter over all runs with a role; null if there is none.
+/// A filter's row of the summary for all runs of a role; null if there is none.
 const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role);
 
-/// The row of a filter's mode over all runs with a role; null if there is none. mode -1 is the whole filter.
+/// The row of one mode of a filter for all runs of a role; null if there is none. Mode -1 means the whole filter.
 const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role, Eigen::Index mode = -1);
 
-/// The evaluation of a filter over all runs; null if there is none.
+/// The evaluation of a filter on all runs; null if there is none.
 const FilterEvaluation* evaluation_of(const Archive& archive, const std::string& filter);
 
-/// The role of the runs that filters are judged on: held-out runs, or training runs if none is held out.
+/// Role of the runs on which filters are judged: held-out runs, or training runs if no run is held out.
 Role judged_role(const Archive& archive);
 
 /// Indices of the runs with this role.

@@ -81,7 +81,7 @@ std::string lag_text(const LagReport& report, bool done) {
   text += "\n";
   const auto estimated = std::count_if(report.runs.begin(), report.runs.end(),
                                        [](const RunLag& run) { return run.status != LagStatus::not_estimated; });
-  if (static_cast<std::size_t>(estimated) > most_runs) return text;  // /lag/runs of the archive has the other runs
+  if (static_cast<std::size_t>(estimated) > most_runs) return text;  // the archive's /lag/runs contains the other runs
   std::vector<std::string> names;
   for (const RunLag& run : report.runs) names.push_back(run.run);
   for (const std::size_t i : natural_order(names)) text += run_text(report.runs[i]);

@@ -6,11 +6,11 @@
 
 namespace modebank::app {
 
-/// Summary of data.lag_s = auto: pooled estimates, scores, estimates per run. `done`: whether the correction was
-/// applied or only proposed.
+/// Summary of data.lag_s = auto: pooled estimates, scores, estimates for each run. `done`: true if the correction was
+/// applied, false if it was only proposed.
 std::string lag_text(const LagReport& report, bool done = true);
 
-/// "+0.123 +- 0.004", or "-" with a reason if the estimate is invalid.
+/// Text such as "+0.123 +- 0.004", or "-" with the reason if the estimate is invalid.
 std::string lag_estimate_text(double lag_s, double standard_error_s, LagStatus status);
 
 }  // namespace modebank::app

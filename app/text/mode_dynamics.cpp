@@ -13,9 +13,9 @@
 namespace modebank {
 namespace {
 
-/// an eigenvalue closer to one counts as an integrator; the rest is rounding
+/// distance of an eigenvalue from one that still counts as an integrator; it allows for rounding
 constexpr double integrator_slack = 1e-12;
-/// relative step of a parameter: the cube root of the machine's precision, best for central differences
+/// relative step of a parameter: the cube root of the machine precision, which is best for central differences
 constexpr double difference_step = 6e-6;
 
 Decay decay_of(const std::complex<double>& lambda, double dt_s) {
@@ -29,12 +29,12 @@ Decay decay_of(const std::complex<double>& lambda, double dt_s) {
   return decay;
 }
 
-/// A growing mode never dies out, so it comes before slow ones.
+/// Key for sorting decays. A growing mode never dies out, so it comes before slow modes.
 double slowness(const Decay& decay) {
   return decay.time_constant_s < 0.0 ? std::numeric_limits<double>::infinity() : decay.time_constant_s;
 }
 
-/// NaN if the state never settles under a constant input.
+/// NaN if the state never settles at a constant input.
 Eigen::MatrixXd steady_gain(const Bank& bank, const LinearModel& model, bool settles) {
   const Eigen::Index inputs = bank.structure.inputs;
   Eigen::MatrixXd held = Eigen::MatrixXd::Zero(model.A.rows(), inputs);
@@ -56,7 +56,7 @@ ModeDynamics dynamics_of(const Bank& bank, const LinearModel& model) {
   return dynamics;
 }
 
-/// Time constants, then gains.
+/// All numbers of a mode: time constants, then gains.
 Eigen::VectorXd numbers_of(const ModeDynamics& dynamics) {
   const auto decays = static_cast<Eigen::Index>(dynamics.decays.size());
   Eigen::VectorXd numbers(decays + dynamics.gain.size());
@@ -77,7 +77,8 @@ Eigen::MatrixXd covariance_of(const Mode& mode, Eigen::Index parameters) {
 
 using NumbersOf = std::function<Eigen::VectorXd(const LinearModel&)>;
 
-/// Derivatives of `numbers` by theta. NaN if a step of theta changes their count, for example at a double root.
+/// Derivatives of `numbers` with respect to theta. NaN if a step of theta changes the number of values, for example at
+/// a double root.
 Eigen::MatrixXd derivatives(const Bank& bank, const Eigen::VectorXd& theta, Eigen::Index count,
                             const NumbersOf& numbers) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Constant(count, theta.size(), not_a_number);
@@ -102,7 +103,7 @@ DerivedNumbers derived_numbers(const Bank& bank, Eigen::Index mode, const Number
   const Eigen::MatrixXd J = derivatives(bank, bank.theta(mode), values.size(), numbers);
   Eigen::VectorXd errors(values.size());
   for (Eigen::Index i = 0; i < errors.size(); ++i) {
-    // A parameter without an error affects only the numbers that depend on it.
+    // A parameter whose error is unknown affects only the numbers that depend on it.
     std::vector<Eigen::Index> moving;
     for (Eigen::Index j = 0; j < J.cols(); ++j)
       if (J(i, j) != 0.0) moving.push_back(j);

@@ -15,16 +15,17 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double near_errors = 2.0;  // standard errors of a difference
+constexpr double near_errors = 2.0;  // in standard errors of the difference
 
-/// Numbers that distinguish families: a mode's slowest time constant, then the gains that the data determine.
+/// Numbers by which families differ: a mode's slowest time constant, then the gains that the data determine.
 struct ModeNumbers {
   ModeDynamics dynamics;
   VectorXd values, errors;
   bool oscillates = false, vague = false;
 };
 
-/// Whether some state has no gain that exceeds its standard error: the data then do not determine its response.
+/// Whether some state has no gain that exceeds its standard error. The data then do not determine the response of this
+/// state.
 bool has_vague_response(const ModeDynamics& dynamics, const OpenNumbers& open) {
   const Index states = dynamics.gain.rows(), inputs = dynamics.gain.cols();
   for (Index i = 0; i < states; ++i) {
@@ -48,7 +49,7 @@ ModeNumbers numbers_of_mode(const Bank& bank, Index mode, const OpenNumbers& ope
     values.push_back(slowest.time_constant_s);
     errors.push_back(slowest.time_constant_error_s);
     numbers.oscillates = slowest.frequency_hz > 0.0;
-    // A time constant of zero dies out at once. A negative or infinite one belongs to a mode that never settles.
+    // A mode with time constant zero dies out at once. A mode with a negative or infinite time constant never settles.
     numbers.vague = !(values[0] >= 0.0 && std::isfinite(values[0])) || std::isnan(errors[0]) || errors[0] > values[0];
   }
   for (Index i = 0; i < dynamics.gain.rows(); ++i)
@@ -64,7 +65,8 @@ ModeNumbers numbers_of_mode(const Bank& bank, Index mode, const OpenNumbers& ope
   return numbers;
 }
 
-/// The largest difference between two modes, in standard errors; infinite if they cannot belong to one family.
+/// The largest difference between the numbers of two modes, in standard errors; infinite if the modes cannot belong to
+/// one family.
 double apart(const ModeNumbers& a, const ModeNumbers& b) {
   if (a.vague || b.vague || a.oscillates != b.oscillates) return std::numeric_limits<double>::infinity();
   double most = 0.0;
@@ -75,7 +77,8 @@ double apart(const ModeNumbers& a, const ModeNumbers& b) {
   return most;
 }
 
-/// Repeatedly joins the two groups whose farthest members are nearest, until no two groups are near.
+/// Joins the two nearest groups repeatedly, until no two groups are near. The distance of groups is that of their
+/// farthest members.
 void join_near(std::vector<std::vector<Index>>& groups, const std::vector<ModeNumbers>& numbers) {
   const auto farthest = [&](const std::vector<Index>& a, const std::vector<Index>& b) {
     double most = 0.0;
@@ -97,7 +100,7 @@ void join_near(std::vector<std::vector<Index>>& groups, const std::vector<ModeNu
   }
 }
 
-/// Groups modes by name. Modes without a name are grouped by their numbers.
+/// Groups the modes by name. Modes without a name are grouped by their numbers.
 std::vector<std::vector<Index>> groups_of(const std::vector<std::string>& names,
                                           const std::vector<ModeNumbers>& numbers) {
   std::map<std::string, std::vector<Index>> named;
@@ -112,8 +115,8 @@ std::vector<std::vector<Index>> groups_of(const std::vector<std::string>& names,
   return groups;
 }
 
-/// Mean stay in a family. Each mode's stay gives its rate of switches; the transition matrix gives the share of these
-/// switches that lead out of the family.
+/// Mean stay in a family. The stay of each mode gives its rate of switches. The transition matrix gives the fraction of
+/// these switches that leave the family.
 void set_stay(const Bank& bank, const std::vector<UsedMode>& modes, ModeFamily& family) {
   if (modes.size() == 1) {
     family.stay_s = modes.front().stay_s;
@@ -137,7 +140,7 @@ void set_stay(const Bank& bank, const std::vector<UsedMode>& modes, ModeFamily& 
   family.stay_s = left > 0.0 ? use / left : not_a_number;
 }
 
-/// The modes that count in the family's means, as text.
+/// Sets the family's means, and the modes that enter these means.
 void set_numbers(const std::vector<ModeNumbers>& numbers, ModeFamily& family) {
   const auto of = [&](Index k) -> const ModeNumbers& { return numbers[static_cast<std::size_t>(k)]; };
   std::vector<double> weights;

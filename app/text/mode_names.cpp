@@ -10,7 +10,7 @@
 namespace modebank {
 namespace {
 
-constexpr double enough = 0.6;  // share of a mode's samples that a label needs to become its name
+constexpr double enough = 0.6;  // smallest fraction of a mode's samples for which a label becomes the mode's name
 
 Index samples_of(const Archive& archive, Index mode) {
   Index samples = 0;
@@ -18,7 +18,7 @@ Index samples_of(const Archive& archive, Index mode) {
   return samples;
 }
 
-/// A numeric label could be mistaken for a mode's number.
+/// A label that is a number could be mistaken for the number of a mode.
 std::string name_by_label(const std::string& label) {
   const bool number = !label.empty() && label.find_first_not_of("+-.0123456789") == std::string::npos;
   return number ? "label " + label : label;

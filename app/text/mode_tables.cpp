@@ -15,7 +15,7 @@
 namespace modebank::app {
 namespace {
 
-constexpr std::size_t most_members = 4;  // modes of a family that fit a table's cell
+constexpr std::size_t most_members = 4;  // largest number of a family's modes in one cell of a table
 
 std::vector<std::string> gain_cells(const Eigen::MatrixXd& gain, const Eigen::MatrixXd& error,
                                     const std::vector<bool>& open) {
@@ -33,7 +33,7 @@ bool some_have_several(const std::vector<ModeFamily>& families) {
                      [](const ModeFamily& family) { return family.modes.size() > 1; });
 }
 
-/// "ice (0, 5, 3)", "modes 2, 7" if families have several modes; else "4 grip", "2".
+/// Name of a family in a table: "ice (0, 5, 3)" or "modes 2, 7" if some family has several modes, else "4 grip" or "2".
 std::string family_cell(const ModeFamily& family, bool several) {
   const std::string name = shortened(family.name);
   if (!several) return name.empty() ? family.numbers() : fmt::format("{} {}", family.numbers(), name);
@@ -41,8 +41,8 @@ std::string family_cell(const ModeFamily& family, bool several) {
   return fmt::format("{} {}", family.modes.size() == 1 ? "mode" : "modes", family.numbers(most_members));
 }
 
-/// Without the period, which `show` prints per mode. A mean over several modes is printed as it is: its error is not an
-/// interval that could reach a mode that never dies out.
+/// Time constant of a family. The period is omitted here; `show` prints it for each mode. A mean over several modes is
+/// printed as it is, because its error is not an interval that could include a mode that never dies out.
 std::string time_words(const ModeFamily& family) {
   Decay slowest = family.slowest;
   slowest.frequency_hz = 0.0;

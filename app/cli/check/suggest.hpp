@@ -51,7 +51,7 @@ struct Trial {
   Advice advice;    ///< advice for the data with the settings of the trial
   PairedGain gain;  ///< gain of `to` over `from` on training runs left out; an accepted trial was computed with all
                     ///< starts of `run`
-  std::string unscored;  ///< reason why there is no gain; empty if there is one
+  std::string unscored;  ///< reason for a missing gain; empty if the gain is known
   bool accepted = false;
   RestNoise rest = {};  ///< source of the suggested measurement noise
 };

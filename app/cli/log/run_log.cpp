@@ -66,7 +66,7 @@ void take_other_keys(const KeyValues& overrides, LogConfiguration& configuration
       configuration.set(key, boost::trim_copy(value), "from the command line");
 }
 
-/// What is known about the logs before any fit.
+/// The logs, and the guesses of `init` from them before any fit.
 struct LookedInto {
   std::vector<FileSet> sets;
   std::vector<SurveyedFile> surveyed;

@@ -6,7 +6,7 @@
 namespace modebank::app {
 namespace {
 
-/// bank.look_ahead: a number of samples, with "error" behind it where squared errors are scored.
+/// bank.look_ahead: a number of samples. The word "error" after the number means that squared errors are minimised.
 Option look_ahead_option() {
   Option result = of_several(
       "bank.look_ahead", "1 to 1000, and error or nothing", "samples",

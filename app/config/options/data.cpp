@@ -42,7 +42,7 @@ Option skip_rows_option() {
   return result;
 }
 
-/// data.quantum: numbers, or a word.
+/// data.quantum: one number per state, or a word.
 Option quantum_option() {
   Option result =
       numeric("data.quantum", each(above(0)), "state unit",
@@ -71,7 +71,7 @@ Option time_format_option() {
                        "that fits all values. Times without a date count from midnight and continue past the next one",
                        MODEBANK_FIELD(data.time_format));
   result.set = [set = result.set](Config& config, const std::string& text) {
-    if (!text.empty()) StampPattern{text};  // throws, with the reason, for a bad format
+    if (!text.empty()) StampPattern{text};  // throws for a bad format, with the reason
     set(config, text);
   };
   return result;
@@ -110,7 +110,7 @@ Option split_option() {
   return result;
 }
 
-/// Turns a bad expression into the exception to which the caller adds file and line.
+/// Throws an exception for a bad expression. The caller adds file and line.
 void check_derived(const std::string& line) {
   try {
     parse_derived(line);

@@ -1,4 +1,4 @@
-// Keys and values of earlier versions that were removed. docs/results/gone.md shows what each was worth.
+// Keys and values that were removed since earlier versions. docs/results/gone.md lists what each of them gained.
 #include "app/config/options/gone_keys.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace {
 
 struct Gone {
   std::string_view key;
-  std::string_view value;  ///< empty: the whole key was removed
+  std::string_view value;  ///< empty if the whole key was removed
   std::string_view instead;
 };
 

@@ -18,7 +18,7 @@ std::vector<Option> track_options();
 std::vector<Option> report_options();
 std::vector<Option> simulate_options();
 
-/// Keys of a system file's section [system]; a configuration does not have them.
+/// Keys of the section [system] in a system file. A configuration does not have these keys.
 const std::vector<Option>& system_parameters();
 
 }  // namespace modebank::app

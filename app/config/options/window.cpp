@@ -9,7 +9,7 @@
 namespace modebank::app {
 namespace {
 
-/// window.model: auto, linear, varx and each compiled motion model.
+/// window.model: auto, linear, varx or one of the compiled motion models.
 Option model_option() {
   std::vector<std::string> models = model_names();
   models.insert(models.begin() + 2, "auto");
@@ -29,7 +29,8 @@ Option model_option() {
   return result;
 }
 
-/// A number or auto; with window.model = auto the default is auto. `meanwhile`: the number until one is found.
+/// An option whose value is a number or auto. With window.model = auto the default is auto. `meanwhile`: the number
+/// until the search has found one.
 Option number_or_auto(Option number, const std::string& means, std::ptrdiff_t meanwhile, Field<std::ptrdiff_t> count,
                       Field<LagChoice> choice) {
   Option result = std::move(number);
@@ -52,7 +53,7 @@ Option lag_option(std::string key, const Range& range, const std::string& help, 
                         count, choice);
 }
 
-/// window.scale: residual scale of each window, or of each run.
+/// window.scale: whether the residual scale is estimated for each window or for each run.
 Option scale_option() {
   Option result =
       words("window.scale", "residual scale sigma: one per window, or one per run", MODEBANK_FIELD(window.scale));
@@ -64,7 +65,7 @@ Option scale_option() {
   return result;
 }
 
-/// window.prior: a word, or standard deviations of the global prior.
+/// window.prior: a word, or the standard deviations of the global prior.
 Option prior_option() {
   const Range range = each(above(0));
   Option result = of_several("window.prior", "none | global | each > 0", "parameter unit",

@@ -12,7 +12,7 @@
 namespace modebank::app {
 namespace {
 
-/// Throws if the filter has a part that filter.c does not support: the C filter would give other results.
+/// Throws if filter.c does not support a part of the filter, because the C filter would then give other results.
 void refuse_what_c_lacks(const ExportedBank& exported) {
   const auto refuse = [&](const std::string& what) {
     throw DataError(fmt::format("{} cannot be exported to C: {}", exported.archive, what));
@@ -35,7 +35,7 @@ std::string lag_text(double lag_s) {
       -lag_s);
 }
 
-/// The comment at the top of a file: the verdict, then the bank's origin, then the equation.
+/// The comment at the top of a file: the verdict, the bank's origin and the equation.
 std::string opening(const ExportedBank& exported, const char* what) {
   const LinearStructure& s = exported.structure();
   std::string remarks;
@@ -48,7 +48,7 @@ std::string opening(const ExportedBank& exported, const char* what) {
       s.state_lags, s.input_lags, s.input_delay, lag_text(exported.input_lag_s), remarks, transition_meaning);
 }
 
-/// The template without its own top comment. `prefix` replaces the prefix of its identifiers.
+/// The template without its top comment. `prefix` replaces the prefix of the template's identifiers.
 std::string named(std::string_view file, const std::string& prefix) {
   std::string text(file.substr(file.find("*/\n") + 3));
   boost::algorithm::replace_all(text, "modebank_", prefix + "_");
@@ -56,7 +56,7 @@ std::string named(std::string_view file, const std::string& prefix) {
   return text;
 }
 
-/// Replaces the line that includes `file` by `text`.
+/// Replaces the include line of `file` by `text`.
 std::string with(std::string source, const std::string& file, const std::string& text) {
   boost::algorithm::replace_first(source, "#include \"" + file + "\"\n", text);
   return source;
@@ -66,7 +66,7 @@ std::string with(std::string source, const std::string& file, const std::string&
 
 CFiles to_c(const ExportedBank& exported, const std::string& stem) {
   refuse_what_c_lacks(exported);
-  // The file may be called double.c, but an identifier must not be a keyword.
+  // A file may be called double.c, but its identifiers must not be keywords.
   const std::string prefix = identifiers({boost::algorithm::to_lower_copy(stem)}, Language::c).front();
   const std::string header = with(named(assets::filter_h(), prefix), "bank_sizes.h",
                                   c_form::bank_sizes(exported, boost::algorithm::to_upper_copy(prefix)));

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// One enumerator per name, with its index and a remark.
+/// One enumerator per name, with its index and a comment.
 std::string enumeration(const std::string& comment, const std::string& prefix, const std::vector<std::string>& names,
                         const std::vector<std::string>& remarks) {
   if (names.empty()) return "";
@@ -37,7 +37,7 @@ std::string places(const std::string& comment, const std::string& prefix, const 
   return enumeration(comment, prefix, identifiers(names, Language::c), remarks);
 }
 
-/// One enumerator per mode. A mode without a name is called by its number.
+/// One enumerator per mode. The enumerator of a mode without a name contains the mode's number.
 std::string modes(const ExportedBank& exported, const std::string& prefix) {
   std::vector<std::string> names = identifiers(exported.mode_names, Language::c);
   for (std::size_t k = 0; k < names.size(); ++k)
@@ -49,14 +49,14 @@ std::string modes(const ExportedBank& exported, const std::string& prefix) {
   return enumeration("Places in mode_probability", prefix, names, remarks);
 }
 
-/// A double with all digits. A whole number ends in ".0".
+/// A double with all digits. Whole numbers end in ".0".
 std::string number(double value) {
   std::string text = fmt::format("{:.17g}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;
 }
 
-/// {1.0, 2.0}; a single zero for an empty vector.
+/// Initializer such as {1.0, 2.0}. An empty vector becomes a single zero.
 std::string row(const Eigen::VectorXd& values) {
   std::string text;
   for (const double value : values) text += (text.empty() ? "" : ", ") + number(value);
@@ -74,7 +74,7 @@ std::string constant(const std::string& name, const std::string& value, const st
   return fmt::format("/* {} */\nstatic const double {} = {};\n\n", comment, name, value);
 }
 
-/// Standard errors as text for a comment; unknown errors are named.
+/// Standard errors as text for a comment. The text states which are unknown.
 std::string errors_text(const MatrixXd& errors) {
   if (errors.size() == 0 || errors.array().isNaN().all()) return "not known";
   std::string text;
@@ -84,7 +84,7 @@ std::string errors_text(const MatrixXd& errors) {
   return text;
 }
 
-/// One value per mode (as text), below a comment with the values' standard errors.
+/// One value per mode, after a comment with the standard errors of these values.
 template <class Value, class Errors>
 std::string per_mode(const ExportedBank& bank, const std::string& name, const std::string& comment, Value value,
                      Errors errors) {

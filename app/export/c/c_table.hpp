@@ -7,7 +7,8 @@
 /// The tables of a bank that filter.h and filter.c include.
 namespace modebank::app::c_form {
 
-/// bank_sizes.h: sizes, and enumerations of signals and modes. `prefix`: first word of the enumerators, in capitals.
+/// Content of bank_sizes.h: sizes, and enumerations of signals and modes. `prefix`: first word of the enumerators, in
+/// capitals.
 std::string bank_sizes(const ExportedBank& bank, const std::string& prefix);
 /// bank_numbers.h.
 std::string bank_numbers(const ExportedBank& bank);

@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// ROS reads 1 as an integer and rejects an integer for a parameter of type double.
+/// ROS reads "1" as an integer. It rejects an integer for a parameter of type double.
 std::string yaml_number(double value) {
   const std::string text = fmt::format("{}", value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
@@ -29,7 +29,7 @@ std::string error_text(const Estimate& estimate) {
   return fmt::format("+- {:.2g}{}", estimate.error, doubt.empty() ? "" : ": " + doubt);
 }
 
-/// Names the modes that enter a mean, unless these are the whole family.
+/// Text with the modes that enter a mean. Empty if all modes of the family enter the mean.
 std::string of_modes_text(const Estimate& estimate) {
   if (estimate.modes.empty()) return "";
   return fmt::format(", of mode{} {} alone", estimate.modes.size() == 1 ? "" : "s", fmt::join(estimate.modes, ", "));
@@ -38,7 +38,7 @@ std::string of_modes_text(const Estimate& estimate) {
 /// Whether the value is precise enough for use on a robot.
 bool is_told(const Estimate& estimate) { return estimate.known() && !estimate.vague(); }
 
-/// A line with the key if the bank determines its value; otherwise a comment with the reason.
+/// A line with the key and its value, if the bank determines this value. Otherwise a comment with the reason.
 std::string key_line(const char* key, const Estimate& estimate, const std::string& unit, const std::string& reason) {
   if (!estimate.known()) return fmt::format("    # {}: not determined: {}\n", key, comment_text(reason));
   if (estimate.vague())
@@ -54,7 +54,7 @@ std::string missing_text(const RobotChannels& channels) {
   return text.empty() ? "no mode here settles and turns with its wheels" : text;
 }
 
-/// A list of six numbers. Entries that the bank does not determine keep the default of ROS, 0.
+/// A list of six numbers. A number that the bank does not determine is 0, the default of ROS.
 std::string twist_covariance(const RobotNumbers& numbers) {
   const Estimate &forward = numbers.forward_variance, &yaw = numbers.yaw_variance;
   if (!forward.known() && !yaw.known())
@@ -108,7 +108,7 @@ std::string diff_drive(const RobotNumbers& numbers, const RobotChannels& channel
 }
 
 constexpr Index filter_states = 15;
-/// Defaults of robot_localization for x y z roll pitch yaw, their velocities, ax ay az.
+/// Defaults of robot_localization for x y z roll pitch yaw, the velocities of these, ax ay az.
 constexpr std::array<double, filter_states> default_noise{0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025,
                                                           0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015};
 constexpr Index filter_vx = 6, filter_vyaw = 11;
@@ -137,7 +137,7 @@ std::string process_noise(const ExportedBank& exported, const ModeFamily& family
       "    # process_noise_covariance = Q / dt_s. Q is what the bank's model leaves unexplained, wheel speeds known; a "
       "filter\n    # that takes velocities for constant needs more where they change. All else is the project's "
       "default.\n";
-  /// Sets an entry. A vague entry keeps its default.
+  /// Sets an entry of the matrix. An entry with a vague value keeps its default.
   const auto set = [&](Index a, Index b, Index of_a, Index of_b, const char* name) {
     if (of_a < 0 || of_b < 0) return false;
     const double dt_s = exported.bank.dt_s, Q = of.Q(of_a, of_b);
@@ -172,7 +172,7 @@ std::string model_delays(const RobotNumbers& numbers, const RobotChannels& chann
          line("model_delay_vx", numbers.forward_delay_s) + line("model_delay_wz", numbers.yaw_delay_s);
 }
 
-/// ROS rejects a mapping that contains only comments, because its value is null. So such a key becomes a comment, too.
+/// A mapping that contains only comments has the value null, which ROS rejects. So its key also becomes a comment.
 std::string without_empty_mappings(const std::string& block) {
   std::string text;
   bool any = false;
@@ -192,7 +192,7 @@ std::string without_empty_mappings(const std::string& block) {
   return text;
 }
 
-/// "ice": the family's name; else "mode_4", "modes_2_7".
+/// File names: the family's name ("ice") if it has one, else "mode_4" or "modes_2_7".
 std::vector<std::string> file_names(const ExportedBank& exported) {
   std::vector<std::string> names;
   for (const ModeFamily& family : exported.families)
@@ -202,7 +202,7 @@ std::vector<std::string> file_names(const ExportedBank& exported) {
   return identifiers(names, Language::c);
 }
 
-/// The family, its use, and the meaning of its numbers.
+/// Comment on the family, its use, and the meaning of its numbers.
 std::string family_text(const ExportedBank& exported, const ModeFamily& family) {
   const bool judged = !exported.use.empty();
   std::string text = fmt::format("{}, {:.1f} % of the {}", comment_text(family.title()), 100.0 * family.use,

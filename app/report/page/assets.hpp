@@ -2,16 +2,16 @@
 
 #include <string_view>
 
-/// Files of app/report/web (bundled) and of configs, embedded at build time.
+/// Files of app/report/web (bundled) and of configs, built into the program.
 namespace modebank::app::assets {
 
-std::string_view page_html();  ///< the skeleton of every page, see html_page.hpp
+std::string_view page_html();  ///< frame of every page, see html_page.hpp
 std::string_view page_css();
 std::string_view run_js();      ///< script of the page of a run
 std::string_view study_js();    ///< script of a study's page
 std::string_view compare_js();  ///< script of the page that compares runs
-std::string_view index_js();    ///< script of the index of a folder
-std::string_view terms_json();  ///< the definition of every term, for pages and help
+std::string_view index_js();    ///< script of a folder's index page
+std::string_view terms_json();  ///< definitions of all terms, for pages and for `help`
 
 // Configurations of the two demos.
 std::string_view simulate_demo_ini();

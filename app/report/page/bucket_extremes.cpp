@@ -9,7 +9,7 @@
 namespace modebank {
 namespace {
 
-/// Calls visit(i, first, count) for every bucket.
+/// Calls visit(i, first, count) for each bucket.
 template <class Visit>
 Eigen::Index visit_buckets(Eigen::Index values, Eigen::Index bucket, Visit visit) {
   if (bucket < 1) throw std::invalid_argument("a bucket holds at least one value");
@@ -27,7 +27,7 @@ BucketExtremes bucket_extremes(const Eigen::Ref<const Eigen::VectorXd>& values, 
   visit_buckets(values.size(), bucket, [&](Eigen::Index i, Eigen::Index first, Eigen::Index count) {
     double &low = result.low(i), &high = result.high(i);
     for (const double value : values.segment(first, count)) {
-      low = std::fmin(low, value);  // fmin and fmax ignore NaN
+      low = std::fmin(low, value);  // fmin and fmax ignore a NaN
       high = std::fmax(high, value);
     }
   });

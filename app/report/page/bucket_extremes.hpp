@@ -4,16 +4,16 @@
 
 namespace modebank {
 
-/// Smallest and largest value of every `bucket` consecutive values, so that a drawing shows every extreme of the
-/// series. The last bucket may have fewer values. NaN is ignored; a bucket of only NaN gives NaN.
+/// Smallest and largest value in each group of `bucket` consecutive values. A drawing of them shows every extreme of
+/// the series. The last bucket may have fewer values. NaN is ignored, unless a bucket contains only NaN.
 struct BucketExtremes {
-  Eigen::VectorXd low, high;  ///< ceil(N / bucket)
+  Eigen::VectorXd low, high;  ///< ceil(N / bucket) values each
 };
 
 /// Throws std::invalid_argument unless bucket >= 1.
 BucketExtremes bucket_extremes(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index bucket);
 
-/// Means of the buckets, for shares, which must continue to sum to one.
+/// Mean of each bucket. Shares need means, because means still sum to one.
 Eigen::VectorXd bucket_means(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index bucket);
 
 }  // namespace modebank

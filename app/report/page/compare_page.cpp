@@ -23,8 +23,8 @@ namespace {
 using nlohmann::json;
 using Runs = std::vector<ComparedRun>;
 
-/// Keys whose values differ between the runs, in the table's order. The value is empty if a run's version lacks the
-/// key.
+/// Keys whose values differ between the runs, in the order of the option table. A value is empty if the version of a
+/// run does not have the key.
 json configuration_differences(const Runs& runs) {
   std::vector<std::map<std::string, std::string>> resolved;
   for (const ComparedRun& run : runs) resolved.push_back(resolved_values(run.archive.config));
@@ -42,7 +42,7 @@ json configuration_differences(const Runs& runs) {
   return differences;
 }
 
-/// A score of the summary; `column` determines which of two values is better (goal_of).
+/// A score of the summary. `column` determines whether the larger or the smaller value is better (goal_of).
 struct ComparedScore {
   const char *name, *column;
   double (*of)(const SummaryRow&);
@@ -91,7 +91,7 @@ json scores_of(const Runs& runs) {
   return list;
 }
 
-/// A sentence on the gain of one run over another.
+/// A sentence that states by how much one run is better than another.
 std::string gain_sentence(const PairedGain& gain, const std::string& first, const std::string& other) {
   if (gain.gain == 0.0) return fmt::format("the banks of {} and {} predict equally well.", first, other);
   const std::string &ahead = gain.gain > 0 ? other : first, &behind = gain.gain > 0 ? first : other;
@@ -109,7 +109,7 @@ std::string gain_sentence(const PairedGain& gain, const std::string& first, cons
       first, other, ahead, size, gain.margin);
 }
 
-/// Whether the bank of run k predicts better than that of the first run, with the reason.
+/// Whether the bank of run k predicts better than the bank of the first run, with the reason.
 json calibration_of(const Runs& runs, std::size_t k) {
   const std::string letter(1, static_cast<char>('A' + k));
   const ArchiveGain found = gain_between(runs[k].archive, runs[0].archive);
@@ -138,9 +138,9 @@ json z_cells(const MatchedMode& pair) {
   return cells;
 }
 
-/// Pairs of families from both banks by their common time. Each family of the first bank is paired with the family of
-/// the other bank with which it shares most time. Then follow families of the other bank that are in no pair. Empty if
-/// the archives have no run in common.
+/// Pairs of families from two banks. Each family of the first bank is paired with the family of the other bank that
+/// shares most time with it. Families of the other bank that are in no pair follow. Empty if the archives have no run
+/// in common.
 json families_side_by_side(const Archive& first, const Archive& other) {
   const std::vector<ModeFamily> one = mode_families(first), two = mode_families(other);
   const Eigen::MatrixXd shared = time_in_common(first, other, family_of_modes(one), family_of_modes(two));
@@ -213,7 +213,7 @@ json run_json(const ComparedRun& run, PageArrays& arrays, std::size_t room) {
 
 Page compare_page(const std::vector<ComparedRun>& runs, const ReportConfig& options) {
   constexpr double bytes_per_MB = 1e6,
-                   share_of_signals = 0.8;  // share of the page's size for the signals of all runs
+                   share_of_signals = 0.8;  // the signals of all runs may use this share of the page's size
   const auto room =
       static_cast<std::size_t>(share_of_signals / static_cast<double>(runs.size()) * options.size_mb * bytes_per_MB);
   Page page;

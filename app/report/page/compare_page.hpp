@@ -15,10 +15,10 @@ struct ComparedRun {
   std::string name;
 };
 
-inline constexpr std::size_t most_compared = 6;  ///< there are this many letters and colours for runs
+inline constexpr std::size_t most_compared = 6;  ///< the page has this many letters and colours for runs
 
-/// The page that compares two or more archives. It shows the better predictor, different settings, modes matched with
-/// those of the first archive, scores side by side, and plots in one figure.
+/// The page that compares two or more archives. It states which one predicts better, and shows the different settings,
+/// the modes matched with those of the first archive, the scores side by side, and plots of all runs.
 Page compare_page(const std::vector<ComparedRun>& runs, const ReportConfig& options);
 
 }  // namespace modebank::app::report

@@ -16,7 +16,7 @@ void report_comparison(const std::vector<std::filesystem::path>& files, const st
     names.insert(file.filename());
   }
   std::vector<ComparedRun> runs;
-  // Names of the archives; their whole paths if two file names are equal.
+  // Names of the archives. If two file names are equal, the names are whole paths.
   for (std::size_t i = 0; i < files.size(); ++i)
     runs.push_back({archives[i], (names.size() < files.size() ? files[i] : files[i].filename()).string()});
   write_page(page, compare_page(runs, options), written);

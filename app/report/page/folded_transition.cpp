@@ -5,8 +5,8 @@ namespace modebank {
 Eigen::MatrixXd folded_transition(const Eigen::MatrixXd& transition,
                                   const std::vector<std::vector<Eigen::Index>>& groups, const Eigen::VectorXd& use) {
   const auto shown = static_cast<Eigen::Index>(groups.size()), K = transition.rows();
-  // into: K x groups, 1 if the mode belongs to the group; the last column has the modes without a group. share: the
-  // mode's share of the group's use.
+  // into: K x groups, 1 if the mode belongs to the group. The last column is for modes without a group. share: share of
+  // the mode in the use of its group.
   Eigen::MatrixXd into = Eigen::MatrixXd::Zero(K, shown + 1);
   for (Eigen::Index g = 0; g < shown; ++g)
     for (const Eigen::Index k : groups[static_cast<std::size_t>(g)]) into(k, g) = 1.0;

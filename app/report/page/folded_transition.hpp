@@ -5,7 +5,7 @@
 
 namespace modebank {
 
-/// Transition matrix between groups of modes. Modes without a group, if any, form one last group. The probability of
+/// Transition matrix between groups of modes. Modes without a group, if any, form a last group. The probability of
 /// entering a group is the sum over its modes. The probability of leaving a group is the mean over its modes, weighted
 /// by `use`.
 Eigen::MatrixXd folded_transition(const Eigen::MatrixXd& transition,

@@ -19,8 +19,8 @@ std::string escaped_html(std::string text) {
 
 namespace {
 
-/// JSON for a script element. "<" is escaped, so that no text ends or comments out the element. Bytes that are not
-/// UTF-8 are replaced.
+/// JSON for a script element. "<" is escaped, so that no text can end the element or begin a comment. Bytes that are
+/// not UTF-8 are replaced.
 std::string json_in_script(const nlohmann::json& data) {
   std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   boost::replace_all(text, "<", "\\u003c");
@@ -35,7 +35,7 @@ void append_arrays(const PageArrays& arrays, std::string& html) {
   }
 }
 
-/// An element's hash as a source in a policy: base64, converted from hexadecimal digits.
+/// The hash of an element as a source for the policy. It is converted from hexadecimal digits to base64.
 std::string hash_source(std::string_view hex) {
   std::string bytes;
   for (std::size_t i = 0; i < hex.size(); i += 2)
@@ -65,7 +65,7 @@ void append_part(std::string_view name, const Page& page, std::string& html) {
 std::string page_policy(const std::vector<std::string_view>& scripts) {
   std::string runs;
   for (const std::string_view script : scripts) runs += hash_source(sha256_hex(script));
-  // Scripts set style attributes on elements that they create, so the policy allows these.
+  // Scripts set style attributes on the elements that they create, so the policy allows style attributes.
   return fmt::format(
       "default-src 'none'; script-src{}; style-src{}; style-src-attr 'unsafe-inline'; img-src data: blob:", runs,
       hash_source(sha256_hex(assets::page_css())));

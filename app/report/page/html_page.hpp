@@ -9,22 +9,22 @@
 
 namespace modebank::app::report {
 
-/// Content of one page, without the parts that all pages share (web/page.html, page.css).
+/// Content of one page. All pages share the other parts (web/page.html, page.css).
 struct Page {
   std::string title;
-  nlohmann::json data;      ///< input of the script; the script shows its texts only as text, never as markup
-  PageArrays arrays;        ///< the large arrays of the data
-  std::string_view script;  ///< an asset of assets.hpp
+  nlohmann::json data;      ///< input of the script, which shows texts of the data never as markup
+  PageArrays arrays;        ///< large arrays of the data
+  std::string_view script;  ///< one of the scripts in assets.hpp
 };
 
 /// Escapes text for use between tags.
 std::string escaped_html(std::string text);
 
-/// Content Security Policy of a page with one of these scripts. It allows only the page's own scripts and style,
-/// identified by hashes. Any access to the network is forbidden.
+/// Content Security Policy of a page with one of these scripts. It allows only the page's own scripts and style, which
+/// are identified by hashes. It forbids all access to the network.
 std::string page_policy(const std::vector<std::string_view>& scripts);
 
-/// The HTML file. It is self-contained and loads nothing from outside.
+/// The HTML file. It contains everything that it needs, and loads nothing.
 std::string html_of(const Page& page);
 
 }  // namespace modebank::app::report

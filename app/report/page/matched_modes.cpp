@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-/// A mode's parameters as on the page, with their standard errors. A standard error of 0 means unknown.
+/// Parameters of a mode as on the page, with their standard errors. A standard error of 0 means that it is unknown.
 struct Estimates {
   Eigen::VectorXd values, errors;
 };
@@ -24,8 +24,8 @@ Estimates estimates_of(const Bank& bank, Index k) {
   Estimates estimates{motion ? mode.motion_theta : bank.theta(k), {}};
   const Eigen::VectorXd& stated = motion ? mode.motion_standard_error : mode.standard_error;
   estimates.errors = Eigen::VectorXd::Zero(estimates.values.size());
-  const bool some =
-      std::any_of(stated.begin(), stated.end(), usable);  // then a parameter without a standard error is unidentifiable
+  const bool some = std::any_of(stated.begin(), stated.end(), usable);  // if any parameter has a standard error, one
+                                                                        // without is unidentifiable
   for (Index i = 0; i < estimates.errors.size(); ++i) {
     if (i < stated.size() && usable(stated(i)))
       estimates.errors(i) = stated(i);
@@ -58,7 +58,7 @@ std::string obstacle(const Bank& first, const Bank& second) {
   return "";
 }
 
-/// Similarity of the modes of both banks by their parameters; larger is nearer.
+/// How near the modes of two banks are, by their parameters. Larger values are nearer.
 Eigen::MatrixXd nearness(const Bank& first, const Bank& second) {
   Eigen::MatrixXd near(first.mode_count(), second.mode_count());
   for (Index a = 0; a < near.rows(); ++a)
@@ -69,7 +69,7 @@ Eigen::MatrixXd nearness(const Bank& first, const Bank& second) {
   return near;
 }
 
-/// Whether two modes share time, and at least one of them shares no more time with any other mode.
+/// Whether two modes share time, and at least one of them shares its most time with the other.
 bool go_together(const Eigen::MatrixXd& shared, Index a, Index b) {
   const double time = shared(a, b);
   return time > 0.0 && (time == shared.row(a).maxCoeff() || time == shared.col(b).maxCoeff());
@@ -90,7 +90,7 @@ ModeMatch match_modes(const Bank& first, const Bank& second, const Eigen::Matrix
   const bool comparable = match.difference.empty();
   if (!comparable && !match.by_time) return match;
   const Index K = first.mode_count(), L = second.mode_count(), most = std::max(K, L);
-  // Padding rows and columns have the same merit for every mode, so they affect no match.
+  // The padding has the same merit for every mode, so it does not affect the match.
   Eigen::MatrixXd merit = Eigen::MatrixXd::Zero(most, most);
   merit.topLeftCorner(K, L) = match.by_time ? shared : nearness(first, second);
   const std::vector<Index> column = best_assignment(merit);

@@ -32,7 +32,7 @@ std::string deflated(const std::string& bytes) {
 
 std::size_t base64_size(std::size_t bytes) { return 4 * ((bytes + 2) / 3); }
 
-constexpr std::size_t bytes_around = 100;  // for each array its element in the page, and a reference to this element
+constexpr std::size_t bytes_around = 100;  // size of an array's element in the page and of the reference to it
 
 }  // namespace
 

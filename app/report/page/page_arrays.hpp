@@ -11,12 +11,12 @@ namespace modebank::app::report {
 /// Base64 by RFC 4648, section 4.
 std::string base64(const std::string& bytes);
 
-/// Arrays that a page draws. An array is split into byte planes: all first bytes, all second bytes, and so on, because
-/// neighbours in a plane are alike. Then it is deflated and stored in base64. The page unpacks an array when it first
-/// needs it.
+/// Arrays that a page draws. Each array is split into byte planes: all first bytes, all second bytes, and so on.
+/// Neighbours in a plane are similar, so the planes compress well. They are deflated and stored in base64. The page
+/// unpacks an array when it first needs the values.
 class PageArrays {
  public:
-  /// Adds an array and returns a reference for the page: {"id", "type": "f4" | "f8" | "i4" | "share", "size"}.
+  /// Adds an array and returns its reference for the page: {"id", "type": "f4" | "f8" | "i4" | "share", "size"}.
   nlohmann::json add(const Eigen::Ref<const Eigen::VectorXd>& values);        ///< as float32, for drawing
   nlohmann::json add_exact(const Eigen::Ref<const Eigen::VectorXd>& values);  ///< as float64, for times
   /// Shares from 0 to 1 with an error of 1.5e-5 in two bytes, to draw probabilities.
@@ -27,7 +27,7 @@ class PageArrays {
   const std::vector<std::string>& stored() const { return stored_; }
   /// Size in the page of all arrays together [bytes].
   std::size_t bytes() const { return bytes_; }
-  /// Largest possible size of an array with this many values of this width [bytes].
+  /// Largest possible size of an array with `values` values of `width` bytes [bytes].
   static std::size_t most_bytes(Eigen::Index values, std::size_t width);
 
  private:

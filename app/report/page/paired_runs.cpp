@@ -29,8 +29,8 @@ bool same_samples(const Trajectory& a, const Trajectory& b) {
   return a.run == b.run && a.role == b.role && a.time_s == b.time_s && a.state == b.state;
 }
 
-/// Pairs of judged runs that are the same in both archives, as indices into each. Empty unless both archives have runs
-/// and a scored bank.
+/// Pairs of equal judged runs in two archives, as indices into each archive. Empty unless both archives have runs and a
+/// scored bank.
 std::vector<std::pair<std::size_t, std::size_t>> common_runs(const Archive& one, const Archive& other) {
   std::vector<std::pair<std::size_t, std::size_t>> common;
   if (!one.recording || !other.recording || !bank_of(one) || !bank_of(other)) return common;
@@ -51,7 +51,7 @@ Eigen::MatrixXd mode_probability(const FilterEvaluation& evaluation, std::size_t
   return probability;
 }
 
-/// Sums the modes' probabilities in each group. Without groups, the probabilities are unchanged.
+/// Sums the probabilities of the modes in each group. Without groups, the probabilities stay unchanged.
 Eigen::MatrixXd grouped(const Eigen::MatrixXd& probability, const std::vector<Index>& groups) {
   if (groups.empty() || std::ssize(groups) != probability.rows()) return probability;
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(1 + *std::max_element(groups.begin(), groups.end()), probability.cols());

@@ -8,11 +8,11 @@
 
 namespace modebank {
 
-/// Histogram of probability integral transforms. They are uniform on [0, 1] if the model is right (Diebold, Gunther &
+/// Histogram of probability integral transforms. If the model is right, they are uniform on [0, 1] (Diebold, Gunther &
 /// Tay 1998).
 struct PitHistogram {
   Eigen::VectorXi counts;    ///< per bin
-  Eigen::Index samples = 0;  ///< number of known transforms
+  Eigen::Index samples = 0;  ///< number of transforms that are not NaN
   double expected = 0.0;     ///< per bin
   Interval band{0.0, 0.0};   ///< 95 % interval of the count in one bin if the model is right
 };

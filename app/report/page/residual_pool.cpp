@@ -24,7 +24,8 @@ ResidualTests pool_autocorrelations(const std::vector<ResidualTests>& runs) {
     weight.leftCols(run.autocorrelation.cols()).array() += samples;
     pooled.samples += run.samples;
     band_weight += samples;
-    band = run.autocorrelation_band * std::sqrt(samples);  // the normal quantile, which all runs share
+    band = run.autocorrelation_band * std::sqrt(samples);  // multiplied by the root of the samples, the band is the
+                                                           // normal quantile, which is the same for all runs
   }
   pooled.autocorrelation = (weight.array() > 0.0).select(sum.cwiseQuotient(weight), not_a_number);
   pooled.autocorrelation_band = band_weight > 0.0 ? band / std::sqrt(band_weight) : not_a_number;

@@ -18,14 +18,14 @@ namespace {
 
 using nlohmann::json;
 
-/// All time constants in one cell, the slowest first. The table sorts by the first.
+/// All time constants in one cell, the slowest first. The table sorts by the slowest.
 json decays_cell(const std::vector<Decay>& decays) {
   std::string text;
   for (const Decay& decay : decays) text += (text.empty() ? "" : "; ") + decay_words(decay, "±");
   return number(decays.empty() ? 0.0 : decays.front().time_constant_s, text);
 }
 
-/// `open`: marks unidentifiable values; empty if there are none.
+/// `open`: true for unidentifiable values. An empty list means that all values are identifiable.
 json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors,
                const std::vector<bool>& unidentifiable = {}) {
   json cells = json::array();
@@ -38,7 +38,7 @@ json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors,
   return cells;
 }
 
-/// Adds the decay per sample of the slowest mode of motion, and all time constants.
+/// Adds the slowest mode of motion's decay per sample, and all time constants.
 void add_decays(json& row, const std::vector<Decay>& decays, bool unidentifiable) {
   const double slowest = decays.empty() || unidentifiable ? NAN : decays.front().per_sample;
   row["per_sample"] = number(slowest, unidentifiable ? "-" : per_sample_words(decays));
@@ -108,7 +108,7 @@ json transition_of(const Bank& bank) {
   return rows;
 }
 
-/// The weights of state-dependent transition probabilities; null if T is constant.
+/// The weights of state-dependent transition probabilities; null for a constant T.
 json switch_weights_of(const Bank& bank) {
   const TransitionLogit& logit = bank.transition_logit;
   if (logit.empty()) return nullptr;
@@ -136,7 +136,7 @@ json screened_of(const Bank& bank) {
   return list;
 }
 
-/// Loss of log score from a limit on the number of modes, on the runs of a role; null without a limit.
+/// Loss of log score that the limit on the number of modes causes, on the runs of a role. Null without a limit.
 json merging_of(const Archive& archive, Role role) {
   for (const MergingCost& cost : archive.merging)
     if (cost.role == role)
@@ -173,7 +173,7 @@ nlohmann::json bank_section(const Archive& archive) {
   for (const UsedMode& mode : used_modes(archive)) {
     json& row = modes[static_cast<std::size_t>(mode.mode)];
     row["use"] = number(mode.use, fmt::format("{:.1f} %", 100 * mode.use));
-    row["stay"] = number(mode.stay_s, stay_words(mode));  // the same words as on the first screen
+    row["stay"] = number(mode.stay_s, stay_words(mode));  // same words as on the first screen
   }
   return {{"modes", modes},
           {"baseline", archive.baseline ? mode_row(archive, *archive.baseline, 0) : json()},

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Replaces "+-" by the page's sign: "0.3 ± 0.1".
+/// Replaces "+-" by the sign that the page uses: "0.3 ± 0.1".
 std::string with_signs(const std::string& text) { return boost::replace_all_copy(text, " +- ", " ± "); }
 
 json card(const std::string& key, const std::string& name, const json& big, const std::string& unit,
@@ -28,13 +28,13 @@ json gain_card(const FirstScreen& screen) {
   if (std::isnan(screen.gain)) return nullptr;
   const std::string known =
       std::isfinite(screen.gain_error) ? "above 0 the bank predicts better" : "its error is unknown";
-  // Uses the digits of the finding's sentence, so that a number looks the same everywhere on the screen.
+  // Rounds like the sentence of the finding, so that a number is the same everywhere on the screen.
   const std::string error = std::isfinite(screen.gain_error) ? fmt::format(" ± {:.3f}", screen.gain_error) : "";
   const json gain = number(screen.gain, fmt::format("{:+.3f}{}", screen.gain, error));
   return card("gain", "Gain over " + screen.competitor, gain, "nats per sample", known);
 }
 
-/// Whether users can rely on the band, their first question. Scores of training runs do not answer this question.
+/// Answers the first question of users: can I rely on the band? Scores of training runs cannot answer it.
 std::string use_words(const FirstScreen& screen) {
   const bool held_out = screen.role == Role::test;
   switch (screen.verdict) {
@@ -50,7 +50,7 @@ std::string use_words(const FirstScreen& screen) {
   return "cannot tell yet";
 }
 
-/// A short verdict such as "use it: calibrated, ...".
+/// A short recommendation such as "use it: calibrated, ...".
 std::string band_advice(const FirstScreen& screen) {
   return fmt::format("{}: {}", use_words(screen), screen.verdict_words);
 }
@@ -102,7 +102,7 @@ json modes_of(const FirstScreen& screen) {
           {"others", others},           {"gain_unit", modes.gain_unit}};
 }
 
-/// true: evidence and a reliable band; null: undecided
+/// true for evidence and a reliable band; null if undecided
 json goodness(const FirstScreen& screen) {
   if (!screen.answer || *screen.answer == Answer::cannot_tell || *screen.answer == Answer::not_comparable ||
       *screen.answer == Answer::not_yet)
@@ -114,7 +114,7 @@ json goodness(const FirstScreen& screen) {
 std::string headline(const FirstScreen& screen) {
   if (!screen.answer) return "nothing was judged";
   if (*screen.answer == Answer::one_mode) return answer_words(*screen.answer);
-  // Without evidence, the number of modes describes only the bank.
+  // Without evidence for modes, the text only states how many modes the bank has.
   return fmt::format("{} ({}{} modes)", answer_words(*screen.answer),
                      *screen.answer == Answer::evidence ? "" : "the bank has ", screen.mode_count);
 }

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A mean over several modes is shown with its error. A single mode is shown as in its own row.
+/// A mean over several modes is shown with its standard error. A single mode is shown as in its own row.
 json time_cell(const ModeFamily& family, bool open) {
   const Decay& slowest = family.slowest;
   if (open) return number(NAN, not_identifiable);
@@ -85,7 +85,7 @@ json label_section(const Archive& archive, const std::vector<ModeFamily>& famili
   struct Label {
     std::string name;
     Index samples = 0;
-    std::vector<double> shares;  // for each family with a row of its own, then for the others
+    std::vector<double> shares;  // one share per family with its own row, then the share of all others
   };
   std::vector<Label> labels;
   for (const ConfusionRow& row : archive.confusion) {

@@ -71,7 +71,7 @@ json horizon_row(const HorizonRow& row) {
           {"rmse", number_list(row.rmse)}};
 }
 
-/// Percentages of all states, in one cell.
+/// Percentages of all states in one cell.
 json percent_list(const Eigen::VectorXd& shares) {
   json cell = number_list(shares);
   std::string text;

@@ -19,9 +19,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index line_points = 201, map_points = 61;  // number of points along an axis
-constexpr Index most_samples = 3000;                 // number of samples that are drawn
-/// share of the first feature's effect on the log odds; a second feature with a smaller effect is not drawn
+constexpr Index line_points = 201, map_points = 61;  // number of points along an axis of a line plot and of a map
+constexpr Index most_samples = 3000;                 // largest number of samples that are drawn
+/// effect on the log odds, relative to the first feature; a second feature with a smaller effect is not drawn
 constexpr double least_second_effect = 0.05;
 
 /// States and inputs at the start of each step, and the most probable mode after the step.
@@ -32,7 +32,7 @@ struct SeenSamples {
 
 using Visit = std::function<void(const Eigen::VectorXd& z, Index mode)>;
 
-/// The lagged state at a sample: from the filter's states, and before the filter's start from measurements.
+/// The lagged state at a sample. It comes from the filter's states, or from measurements before the filter starts.
 Eigen::VectorXd lagged_state(const LinearStructure& structure, const Trajectory& run, const RunEvaluation& said,
                              Index sample) {
   Eigen::VectorXd state(structure.dimension());
@@ -46,7 +46,7 @@ Eigen::VectorXd lagged_state(const LinearStructure& structure, const Trajectory&
 
 void visit_run(const Bank& bank, const Trajectory& run, const RunEvaluation& said, const Visit& visit) {
   Eigen::VectorXd z(bank.transition_logit.weights.cols());
-  Index known = 0;  // number of earlier samples, if steps have the model's period
+  Index known = 0;  // number of earlier samples, counted while steps have the model's period
   RunSamples(bank, run).for_each([&](const SampleFeed& feed, Index k, bool starts) {
     if (starts) {
       known = bank.structure.state_lags;
@@ -69,7 +69,7 @@ void visit_all(const Archive& archive, const FilterEvaluation& evaluation, const
     });
 }
 
-/// The samples of all runs, thinned evenly.
+/// The samples of all runs. If there are too many, only every k-th sample is used.
 SeenSamples seen_samples(const Archive& archive) {
   SeenSamples thin;
   const FilterEvaluation* const evaluation = evaluation_of(archive, "bank");
@@ -91,8 +91,7 @@ Eigen::VectorXd values_of(const SeenSamples& seen, Index feature) {
   return values;
 }
 
-/// For each feature, the largest change in the log odds of two modes when the feature changes by one standard
-/// deviation.
+/// For each feature, the largest change in the log odds of two modes if the feature changes by one standard deviation.
 Eigen::VectorXd effects(const TransitionLogit& logit, const SeenSamples& seen) {
   Eigen::VectorXd effect(logit.weights.cols());
   for (Index a = 0; a < effect.size(); ++a) {
@@ -103,7 +102,7 @@ Eigen::VectorXd effects(const TransitionLogit& logit, const SeenSamples& seen) {
   return effect;
 }
 
-/// One or two features, with the larger effect first.
+/// The one or two features with the largest effects, the largest first.
 std::vector<Index> drawn_features(const Eigen::VectorXd& effect) {
   std::vector<Index> order(static_cast<std::size_t>(effect.size()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -113,7 +112,7 @@ std::vector<Index> drawn_features(const Eigen::VectorXd& effect) {
   return order;
 }
 
-/// Name of a feature as in the page's tables, with its channel's unit.
+/// Name of a feature as in the page's tables, with the unit of its channel.
 std::string feature_name(const Bank& bank, const Recording& recording, Index feature) {
   const Index n = bank.structure.dimension();
   const auto label = regressor_labels(bank.structure, bank.state_names, bank.input_names);
@@ -132,7 +131,7 @@ Eigen::VectorXd axis_values(const Eigen::VectorXd& seen, Index points) {
 
 json numbers(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
 
-/// Share of every mode along one feature.
+/// The share of each mode along one feature.
 json lines(const Bank& bank, Index feature, const Eigen::VectorXd& along) {
   Eigen::MatrixXd shares(bank.mode_count(), along.size());
   Eigen::VectorXd z = bank.transition_logit.reference;
@@ -145,7 +144,8 @@ json lines(const Bank& bank, Index feature, const Eigen::VectorXd& along) {
   return rows;
 }
 
-/// The mode with the largest share over two features, and this share; row by row from the bottom.
+/// Adds the mode with the largest share at each point of two features, and this share. The order is row by row from the
+/// bottom.
 void add_map(const Bank& bank, const std::vector<Index>& feature, const Eigen::VectorXd& x, const Eigen::VectorXd& y,
              json& to) {
   json modes = json::array(), shares = json::array();

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Keys whose values are not the defaults, in the table's order.
+/// Keys whose values are not the defaults, in the order of the option table.
 json changed_settings(const std::string& config) {
   const Config defaults{};
   const std::map<std::string, std::string> values = resolved_values(config);

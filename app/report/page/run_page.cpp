@@ -9,7 +9,7 @@ namespace modebank::app::report {
 
 namespace {
 
-/// The signals may use the page's size limit minus its fixed parts and windows, but at least this.
+/// The signals may use the part of the page's size limit that the fixed parts and the windows leave, but at least this.
 constexpr std::size_t least_signal_bytes = 1'000'000;
 
 std::size_t room_for_signals(const Page& page, const ReportConfig& options) {

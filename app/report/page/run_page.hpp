@@ -8,8 +8,8 @@
 
 namespace modebank::app::report {
 
-/// The page of one archive: configuration, verdict, data, local models, selection, bank, filter. `file`: the archive's
-/// name, for the title. The page states which parts the archive does not have.
+/// The page of one archive: configuration, verdict, data, local models, selection, bank, filter. The page states which
+/// of these parts the archive does not have. `file`: name of the archive, for the title.
 Page run_page(const Archive& archive, const std::string& file, const ReportConfig& options);
 
 }  // namespace modebank::app::report

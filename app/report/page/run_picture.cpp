@@ -14,10 +14,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index most_runs = 6, most_buckets = 1200;  // enough for a picture as wide as a screen
-constexpr double steps = 2000.0;                     // resolution of heights, finer than the pixels of the picture
+constexpr Index most_runs = 6, most_buckets = 1200;  // enough buckets for a picture as wide as a screen
+constexpr double steps = 2000.0;                     // number of different heights; a step is finer than a pixel of the
+                                                     // picture
 
-/// The most frequent value from index `first` on, -1 included.
+/// The most frequent of `count` values from index `first` on. The value -1 also counts.
 int most_frequent(const Eigen::VectorXi& values, Index first, Index count, std::size_t names) {
   std::vector<Index> counts(names + 1, 0);
   for (Index i = first; i < std::min(first + count, values.size()); ++i)
@@ -67,7 +68,7 @@ json heights(const Eigen::VectorXd& values, const Range& range) {
   return list;
 }
 
-/// Judged runs, at most the number that a picture can show.
+/// The judged runs, but not more than a picture can show.
 std::vector<std::size_t> pictured_runs(const Recording& recording, Role role) {
   std::vector<std::size_t> runs;
   for (std::size_t i = 0; i < recording.runs.size() && std::ssize(runs) < most_runs; ++i)

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// level of an outlier: if the model is right, one sample in a thousand lies as far out
+/// probability level of outliers; if the model is right, one sample in a thousand is an outlier
 constexpr double outlier_level = 0.999;
 
 json rows_of(PageArrays& arrays, const Eigen::MatrixXd& rows, Index finest, Bucket kind = Bucket::extremes) {
@@ -25,7 +25,7 @@ json rows_of(PageArrays& arrays, const Eigen::MatrixXd& rows, Index finest, Buck
   return list;
 }
 
-/// Times and values of the outliers; only the first ones if there are too many.
+/// Times and values of the outliers. If there are too many, only the first ones.
 json outliers_of(PageArrays& arrays, const RunEvaluation& evaluation, const Trajectory& run) {
   constexpr std::size_t most = 20000;
   std::vector<Index> samples = outlying_samples(evaluation, outlier_level);
@@ -43,7 +43,7 @@ json outliers_of(PageArrays& arrays, const RunEvaluation& evaluation, const Traj
 json filter_signals(PageArrays& arrays, const Bank& bank, const FilterEvaluation& evaluation, std::size_t i,
                     const Trajectory& run, Index finest) {
   json signals;
-  // Evaluations of long runs may be in a file and too large for memory together. So filters are read one after the
+  // Evaluations of long runs may be in a file, and together too large for memory. So the filters are read one after the
   // other.
   evaluation.with_run(i, {"prediction", "innovation_covariance"}, [&](const RunEvaluation& said) {
     const PredictionBand band = prediction_band(bank, said, drawn_level);
@@ -66,7 +66,7 @@ json filter_signals(PageArrays& arrays, const Bank& bank, const FilterEvaluation
   return signals;
 }
 
-/// Size of filter_signals without outliers [bytes].
+/// Largest possible size of filter_signals without outliers [bytes].
 std::size_t most_filter_bytes(const Bank& bank, Index samples, Index finest) {
   const auto n_y = static_cast<std::size_t>(bank.C.rows()), K = static_cast<std::size_t>(bank.mode_count());
   return (3 * n_y + 1) * most_series_bytes(samples, finest) +
@@ -93,7 +93,7 @@ json channels_of(const std::vector<Channel>& channels) {
   return list;
 }
 
-/// Calls visit(evaluation, bank, finest) for every filter in the drawing of run i.
+/// Calls visit(evaluation, bank, finest) for each filter that the drawing of run i shows.
 template <class Visit>
 void for_each_filter(const Archive& archive, std::size_t i, const Detail& detail, Visit visit) {
   for (const FilterEvaluation& evaluation : archive.evaluations) {
@@ -137,8 +137,7 @@ std::size_t most_run_bytes(const Archive& archive, std::size_t i, const Detail& 
   return bytes;
 }
 
-/// A note on runs that are left out and samples that are summarised in the plots. Empty if every run and sample is
-/// drawn.
+/// A note that says which runs are not drawn and which samples are summarised. Empty if every run and sample is drawn.
 std::string detail_note(const Detail& detail, std::size_t drawn, std::size_t runs) {
   std::string text;
   if (drawn < runs)
@@ -171,7 +170,7 @@ std::vector<std::size_t> drawn_runs(const Recording& recording) {
 
 namespace {
 
-/// Nullopt if the arrays are larger than this size.
+/// Returns nullopt if the arrays exceed the size limit.
 std::optional<json> runs_within(const Archive& archive, PageArrays& arrays, const Detail& detail, std::size_t most) {
   json runs = json::array(), names = json::array();
   const std::vector<std::size_t> drawn = drawn_runs(*archive.recording);
@@ -207,7 +206,7 @@ nlohmann::json runs_section(const Archive& archive, PageArrays& arrays, const De
 
 nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes) {
   constexpr Index coarser_others = 16, coarsest = Index{1} << 40;
-  // Even noise compresses at least to this share, so a smaller budget need not be tried.
+  // Even noise compresses to this share of its size. A budget below it need not be tried.
   constexpr double least_share = 0.5;
   if (!archive.recording) return nullptr;
   for (Detail detail;; detail = {detail.finest * (detail.finest_others > 1 ? 2 : 1),

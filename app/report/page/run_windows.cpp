@@ -15,12 +15,12 @@ namespace {
 
 using nlohmann::json;
 
-/// more points would hide each other, so only every second, third, ... window is drawn
+/// largest number of drawn windows; more points would hide each other, so only every second, third, ... window is drawn
 constexpr Index most_windows = 100'000;
-/// if covariances need more numbers than this, no ellipses are drawn
+/// largest number of values in all covariances; above it, no ellipses are drawn
 constexpr Index most_covariances = 2'000'000;
 
-/// Names on the page: labels for parameters, words for noise, a note for one-lag features.
+/// Names on the page: labels for parameters, words for noise, a note for features of one lag.
 std::vector<std::string> with_labels(std::vector<std::string> features, const Archive& archive) {
   const std::string noise = "log_noise_variance_";
   for (std::string& feature : features)
@@ -33,7 +33,7 @@ std::vector<std::string> with_labels(std::vector<std::string> features, const Ar
   return features;
 }
 
-/// Axes of the cloud: parameters and the logarithm of the noise variance.
+/// Axes of the cloud: the parameters, and the logarithm of the noise variance.
 json axes_of(const std::vector<std::string>& names, const Unit& units) {
   json axes = json::array();
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -41,7 +41,7 @@ json axes_of(const std::vector<std::string>& names, const Unit& units) {
   return axes;
 }
 
-/// The first axes: the paper's A, B1, B2; with several lags the first lag of each.
+/// The axes at first: A, B1, B2 as in the paper. With several lags, the first lag of each.
 std::vector<Index> default_axes(const WindowFits& fits, bool of_parameters, Index axes) {
   const Index inputs = fits.structure.dimension();
   std::vector<Index> chosen{0, 1, 2};
@@ -50,7 +50,7 @@ std::vector<Index> default_axes(const WindowFits& fits, bool of_parameters, Inde
   return chosen;
 }
 
-/// The lower triangle of the covariance of each drawn window, row by row.
+/// The covariance of each drawn window, as its lower triangle row by row.
 json covariances_of(PageArrays& arrays, const WindowFits& fits, const std::vector<Index>& drawn) {
   const Index p = fits.parameter_count(), count = static_cast<Index>(drawn.size());
   if (count * p * (p + 1) / 2 > most_covariances) return nullptr;
@@ -70,7 +70,7 @@ json rows_of_matrix(const Eigen::MatrixXd& matrix) {
   return rows;
 }
 
-/// The mixture in the cloud's coordinates, for ellipses.
+/// The components of the mixture in the coordinates of the cloud, for ellipses.
 json components_of(const Archive& archive) {
   const MixtureResult& result = *archive.mixture;
   json components = json::array();
@@ -83,7 +83,7 @@ json components_of(const Archive& archive) {
   return {{"features", with_labels(result.feature_names, archive)}, {"list", components}};
 }
 
-/// The bank's modes in the cloud's coordinates; for linear models with their covariance over the windows.
+/// The modes of the bank in the coordinates of the cloud. Linear models have their covariance over the windows.
 json modes_of(const Bank& bank) {
   json modes = json::array();
   for (const Mode& mode : bank.modes) {
@@ -110,7 +110,7 @@ json modes_of_windows(PageArrays& arrays, const WindowFits& fits, const FilterEv
   return arrays.add(std::vector<std::int32_t>(modes.begin(), modes.end()));
 }
 
-/// The windows that are drawn, each with the index of its point.
+/// The windows that are drawn, each with the index of its point in the cloud.
 struct Drawn {
   Index step = 1;
   std::vector<Index> points, windows;
@@ -126,7 +126,7 @@ Drawn choose(const FeatureCloud& cloud) {
   return drawn;
 }
 
-/// Points of all windows, if the clustered features are not the windows' own parameters.
+/// Points of all windows for the case that the clustered features are not the windows' own parameters.
 FeatureCloud cloud_of(const Archive& archive) {
   FeatureCloud cloud =
       make_features(*archive.windows, FeatureSet::parameters_and_noise, WindowChoice::all, archive.recording->states);
@@ -139,7 +139,7 @@ FeatureCloud cloud_of(const Archive& archive) {
   return cloud;
 }
 
-/// Adds run, first and last time of each drawn window.
+/// Adds the run and the first and last time of each drawn window.
 void add_places(json& section, PageArrays& arrays, const Archive& archive, const std::vector<Index>& drawn) {
   const WindowFits& fits = *archive.windows;
   std::vector<std::int32_t> run;

@@ -12,10 +12,10 @@ using Eigen::Index;
 using nlohmann::json;
 
 constexpr Index level_factor = 16;
-/// levels with smaller buckets are not stored: the page computes them from the level below
+/// smallest number of buckets in a stored level; the page computes coarser levels from the coarsest stored one
 constexpr Index least_buckets = 500;
 
-/// Bucket sizes of the levels above the samples themselves.
+/// Bucket sizes of the levels that are coarser than the samples.
 std::vector<Index> level_buckets(Index samples, Index finest) {
   std::vector<Index> buckets;
   Index bucket = finest == 1 ? level_factor : finest;
@@ -37,13 +37,13 @@ json level(PageArrays& arrays, const Eigen::Ref<const Eigen::VectorXd>& values, 
 
 Index buckets_of(Index samples, Index size) { return (samples + size - 1) / size; }
 
-/// The mean period of the times.
+/// Mean difference between consecutive times.
 double period_of(const Eigen::VectorXd& time_s) {
   const Index N = time_s.size();
   return N > 1 ? (time_s(N - 1) - time_s(0)) / static_cast<double>(N - 1) : 1.0;
 }
 
-/// Whether all times belong to a clock with this period, up to a ten-thousandth of a period.
+/// Whether all times are those of a clock with this period. The tolerance is a ten-thousandth of a period.
 bool regular(const Eigen::VectorXd& time_s, double period) {
   constexpr double slack = 1e-4;
   for (Index k = 0; k < time_s.size(); ++k)

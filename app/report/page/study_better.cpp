@@ -19,7 +19,7 @@ using Rows = std::vector<std::size_t>;
 constexpr std::size_t most_rivals = 8;
 constexpr double upper_probability = 0.975;
 
-/// Finished settings with a score, ordered by their mean over repeats, best first.
+/// Finished settings that have a score. They are ordered by the mean over their repeats, the best first.
 std::vector<Rows> ranked_settings(const StudyTable& table, std::size_t score, const ScoreGoal& goal) {
   std::map<std::vector<std::string>, Rows> by_values;
   std::vector<std::vector<std::string>> order;
@@ -53,7 +53,7 @@ std::optional<Archive> archive_of(const TrialPlace& place) {
   }
 }
 
-/// smaller differences in log score do not matter for a choice [nats/sample]
+/// differences in log score below this do not matter for a choice [nats/sample]
 constexpr double no_matter = 0.001;
 
 std::string calibration_of(double gain, double margin) {
@@ -68,7 +68,7 @@ nlohmann::json gain_cell(double gain, double error) {
                 std::isfinite(error) ? fmt::format("{:+.4f} ± {:.4f}", gain, error) : fmt::format("{:+.4f}", gain));
 }
 
-/// Gain of the best setting over a rival, and the basis of the gain's standard error.
+/// Gain of the best setting over a rival, and what its standard error is based on.
 struct JudgedGain {
   double gain, standard_error, margin;
   std::string by;
@@ -82,7 +82,7 @@ JudgedGain judged(const ArchiveGain& by_run, const RepeatGain& by_repeat) {
   const PairedGain& first = by_run.gain;
   const std::string runs = first.by_blocks ? "blocks of samples" : fmt::format("{} runs", by_run.runs);
   if (by_repeat.repeats < 2) return {first.gain, first.standard_error, first.margin, runs};
-  // The best setting has the best mean over repeats; its first repeat alone may be worse.
+  // The best setting has the best mean over repeats. Its first repeat alone may be worse than the rival's.
   return {by_repeat.gain, std::hypot(first.standard_error, by_repeat.standard_error),
           std::hypot(first.margin, by_repeat.margin), runs + " and " + repeats};
 }

@@ -22,7 +22,7 @@ const NamedColumn& varied_column(const StudyFile& file, const std::string& key) 
   return *std::find_if(file.columns.begin(), file.columns.end(), [&](const NamedColumn& c) { return c.name == key; });
 }
 
-/// Scores that the table shows at first; a click shows the others.
+/// Scores that the table shows at first. The other scores appear after a click.
 bool shown_at_first(const std::string& score) {
   for (const char* part : {"_test_log_score", "_test_rmse"})
     if (score.find(part) != std::string::npos) return true;
@@ -38,7 +38,7 @@ json goal_json(const std::string& score, int states) {
   return {{"kind", kind}, {"nominal", goal->nominal}, {"text", goal->text()}};
 }
 
-/// Number of measured states: each has an RMSE.
+/// Number of measured states. Each of them has an RMSE.
 int measured_states(const StudyTable& table) {
   const auto count = std::count_if(table.score_names.begin(), table.score_names.end(),
                                    [](const std::string& name) { return name.rfind("bank_train_rmse_", 0) == 0; });
@@ -65,7 +65,7 @@ json columns_of(const StudyTable& table) {
   return columns;
 }
 
-/// Cells in the order of columns_of.
+/// Cells of row i in the order of columns_of.
 json cells_of(const StudyFile& file, const StudyTable& table, std::size_t i) {
   const TrialRow& row = table.rows[i];
   json cells = json::array();
@@ -126,7 +126,7 @@ json counts_of(const StudyTable& table) {
   return list;
 }
 
-/// The study's result in a sentence, and its row.
+/// A sentence with the result of the study, and the row of the best setting.
 json best_of(const StudyTable& table, const Answers& answers) {
   for (const BestSetting& best : answers.best) {
     if (best.score != answers.headline) continue;

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Finished runs with the headline score, best first.
+/// Finished runs that have the headline score, the best first.
 std::vector<std::size_t> ranked_rows(const StudyTable& table) {
   const std::string headline = answer(table).headline;
   const auto found = std::find(table.score_names.begin(), table.score_names.end(), headline);
@@ -37,7 +37,7 @@ std::vector<std::size_t> ranked_rows(const StudyTable& table) {
   return rows;
 }
 
-/// Paths of existing archives, for all rows.
+/// Paths of the archives that exist, for all rows.
 std::vector<TrialPlace> archives_of(const StudyTable& table, const fs::path& folder) {
   std::vector<TrialPlace> places(table.rows.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -48,7 +48,7 @@ std::vector<TrialPlace> archives_of(const StudyTable& table, const fs::path& fol
   return places;
 }
 
-/// Writes pages of the best runs into a folder named after the study's page.
+/// Writes the pages of the best runs into a folder with the name of the study's page.
 void write_run_pages(const StudyTable& table, const fs::path& page, const ReportConfig& options,
                      std::vector<TrialPlace>& places, Written& written) {
   const fs::path folder = page.parent_path() / (page.stem().string() + "_runs");

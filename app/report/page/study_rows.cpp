@@ -10,7 +10,7 @@
 namespace modebank::app::report {
 namespace {
 
-/// The columns between varied keys and scores, as `merge` writes them.
+/// A column of the study file. The columns between the varied keys and the scores are those that `merge` writes.
 const NamedColumn& column(const StudyFile& file, const std::string& name) {
   for (const NamedColumn& candidate : file.columns)
     if (candidate.name == name) return candidate;
@@ -58,7 +58,7 @@ StudyTable study_table_of(const StudyFile& file) {
     if (!status) throw DataError(fmt::format("run {} has the unknown status {}", i, statuses[i]));
     row.status = *status;
   }
-  bool varied = true;  // true before the column "repeat"
+  bool varied = true;  // true for the columns before "repeat"
   for (const NamedColumn& candidate : file.columns) {
     varied = varied && candidate.name != "repeat";
     if (varied) {

@@ -19,7 +19,7 @@ int mode_of(const Window& window, Eigen::Index length, const Eigen::MatrixXd& pr
 
 Eigen::VectorXi window_modes(const std::vector<Window>& windows, Eigen::Index length,
                              const FilterEvaluation& evaluation) {
-  std::map<Eigen::Index, std::vector<std::size_t>> of_runs;  // in this order each run is read only once
+  std::map<Eigen::Index, std::vector<std::size_t>> of_runs;  // in this order, each run is read only once
   for (std::size_t i = 0; i < windows.size(); ++i) of_runs[windows[i].run].push_back(i);
   Eigen::VectorXi modes(static_cast<Eigen::Index>(windows.size()));
   for (const auto& [run, positions] : of_runs)

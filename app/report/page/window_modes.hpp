@@ -8,8 +8,8 @@
 
 namespace modebank {
 
-/// A filter's most probable mode over each window, by the mean of mode_probability over the window's transitions. -1 if
-/// unknown. `length`: transitions per window.
+/// The most probable mode of a filter over each window, by the mean of mode_probability over the window's transitions.
+/// -1 if it is unknown. `length`: number of transitions per window.
 Eigen::VectorXi window_modes(const std::vector<Window>& windows, Eigen::Index length,
                              const FilterEvaluation& evaluation);
 

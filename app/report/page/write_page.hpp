@@ -13,31 +13,31 @@
 
 namespace modebank::app::report {
 
-/// Throws ConfigurationError if `path` cannot be written, or is one of the files from which the page is made.
+/// Throws ConfigurationError if `path` cannot be written, or if the page is made from this file.
 void check_page_path(const std::filesystem::path& path, const std::vector<std::filesystem::path>& sources);
 
-/// Reports written files, each as soon as it exists.
+/// Reports each written file as soon as it exists.
 struct Written {
   std::function<void(const std::string& text)> say;
   std::vector<std::string> files;
 };
 
-/// Writes the page under a temporary name, renames it and reports its size.
+/// Writes the page under a temporary name, renames the file and reports its size.
 void write_page(const std::filesystem::path& path, const Page& page, Written& written);
 
-/// A study and the location of its archives.
+/// A study and the folder of its archives.
 struct FoundStudy {
-  std::filesystem::path name;  ///< path as on the command line: the study's folder, or study.h5
+  std::filesystem::path name;  ///< path as on the command line: the folder of the study, or its study.h5
   std::filesystem::path file;  ///< path of study.h5, which may not exist yet
   StudyFile content;
   std::size_t runs = 0, done = 0;
-  std::string digest = {};  ///< content of study.h5; empty unless it contains all planned runs
+  std::string digest = {};  ///< content hash of study.h5; empty unless the file contains all planned runs
 };
 
-/// The study in a folder, from study.h5. If the study still runs or was not merged since, from its finished runs; then
-/// prints their number.
+/// The study in a folder, read from study.h5. If that file lacks finished runs, the study is read from its finished
+/// runs, and their number is printed.
 FoundStudy find_study(const std::filesystem::path& folder, Written& written);
-/// The study of an open study.h5.
+/// The study of a study.h5 that is already open.
 FoundStudy find_study(const OpenArchive& file);
 
 /// The page of a study.
@@ -48,7 +48,7 @@ void report_study(const FoundStudy& study, const std::filesystem::path& page, co
 void report_comparison(const std::vector<std::filesystem::path>& files, const std::filesystem::path& page,
                        const ReportConfig& options, Written& written);
 
-/// Whether an open file is a study's table.
+/// Whether an open file is the study.h5 of a study.
 bool is_study(const OpenArchive& file);
 
 }  // namespace modebank::app::report

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The member, or null if it does not exist.
+/// The member of the object; null if it does not exist.
 json member(const json& object, const char* name) {
   return object.is_object() && object.contains(name) ? object[name] : json();
 }
@@ -28,7 +28,7 @@ bool has(const OpenArchive& archive, const std::string& group, const char* name)
   return inspect(archive, group).at("members").contains(name);
 }
 
-/// The name of the data file; for several files the folder of the first, and their number.
+/// The name of the data file. For several files, the folder of the first file and their number.
 std::string data_name(const std::vector<fs::path>& files) {
   if (files.empty()) return {};
   if (files.size() == 1) return files.front().filename().string();

@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Program and settings as text: a change of this text, or of the archive, needs new pages.
+/// Program and settings as text. If this text or the archive changes, the pages are made again.
 std::string site_maker(const ReportConfig& options) {
   return fmt::format("modebank {} {}, report.size_mb {}, report.runs {}", build_info::version, build_info::git_revision,
                      options.size_mb, options.runs);
 }
 
-/// The pages of a folder while `report` runs.
+/// The pages of a folder while `report` works.
 class Site {
  public:
   Site(fs::path folder, fs::path site, const ReportConfig& options, Written& written)
@@ -57,7 +57,7 @@ class Site {
   }
 
  private:
-  /// The index's row. Makes the archive's pages first, if needed.
+  /// The row of the index for an archive. If needed, first makes the archive's pages.
   json row_of(const fs::path& name) {
     json row = {{"name", name.string()}};
     try {
@@ -84,7 +84,7 @@ class Site {
     });
   }
 
-  /// A study's folder and an archive beside it may have the same name.
+  /// A study's folder may have the same name as an archive beside it.
   void add_study(const fs::path& name, const FoundStudy& study, json& row) {
     row.update(index_row(study));
     const fs::path file = fs::is_directory(folder_ / name) ? name / "study.h5" : name;
@@ -92,7 +92,7 @@ class Site {
                           [&](const fs::path& page, Written& pages) { report_study(study, page, options_, pages); });
   }
 
-  /// False for the page of an unfinished study.
+  /// Returns false for the page of an unfinished study.
   bool is_current(const std::string& name, const std::string& digest) const {
     const auto found = before_.find(name);
     if (digest.empty() || found == before_.end()) return false;
@@ -101,12 +101,12 @@ class Site {
     return std::all_of(files.begin(), files.end(), [&](const std::string& file) { return fs::exists(site_ / file); });
   }
 
-  /// Address of an archive's page in the site. `write` makes this page and the pages below.
+  /// Address of an archive's page in the site. `write` makes this page and the pages that belong to it.
   template <class Write>
   std::string page_of(const fs::path& name, const fs::path& file, const std::string& digest, Write write) {
     const fs::path page = ("pages" / file).replace_extension(".html");
     if (is_current(name.string(), digest)) return page.string();
-    // Recorded before the page exists, so that pages of a killed run can be removed later.
+    // This is recorded before the page exists, so that the pages of a killed run can be removed later.
     SitePages& made = now_[name.string()];
     made.archive.clear();
     if (made.files.empty()) made.files = {page.string()};
@@ -133,7 +133,7 @@ class Site {
     write_page(site_ / "index.html", page, written_);
   }
 
-  /// Removes pages of the last run that are no longer needed.
+  /// Removes pages of earlier runs that are no longer needed.
   void remove_others() {
     std::set<std::string> wanted;
     for (const auto& [name, made] : now_) wanted.insert(made.files.begin(), made.files.end());
@@ -141,7 +141,7 @@ class Site {
       for (const std::string& file : made.files)
         if (std::error_code error; !wanted.count(file) && fs::remove(site_ / file, error)) {
           result_.removed.push_back((site_ / file).string());
-          // Removes empty folders; `remove` fails for others.
+          // Removes empty folders. For other folders `remove` fails.
           for (fs::path above = (site_ / file).parent_path(); above != site_ && fs::remove(above, error);)
             above = above.parent_path();
         }

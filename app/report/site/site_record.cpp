@@ -17,8 +17,7 @@ using nlohmann::json;
 
 const char* const record_name = "pages.json";
 
-/// Pages are only below pages/. Without this check, a record that was edited by hand could make `report` remove other
-/// files.
+/// All pages are in pages/. Without this check, `report` could remove other files if a user has edited the record.
 bool is_below_pages(const std::string& file) {
   const fs::path path = file;
   return !path.empty() && *path.begin() == "pages" && std::find(path.begin(), path.end(), "..") == path.end();

@@ -9,8 +9,8 @@
 
 namespace modebank::app {
 
-/// The answers as tables of /answers in study.h5: main_effects, influence, best, pareto and, with repeats, spread.
-/// Column `trial` is the key of a trial.
+/// The answers as tables of /answers in study.h5: main_effects, influence, best, pareto and, if there are repeats,
+/// spread. The column `trial` contains the keys of trials.
 std::vector<NamedTable> answer_tables(const StudyTable& table, const Answers& answers);
 
 }  // namespace modebank::app

@@ -16,7 +16,7 @@ namespace {
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* modes_column = "modes";
 
-/// For each setting its finished trials, as rows of the table in the table's order.
+/// For each setting, its finished trials as row numbers in the order of the table.
 using Settings = std::vector<std::vector<std::size_t>>;
 
 Settings finished_settings(const StudyTable& table) {
@@ -71,7 +71,7 @@ std::optional<ScoreGoal> goal_in(const StudyTable& table, std::size_t score) {
   return goal_of(table.score_names[score], state_count(table, table.score_names[score]));
 }
 
-/// The best mean over the repeats of a setting; NaN without scores.
+/// The best mean over the repeats of a setting; NaN if there are no scores.
 double best_mean(const StudyTable& table, const std::vector<std::size_t>& rows, std::size_t score,
                  const ScoreGoal& goal) {
   std::map<std::vector<std::string>, std::vector<std::size_t>> settings;

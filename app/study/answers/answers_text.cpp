@@ -44,7 +44,7 @@ std::vector<KeyInfluence> ranked_influences(const Answers& answers) {
   return ranked;
 }
 
-/// The other keys that were varied together with this key, and so have the same effects.
+/// The other keys that always change together with this key, and therefore have the same effects.
 std::vector<std::string> keys_in_step(const StudyTable& table, std::size_t key) {
   const std::vector<ValueGroup> groups = value_groups(table, key);
   const auto same_rows = [](const ValueGroup& a, const ValueGroup& b) { return a.rows == b.rows; };
@@ -58,7 +58,7 @@ std::vector<std::string> keys_in_step(const StudyTable& table, std::size_t key) 
   return names;
 }
 
-/// The key with the keys that were varied together with it; empty if one of these is already printed.
+/// The key and the keys that change together with it. Empty if one of these was already printed.
 std::string effect_heading(const StudyTable& table, const KeyInfluence& influence, std::set<std::string>& printed) {
   const auto key = std::find(table.varied_keys.begin(), table.varied_keys.end(), influence.key);
   std::string heading = influence.key;
@@ -96,7 +96,7 @@ std::string effects_text(const StudyTable& table, const Answers& answers) {
   return text + "\n";
 }
 
-/// The setting without the keys' sections, if the names alone are unique.
+/// The setting without the section names of its keys, if the short names are unique.
 std::string short_setting(const StudyTable& table, std::size_t row) {
   const auto name_of_key = [](const std::string& key) { return key.substr(key.find('.') + 1); };
   StudyTable shortened{table.varied_keys, {}, {table.rows[row]}};
@@ -107,7 +107,7 @@ std::string short_setting(const StudyTable& table, std::size_t row) {
   return setting_text(shortened, 0);
 }
 
-/// Number of trials by their finding on modes of motion.
+/// Number of trials for each finding on modes of motion.
 std::string evidence_text(const StudyTable& table) {
   std::map<std::string, int> answers;
   for (const TrialRow& row : table.rows)

@@ -14,7 +14,7 @@ namespace modebank::app {
 std::string best_run_text(const Config& study, const StudyTable& table, const BestSetting& best) {
   const TrialRow& row = table.rows[best.row];
   Config config = trial_config(study, table.varied_keys, row);
-  config.archive.output.clear();  // the trial's path is inside the study's folder
+  config.archive.output.clear();  // the trial's path belongs to the study's folder
   std::string text =
       fmt::format("# Best of a study by {} ({} is better): {:.6g}", best.score, best.goal.text(), best.value);
   if (best.repeats > 1) text += fmt::format(", mean of {} repeats; the seed is that of the first", best.repeats);
@@ -26,9 +26,10 @@ std::string best_run_text(const Config& study, const StudyTable& table, const Be
 
 namespace {
 
-/// File name of a score. A score ends in a state's name, which may contain any character: "/imu.wz" is also a path.
+/// File name for a score. A score ends in the name of a state, which may contain any character, even those of a path:
+/// "/imu.wz".
 std::string file_stem_of(const std::string& score, std::set<std::string>& taken) {
-  constexpr std::size_t longest = 200;  // the longest name of a file is 255 bytes
+  constexpr std::size_t longest = 200;  // a file name has at most 255 bytes
   const std::string base = letters_and_digits(score).substr(0, longest);
   std::string stem = base;
   for (int i = 2; !taken.insert(stem).second; ++i) stem = fmt::format("{}_{}", base, i);

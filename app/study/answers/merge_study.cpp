@@ -20,7 +20,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Sets the status of one planned row and returns its scores, by name.
+/// Sets the status of one planned row and returns the row's scores with their names.
 std::optional<TrialScores> settle(const TrialStore& store, const std::set<std::string>& whole, TrialRow& row) {
   row.status = TrialStatus::missing;
   row.message.clear();
@@ -40,7 +40,7 @@ std::optional<TrialScores> settle(const TrialStore& store, const std::set<std::s
   return std::nullopt;
 }
 
-/// All names of scores, in the order in which they appear.
+/// The names of all scores, in the order in which they first appear.
 std::vector<std::string> score_names(const std::vector<std::optional<TrialScores>>& scores) {
   std::vector<std::string> names{"modes"};
   std::set<std::string> seen;
@@ -51,7 +51,7 @@ std::vector<std::string> score_names(const std::vector<std::optional<TrialScores
   return names;
 }
 
-/// The texts as numbers, NaN for empty ones. Nullopt if one is not a number or all are empty.
+/// The texts as numbers. Empty texts become NaN. Nullopt if one text is not a number or all are empty.
 std::optional<std::vector<double>> as_numbers(const std::vector<std::string>& texts) {
   std::vector<double> numbers;
   for (const std::string& text : texts) {
@@ -162,7 +162,7 @@ void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTabl
   write_study_file(store.folder() / "study.h5", file, use);
   const std::string csv = table_csv(table);
   replace_file(store.folder() / "study.csv", {csv});
-  // Only for the plan of this table: during a long pause another process may have added values.
+  // Only for the plan of this table: another process may have added values to the plan during a long pause.
   const StudyPlan there = read_plan(store.folder());
   if (there.config != plan.config || there.table.rows.size() != plan.table.rows.size()) return;
   StudyPlan current = plan;

@@ -13,25 +13,26 @@
 
 namespace modebank::app {
 
-/// The plan's rows with their results: scores from archives, failures from their records; the others are missing. An
-/// archive counts when its hash is right. `whole`: archives already checked.
+/// The rows of the plan with their results. Scores come from archives and failures from their records. All other rows
+/// are missing. An archive counts if its hash is right. `whole`: archives that were already checked.
 StudyTable collect_table(const TrialStore& store, const StudyPlan& plan, const std::set<std::string>& whole = {});
 
-/// The rows with these scores, one entry per row; nullopt where a trial has none yet.
+/// The rows with these scores. `scores` has one entry per row; nullopt for a trial without scores.
 StudyTable with_scores(StudyTable table, const std::vector<std::optional<TrialScores>>& scores);
 
 /// Content of study.h5 for a table.
 StudyFile study_file_of(const StudyPlan& plan, const StudyTable& table, const Answers& answers);
 
-/// Writes study.h5 (with the answers, and links to the archives or copies of them), study.csv, and the status of rows
-/// into plan.h5.
+/// Writes study.h5 (with the answers, and links to the archives or copies of these), study.csv, and the status of each
+/// row into plan.h5.
 void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, const Answers& answers,
                  ArchiveUse use);
 
-/// Columns of the table: varied keys (as numbers if all are), repeat, seed, status, message, key, scores.
+/// Columns of the table: varied keys, repeat, seed, status, message, key, scores. The values of a varied key are
+/// numbers if all of them are numbers.
 std::vector<NamedColumn> table_columns(const StudyTable& table);
 
-/// The same columns as CSV (RFC 4180), numbers with all their digits, NaN empty.
+/// The same columns as CSV (RFC 4180). Numbers have all digits; NaN is an empty field.
 std::string table_csv(const StudyTable& table);
 
 }  // namespace modebank::app

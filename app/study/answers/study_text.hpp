@@ -7,9 +7,9 @@
 
 namespace modebank::app {
 
-/// Numbers of runs, dropped points with the reasons, and stages that runs share.
+/// Text with the number of runs, the dropped points with reasons, and the stages that runs share.
 std::string plan_text(const StudyPlan& plan, const DistinctStages& distinct, std::int64_t repeats);
-/// Counts by status, then every failed and missing run.
+/// Number of runs by status, then every failed and every missing run.
 std::string table_text(const StudyTable& table, const TrialStore& store);
 
 }  // namespace modebank::app

@@ -35,8 +35,8 @@ std::vector<ValueGroup> ranges_of(const std::vector<ValueGroup>& groups) {
   return ranges;
 }
 
-/// Whether most values have only one setting, although other keys vary. The effect of a value is then also that of its
-/// setting.
+/// Whether most values have only a single setting, although other keys vary. The effect of the value then cannot be
+/// separated from the effect of its setting.
 bool are_thin(const StudyTable& table, const std::vector<ValueGroup>& groups) {
   if (table.varied_keys.size() < 2 || groups.size() <= value_range_count) return false;
   std::set<std::vector<std::string>> settings;

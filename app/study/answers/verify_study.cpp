@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The fault of a planned trial's archive; empty if it has none.
+/// The fault in the archive of a planned trial; empty if there is none.
 std::string trial_problem(const TrialStore& store, const Config& study, const StudyTable& table, const TrialRow& row) {
   try {
     const OpenArchive archive(store.archive(row.key));
@@ -36,13 +36,13 @@ std::string trial_problem(const TrialStore& store, const Config& study, const St
   }
 }
 
-/// Whether a path exists; a link to nothing counts.
+/// Whether a path exists. A link without a target also counts.
 bool is_there(const fs::path& path) {
   std::error_code error;
   return fs::symlink_status(path, error).type() != fs::file_type::not_found;
 }
 
-/// Checks that a file of the study, if it exists, is complete.
+/// If a file of the study exists, checks that it is complete.
 void check_whole_file(const fs::path& file, StudyVerification& result) {
   if (!is_there(file)) return;
   try {
@@ -87,7 +87,8 @@ void check_trials(const TrialStore& store, const StudyPlan& plan, StudyVerificat
   }
 }
 
-/// Reports half-written files, and archives that no planned trial has; only the hash of these can be checked.
+/// Reports incomplete files, and archives that do not belong to a planned trial. Of these archives only the hash can be
+/// checked.
 void check_others(const TrialStore& store, const std::optional<StudyPlan>& plan, StudyVerification& result) {
   std::error_code error;
   if (!fs::is_directory(store.folder() / "trials", error)) return;
@@ -113,7 +114,8 @@ bool is_study_folder(const fs::path& path) {
 
 namespace {
 
-/// Whether repair may remove a file: only inside the study's own folders trials/ and cache/, never through a link.
+/// Whether repair may remove a file. It must be inside the study's own folders trials/ and cache/, and no link may be
+/// in its path.
 bool lies_within(const fs::path& folder, const fs::path& file) {
   std::error_code error;
   for (const char* part : {"trials", "cache"})

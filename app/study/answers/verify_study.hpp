@@ -6,12 +6,12 @@
 
 namespace modebank::app {
 
-/// A fault in a study's folder.
+/// A fault that was found in a study's folder.
 struct StudyProblem {
   std::filesystem::path file;
   std::string what;
-  std::string redo;        ///< description of the trial to run again; empty: none
-  bool removable = false;  ///< whether the file can be removed and made again, because it is broken or a leftover
+  std::string redo;        ///< description of the trial to run again; empty if no trial is affected
+  bool removable = false;  ///< whether the file can be removed and made again, because it is broken or no longer needed
 };
 
 struct StudyVerification {
@@ -19,15 +19,15 @@ struct StudyVerification {
   std::vector<StudyProblem> problems;
 };
 
-/// Whether a path is a study's folder: it contains plan.h5 or trials/.
+/// Whether a path is the folder of a study, which contains plan.h5 or trials/.
 bool is_study_folder(const std::filesystem::path& path);
 
-/// Checks plan.h5, study.h5 and every planned trial. Its archive must exist, with the right hash, format, schema and
-/// parts of a run, and with the configuration and data of its name.
+/// Checks plan.h5, study.h5 and the archive of every planned trial. The archive must exist, and its hash, format,
+/// schema and parts must be right. Its configuration and data must be those of its name.
 StudyVerification verify_study(const std::filesystem::path& folder);
 
-/// Removes the files of removable problems, except files that a living process is writing. The next `modebank study`
-/// makes them again.
+/// Removes the files of removable problems, except files that a running process writes. The next `modebank study` makes
+/// them again.
 void repair_study(const std::filesystem::path& folder, const StudyVerification& verification);
 
 }  // namespace modebank::app

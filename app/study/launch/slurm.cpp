@@ -33,8 +33,8 @@ std::string study_command(const SlurmRequest& request, const std::string& stage)
   return shell_command(words);
 }
 
-/// The beginning of both scripts. Paths are not in #SBATCH lines, where Slurm has its own quotes and patterns. Logs are
-/// appended, so that a task that is queued again keeps its earlier log.
+/// The beginning of both scripts. #SBATCH lines contain no paths, because Slurm has its own quotes and patterns there.
+/// Logs are appended, so that a task that starts again keeps its earlier log.
 std::string script_head() {
   return fmt::format(
       "#!/bin/bash\n"
@@ -45,7 +45,8 @@ std::string script_head() {
       shell_word(fs::current_path().string()));
 }
 
-/// Such as "run-ice.study": only letters that patterns, queue listings and shells pass unchanged.
+/// Name of a job, such as "run-ice.study". It contains only characters that have no special meaning in patterns, queue
+/// listings and shells.
 std::string job_name(const SlurmRequest& request, const std::string& role) {
   std::string name = role + "-" + request.folder.filename().string();
   std::replace_if(
@@ -53,7 +54,8 @@ std::string job_name(const SlurmRequest& request, const std::string& role) {
   return name;
 }
 
-/// A log in the scripts' folder, in the form of --output: a pattern, in which a per cent sign of the path is doubled.
+/// Path of a log in the scripts' folder, for --output of sbatch. This option is a pattern, so each per cent sign in the
+/// path is doubled.
 std::string log_pattern(const SlurmRequest& request, const std::string& log) {
   return boost::replace_all_copy(slurm_folder(request.folder).string(), "%", "%%") + "/" + log;
 }
@@ -68,7 +70,7 @@ std::vector<std::string> sbatch_words(const SlurmRequest& request, const std::st
   return words;
 }
 
-/// A path for a message, in quotes, with escaped control characters.
+/// A path for a message, in quotes. Control characters are escaped.
 std::string quoted_path(const fs::path& path) {
   return nlohmann::json(path.string()).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
@@ -95,7 +97,7 @@ std::string sbatch(const SlurmRequest& request, const std::string& command) {
 }  // namespace
 
 std::string run_script(const SlurmRequest& request) {
-  // Without --cpus-per-task a task of Slurm has one processor.
+  // Without --cpus-per-task, Slurm gives a task one processor.
   const std::string jobs = has_jobs_override(request) ? "" : " --study.jobs \"${SLURM_CPUS_PER_TASK:-1}\"";
   return script_head() + fmt::format("exec {}{} --study.shard \"$SLURM_ARRAY_TASK_ID/{}\"\n",
                                      study_command(request, "run"), jobs, request.shards);

@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
-/// Ids of a study's Slurm jobs: a file in its folder with lines "role id", in the order of submission.
+/// Ids of a study's Slurm jobs. They are in a file in the study's folder, with lines "role id" in the order of
+/// submission.
 namespace modebank::app {
 
 struct SlurmJob {
-  std::string role;  ///< run (the array) or merge
+  std::string role;  ///< "run" (the array) or "merge"
   std::string id;
 };
 

@@ -19,15 +19,15 @@ namespace {
 struct TaskState {
   std::string state, reason;
 };
-using TaskStates = std::map<std::string, TaskState>;  // states by task, "12_3" or "12"
+using TaskStates = std::map<std::string, TaskState>;  // states by the task's id, "12_3" or "12"
 
 std::vector<std::string> fields_of(const std::string& line) {
   std::vector<std::string> fields;
   return boost::split(fields, line, boost::is_any_of("|"));
 }
 
-/// Parses lines of "task|state|reason", as both programs print them. A state such as "CANCELLED by 0" is its first
-/// word.
+/// Parses lines of "task|state|reason", which squeue and sacct both print. Of a state such as "CANCELLED by 0", only
+/// the first word is used.
 TaskStates task_states(const std::string& command) {
   const ShellResult result = run_shell(command + " 2>/dev/null");
   TaskStates states;
@@ -41,7 +41,7 @@ TaskStates task_states(const std::string& command) {
   return states;
 }
 
-/// A note if the task needs the user.
+/// A note if the task needs the user's attention.
 std::string note_on(const std::string& task, const TaskState& state) {
   if (state.state == "PENDING" && boost::icontains(state.reason, "held"))
     return fmt::format("task {} is held ({}); release it with scontrol release {}", task, state.reason, task);
@@ -55,7 +55,7 @@ std::string note_on(const std::string& task, const TaskState& state) {
 
 SlurmJobView view_of(const SlurmJob& job) {
   SlurmJobView view{job.id, job.role, "", {}, {}};
-  // squeue decides for jobs that it lists. sacct, if installed, lists the jobs that have ended.
+  // For jobs that squeue lists, its states are used. sacct, if installed, also lists jobs that have ended.
   TaskStates states = task_states(fmt::format("sacct -X -n -P -j {} -o JobID,State", shell_word(job.id)));
   if (!states.empty()) view.source = "sacct";
   const TaskStates queued = task_states(fmt::format("squeue -h -r -t all -j {} -o '%i|%T|%r'", shell_word(job.id)));

@@ -14,7 +14,7 @@ namespace {
 
 bool is_left(const TrialRow& row) { return row.status == TrialStatus::missing || row.status == TrialStatus::failed; }
 
-/// The number of tasks: as configured, else one per ten runs, at most a hundred.
+/// The number of tasks. It is the configured number, else one task per ten runs, but at most a hundred.
 int shard_count(const Config& config, const StudyTable& table) {
   constexpr std::int64_t runs_per_task = 10, most = 100;
   const std::int64_t left = std::count_if(table.rows.begin(), table.rows.end(), is_left);
@@ -40,7 +40,7 @@ std::vector<std::string> words_of_line(const std::string& line) {
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
-/// The request without its tasks.
+/// The request, in which the tasks are still missing.
 SlurmRequest request_of(const StudyCall& call) {
   namespace fs = std::filesystem;
   const Config& config = call.config;

@@ -7,12 +7,12 @@
 
 namespace modebank::app {
 
-/// Throws ConfigurationError, before anything is written, when PATH lacks sbatch or when a path has characters that
-/// Slurm interprets.
+/// Throws ConfigurationError if PATH has no sbatch, or if a path has characters that Slurm interprets. Call this before
+/// any file is written.
 void check_submission(const StudyCall& call);
 
-/// Submits the shards with unfinished runs, then the merge, and prints the commands. `table`: results of the plan's
-/// rows so far. Throws as submit_to_slurm does.
+/// Submits the shards that have unfinished runs, then the merge, and prints the commands. `table`: results of the
+/// plan's rows so far. Throws the exceptions of submit_to_slurm.
 std::string submit_study(const StudyCall& call, const StudyPlan& plan, const StudyTable& table);
 
 }  // namespace modebank::app

@@ -34,28 +34,29 @@ double seconds_of(const timespec& time) {
   return static_cast<double>(time.tv_sec) + ns * static_cast<double>(time.tv_nsec);
 }
 
-/// State of a process from /proc.
+/// State of a process, read from /proc.
 struct ProcessState {
   char state = 0;
   pid_t parent = 0;
-  long long start = 0;  ///< in ticks since the machine started
+  long long start = 0;  ///< in clock ticks since the start of the machine
 };
 
 std::optional<ProcessState> process_state(pid_t process) {
   std::ifstream file(fmt::format("/proc/{}/stat", process));
   std::string text;
   if (!std::getline(file, text)) return std::nullopt;
-  std::istringstream fields(text.substr(text.rfind(')') + 1));  // a program's name may contain any character
+  std::istringstream fields(text.substr(text.rfind(')') + 1));  // the fields start after the last ')': the program's
+                                                                // name before it may contain any character
   ProcessState found;
   fields >> found.state >> found.parent;
-  constexpr int skipped = 17;  // fields from the parent to the start time
+  constexpr int skipped = 17;  // number of fields between the parent and the start time
   long long number = 0;
   for (int i = 0; i < skipped; ++i) fields >> number;
   if (!(fields >> found.start)) return std::nullopt;
   return found;
 }
 
-/// The machine and its namespace of process numbers, since each container has its own.
+/// The machine and its namespace of process numbers. The namespace matters, because each container has its own.
 std::string this_host() {
   std::array<char, 256> name{}, numbers{};
   ::gethostname(name.data(), name.size() - 1);
@@ -63,7 +64,7 @@ std::string this_host() {
   return fmt::format("{} {}", name.data(), numbers.data());
 }
 
-/// A process that has ended but was not reaped is not gone: its parent must still complete its work.
+/// A process that has ended but was not reaped does not count as gone, because its parent must still finish its work.
 bool is_gone(pid_t process, long long start) {
   const std::optional<ProcessState> found = process_state(process);
   if (!found || found->start != start) return true;
@@ -82,10 +83,10 @@ std::string own_text() {
 
 struct FoundClaim {
   std::string text;
-  double time_s = 0.0;  ///< time of the folder's clock
+  double time_s = 0.0;  ///< time by the folder's clock
 };
 
-/// Reads the file anew, so that a network file system does not answer from its cache. Nullopt without a claim.
+/// Reads the file again, so that a network file system does not answer from its cache. Nullopt if there is no claim.
 std::optional<FoundClaim> read_claim(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (file < 0) return std::nullopt;
@@ -105,7 +106,7 @@ struct Holder {
   long long start = 0;
 };
 
-/// Nullopt where the text is not that of a claim.
+/// Nullopt if the text is not that of a claim.
 std::optional<Holder> holder_of(const std::string& text) try {
   const auto claim = nlohmann::json::parse(text);
   return Holder{claim.at("host"), claim.at("process"), claim.at("start")};
@@ -114,13 +115,13 @@ std::optional<Holder> holder_of(const std::string& text) try {
 }
 
 bool is_over(const FoundClaim& claim, double now_s) {
-  // A time in the future was written before the folder's clock was set back.
+  // A time in the future means that the folder's clock was set back after the claim was written.
   if (std::abs(now_s - claim.time_s) > Claim::lasts_s) return true;
   const std::optional<Holder> holder = holder_of(claim.text);
   return holder && holder->host == this_host() && is_gone(holder->process, holder->start);
 }
 
-/// A claim file with a temporary name, until it gets the real one.
+/// A claim file with a temporary name. It gets the final name later.
 class Proposal {
  public:
   Proposal(const fs::path& target, const std::string& text) : path_(temporary_path(target)), target_(target) {
@@ -144,7 +145,7 @@ class Proposal {
 
   double time_s() const { return time_s_; }
 
-  /// Takes the name in one step, if it is free.
+  /// Takes the final name in one step, if this name is free.
   bool enter() const {
     if (::link(path_.c_str(), target_.c_str()) == 0) return true;
     const int reason = errno;
@@ -169,7 +170,7 @@ class Proposal {
 
 }  // namespace
 
-/// The file, and a thread that renews it.
+/// The claim file, and a thread that renews it.
 struct Claim::Held {
   Held(fs::path where, std::string what)
       : path(std::move(where)), text(std::move(what)), renewal([this] { renew(); }) {}
@@ -190,7 +191,8 @@ struct Claim::Held {
   void renew() {
     std::unique_lock lock(guard);
     while (!ended.wait_for(lock, std::chrono::duration<double>(renewed_after_s), [this] { return over; }))
-      ::utimensat(AT_FDCWD, path.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);  // sets the time of the file system's clock
+      ::utimensat(AT_FDCWD, path.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);  // sets the present time of the file system's
+                                                                          // clock
   }
 
   fs::path path;
@@ -198,7 +200,7 @@ struct Claim::Held {
   std::mutex guard;
   std::condition_variable ended;
   bool over = false;
-  std::thread renewal;  // last member, because the thread uses the others
+  std::thread renewal;  // must be the last member, because the thread uses all others
 };
 
 Claim::Claim(std::unique_ptr<Held> held) : held_(std::move(held)) {}
@@ -216,7 +218,7 @@ std::optional<Claim> Claim::take(const fs::path& path) {
     proposal.replace();
     const auto now = read_claim(path);
     if (!now || now->text != text)
-      return std::nullopt;  // two processes took it over at the same time: the later one has it
+      return std::nullopt;  // two processes took the claim over at the same time, and the later one has it
   }
   return Claim(std::make_unique<Held>(path, text));
 }

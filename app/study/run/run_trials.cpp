@@ -31,8 +31,8 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point time) { return std::chrono::duration<double>(Clock::now() - time).count(); }
 
-/// Appends one line per trial and execution: time, host, process, key, outcome, seconds in all and per stage (0:
-/// reused), message. Two machines that append at the same time may lose a line; that affects only the log.
+/// Appends one line per trial and execution: time, host, process, key, outcome, total seconds, seconds of each stage
+/// (0: reused), message. If two machines append at the same time, a line may be lost; only the log is then incomplete.
 void log_trial(const TrialStore& store, pid_t process, const TrialRow& row, const TrialReport& report) {
   static constexpr std::array<const char*, 5> words{"begun", "present", "done", "failed", "stopped"};
   char host[256] = "";
@@ -52,19 +52,19 @@ std::size_t job_count(const StudyConfig& study) {
   return study.jobs > 0 ? static_cast<std::size_t>(study.jobs) : std::max(1U, std::thread::hardware_concurrency());
 }
 
-/// Number of threads of one trial, when several run at a time.
+/// Number of threads of one trial if several trials run at the same time.
 std::size_t threads_per_trial(const Config& study) {
   if (study.job.threads > 0) return study.job.thread_count();
   return std::max<std::size_t>(1, study.job.thread_count() / job_count(study.study));
 }
 
-/// The report on a trial from an earlier execution; empty if the trial must be run. A damaged archive is removed. A
-/// record of failure is also removed, so that the trial is tried again.
+/// The report on a trial that an earlier execution has completed; empty if the trial must be run. Removes a damaged
+/// archive. Also removes a record of failure, so that the trial is tried again.
 std::optional<TrialReport> left_before(const TrialStore& store, const TrialStore::Listing& there, const TrialRow& row,
                                        std::size_t place) {
   if (there.archives.count(row.key) > 0) {
     const std::vector<std::string> problems = store.problems(row.key);
-    // A process that was killed just after it had made the archive has left a claim.
+    // If a process was killed just after it wrote the archive, its claim still exists. Taking the claim removes it.
     if (problems.empty() && there.claims.count(row.key) > 0) static_cast<void>(Claim::take(store.claim(row.key)));
     if (problems.empty())
       return TrialReport{.row = place,
@@ -78,7 +78,7 @@ std::optional<TrialReport> left_before(const TrialStore& store, const TrialStore
   return std::nullopt;
 }
 
-/// Runs one share of a study to its end.
+/// Runs one shard of a study to its end.
 class StudyRun {
  public:
   StudyRun(const TrialSettings& settings, const StudyPlan& plan, const TrialGroups& groups,
@@ -91,7 +91,7 @@ class StudyRun {
     const Clock::time_point start = Clock::now();
     const TaskFile file(pack_task(task_));
     const std::size_t count = std::min(job_count(settings_.config.study), task_.rows.size());
-    // A random start: processes on other machines run the same groups.
+    // The start is random, because processes on other machines run the same groups.
     const std::size_t any = std::random_device()();
     for (std::size_t i = 0; i < count && !stopping_; ++i)
       start_worker(file, (any + i * starts_.size() / count) % starts_.size());
@@ -111,14 +111,14 @@ class StudyRun {
  private:
   struct Worker {
     std::unique_ptr<WorkerProcess> process = nullptr;
-    std::size_t group = 0;                  ///< index of the group where it began
-    std::optional<std::size_t> trial = {};  ///< index of the row that it is running
-    std::optional<std::size_t> last = {};   ///< index of the row that it began last
-    Clock::time_point since = {};           ///< start of its trial
+    std::size_t group = 0;                  ///< index of the group with which the worker began
+    std::optional<std::size_t> trial = {};  ///< index of the row that the worker runs now
+    std::optional<std::size_t> last = {};   ///< index of the row that the worker began last
+    Clock::time_point since = {};           ///< start time of the worker's trial
     bool overdue = false;
   };
 
-  /// Assigns the unfinished rows to workers; counts the others as finished.
+  /// Assigns unfinished rows to workers. All other rows are counted as finished.
   void sort_out(const StudyPlan& plan, const TrialGroups& groups) {
     const TrialStore::Listing there = store_.list();
     std::vector<std::size_t> places;
@@ -153,7 +153,7 @@ class StudyRun {
     workers_.push_back({.process = std::make_unique<WorkerProcess>(file, starts_[group]), .group = group});
   }
 
-  /// Waits until a worker reports or ends, or until a trial's time is up.
+  /// Waits until a worker reports or ends, or until the time limit of a trial is reached.
   void wait() const {
     constexpr double patience_s = 1.0, ms_per_s = 1000.0;
     double left_s = patience_s;
@@ -172,7 +172,7 @@ class StudyRun {
     const auto lines = worker.process->read_lines();
     if (!lines) return replace(file, worker);
     for (const std::string& line : *lines) take(worker, unpack_report(line));
-    // On a busy machine a report may arrive with a delay; it counts if it was in time.
+    // On a busy machine a report may arrive late. It counts if the trial itself was in time.
     if (!lines->empty() || !worker.trial || timeout_s() <= 0.0 || seconds_since(worker.since) <= timeout_s()) return;
     worker.overdue = true;
     worker.process->kill();
@@ -194,7 +194,7 @@ class StudyRun {
     }
   }
 
-  /// Starts another worker in place of one that has ended. If it crashed, its trial has failed.
+  /// Starts a new worker in place of a worker that has ended. If the old worker crashed, its trial has failed.
   void replace(const TaskFile& file, Worker& worker) {
     const std::string why = worker.process->end();
     if (worker.trial) {
@@ -205,7 +205,8 @@ class StudyRun {
           .message = worker.overdue ? fmt::format("the run took longer than study.timeout_s = {}", timeout_s()) : why,
           .seconds = seconds_since(worker.since)};
       if (store_.has_archive(key))
-        crash = {.row = crash.row, .outcome = TrialOutcome::present};  // its archive exists, only the report is missing
+        crash = {.row = crash.row, .outcome = TrialOutcome::present};  // the archive exists; only the report of the
+                                                                       // worker is missing
       else
         store_.record_failure(key, crash.message);
       finish(worker.process->process(), crash);
@@ -220,14 +221,14 @@ class StudyRun {
     if (!why.empty() && !stopping_) worker.process = std::make_unique<WorkerProcess>(file, starts_[worker.group]);
   }
 
-  /// Its claim is removed before it is reaped.
+  /// The worker's claim is removed before the worker is reaped.
   void stop(const Worker& worker) const {
     worker.process->kill();
     static_cast<void>(worker.process->end());
     if (worker.last) Claim::end_of(worker.process->process(), store_.claim(rows_[*worker.last].key));
   }
 
-  /// Several workers may report that the same trial exists; only the report of the worker that made it counts.
+  /// Several workers may report that the same trial exists. Only the report of the worker that ran the trial counts.
   void finish(pid_t process, const TrialReport& report) {
     const auto [place, fresh] = finished_.try_emplace(report.row, report);
     if (!fresh && report.outcome != TrialOutcome::computed) return;
@@ -252,11 +253,11 @@ class StudyRun {
   const std::vector<TrialRow>& rows_;
   const TrialListener& listener_;
   WorkerTask task_;
-  std::vector<std::size_t> starts_;  ///< for each group with unfinished rows, the first of them
+  std::vector<std::size_t> starts_;  ///< first row of each group that has unfinished rows
   std::vector<Worker> workers_;
-  std::map<std::size_t, TrialReport> finished_;  ///< reports by index of the row
+  std::map<std::size_t, TrialReport> finished_;  ///< reports by row index
   std::size_t all_ = 0;
-  int vain_ = 0;  ///< number of workers in a row that ended without a report
+  int vain_ = 0;  ///< number of consecutive workers that ended without a report
   bool stopping_ = false;
   RunResult result_;
 };

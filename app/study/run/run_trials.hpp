@@ -10,29 +10,32 @@
 
 namespace modebank::app {
 
-/// Result of a share of a study.
+/// Result of a shard of a study.
 struct RunResult {
   std::size_t computed = 0, present = 0;
   std::vector<std::size_t> failed;    ///< rows
   std::vector<std::string> whole;     ///< keys of archives that this execution checked or wrote
-  std::optional<std::string> broken;  ///< reason why the study stopped; see TrialOutcome::broken
+  std::optional<std::string> broken;  ///< reason why the study stopped (TrialOutcome::broken)
   double seconds = 0.0;
 };
 
 /// Settings that all trials of an execution share.
 struct TrialSettings {
   Config config;      ///< the study's
-  std::string typed;  ///< the command line, for provenance
+  std::string typed;  ///< the command line, for the provenance
   std::string version;
 };
 
-/// Called for every finished trial with its row and report, the number finished and the number of all.
+/// Called for every finished trial. The arguments are the trial's row, its report, the number of finished trials and
+/// the number of all trials.
 using TrialListener = std::function<void(const TrialRow&, const TrialReport&, std::size_t finished, std::size_t all)>;
 
-/// Runs the groups' trials in study.jobs processes of this program. Trials with a complete archive are not run again;
-/// failed ones are. Each process begins at another group, skips trials that others have claimed, and waits for those at
-/// its end. A trial fails if its process crashes or takes longer than study.timeout_s; a new process then replaces that
-/// one.
+/// Runs the trials of these groups in study.jobs processes of this program.
+/// - A trial with a complete archive is not run again; a failed trial is.
+/// - Each process begins with another group and skips trials that other processes have claimed. At its end it waits for
+///   these trials.
+/// - A trial fails if its process crashes or needs longer than study.timeout_s. A new process then replaces the old
+///   one.
 RunResult run_trials(const TrialSettings& settings, const StudyPlan& plan, const TrialGroups& groups,
                      const TrialListener& listener);
 

@@ -9,7 +9,8 @@
 
 namespace modebank::app {
 
-/// Prints a study's progress to stderr: one line that is rewritten on a terminal, occasional lines elsewhere.
+/// Prints the progress of a study to stderr. A terminal shows one line that is rewritten; other outputs get occasional
+/// lines.
 class StudyProgress {
  public:
   explicit StudyProgress(std::vector<std::string> varied_keys);
@@ -33,7 +34,7 @@ class StudyProgress {
   std::string best_run_;
 };
 
-/// The varied values for messages: "mixture.components = 9, bank.stay = 0.95".
+/// The varied values as text for messages: "mixture.components = 9, bank.stay = 0.95".
 std::string describe_trial(const std::vector<std::string>& varied_keys, const TrialRow& row);
 
 }  // namespace modebank::app

@@ -23,14 +23,14 @@
 namespace modebank::app {
 namespace {
 
-constexpr double most_cached_mb = 1000.0;  // for stages that runs share
+constexpr double most_cached_mb = 1000.0;  // largest size of the stored stages that runs share [1e6 bytes]
 
 using nlohmann::json;
 
 void write_line(const std::string& line) {
   for (std::size_t sent = 0; sent < line.size();) {
     const ssize_t bytes = ::write(STDOUT_FILENO, line.data() + sent, line.size() - sent);
-    if (bytes < 0 && errno != EINTR) ::_exit(1);  // the parent has ended
+    if (bytes < 0 && errno != EINTR) ::_exit(1);  // the parent process has ended
     if (bytes > 0) sent += static_cast<std::size_t>(bytes);
   }
 }
@@ -42,7 +42,7 @@ class Worker {
   explicit Worker(const WorkerTask& task)
       : task_(task), store_(task.config.study.output), runner_(store_.cache(), most_cached_mb) {}
 
-  /// Runs until every row has an archive or has failed, in any process.
+  /// Works until every row has an archive or has failed, in this or another process.
   void run(std::size_t first) {
     std::vector<std::size_t> left(task_.rows.size());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] = (first + i) % left.size();
@@ -51,7 +51,7 @@ class Worker {
       const TrialStore::Listing there = store_.list();
       for (const std::size_t row : left)
         if (!settle(row, there) && !take(row, again)) held.push_back(row);
-      // Other processes hold all rows that are left.
+      // Other processes hold the claims of all remaining rows.
       if (held.size() == left.size()) std::this_thread::sleep_for(std::chrono::milliseconds(again ? 500 : 50));
       left = std::move(held);
     }
@@ -62,7 +62,7 @@ class Worker {
     return {.row = task_.places[row], .outcome = outcome, .message = std::move(message)};
   }
 
-  /// Reports a trial that another process has finished; false if none has.
+  /// Reports a trial that another process has finished. Returns false if no process has.
   bool settle(std::size_t row, const TrialStore::Listing& there) const {
     const std::string& key = task_.rows[row].key;
     if (there.archives.count(key) > 0)
@@ -74,12 +74,12 @@ class Worker {
     return true;
   }
 
-  /// Claims the trial; false if another process has it.
+  /// Claims the trial. Returns false if another process holds the claim.
   bool take(std::size_t row, bool again) {
     const std::string& key = task_.rows[row].key;
     const std::optional<Claim> mine = Claim::take(store_.claim(key));
     if (!mine) return false;
-    // Looks after the claim is taken: before, another process might still have finished the trial.
+    // Checks the folder after taking the claim: before that, another process could still have finished the trial.
     if (again) store_.look_again();
     if (store_.has_archive(key)) return report(about(row, TrialOutcome::present)), true;
     if (const auto failure = store_.failure(key)) return report(about(row, TrialOutcome::failed, *failure)), true;
@@ -116,7 +116,8 @@ class Worker {
   double write(const TrialRow& trial, const Config& config, const Archive& archive) const {
     if (trial_key(config, archive.provenance.data_hash, task_.version) != trial.key)
       throw DataError("the data have changed since the plan was made; start the study again to see which file");
-    // Another process may have been first. Its archive stays, because others may be reading it.
+    // Another process may have written the archive first. That archive is kept, because other processes may be reading
+    // it.
     if (!store_.has_archive(trial.key)) write_archive(store_.archive(trial.key), archive);
     store_.forget_failure(trial.key);
     return headline_score(pooled_scores(archive.summary, names_of(archive.recording->states)));
@@ -127,7 +128,7 @@ class Worker {
   TrialRunner runner_;
 };
 
-/// Reads standard input from its beginning, since workers share the file.
+/// Reads standard input from the beginning of the file, because all workers share this file.
 std::string read_input() {
   std::string bytes(1 << 20, '\0');
   std::size_t size = 0;
@@ -146,7 +147,8 @@ std::string read_input() {
 
 double headline_score(const std::vector<std::pair<std::string, double>>& scores) {
   double score = std::numeric_limits<double>::quiet_NaN();
-  for (const char* name : {"bank_train_log_score", "bank_test_log_score"})  // the held-out score, if there is one
+  for (const char* name : {"bank_train_log_score", "bank_test_log_score"})  // the last name decides: the held-out
+                                                                            // score, if it exists
     for (const auto& [key, value] : scores)
       if (key == name) score = value;
   return score;
@@ -163,7 +165,7 @@ std::string pack_task(const WorkerTask& task) {
                      {"varied", task.varied_keys},
                      {"rows", rows},
                      {"threads", task.threads}},
-                bytes);  // file names need not be UTF-8
+                bytes);  // bytes of a file name need not be UTF-8
   return bytes;
 }
 
@@ -205,8 +207,9 @@ int run_study_worker(int argc, char** argv) try {
   constexpr int words = 4;
   if (argc != words) return 2;
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != std::atoi(argv[2])) return 1;  // the parent ended before that took effect
-  spdlog::set_level(spdlog::level::off);            // a thousand trials would each print the same messages
+  if (::getppid() != std::atoi(argv[2])) return 1;  // the parent process had already ended
+  spdlog::set_level(spdlog::level::off);            // without this, each of a thousand trials would print the same
+                                                    // messages
   const WorkerTask task = unpack_task(read_input());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, task.threads);
   Worker(task).run(static_cast<std::size_t>(std::atoll(argv[3])));

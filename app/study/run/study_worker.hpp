@@ -12,43 +12,43 @@
 
 namespace modebank::app {
 
-/// State of a trial in a worker's report. begun: the worker has the claim and computes. broken: the machine fails, not
-/// the trial (a full disk, data that changed), so the study must stop.
+/// State of a trial in a worker's report. begun: the worker has the claim and computes. broken: the fault is in the
+/// machine and not in the trial (a full disk, changed data), so the study must stop.
 enum class TrialOutcome { begun, present, computed, failed, broken };
 
 struct TrialReport {
-  std::size_t row = 0;  ///< index in the plan
+  std::size_t row = 0;  ///< index of the row in the plan
   TrialOutcome outcome = TrialOutcome::begun;
-  std::string message = {};  ///< reason of a failure, or fault of the archive that was found
+  std::string message = {};  ///< reason for a failure, or fault of an existing archive
   double seconds = 0.0;
   std::array<double, stage_count> stage_seconds = {};
-  /// The bank's log score on held-out runs, else on training runs; NaN without a score.
+  /// The bank's log score on held-out runs, or on training runs if none is held out. NaN without a score.
   double log_score = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The log score that the progress shows.
+/// The log score that the progress line shows.
 double headline_score(const std::vector<std::pair<std::string, double>>& scores);
 
-/// Work that the parent gives to a process.
+/// The work that the parent process gives to a worker.
 struct WorkerTask {
   Config config;      ///< the study's
-  std::string typed;  ///< the command line, for provenance
+  std::string typed;  ///< the command line, for the provenance
   std::string version;
   std::vector<std::string> varied_keys;
-  std::vector<TrialRow> rows;       ///< unfinished rows, in order
-  std::vector<std::size_t> places;  ///< index in the plan of each of these rows
+  std::vector<TrialRow> rows;       ///< unfinished rows in their order
+  std::vector<std::size_t> places;  ///< for each of these rows, its index in the plan
   std::size_t threads = 1;
 };
 std::string pack_task(const WorkerTask& task);
 WorkerTask unpack_task(const std::string& bytes);
 
-/// One line of a worker's output, with a report.
+/// A report as one line of a worker's output.
 std::string pack_report(const TrialReport& report);
 TrialReport unpack_report(const std::string& line);
 
 /// The word that starts the program as a worker: modebank WORD PARENT FIRST, with a packed task on standard input. The
-/// worker claims the rows from FIRST on, then those before, and writes an archive or a record of failure for each. It
-/// reports on standard output, and ends when its parent ends.
+/// worker claims the rows from FIRST on, then the rows before FIRST. For each row it writes an archive or a record of
+/// failure. It reports on standard output, and ends when its parent ends.
 inline constexpr const char* worker_word = "--study-worker";
 int run_study_worker(int argc, char** argv);
 

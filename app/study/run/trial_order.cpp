@@ -9,10 +9,10 @@
 namespace modebank::app {
 namespace {
 
-/// Stages that trials are grouped by, the coarsest first.
+/// Stages by which trials are grouped, the coarsest first.
 constexpr std::array<Stage, 3> grouped{Stage::windows, Stage::mixture, Stage::bank};
 
-/// Numbers texts in the order of their first appearance.
+/// Gives texts numbers in the order of their first appearance.
 class Numbering {
  public:
   std::size_t of(const std::string& text) { return numbers_.try_emplace(text, numbers_.size()).first->second; }
@@ -23,7 +23,7 @@ class Numbering {
 };
 
 struct PlacedTrial {
-  std::array<std::size_t, 3> stages;  ///< numbers of its windows, mixture and bank
+  std::array<std::size_t, 3> stages;  ///< numbers of the row's windows, mixture and bank
   std::size_t row;
 };
 

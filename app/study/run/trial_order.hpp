@@ -6,16 +6,16 @@
 
 namespace modebank::app {
 
-/// Groups of planned rows (indices in the table) that share a mixture. Rows with the same bank are neighbours, and so
-/// are groups that share windows. The order depends on the plan alone.
+/// Groups of planned rows (indices in the table). The rows of a group share a mixture. Rows with the same bank are
+/// neighbours, and groups that share windows are also neighbours. The order depends only on the plan.
 using TrialGroups = std::vector<std::vector<std::size_t>>;
 
 TrialGroups group_trials(const Config& study, const StudyPlan& plan);
 
-/// The groups of one shard: every n-th group; with more shards than groups, a part of a group.
+/// The groups of one shard: every n-th group. If there are more shards than groups, a part of a group.
 TrialGroups shard_of(const TrialGroups& groups, std::int64_t index, std::int64_t count);
 
-/// Numbers of different windows, mixtures and banks among trials.
+/// Numbers of distinct windows, mixtures and banks among the trials.
 struct DistinctStages {
   std::size_t windows = 0, mixtures = 0, banks = 0;
 };

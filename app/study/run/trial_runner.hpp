@@ -10,23 +10,23 @@
 
 namespace modebank::app {
 
-/// Runs trials one after another through one chain. Trials that share stages should be neighbours; processes share
-/// stages through a folder. The archives have the same numbers as those of `modebank run`.
+/// Runs trials one after another through one chain. Consecutive trials should share stages. Different processes share
+/// stages through a folder. The archives have the same numbers as archives of `modebank run`.
 class TrialRunner {
  public:
-  /// Stages that took long are stored in `cache`, up to `limit_mb`; 0: none.
+  /// Stages that took long are stored in the folder `cache`, up to `limit_mb`. 0: nothing is stored.
   explicit TrialRunner(const std::filesystem::path& cache = {}, double limit_mb = 0.0, double worth_a_file_s = 0.2)
       : source_(cache, {worth_a_file_s, Stage::competitor_scores, limit_mb}), chain_(source_, silent_) {}
 
-  /// The trial's archive; `typed` is the command line. Throws what the stages throw.
+  /// Runs a trial and returns its archive. `typed`: the command line. Throws the exceptions of the stages.
   const Archive& run(const Config& config, const std::string& typed);
 
-  /// Seconds of each stage that the last run computed; 0 for reused stages.
+  /// Seconds of each stage in the last run; 0 if the stage was reused.
   const std::array<double, stage_count>& seconds() const { return chain_.seconds(); }
 
  private:
   StageStore source_;
-  Listener silent_;  // a thousand trials would each print the same messages
+  Listener silent_;  // prints nothing: each of a thousand trials would print the same messages
   Chain chain_;
 };
 

@@ -46,7 +46,7 @@ WorkerProcess::WorkerProcess(const TaskFile& task, std::size_t first) {
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_adddup2(&actions, task.descriptor(), STDIN_FILENO);
   ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  // The link leads to the running program even after an update has replaced its file.
+  // The link always leads to the running program, even if an update has replaced the program's file.
   const int error =
       ::posix_spawn(&process_, "/proc/self/exe", &actions, nullptr, const_cast<char* const*>(words.data()), environ);
   ::posix_spawn_file_actions_destroy(&actions);
@@ -72,7 +72,7 @@ std::optional<std::vector<std::string>> WorkerProcess::read_lines() {
   while (!ended) {
     bytes = ::read(channel_, block.data(), block.size());
     if (bytes < 0 && errno == EINTR) continue;
-    if (bytes < 0) break;  // no more data for now
+    if (bytes < 0) break;  // there are no more data at present
     ended = bytes == 0;
     unread_.append(block.data(), static_cast<std::size_t>(bytes));
   }

@@ -10,10 +10,10 @@
 
 namespace modebank::app {
 
-/// A file in memory with a task for workers (pack_task), which they read as standard input.
+/// A file in memory with a task (pack_task). Workers read it as standard input.
 class TaskFile {
  public:
-  /// Throws DataError when memory or the file system fails.
+  /// Throws DataError if there is not enough memory or the file cannot be made.
   explicit TaskFile(const std::string& bytes);
   ~TaskFile();
   TaskFile(const TaskFile&) = delete;
@@ -24,7 +24,7 @@ class TaskFile {
   int descriptor_ = -1;
 };
 
-/// A process of this program that works on trials (study_worker.hpp), and the pipe on which it reports.
+/// A process of this program that runs trials (study_worker.hpp), and the pipe for its reports.
 class WorkerProcess {
  public:
   /// `first`: index of the first row of the task that this process works on. Throws DataError if the process cannot be
@@ -39,10 +39,11 @@ class WorkerProcess {
   int channel() const { return channel_; }
   void kill() const;
 
-  /// Complete lines received since the last call; nullopt after the process has ended.
+  /// The complete lines since the last call; nullopt if the process has ended.
   std::optional<std::vector<std::string>> read_lines();
-  /// How the process ended, after read_lines() returned nullopt: empty for a normal end, else "its process was ended by
-  /// signal 9 (Killed)". It is not reaped yet, so that others leave its trial to this program.
+  /// How the process ended. Call this after read_lines() has returned nullopt. Empty for a normal end, else for example
+  /// "its process was ended by signal 9 (Killed)". The process is not reaped yet, so other processes do not take its
+  /// trial.
   std::string end() const;
 
  private:

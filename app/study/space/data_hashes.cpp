@@ -10,7 +10,7 @@ namespace modebank::app {
 namespace {
 
 using Described =
-    std::map<std::pair<std::string, std::vector<std::string>>, InputFile>;  // descriptions by path and tables
+    std::map<std::pair<std::string, std::vector<std::string>>, InputFile>;  // key: path and tables of a file
 
 std::string hash_of(const DataOptions& data, Described& described) {
   std::vector<InputFile> files;

@@ -9,12 +9,12 @@
 
 namespace modebank::app {
 
-/// Hashes of the trials' data. Files that several trials use are read once.
+/// Hashes of the data of all trials. A file that several trials use is read only once.
 class DataHashes {
  public:
   /// Adds the files of this [data] section.
   void add(const Config& config) { sections_.try_emplace(section_of(config), config.data); }
-  /// Reads all added files. Throws as data_files does (io/import/import.hpp), and as readers do.
+  /// Reads all added files. Throws the exceptions of data_files (io/import/import.hpp) and of the readers.
   void read();
 
   /// The hash of the files of this [data] section.
@@ -23,8 +23,8 @@ class DataHashes {
 
  private:
   std::map<std::string, DataOptions> sections_;
-  std::map<std::string, std::string> hashes_;  ///< hashes by section
-  std::vector<InputFile> files_;               ///< files by path and tables
+  std::map<std::string, std::string> hashes_;  ///< hash for each [data] section
+  std::vector<InputFile> files_;               ///< one entry for each path and list of tables
 
   static std::string section_of(const Config& config);
 };

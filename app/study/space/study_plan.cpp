@@ -20,20 +20,20 @@
 namespace modebank::app {
 namespace {
 
-/// At most 2^53, so that JavaScript's doubles hold it exactly.
+/// At most 2^53, because JavaScript's numbers are doubles, which are exact up to this value.
 std::uint64_t repeat_seed(std::uint64_t seed, std::int64_t repeat) {
   constexpr int bits = 32;
   return repeat == 0 ? seed : derive_seed(seed, "study.repeat", static_cast<std::uint64_t>(repeat)) >> (64 - bits);
 }
 
-/// A point with the seeds of its runs.
+/// A point, and the seeds of its runs.
 struct Setting {
   StudyPoint point;
   std::vector<std::uint64_t> seeds;
 };
 
-/// The settings of a space. Points that differ only in job.seed are repeats of one setting, so job.seed is removed from
-/// the space's keys.
+/// The settings of a space. Points that differ only in job.seed are repeats of one setting. So job.seed is removed from
+/// the keys of the space.
 std::vector<Setting> settings_of(const Config& config, StudySpace& space) {
   const auto varied = std::find(space.keys.begin(), space.keys.end(), "job.seed");
   const auto column = varied - space.keys.begin();
@@ -54,7 +54,7 @@ std::vector<Setting> settings_of(const Config& config, StudySpace& space) {
   return settings;
 }
 
-/// The message with which `modebank run` would refuse the configuration; empty if it would run.
+/// The message with which `modebank run` would refuse the configuration; empty if `run` accepts it.
 std::string objection(const Config& config) {
   try {
     validate(config);
@@ -87,7 +87,7 @@ NamedColumn text_column(const std::string& name, const std::vector<TrialRow>& ro
   return {name, std::move(values)};
 }
 
-/// The values of the column with this name and type. Throws if there is none: the file is then not a plan.
+/// The values of the column with this name and type. Throws if there is none, because the file is then not a plan.
 template <class T>
 const std::vector<T>& values_of(const StudyFile& file, std::size_t column, const std::string& name) {
   const NamedColumn& found = file.columns.at(column);
@@ -98,7 +98,7 @@ const std::vector<T>& values_of(const StudyFile& file, std::size_t column, const
   return *values;
 }
 
-/// Checks a row: a plan may come from another program, and its keys become file names.
+/// Checks a row. This is needed because another program may have written the plan, and its keys become file names.
 void check_row(const TrialRow& row, std::size_t r) {
   const bool dropped = row.status == TrialStatus::dropped;
   if (!is_sha256(row.key) && !(dropped && row.key.empty()))
@@ -108,12 +108,12 @@ void check_row(const TrialRow& row, std::size_t r) {
 
 StudyPlan plan_of(const StudyFile& file);
 
-/// Numbers of columns in plan.h5 beside the varied keys: key before them; repeat, seed, status and message after them.
+/// Number of columns in plan.h5 before the varied keys (the key), and after them (repeat, seed, status, message).
 constexpr std::size_t columns_before = 1, columns_after = 4;
 
 std::string quoted(const std::string& value) { return value.empty() ? "''" : "'" + value + "'"; }
 
-/// "mixture.restarts '5' -> '7'", one line per changed key that affects a run or the list of runs.
+/// One line per changed key that affects a run or the list of runs: "mixture.restarts '5' -> '7'".
 std::string key_differences(const std::string& before, const std::string& now) {
   const auto values_before = resolved_values(before), values_now = resolved_values(now);
   std::string text;

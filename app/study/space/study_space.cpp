@@ -17,20 +17,20 @@
 namespace modebank::app {
 namespace {
 
-/// Keys whose values change together: a single key, or those of a `together` line.
+/// Keys whose values change together: a single key, or the keys of a `together` line.
 struct Axis {
-  std::vector<std::size_t> members;  ///< indices in the list of varied keys
-  std::size_t levels = 0;            ///< 0: a range
+  std::vector<std::size_t> members;  ///< indices of these keys in the list of varied keys
+  std::size_t levels = 0;            ///< number of values; 0 for a range
 };
 
-/// All of the [study] section that defines points.
+/// All parts of the [study] section that define points.
 struct Definition {
   std::vector<VariedKey> varied;
   std::vector<Axis> axes;
   std::vector<VaryCondition> conditions;
 };
 
-/// Index of a varied key; the number of varied keys when it is not one.
+/// Index of a varied key; if the key is not varied, the number of varied keys.
 std::size_t position_of(const std::vector<VariedKey>& varied, const std::string& key) {
   const auto found = std::find_if(varied.begin(), varied.end(), [&](const VariedKey& v) { return v.key == key; });
   return static_cast<std::size_t>(found - varied.begin());
@@ -49,7 +49,7 @@ std::vector<VariedKey> read_varied(const StudyConfig& study) {
   return varied;
 }
 
-/// The group of each `together` line, checked against the varied keys.
+/// The group that each `together` line defines. Throws if a key of a line is not varied.
 std::vector<Axis> read_groups(const StudyConfig& study, const std::vector<VariedKey>& varied) {
   std::vector<Axis> groups;
   std::set<std::size_t> taken;
@@ -74,7 +74,7 @@ std::vector<Axis> read_groups(const StudyConfig& study, const std::vector<Varied
   return groups;
 }
 
-/// Axes in the order of study.vary; a group has the position of its first key.
+/// Axes in the order of study.vary. The position of a group is that of its first key.
 std::vector<Axis> make_axes(const std::vector<VariedKey>& varied, const std::vector<Axis>& groups) {
   std::vector<Axis> axes;
   for (std::size_t i = 0; i < varied.size(); ++i) {
@@ -102,7 +102,7 @@ Definition read_definition(const StudyConfig& study) {
   return definition;
 }
 
-/// Sets the texts of one axis at u in [0, 1).
+/// Sets the texts of one axis in a point. The coordinate u along the axis is in [0, 1).
 void place(const Definition& definition, const Axis& axis, double u, StudyPoint& point) {
   for (const std::size_t member : axis.members) {
     const VariedKey& varied = definition.varied[member];
@@ -138,7 +138,8 @@ std::vector<StudyPoint> grid(const Definition& definition) {
   return points;
 }
 
-/// Coordinates in [0, 1), one row per point: on every axis each of the N strata contains one point.
+/// Coordinates in [0, 1), one row per point. Each axis is divided into as many strata as there are points, and each
+/// stratum contains one point.
 std::vector<std::vector<double>> latin_hypercube(std::size_t count, std::size_t axes, std::uint64_t seed) {
   std::vector<std::vector<double>> coordinates(count, std::vector<double>(axes));
   boost::random::uniform_01<double> uniform;
@@ -166,8 +167,8 @@ std::vector<StudyPoint> samples(const Definition& definition, const Config& conf
   return points;
 }
 
-/// Resets keys whose condition is false to the configuration's value. A condition may depend on such a key, so this
-/// repeats until nothing changes.
+/// If the condition of a key is false, resets the key to the configuration's value. Other conditions may depend on this
+/// key, so this is repeated until nothing changes.
 void apply_conditions(const Definition& definition, const std::vector<std::string>& own, const Config& config,
                       StudyPoint& point) {
   const std::vector<VariedKey>& varied = definition.varied;

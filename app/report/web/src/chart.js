@@ -1,5 +1,5 @@
-// A figure of panels with axes as SVG: points, lines, bars, cells. CSS sets the colours, so a change of theme, or
-// printing, needs no new drawing. chart_layout.js places the parts, chart_marks.js draws them.
+// A figure of panels with axes as SVG: points, lines, bars, cells. CSS sets the colours, so a change of theme needs no
+// new drawing. chart_layout.js places the parts and chart_marks.js draws them.
 import {layoutOf} from './chart_layout.js';
 import {drawChart} from './chart_panel.js';
 import {readPoints} from './chart_tip.js';
@@ -62,7 +62,7 @@ export function figure(label, make, caption) {
     keys.replaceChildren(...(plot.drawing.legend ? [legend(plot.drawing.legend)] : []));
     show();
   };
-  // Redraws a visible figure. A hidden figure is drawn when it appears.
+  // Draws a visible figure again. A hidden figure is drawn when it appears.
   element.update = () => (plot.drawing ? element.redraw() : Promise.resolve());
   element.ready = new Promise((resolve, reject) => {
     element.begin = () => {

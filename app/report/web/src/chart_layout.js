@@ -38,7 +38,7 @@ export function wrapped(text, most, measure = textWidth) {
   return lines.map((line) => endOf(line, most, measure));
 }
 
-// The range of a panel's marks along one of its axes.
+// The range of all marks of a panel along one axis.
 function reachOf(panel, key) {
   const axis = panel[key];
   if (axis.range) return axis.range;
@@ -76,7 +76,7 @@ function scaleOf(axis, range, first, last, room, need) {
 
 const widest = (texts) => Math.max(0, ...texts.map((text) => textWidth(text)));
 
-// Names of levels that do not fit side by side are tilted, and cut if they are long.
+// If the names of levels do not fit side by side, they are tilted, and long names are cut.
 function acrossTicks(axis, scale) {
   const texts = scale.ticks.map(({text}) => text);
   if (!axis.levels || widest(texts) + 8 <= scale.slot) return {ticks: scale.ticks, tilt: false, deep: line_px};

@@ -1,4 +1,4 @@
-// The marks of a chart as SVG shapes. All points of a mark are one path.
+// The marks of a chart as SVG shapes. All points of one mark are drawn as one path.
 import {path as d3Path} from 'd3-path';
 
 import {shade} from './colour.js';
@@ -14,7 +14,7 @@ const dashes = {
   longdashdot: '12 4 2 4',
 };
 
-// Corners of a symbol with half width 1.
+// Corners of each symbol, for a half width of 1.
 const corners = {
   square: [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]],
   diamond: [[0, -1.2], [1.2, 0], [0, 1.2], [-1.2, 0]],
@@ -34,7 +34,7 @@ const corners = {
 
 const short = (v) => Math.round(10 * v) / 10;
 
-// Points in the same half pixel are drawn once.
+// If several points are in the same half pixel, only one is drawn.
 function eachPlace({x, y}, to, visit) {
   const seen = new Set();
   for (let i = 0; i < x.length; ++i) {
@@ -55,7 +55,7 @@ function points(mark, to) {
     } else if (open || edge) {
       list.push(`M${short(px - r)} ${py}a${r} ${r} 0 1 0 ${size} 0a${r} ${r} 0 1 0 ${- size} 0Z`);
     } else {
-      list.push(`M${px} ${py}h0`);  // a line of length 0 with a round cap is a dot
+      list.push(`M${px} ${py}h0`);  // a line of length 0 with a round cap is drawn as a dot
     }
   });
   const dot = !shape && !open && !edge;

@@ -1,4 +1,4 @@
-// A chart's panels as SVG: axes with their titles, and the marks within.
+// The panels of a chart as SVG: axes with titles, and the marks inside.
 import {line_px, text_px} from './chart_layout.js';
 import {markShapes} from './chart_marks.js';
 import {s} from './elements.js';

@@ -1,4 +1,4 @@
-// Tips for the point next to the pointer, and clicks on it.
+// Tips for the point nearest to the pointer, and clicks on this point.
 import {h} from './elements.js';
 
 const near_px = 14;
@@ -20,14 +20,14 @@ function show(event, said) {
   label.style.top = `${Math.min(event.clientY + 14, innerHeight - label.offsetHeight - 8)}px`;
 }
 
-// Distance of a mark's point from a pixel; 0 inside a bar or a cell.
+// Distance between a point of a mark and a pixel; 0 inside a bar or a cell.
 function distance({kind, x, y, width}, i, px, py, to) {
   if (y[i] === null) return Infinity;
   if (kind === 'bars') return Math.abs(to.x(x[i]) - px) <= Math.abs(to.x(width) - to.x(0)) / 2 ? 0 : Infinity;
   return Math.hypot(to.x(x[i]) - px, to.y(y[i]) - py);
 }
 
-// The cell at a pixel as {mark, i}; i counts the cells row by row.
+// The cell at a pixel as {mark, i}. The index i counts cells row by row.
 function cellAt(mark, px, py, to) {
   const next = (list, toPixel, at) =>
       list.reduce((best, v, k) => (Math.abs(toPixel(v) - at) < Math.abs(toPixel(list[best]) - at) ? k : best), 0);

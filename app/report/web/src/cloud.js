@@ -1,4 +1,4 @@
-// Local models as a cloud of points: the figure, its legend and controls, picking a window.
+// Local models as a cloud of points: the figure, its legend, its controls, and the choice of a window.
 import {cloudFigure, groupColour} from './cloud_figures.js';
 import {check, choice, choiceIfAny, controls, h, swatch} from './elements.js';
 import {array} from './page_data.js';
@@ -13,7 +13,7 @@ async function loadWindows(windows) {
   return {run, begin, end, label, mode, covariance, values: await all(windows.values)};
 }
 
-// The groups of windows with their colours. A button shows or hides each group.
+// The groups of windows with their colours. Each group has a button that shows or hides it.
 function makeLegend(cloud, redraw) {
   const list = h('ul', {class: 'legend', 'aria-label': 'Groups of windows; press to hide or show'});
   const entry = ([key, members]) => {
@@ -61,8 +61,8 @@ function makeControls(cloud, redraw, fillLegend) {
       windows.bank ? check('Modes of the bank', true, set('showBank')) : null);
 }
 
-// `windows`: from windows_section in C++. `runs`: names of runs. `goTo(run, begin, end)`: shows this part of the data.
-// Returns the elements from top to bottom.
+// `windows`: made by windows_section in C++. `runs`: names of the runs. `goTo(run, begin, end)`: shows this part of the
+// data. Returns the elements from top to bottom.
 export async function drawCloud(windows, runs, goTo) {
   const cloud = new WindowCloud(windows, await loadWindows(windows), runs);
   const info =

@@ -1,4 +1,4 @@
-// The figure of a WindowCloud: one panel for each pair of chosen parameters.
+// The figure of a WindowCloud. It has one panel for each pair of chosen parameters.
 import {figure} from './chart.js';
 import {ellipseLine} from './ellipse.js';
 import {componentColour, INK, modeColour, palette} from './look.js';
@@ -7,15 +7,15 @@ import {usualRange} from './statistics.js';
 import {titleOf} from './time_rows.js';
 import {digits} from './window_cloud.js';
 
-const many = 20000;  // if there are this many windows or more, they are small and faint
+const many = 20000;  // from this number of windows on, points are small and faint
 
-// In an unrefined bank the modes are the components.
+// The modes of an unrefined bank are the components, so the colours are the same.
 const colourIn = (cloud, k) => (cloud.by === 'mode' || !cloud.windows.refined ? modeColour(k) : componentColour(k));
 export const groupColour = (cloud, key) => (key < 0 ? palette.unclustered : colourIn(cloud, key));
 
 const rangeOf = (cloud, a) => (cloud.showAll ? null : usualRange(cloud.values[a]));
 
-// The tip of a window: its run and time, and its values on the visible axes.
+// The tip of a window: its run, its time, and its values on the visible axes.
 const told =
     (cloud,
      i) => [cloud.place(i), ...cloud.axes.map((a) => `${cloud.windows.axes[a].name} = ${digits(cloud.values[a][i])}`)];
@@ -56,13 +56,13 @@ function bankPoints(cloud, [a, b]) {
                   }));
 }
 
-// Pairs of the chosen axes.
+// All pairs of the chosen axes.
 function pairsOf(axes) {
   if (axes.length < 3) return [axes];
   return [[0, 1], [0, 2], [1, 2]].map(([a, b]) => [axes[a], axes[b]]);
 }
 
-// Ellipses of the groups and of the picked window.
+// Ellipses of the groups and of the chosen window.
 function ellipses(cloud, pair) {
   const {limit2} = cloud.windows;
   const outline = (mean, covariance, look) => {

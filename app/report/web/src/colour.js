@@ -1,8 +1,8 @@
-// Functions on colours written as '#rrggbb'.
+// Functions for colours in the form '#rrggbb'.
 
 const hex = (byte) => Math.round(byte).toString(16).padStart(2, '0');
 
-// Mixture of two colours; `share`: share of the second colour.
+// Mixture of two colours. `share`: share of the second colour.
 export function mixed(colour, other, share) {
   const at = (text, i) => parseInt(text.slice(1 + 2 * i, 3 + 2 * i), 16);
   return '#' + [0, 1, 2].map((i) => hex((1 - share) * at(colour, i) + share * at(other, i))).join('');
@@ -10,7 +10,7 @@ export function mixed(colour, other, share) {
 
 export const translucent = (colour, alpha) => colour + hex(255 * alpha);
 
-// The k-th colour. After the end of the palette the colours repeat, first darker, then lighter.
+// The k-th colour. After the end of the palette the colours repeat: first darker, then lighter.
 export function paletteColour(palette, k) {
   if (k < 0) return palette.unclustered;
   const base = palette.modes[k % palette.modes.length];
@@ -19,12 +19,12 @@ export function paletteColour(palette, k) {
   return mixed(base, round === 1 ? '#000000' : '#ffffff', 0.45);
 }
 
-// The colour of the mode of this rank by use (0: most used). After the end of the palette the colours look alike. C++
-// decides the ranks, and which modes count as others (used_modes, told_modes of app/text/mode_words.hpp), both for
-// pages and for figures in papers.
+// The colour of a mode. `rank`: position by use, 0 for the most used mode. After the end of the palette the colours
+// look alike. C++ determines the ranks, and which modes are shown as "others" (used_modes, told_modes in
+// app/text/mode_words.hpp). Pages and figures in papers use the same ranks.
 export const usedColour = (palette, rank) => paletteColour(palette, rank < palette.modes.length ? rank : -1);
 
-// Shades of the modes in one family: towards black or white, and by how much.
+// Shades for the modes of one family: towards black or white, and how strongly.
 const turns = [
   [], ['#000000', 0.3], ['#ffffff', 0.4], ['#000000', 0.5], ['#ffffff', 0.6], ['#000000', 0.66], ['#ffffff', 0.75],
   ['#000000', 0.15]

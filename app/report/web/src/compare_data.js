@@ -1,4 +1,4 @@
-// Data of the runs, with the predictions of all banks.
+// The data of the runs, with the predictions of all banks.
 import {controls, note} from './elements.js';
 import {INK} from './look.js';
 import {section} from './page.js';
@@ -7,9 +7,9 @@ import {inNaturalOrder} from './run_names.js';
 import {inputRows, nisRow, probabilityRow, stateRow} from './time_rows.js';
 import {runChoice, timeControls, timePlot, TimeState} from './timeview.js';
 
-// Runs with the same samples in all archives, so that the data of A serve for all.
+// Runs with the same samples in all archives. For these, the data of A are also the data of the others.
 function commonRuns(data) {
-  if (data.verdicts.some(({runs}) => runs === 0)) return [];  // only their names are equal
+  if (data.verdicts.some(({runs}) => runs === 0)) return [];  // the runs have equal names but not equal samples
   const [a, ...others] = data.runs.map((run) => (run.data ? inNaturalOrder(run.data.runs) : []));
   return a.flatMap((run) => {
     const same = (other) =>
@@ -26,7 +26,7 @@ const layersOf = (data) => data.runs.map((_, k) => ({
                                            opacity: 0.2,
                                            line: colours[k],
                                            nis: colours[k],
-                                           // A is drawn first and with a wider line, so that it stays visible behind
+                                           // A is drawn first and with a wider line, so that it remains visible behind
                                            // the others.
                                            stroke: {dash: dashes[k], width: k ? 1.4 : 3},
                                            symbol: symbols[k],

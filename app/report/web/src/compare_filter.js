@@ -1,4 +1,4 @@
-// Calibration of all banks.
+// Calibration of all banks in one figure.
 import {figure} from './chart.js';
 import {choiceIfAny, controls, h, note} from './elements.js';
 import {autocorrelationPanel, pitSteps} from './filter_drawings.js';
@@ -6,7 +6,7 @@ import {roleNames} from './filters.js';
 import {section} from './page.js';
 import {colours, dashes, letters, pairLegend, symbols} from './pair.js';
 
-// `rows`: the rows of A, B, ...
+// `rows`: one row for each of A, B, ...
 function pitDrawing(rows) {
   const [{band, expected}] = rows;
   const marks = rows.map(

@@ -1,4 +1,4 @@
-// The modes of the banks beside those of A, matched one to one.
+// The modes of the banks beside the modes of A, matched one to one.
 import {details, h, note} from './elements.js';
 import {differingWords, sortedPairs} from './mode_pairs.js';
 import {hasFamilies, nameOf} from './modes.js';
@@ -6,7 +6,7 @@ import {section} from './page.js';
 import {letters, modeColours} from './pair.js';
 import {table} from './table.js';
 
-// A mode's parameters as on its bank's page.
+// The parameters of a mode as on the page of its bank.
 const parametersOf = (bank, k) =>
     (k < 0                        ? null :
          bank.motion_names.length ? bank.modes[k].motion :
@@ -42,7 +42,8 @@ function pairColumns(a, b, letter, ofModes, {by_time: byTime, difference}) {
   ];
 }
 
-// Families that share time; empty if no run is in both archives, or if every mode is a family of its own.
+// A table of families that share time. Empty if the archives have no run in common, or if every mode is a family of its
+// own.
 function familyTable({families}, a, b, letter, ofModes) {
   if (!families.length || !(hasFamilies(a) || hasFamilies(b))) return null;
   const columns = [

@@ -1,4 +1,4 @@
-// The page of two or more runs, A, B, ..., side by side.
+// The page that compares two or more runs: A, B, ...
 import {drawData} from './compare_data.js';
 import {drawFilter} from './compare_filter.js';
 import {drawModes} from './compare_modes.js';
@@ -55,7 +55,7 @@ const scoreColumns = (runs) =>
      {name: 'Better', text: true, of: (row) => (row.better === null ? 'equal' : letters[row.better])},
 ];
 
-// Rows with differences come first; equal rows appear after a click.
+// Rows with differences come first. Equal rows appear after a click.
 function scoreTables(data) {
   const columns = scoreColumns(data.runs);
   const differing = data.scores.filter((row) => row.better !== null),
@@ -98,7 +98,7 @@ function bankTable(bank, letter) {
       columns, bank.order.map((k) => bank.modes[k]), {caption: `Modes of ${letter}, most used first`, sortable: true});
 }
 
-// Each bank by itself, because the tables of matched modes have no gains and time constants.
+// Shows each bank separately, because the tables of matched modes have no gains and time constants.
 function drawBanks(data) {
   section(
       'bank', 'Each bank',

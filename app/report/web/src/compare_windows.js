@@ -1,4 +1,4 @@
-// Local models and modes of the runs over two parameters.
+// Local models and modes of all runs over two parameters.
 import {figure} from './chart.js';
 import {choice, controls, note} from './elements.js';
 import {INK, palette} from './look.js';
@@ -17,7 +17,8 @@ function windowPoints(k, x, y, look = {}) {
 
 const place = (mode, at) => at.map((a) => mode.mean[a]);
 
-// The symbols of the first bank are filled, those of the others hollow and larger, so that equal modes stay visible.
+// The symbols of the first bank are filled. Those of the other banks are larger and hollow, so that equal modes stay
+// visible.
 function bankPoints(k, bank, at) {
   const places = bank.map((mode) => place(mode, at[k]));
   return {
@@ -33,7 +34,7 @@ function bankPoints(k, bank, at) {
   };
 }
 
-// A line from each mode of A to its match in another bank.
+// A line from each mode of A to the matching mode of another bank.
 function links(match, banks, at, k) {
   const x = [], y = [];
   for (const {first, second} of match.modes) {
@@ -49,7 +50,7 @@ const axisOf = (windows, name) => windows.axes.findIndex((axis) => axis.name ===
 const alike = (lists) =>
     lists.every((list) => list.length === lists[0].length && list.every((v, i) => v === lists[0][i]));
 
-// Modes of the banks that have both parameters, and the matches among them.
+// The modes that have both parameters, and the matches among these modes.
 function modeMarks(data, chosen) {
   const list = data.runs.map((run) => run.windows);
   const at = list.map((windows) => [axisOf(windows, chosen.x), axisOf(windows, chosen.y)]);
@@ -65,7 +66,7 @@ async function windowsDrawing(data, chosen) {
   const all = data.runs.map((run) => run.windows);
   const values = (name) => Promise.all(all.map((windows) => array(windows.values[axisOf(windows, name)])));
   const xs = await values(chosen.x), ys = await values(chosen.y);
-  // Equal windows would hide each other, so they are drawn once.
+  // Equal windows would hide each other, so they are drawn only once.
   const points = alike(xs) && alike(ys) ? [windowPoints(0, xs[0], ys[0], {colour: palette.unclustered})] :
                                           all.map((_, k) => windowPoints(k, xs[k], ys[k]));
   const axis = (name, lists) => ({title: titleOf(all[0].axes[axisOf(all[0], name)]), range: usualRange(...lists)});
@@ -73,7 +74,7 @@ async function windowsDrawing(data, chosen) {
   return {panels: [panel], height: 380};
 }
 
-// The first parameters to show: those of A's page, if B has them.
+// The parameters that are shown at first: those of A's page, if B also has them.
 function firstAxes(windows, shared) {
   const begin = windows.default_axes.map((a) => windows.axes[a].name).filter((name) => shared.includes(name));
   const x = begin[0] || shared[0];

@@ -43,7 +43,7 @@ export function downloads(label, kinds) {
 
 const quoted = (text) => (/[",\n\r]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
 
-// A cell's exact value if it has one, else its text.
+// The exact value of a cell, or its text if it has no exact value.
 function cellText(cell) {
   const exact = cell.dataset.value || (cell.querySelector(':scope > [data-value]') || {dataset: {}}).dataset.value;
   const value = exact === undefined ? cell.textContent.trim() : JSON.parse(exact);

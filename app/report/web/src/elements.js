@@ -1,4 +1,4 @@
-// Elements of the pages. Data from archives enter them as text (textContent), never as markup.
+// Functions that make elements of the pages. Data from archives become text (textContent), never markup.
 import {shade} from './colour.js';
 
 function fill(element, attributes, children) {
@@ -16,17 +16,18 @@ function fill(element, attributes, children) {
   return element;
 }
 
-// h('p', {class: 'soft'}, 'text', child, ...): an HTML element. Strings become text; null and undefined are skipped.
+// Makes an HTML element: h('p', {class: 'soft'}, 'text', child, ...). Strings become text. null and undefined are
+// skipped.
 export function h(tag, attributes = {}, ...children) {
   return fill(document.createElement(tag), attributes, children);
 }
 
-// s('circle', {r: 2}, 'text', child): an SVG element.
+// Makes an SVG element: s('circle', {r: 2}, 'text', child).
 export function s(tag, attributes = {}, ...children) {
   return fill(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, children);
 }
 
-// A value with the text from C++ (numbers.hpp) and the exact value in data-value.
+// An element with the text from C++ (numbers.hpp). Its data-value is the exact value.
 export function value(cell, tag = 'span') {
   if (cell === null || cell === undefined) return h(tag, {}, '–');
   if (cell instanceof Node || typeof cell !== 'object') return h(tag, {}, cell instanceof Node ? cell : String(cell));
@@ -52,14 +53,14 @@ export function note(text, bad = false) {
 export const swatch = (colour, opacity = 1) =>
     h('span', {class: 'swatch', style: `background:${shade(colour)};opacity:${opacity}`});
 
-// entries: [colour, text, opacity].
+// `entries`: a list of [colour, text, opacity].
 export function legend(entries, label = 'Colours') {
   return h(
       'ul', {class: 'legend', 'aria-label': label},
       entries.map(([colour, text, opacity]) => h('li', {}, swatch(colour, opacity), text)));
 }
 
-// A page opened from a file may have no access to the clipboard.
+// For a page that has no access to the clipboard, such as one opened from a file.
 function copyByHand(text) {
   const area = h('textarea', {style: 'position:fixed;opacity:0'});
   area.value = text;
@@ -90,14 +91,14 @@ export function copyButton(label, given) {
 
 export const controls = (...children) => h('div', {class: 'controls'}, children);
 
-// A drop-down. `choices`: texts; onchange receives the chosen index.
+// A drop-down list. `choices`: texts. onchange receives the index of the choice.
 export function choice(label, choices, chosen, onchange) {
   const options = choices.map((text, i) => h('option', {value: i, selected: i === chosen}, text));
   const select = h('select', {onchange: () => onchange(select.selectedIndex)}, options);
   return h('label', {}, label, select);
 }
 
-// The same if there are at least two choices, else nothing.
+// Same as `choice` if there are at least two choices, else nothing.
 export function choiceIfAny(label, choices, chosen, onchange) {
   return choices.length > 1 ? choice(label, choices, chosen, onchange) : null;
 }

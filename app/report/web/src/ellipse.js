@@ -1,6 +1,7 @@
-// Points of ellipses (x - mean)' C^-1 (x - mean) = limit.
+// Points on ellipses (x - mean)' C^-1 (x - mean) = limit.
 
-// Lower Cholesky factor of a small covariance; null for a singular one (a window that data do not determine).
+// Lower Cholesky factor of a small covariance. Null for a singular covariance, for example of a window whose data do
+// not determine the parameters.
 export function factor(matrix) {
   const n = matrix.length, L = matrix.map((row) => row.map(() => 0));
   for (let i = 0; i < n; ++i) {
@@ -16,7 +17,7 @@ export function factor(matrix) {
 
 export const part = (matrix, axes) => axes.map((i) => axes.map((j) => matrix[i][j]));
 
-// The image of a point of the unit circle.
+// Maps a point of the unit circle to the ellipse.
 function image(center, L, scale, unit) {
   return center.map((c, i) => c + scale * L[i].reduce((sum, l, j) => sum + l * unit[j], 0));
 }

@@ -1,4 +1,4 @@
-// Panels on a filter's calibration, for pages of one run and of several.
+// Panels that show a filter's calibration, for pages of one run and of several runs.
 
 /** Residual autocorrelation by lag, from one sample on: a panel with a line and points for each of `rows`. */
 export function autocorrelationPanel(rows, band) {

@@ -1,4 +1,4 @@
-// Filters that a user types under a heading of the table of runs.
+// Filters for the table of runs: a user types them below a heading.
 import {plainValue} from './ordering.js';
 
 const comparisons = {
@@ -9,7 +9,7 @@ const comparisons = {
   '=': (v, limit) => v === limit,
 };
 
-// NaN for text that is not a number.
+// The text as a number; NaN for other text.
 const numberIn = (text) => (text === null || text === undefined || String(text).trim() === '' ? NaN : Number(text));
 
 const shownText = (cell) => {
@@ -44,7 +44,8 @@ function choicesIn(word) {
   return (cell) => choices.includes(shownText(cell)) || choices.includes(String(plainValue(cell)));
 }
 
-// Accepts "> 2", "<= 0.1", "3..5" and "a | b" (any of them); other text matches as a part. Returns cell => bool.
+// Accepts "> 2", "<= 0.1", "3..5" and "a | b" (either of both). A cell matches any other text if it contains that text.
+// Returns a function cell => bool.
 export function filterOf(text) {
   const word = text.trim();
   if (!word) return () => true;

@@ -1,4 +1,4 @@
-// Names of an archive's filters and runs for people.
+// Names of filters and runs as the page shows them.
 export const filterNames = {
   bank: 'Bank',
   baseline: 'Baseline (one Kalman filter)',
@@ -19,7 +19,7 @@ export const shortNames = {
   combined: 'combined',
   global: 'global model'
 };
-// Scores by kind that count samples on one side of the interval of an exact model.
+// Kinds of scores that count samples on one side of the interval of an exact model.
 export const sidesOf = {
   z: {above: 'too_far', below: 'too_close'},
   nis: {above: 'nis_above', below: 'nis_below'}

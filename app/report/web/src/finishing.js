@@ -1,7 +1,7 @@
-// Figures are drawn when they are about to become visible. All others are drawn while the browser is idle, so that
-// printing finds a complete page.
+// A figure is drawn shortly before it becomes visible. All others are drawn while the browser is idle, so that printing
+// finds a complete page.
 
-const soon_ms = 2000;  // drawn at this time at the latest, even in a busy browser
+const soon_ms = 2000;  // latest start of the drawing, even in a busy browser
 
 const whenIdle = () => new Promise((resolve) => {
   if (window.requestIdleCallback) {
@@ -19,7 +19,7 @@ export async function finishWhenIdle(tasks) {
   for (const {finish, place} of tasks) {
     await whenIdle();
     if (place && !place.offsetParent) continue;
-    await Promise.resolve(finish()).catch(() => null);  // the drawing code has already reported the error
+    await Promise.resolve(finish()).catch(() => null);  // errors are ignored here: the drawing code has already reported them
   }
   document.documentElement.dataset.finished = 'true';
 }

@@ -1,4 +1,4 @@
-// The free run: a run predicted from its first samples and the inputs, by the bank and its best competitor.
+// The free run: a run predicted from its first samples and its inputs, by the bank and by its best competitor.
 import {h, legend} from './elements.js';
 import {shortNames} from './filters.js';
 import {INK, palette} from './look.js';
@@ -11,7 +11,7 @@ const colours = [
   {band: palette.modes[4], line: palette.modes[4], opacity: 0.16},
 ];
 
-// The bank, and the competitor with the smallest error in free runs: on held-out runs, if there are any.
+// The bank, and the competitor with the smallest error in free runs. Held-out runs decide, if there are any.
 function drawn(filter) {
   const judged = filter.free_runs.some((row) => row.role === 'test') ? 'test' : 'train';
   const error = (row) => [].concat(row.nrmse.v).reduce((sum, value) => (value === null ? Infinity : sum + value), 0);

@@ -1,9 +1,9 @@
-// Search for terms in headings and sentences.
+// Finds terms in headings and sentences.
 
 const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\/-]/g, '\\$&');
 
-// A pattern for all names, as whole words or plurals. Longer names come first: "95 % band" before "band". "one motion"
-// in a sentence need not mean the competitor one_motion.
+// A pattern that matches all names, as whole words or plurals. Longer names come first: "95 % band" before "band". "one
+// motion" in a sentence need not mean the competitor one_motion.
 function anyOf(names) {
   const isOther = (name) => name.includes(' ') && names.includes(name.replace(/ /g, '_'));
   const meant = (name) => name.length > 2 && /^\w/.test(name) && !isOther(name);
@@ -16,7 +16,7 @@ export class Glossary {
   constructor(terms) {
     const named = terms.flatMap(({term, also, means}) => [term, ...also].map((name) => [name, means]));
     const lower = named.map(([name, means]) => [name.toLowerCase(), means]);
-    this.meanings = new Map([...lower, ...named]);  // Q and q are two terms
+    this.meanings = new Map([...lower, ...named]);  // exact spellings overwrite lower case, because Q and q are two terms
     this.anyTerm = anyOf(lower.map(([name]) => name));
   }
 

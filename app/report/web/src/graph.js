@@ -1,9 +1,9 @@
-// The transition graph of a bank: modes on a circle, arrows by probability.
+// The transition graph of a bank: modes on a circle, and arrows for the transition probabilities.
 import {shade} from './colour.js';
 import {s} from './elements.js';
 
-const bend = 0.14;    // sagitta as a share of an arrow's length
-const least = 0.005;  // rarer transitions are only in the matrix
+const bend = 0.14;    // height of an arrow's arc, relative to the arrow's length
+const least = 0.005;  // smallest probability with an arrow; the matrix also shows smaller ones
 
 const minus = (a, b) => ({x: a.x - b.x, y: a.y - b.y});
 const along = (a, v, length) => ({x: a.x + length * v.x, y: a.y + length * v.y});
@@ -11,7 +11,7 @@ const unit = (v) => ({x: v.x / Math.hypot(v.x, v.y), y: v.y / Math.hypot(v.x, v.
 const left = (v) => ({x: v.y, y: -v.x});
 const put = ({x, y}) => `${x},${y}`;
 
-// A bent arrow between two nodes {x, y, r}, and the place of its label.
+// A bent arrow between two nodes {x, y, r}, and the position of its label.
 function arrow(from, to, width, colour, title) {
   const way = minus(to, from), straight = unit(way);
   const start = along(from, straight, from.r), end = along(to, straight, -(to.r + 7));
@@ -27,7 +27,7 @@ function arrow(from, to, width, colour, title) {
           'stroke-opacity': 0.75,
         }),
         s('path', {d: `M${corners.map(put).join('L')}Z`, fill: shade(colour)}));
-  // Labels are near the arrow's start, because in the middle all of them would overlap.
+  // Labels are near the start of their arrows. In the middle all labels would overlap.
   const t = 0.3, share = [(1 - t) ** 2, 2 * t * (1 - t), t ** 2];
   const on = (axis) => share[0] * start[axis] + share[1] * middle[axis] + share[2] * end[axis];
   return {element, at: {x: on('x'), y: on('y')}};
@@ -45,7 +45,8 @@ function edgesOf(transition, nodes, places) {
   return {pictures, labels};
 }
 
-// `transition[i][j]`: formatted numbers from C++; `nodes`: {title, short, colour, use}. A node with more use is larger.
+// `transition[i][j]`: formatted numbers from C++. `nodes`: {title, short, colour, use}. The size of a node increases
+// with its use.
 export function transitionGraph(transition, nodes) {
   const K = nodes.length, size = 420, centre = size / 2, ring = K === 1 ? 0 : size / 2 - 52;
   const angle = (k) => (2 * Math.PI * k) / K;

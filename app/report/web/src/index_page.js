@@ -1,4 +1,5 @@
-// The index of a folder of archives: a table with sorting and filters, and the command that compares ticked archives.
+// The index page of a folder of archives: a table with sorting and filters, and the command that compares the selected
+// archives.
 import {controls, copyButton, h} from './elements.js';
 import {filterOf} from './filter_text.js';
 import {addressOf, columns, compareCommand, sentenceOf} from './index_rows.js';

@@ -1,4 +1,4 @@
-// Columns of the index of a folder, a row for each archive (app/report/site/index_row.hpp).
+// Columns of the index page. Each row is an archive (app/report/site/index_row.hpp).
 
 const digits = 3;
 const number = (v, text = (x) => x.toPrecision(digits)) => (typeof v === 'number' ? {v, t: text(v)} : null);
@@ -9,7 +9,7 @@ function gain({gain: mean, standard_error: error}) {
   return number(mean, (x) => x.toPrecision(digits) + band);
 }
 
-// 2026-11-23T11:11:27Z becomes 2026-11-23 11:11.
+// The date in short: 2026-11-23T11:11:27Z becomes 2026-11-23 11:11.
 const date = ({created}) => (created ? created.slice(0, 16).replace('T', ' ') : null);
 
 function answer({problem, kind, answer: word}) {
@@ -17,7 +17,7 @@ function answer({problem, kind, answer: word}) {
   return kind === 'study' ? 'study' : word || 'none';
 }
 
-// The answer's sentence, or the fault of the archive.
+// The sentence with the verdict, or the problem of the archive.
 export const sentenceOf = ({problem, text}) => problem || text || '';
 
 export const columns = [
@@ -31,12 +31,12 @@ export const columns = [
   {name: 'Date (UTC)', text: true, of: date},
 ];
 
-// A page's path as a URL.
+// The path of a page as a URL.
 export const addressOf = ({page}) => page.split('/').map(encodeURIComponent).join('/');
 
 const word = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll('\'', '\'\\\'\'')}'`);
 
-// The command that makes a page comparing these archives.
+// The command that makes a page which compares these archives.
 export function compareCommand(rows) {
   const stems = rows.map(({name}) => name.split('/').pop().replace(/\.h5$/, ''));
   return ['modebank report', ...rows.map(({archive}) => word(archive)), '-o', word(`${stems.join('_')}.html`)].join(

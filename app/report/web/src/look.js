@@ -1,5 +1,5 @@
 // Colours of the page. Scripts pass colours of the palette unchanged. The drawing code makes them lighter on a dark
-// background, equally everywhere: shade() (colour.js) for elements and SVG, onCanvas() for a canvas.
+// background: shade() (colour.js) for elements and SVG, onCanvas() for a canvas.
 import palette from '../palette.json';
 
 import {hueColour, onGround, paletteColour, translucent, usedColour} from './colour.js';
@@ -25,7 +25,8 @@ export const canvasLook = () => ({
   mark: dark() ? '#e8eaee26' : '#16181d24',
 });
 
-// Modes of one family share a hue. The most used families have the first hues; rarely used families are grey.
+// Modes of one family share a hue. The most used families have the first hues of the palette. Rarely used families are
+// grey.
 export function modeColour(k) {
   if (isOther(k)) return palette.unclustered;
   const {hue, turn} = hueOf(k);

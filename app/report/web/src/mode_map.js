@@ -1,4 +1,4 @@
-// Maps of modes over states and inputs, for state-dependent transitions.
+// Maps of the modes over states and inputs, for state-dependent transition probabilities.
 import {figure} from './chart.js';
 import {modeColour, palette} from './look.js';
 import {modeTitle} from './mode_names.js';
@@ -7,7 +7,7 @@ import {titleOf} from './time_rows.js';
 
 const percent = (share) => `${(100 * share).toFixed(0)} %`;
 
-// Modes listed one by one, and all others as one: {name, colour, holds: mode => bool}.
+// The modes with their own entry, and all other modes as one entry: {name, colour, holds: mode => bool}.
 function groupsOf(bank) {
   const {told, others} = byUse(bank);
   const own = ({mode}) => ({name: modeTitle(mode), colour: modeColour(mode), holds: (k) => k === mode});
@@ -17,7 +17,7 @@ function groupsOf(bank) {
                      list;
 }
 
-// The data's samples in the colours of their modes. `y(i, row)`: the height of sample i in group `row`.
+// The samples in the colours of their modes. `y(i, row)`: the height of sample i in group `row`.
 function sampleMarks(bank, x, y) {
   const {samples} = bank.modeMap;
   return groupsOf(bank).map(({name, colour, holds}, row) => {
@@ -26,7 +26,7 @@ function sampleMarks(bank, x, y) {
   });
 }
 
-// The mode with the largest share, as background colour.
+// Background in the colour of the mode with the largest share.
 function groundMark({axes, modes, shares}) {
   const [x, y] = axes.map(({values}) => values);
   const tip = (n) => {
@@ -45,7 +45,8 @@ function map(bank) {
   };
 }
 
-// Samples are below the lines, one row per mode. The most used modes are drawn last, so that others do not hide them.
+// The samples are drawn below the lines, one row per mode. The most used modes are drawn last, so that other modes do
+// not hide them.
 function lines(bank) {
   const {modeMap} = bank, {values} = modeMap.axes[0];
   const rows = sampleMarks(bank, (i) => modeMap.samples.at[0][i], (i, row) => -0.05 - 0.05 * row);

@@ -1,5 +1,5 @@
-// Names and order of the modes on a page with one bank. A page with several banks sets neither, so modes are plain
-// numbers.
+// Names and order of the modes on a page with one bank. A page with several banks does not set them; its modes have
+// numbers only.
 let names = [];
 let ranks = [];
 let hues = [];

@@ -1,4 +1,4 @@
-// Texts and colours of matched modes of two banks, without drawing.
+// Texts and colours for the matched modes of two banks. This file does not draw.
 
 /**
  * Ranks of colours (usedColour) of the modes of each bank. Matched modes have A's rank, which is by use. The other
@@ -34,19 +34,19 @@ export function matchedRanks(banks, matches) {
   return all;
 }
 
-// [differing, agreeing] pairs of a match: the largest distance first, unmatched modes last.
+// [differing, agreeing] pairs of a match. The pair with the largest distance is first; unmatched modes are last.
 export function sortedPairs({modes}) {
   const distance = ({first, second, distance: cell}) => (first < 0 || second < 0 ? -1 : cell.v || 0);
   const sorted = [...modes].sort((p, q) => distance(q) - distance(p) || p.first - q.first);
   return [sorted.filter(({agree}) => !agree), sorted.filter(({agree}) => agree)];
 }
 
-// The parameters in which a pair differs most: "B (+5.2), A (-3.1)".
+// The parameters in which the modes of a pair differ most: "B (+5.2), A (-3.1)".
 export function differingWords({first, second, agree, z}, names, letter) {
   if (first < 0) return `only in ${letter}`;
   if (second < 0) return 'only in A';
   if (agree) return 'agree within their errors';
-  if (!z.length) return '–';  // modes of different models
+  if (!z.length) return '–';  // the modes belong to different models
   const far = z.map(({v, t}, i) => ({v: Math.abs(v), text: `${names[i].replace(/ \[[^\]]*\]$/, '')} (${t})`}))
                   .sort((p, q) => q.v - p.v);
   return `differ in ${far.slice(0, 2).filter(({v}) => v > 2).map(({text}) => text).join(', ')}`;

@@ -1,5 +1,5 @@
-// The modes of a bank as the page's sections list them: by family, most used first. Rarely used families form one
-// entry.
+// The modes of a bank in the order of the page's lists: by family, the most used family first. Rarely used families
+// form one entry.
 import {legend} from './elements.js';
 import {modeColour, palette} from './look.js';
 

@@ -1,4 +1,4 @@
-// Numbers formatted by the page's scripts; numbers in tables are formatted by C++ (numbers.hpp).
+// Formats of numbers that the scripts compute. C++ formats the numbers in tables (numbers.hpp).
 
 /** At most `digits` significant digits, with a true minus sign. */
 export function shortNumber(value, digits = 6) {

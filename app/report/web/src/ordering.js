@@ -1,12 +1,12 @@
-// Order of cells: numbers by value, words in natural order, unknown values last in both directions.
+// Order of cells: numbers by value, words in natural order. Unknown values are last in both directions.
 import {naturally} from './run_names.js';
 
-// A cell is a word, a number or a formatted number from C++: {v: exact value, t: text}.
+// The value of a cell. A cell is a word, a number, or a formatted number from C++: {v: exact value, t: text}.
 export const plainValue = (cell) => (cell && typeof cell === 'object' ? cell.v : cell);
 
 const isKnown = (v) => v !== null && v !== undefined && v !== '';
 
-// Compares two known values: negative if x comes first.
+// Compares two known values. The result is negative if x comes first.
 function compareKnown(x, y) {
   const p = Number(x), q = Number(y);
   if (Number.isNaN(p) || Number.isNaN(q)) return naturally(x, y);
@@ -19,7 +19,7 @@ export function compareCells(a, b, down = false) {
   return down ? compareKnown(y, x) : compareKnown(x, y);
 }
 
-// A copy of `rows` sorted by the cell `of(row)`; rows with equal cells keep their order.
+// A copy of `rows` sorted by the cells that `of(row)` returns. Rows with equal cells keep their order.
 export function sortedRows(rows, of, down) {
   return [...rows].sort((a, b) => compareCells(of(a), of(b), down));
 }

@@ -1,4 +1,4 @@
-// The frame of a page: head, contents, theme, printing.
+// The parts that every page has: head, contents, theme, printing.
 import {h} from './elements.js';
 import {finishWhenIdle, holdPrinting} from './finishing.js';
 
@@ -33,9 +33,9 @@ const announce = () => {
   return Promise.all(listeners.map((listener) => listener()));
 };
 
-// Tasks before the page is printed, such as drawing figures that are not visible.
+// Tasks to complete before the page is printed, such as drawing figures that are not visible.
 const unfinished = [];
-// `place`: the element of the drawing.
+// `place`: the element that contains the drawing.
 export function beforePrint(finish, place = null) {
   unfinished.push({finish, place});
 }
@@ -83,20 +83,20 @@ export function head(title, subtitle) {
   markTheme();
 }
 
-// Resolves when the page is parsed: this script runs before the arrays after it are read.
+// Resolves when the whole page is parsed. This script starts before the browser has read the arrays after it.
 const parsed = () => new Promise((resolve) => {
   if (document.readyState !== 'loading') resolve();
   document.addEventListener('DOMContentLoaded', resolve);
 });
 
-// Resolves after the next painting; a hidden page is never painted.
+// Resolves after the next painting, or at once on a hidden page, which is never painted.
 const painted = () => new Promise((resolve) => {
   requestAnimationFrame(() => setTimeout(resolve, 0));
   setTimeout(resolve, 300);
 });
 
-// Runs the script of a page. `first` is drawn and visible before other data are read. Errors are shown and thrown
-// again, so that tests detect them.
+// Runs the script of a page. `first` is drawn and visible before the other data are read. Errors are shown and then
+// thrown again, so that tests detect them.
 export async function draw(body, first = () => undefined) {
   const release = holdPrinting();
   try {

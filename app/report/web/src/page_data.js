@@ -1,4 +1,4 @@
-// Data from C++ in the page: one JSON text (page-data) and packed arrays (page_arrays.hpp).
+// The page's data from C++: one JSON text (page-data) and packed arrays (page_arrays.hpp).
 
 export const pageData = () => JSON.parse(document.getElementById('page-data').textContent);
 
@@ -8,8 +8,8 @@ const types = {
   i4: [Int32Array, 4],
   share: [Uint16Array, 2],
 };
-const nobody = 65535;  // an unknown share
-const whole = 65534;   // the share 1
+const nobody = 65535;  // code for an unknown share
+const whole = 65534;   // code for the share 1
 const unpacked = new Map();
 
 function bytesOf(base64) {
@@ -20,7 +20,7 @@ function bytesOf(base64) {
   return bytes;
 }
 
-// Values from byte planes: all first bytes, then all second bytes, ..., which compress better.
+// Values from byte planes: all first bytes, then all second bytes, and so on. Byte planes compress better.
 export function fromPlanes(planes, {type, size}) {
   const [Type, width] = types[type];
   const bytes = new Uint8Array(size * width);
@@ -31,14 +31,14 @@ export function fromPlanes(planes, {type, size}) {
   return type === 'share' ? Float32Array.from(values, (v) => (v === nobody ? NaN : v / whole)) : values;
 }
 
-// Decodes and unpacks the array in an element of the page.
+// Decodes and unpacks the array that an element of the page contains.
 async function unpack(place) {
   const stored = bytesOf(document.getElementById(place.id).textContent);
   const stream = new Blob([stored]).stream().pipeThrough(new DecompressionStream('deflate'));
   return fromPlanes(new Uint8Array(await new Response(stream).arrayBuffer()), place);
 }
 
-// The typed array of a reference, unpacked on first use; a typed array is returned as it is.
+// The typed array that a reference names. It is unpacked on first use. A typed array is returned unchanged.
 export function array(place) {
   if (!place || ArrayBuffer.isView(place)) return Promise.resolve(place || null);
   if (!unpacked.has(place.id)) unpacked.set(place.id, unpack(place));

@@ -1,4 +1,4 @@
-// Compared runs A, B, ...: each has one colour, dash and symbol in all plots.
+// Colours of the compared runs A, B, ... Each run has the same colour, dash and symbol in all plots.
 import {legend} from './elements.js';
 import {palette, rankColour} from './look.js';
 import {matchedRanks} from './mode_pairs.js';
@@ -15,7 +15,7 @@ export function modeColours(data) {
   return ranks.map((of) => (mode) => rankColour(of[mode]));
 }
 
-// `runs`: the runs of the page's data; `extra`: further entries.
+// `runs`: the runs in the page's data. `extra`: more entries for the legend.
 export function pairLegend(runs, extra = []) {
   return legend([...runs.map((run, k) => [colours[k], `${letters[k]}: ${run.name}`]), ...extra]);
 }

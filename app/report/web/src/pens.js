@@ -1,4 +1,4 @@
-// Pens that draw time plots: one for the screen (canvas) and one for files (SVG), so that both look the same. A path is
+// Pens that draw time plots: one for the screen (canvas) and one for files (SVG). Both give the same picture. A path is
 // a function that calls moveTo, lineTo, arc, rect, ... on its argument.
 import {path as d3Path} from 'd3-path';
 
@@ -46,7 +46,7 @@ export function canvasPen(context) {
       drawn(path);
       context.fill();
     },
-    // Many small paths: one path with all pieces would take the browser tens of times as long.
+    // The pieces are many small paths. A single path with all pieces would take the browser ten times as long or more.
     boxes: (boxes, colour) => {
       context.fillStyle = colour;
       for (let i = 0; i < boxes.length; i += 4) context.fillRect(boxes[i], boxes[i + 1], boxes[i + 2], boxes[i + 3]);

@@ -1,4 +1,4 @@
-// Computations of the first picture that need no canvas.
+// Computations for the first picture of a page. They need no canvas.
 
 /** Runs of equal values: {from, to, value}, without `to`. */
 export function segments(values) {

@@ -1,11 +1,11 @@
-// Repeats (runs that differ only in their seed) as one row of a table.
+// Shows repeats as one row of a table. Repeats are runs that differ only in their seed.
 import {isNumber, mean} from './statistics.js';
 
-const rounding = 1e-5;  // relative to the mean; a smaller difference is invisible in a table
+const rounding = 1e-5;  // relative to the mean; the table does not show a smaller difference
 
 const known = (cell) => Boolean(cell) && typeof cell === 'object' && isNumber(cell.v);
 
-// Mean ± standard deviation of a score's cells, as a formatted number {t, v}.
+// Mean ± standard deviation of the cells of a score, as a formatted number {t, v}.
 function meanCell(cells) {
   const values = cells.filter(known).map(({v}) => v);
   if (!values.length) return cells[0];
@@ -16,7 +16,7 @@ function meanCell(cells) {
   return {t: `${Number(middle.toPrecision(4))} ± ${Number(sd.toPrecision(2))}`, v: middle};
 }
 
-// "done" if all are equal, else "2 done, 1 failed".
+// "done" if all runs are done, else for example "2 done, 1 failed".
 function wordsOf(cells) {
   const counts = new Map();
   for (const cell of cells) counts.set(cell, (counts.get(cell) || 0) + 1);
@@ -31,8 +31,8 @@ function cellOf(column, cells) {
   return column.kind === 'about' ? wordsOf(cells) : meanCell(cells);
 }
 
-// One row per setting, in the order of the first runs. A choice of the row chooses the setting's first run. `members`:
-// runs of the setting.
+// One row per setting, in the order of the settings' first runs. A click on the row selects the first run. `members`:
+// the runs of the setting.
 export function groupedRows(columns, rows) {
   const groups = new Map();
   for (const row of rows) {

@@ -1,4 +1,4 @@
-// The bank: its modes in words, in numbers and by label.
+// The section on the bank: its modes in words, in numbers and by label.
 import {details, facts, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {modeColour} from './look.js';
@@ -17,7 +17,7 @@ const which = {
 };
 const gains = (bank) => list('gains', bank.gain_names.map((name) => `steady gain ${name}`));
 
-// A mode in words for users: its use, its motion, and the reliability of its band.
+// Columns that describe a mode in words: its use, its motion, and the reliability of its band.
 function wordColumns(bank) {
   const seen = bank.modes.some((row) => row.usage);
   return [
@@ -47,7 +47,7 @@ function numberColumns(bank) {
   ];
 }
 
-// All families, in the form of the first screen.
+// All families, as on the first screen.
 function familyTable(bank) {
   const {told, others} = familiesOf(bank);
   const rows = [...told, ...others].map((row) => ({...row, colour: modeColour(row.lead)}));
@@ -110,7 +110,7 @@ function screenedTable(screened) {
       screened, {caption: 'Components that were left out of the bank'});
 }
 
-// The most probable modes for the samples of each label.
+// For each label, the most probable modes of its samples.
 function confusionTable(bank) {
   const {confusion} = bank;
   if (!confusion) return null;

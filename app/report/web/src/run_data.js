@@ -1,4 +1,4 @@
-// A run over time: data, prediction, inputs, modes, innovations and NIS on one axis, with a link to the view.
+// A run over time: data, prediction, inputs, modes, innovations and NIS on one time axis. A link restores the view.
 import {check, controls, copyButton, h} from './elements.js';
 import {timeJumps} from './time_jumps.js';
 import {keyHelp} from './time_keys.js';
@@ -6,7 +6,7 @@ import {innovationRow, inputRows, nisRow, probabilityRow, stateRow} from './time
 import {timePlot} from './timeview.js';
 import {linkOf, viewIn} from './view_link.js';
 
-const link_delay_ms = 300;  // browsers limit how often the address may change
+const link_delay_ms = 300;  // browsers limit how often a page may change its address
 
 const parts = {
   inputs: 'Inputs',
@@ -15,7 +15,7 @@ const parts = {
   nis: 'NIS',
 };
 
-// Rows of the visible parts.
+// Rows of the parts that are visible.
 function dataRows(runs, state, {layer}, shown) {
   const filter = layer.of(state.current);
   return [
@@ -27,7 +27,7 @@ function dataRows(runs, state, {layer}, shown) {
   ];
 }
 
-// Writes the view into the address, and restores it from there.
+// Writes the present view into the address, and restores the view from the address.
 function followLink(state, filters, options) {
   const view = () => ({run: state.current.name, filter: filters[options.chosen], range: state.range, at: state.at});
   const follow = () => {
@@ -49,7 +49,7 @@ function followLink(state, filters, options) {
     return Promise.resolve();
   };
   addEventListener('hashchange', follow);
-  // Called after the first view: this view is the default, so the address stays unchanged.
+  // Called after the first view is set. This view is the default, so the address stays unchanged.
   Promise.resolve().then(() => {
     follow();
     state.plots.push({refresh: keep, point: keep});

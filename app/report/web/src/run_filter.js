@@ -1,4 +1,4 @@
-// A filter's evaluation of every sample, and its reliability.
+// The section on a filter: its evaluation of every sample, and its reliability.
 import {figure} from './chart.js';
 import {choice, choiceIfAny, controls, h, note} from './elements.js';
 import {autocorrelationPanel, pitPanel} from './filter_drawings.js';
@@ -60,9 +60,9 @@ const sideColours = {
   above: palette.modes[3],
   below: palette.modes[5]
 };
-const faint = 0.5;  // opacity for training runs
+const faint = 0.5;  // opacity of training runs
 
-// Bars for one side of the interval and one role, at position n of `count`.
+// Bars for one side of the interval and one role. Each group has `count` bars; `n` is the position in the group.
 function outsideMark(rows, key, {side, role}, n, count) {
   const width = 0.8 / count, cell = (row) => row[sidesOf[key][side]];
   return {
@@ -77,7 +77,7 @@ function outsideMark(rows, key, {side, role}, n, count) {
   };
 }
 
-// The paper's figure 5: number of samples outside of the interval, above and below, for training and held-out runs.
+// Figure 5 of the paper: number of samples above and below the interval, for training and held-out runs.
 function outside(filter) {
   const pooled = filter.scores.filter((row) => row.run === '*');
   const roles = present(pooled, 'role'), filters = present(pooled, 'filter');

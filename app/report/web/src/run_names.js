@@ -1,4 +1,4 @@
-// Names of runs in natural order, and long ones shortened.
+// Names of runs in natural order. Long names are shortened.
 
 const most_letters = 36;
 

@@ -1,4 +1,4 @@
-// Origin of the run, for checking: one click away, at the end of the page.
+// The origin of the run, for those who want to check it. It opens at a click, at the end of the page.
 import {controls, copyButton, details, facts, h, note} from './elements.js';
 import {section} from './page.js';
 import {table} from './table.js';

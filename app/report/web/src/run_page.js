@@ -1,4 +1,5 @@
-// The page of one run, from top to bottom: verdict, data, modes, filter, local models, selection, configuration.
+// The page of one run. From top to bottom it shows verdict, data, modes, filter, local models, selection,
+// configuration.
 import {drawCloud} from './cloud.js';
 import {choiceIfAny, controls, h, legend, note} from './elements.js';
 import {filterNames} from './filters.js';
@@ -16,7 +17,7 @@ import {drawSelection} from './run_selection.js';
 import {drawVerdict} from './run_verdict.js';
 import {runChoice, timeControls, TimeState} from './timeview.js';
 
-// Drop-downs of run and filter in several places. All have the same state.
+// Drop-down lists of runs and filters. They are in several places of the page, and all have the same state.
 function pickers(state, filters, options) {
   const all = [];
   const showChosen = () => all.forEach(([run, filter]) => {
@@ -55,7 +56,7 @@ function dataLegend(runs, filtered) {
   ]);
 }
 
-// With few modes the plot itself has a legend.
+// A separate legend is needed only for many modes. With few modes, the plot has its own legend.
 const legendOfMany = (bank) => (bank && bank.modes.length > 8 ? modeLegend(bank) : null);
 
 function drawData(runs, state, options, picker) {
@@ -78,7 +79,7 @@ async function drawWindows(windows, runs, goTo) {
   place.querySelector('h2').after(h('p', {}, text));
 }
 
-// State that all sections with a filter share: the index of the filter and of the state.
+// State that all sections with a filter share: the index of the filter, and the index of the state.
 function filterOptions(filters) {
   const options = {chosen: Math.max(0, filters.indexOf('bank')), state: 0};
   options.layer = {

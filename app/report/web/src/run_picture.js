@@ -1,5 +1,5 @@
-// A small picture of the data, on a plain canvas so that it appears early. It shows the first state in the colours of
-// the most probable modes, the modes as a strip, and labels below.
+// A small picture of the data. It is drawn on a canvas, so that it appears early. It shows the first state in the
+// colours of the most probable modes, the modes as a strip, and labels below.
 import {endOf} from './chart_layout.js';
 import {mixed} from './colour.js';
 import {h, legend} from './elements.js';
@@ -11,11 +11,10 @@ import {segments, ticks} from './picture_layout.js';
 import {inNaturalOrder} from './run_names.js';
 
 const strip_px = 13, gap_px = 4, above_px = 18, left_px = 66, apart_px = 6;
-const least_name_px = 40;  // smallest width of a run's name; names are narrowed to the width of their run
-const least_px = 60;       // smallest width of a run with times
+const least_name_px = 40;  // smallest width of a run that shows its name; a name is cut to the width of its run
+const least_px = 60;       // smallest width of a run that shows its times
 
-// Labels are grey, so that they do not look like modes. The first number is the share of ink, then come the colours on
-// canvas and in the legend.
+// Labels are grey, so that they differ from modes. The share of ink is the same for the canvas and the legend.
 const inkShare = (k, count) => 0.12 + (0.58 * k) / Math.max(1, count - 1);
 const labelNow = (k, count) => mixed(groundNow(), inkNow(), inkShare(k, count));
 const labelColour = (k, count) =>
@@ -23,7 +22,7 @@ const labelColour = (k, count) =>
 
 const titleOf = ({name, unit}) => (unit ? `${name} [${unit}]` : name);
 
-// Positions on a canvas of this size; each run's width is proportional to its samples.
+// Positions on a canvas of this size. The width of each run is proportional to its number of samples.
 function layoutOf(picture, width, height) {
   const strips = [picture.modes > 1 ? 'mode' : null, picture.labels.length ? 'label' : null].filter(Boolean);
   const total = picture.runs.reduce((sum, run) => sum + run.low.length, 0);
@@ -40,17 +39,17 @@ function layoutOf(picture, width, height) {
   return {plot, places, strips, top, bottom: height - below};
 }
 
-// A family has the colour of its most used mode, because many shades would be confusing.
+// Each family has the colour of its most used mode, because many shades would be confusing.
 const familiesOver = (modes) => modes.map((k) => (k < 0 ? k : leadOf(k)));
 
-// Height of a share of the range. The ends do not touch the frame.
+// Height of a value, given as share of the range. A margin keeps both ends away from the frame.
 const heightOf = (at, share) => above_px + at.plot * (0.98 - 0.96 * share);
 
 function drawState(pen, picture, at, {run, x, width}) {
   const n = run.low.length, step = width / n, high = run.high || run.low;
   const y = (v) => heightOf(at, v / picture.steps);
   const list = run.mode ? familiesOver(run.mode) : run.low.map(() => -1);
-  // The rarer modes are drawn last; otherwise the others would hide them.
+  // The rarer modes are drawn last, so that frequent modes do not hide them.
   const modes = [...new Set(list)].sort((a, b) => rankOf(a) - rankOf(b));
   for (const mode of modes) {
     pen.beginPath();

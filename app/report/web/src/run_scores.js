@@ -1,4 +1,4 @@
-// Tables of a run's scores.
+// Tables of the scores of a run.
 import {details, h} from './elements.js';
 import {roleNames, roleOf, shortNames} from './filters.js';
 import {filterColour} from './look.js';
@@ -77,7 +77,7 @@ const freeRunColumns = (filter) =>
 export const freeRunTable = (filter) =>
     table(freeRunColumns(filter), filter.free_runs, {caption: 'Free run, all runs together', sortable: true});
 
-// Filters and roles in C++'s order, runs in natural order.
+// Filters and roles are in the order of C++; runs are in natural order.
 function inOrder(scores) {
   const groups = [...new Set(scores.map(({filter, role}) => `${filter} ${role}`))];
   const place = ({filter, role}) => groups.indexOf(`${filter} ${role}`);

@@ -1,4 +1,4 @@
-// The number of components: criteria over K, agreement of restarts, table.
+// The section on the number of components K: criteria over K, agreement of restarts, table.
 import {figure} from './chart.js';
 import {note} from './elements.js';
 import {palette} from './look.js';
@@ -19,7 +19,7 @@ const valueOf = (row, key) => {
   return row.restarts ? (100 * row.agreeing.v) / row.restarts : null;
 };
 
-// One line through the candidates for each shape of covariance.
+// One line through the candidates for each covariance shape.
 function curves(candidates, key) {
   return shapes.flatMap(([covariance, colour, dash, symbol]) => {
     const rows = candidates.filter(

@@ -1,4 +1,4 @@
-// Transitions between the modes of a bank, and their durations.
+// The section on the transitions between the modes of a bank, and on the stays in a mode.
 import {details, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {transitionGraph} from './graph.js';
@@ -8,7 +8,7 @@ import {modeCell, modeTitle} from './mode_names.js';
 import {familiesOf, othersName} from './modes.js';
 import {table} from './table.js';
 
-// The families with a row of their own, and all others as one: {title, short, colour, use}.
+// The families that have their own row, and all other families as one node: {title, short, colour, use}.
 function nodesOf(bank) {
   const {told, others} = familiesOf(bank);
   const nodes = told.map((row) => ({
@@ -40,7 +40,7 @@ function transitionTable(bank) {
   return table(columns, order, {caption: 'Transition probabilities per sample'});
 }
 
-// A note above the drawing: a switch that is rare at the mean of states and inputs may be frequent elsewhere.
+// A note above the drawing. A switch that is rare at the mean of states and inputs may be frequent elsewhere.
 const movedSwitches = () => note(
     'These transitions depend on state and input. Graph and matrix are for their training mean, and ' +
     'each further unit adds the weights in the table to the log odds of a mode. Without an error, the data show only ' +

@@ -1,5 +1,5 @@
-// The first screen: finding, reliability of the band, next step and a picture. Its words and numbers are the same as in
-// the program's first screen (screen_facts.hpp).
+// The first screen: finding, reliability of the band, next step and a picture. Words and numbers are those of the
+// program's first screen (screen_facts.hpp).
 import {h, value} from './elements.js';
 import {modeColour} from './look.js';
 import {section} from './page.js';
@@ -9,12 +9,12 @@ import {withTips} from './tips.js';
 
 const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-// A cell breaks between its parts, but never between a number and its error or unit.
+// A cell may break between its parts, but not between a number and its error or unit.
 const breakable = (text) => text.replace(/ (±|%|s\b|m\b)/g, '\u00a0$1').replace(/(±|period) /g, '$1\u00a0');
 
-// Commands (`modebank show`) and options (--filter.horizon 10) in a sentence.
+// Finds commands (`modebank show`) and options (--filter.horizon 10) in a sentence.
 const command = /(`[^`]+`|--[\w.]+(?:[ =](?:'[^']*'|[\d.]+|auto|varx|adaptive))?)/;
-// A browser breaks lines after hyphens, which would split `--filter.horizon`.
+// Browsers break lines after hyphens. Without this, `--filter.horizon` could be split.
 const words = (text) => text.split(' ').flatMap((word, i) => [i ? ' ' : null, h('span', {class: 'word'}, word)]);
 const withCode = (text, other = (part) => part) =>
     text.split(command).map((part, i) => (i % 2 ? h('code', {}, words(part.replace(/`/g, ''))) : other(part)));

@@ -1,4 +1,4 @@
-// A study's columns in words: bank_test_log_score becomes "held-out log score of the bank".
+// The columns of a study in words. Example: bank_test_log_score becomes "held-out log score of the bank".
 import {shortNames} from './filters.js';
 
 const words = {
@@ -22,7 +22,7 @@ const roles = {
 
 const scoreWords = (score) => words[score] || score.replace(/^rmse_/, 'RMSE ').replace(/_/g, ' ');
 
-// Title for axes and drop-downs; keys and other columns keep their names.
+// Title of a column for axes and drop-down lists. Keys and all other columns keep their names.
 export function columnTitle(name) {
   const found = new RegExp(`^(${Object.keys(shortNames).join('|')})_(test|train)_(.+)$`).exec(name);
   if (!found) return name;

@@ -1,8 +1,8 @@
-// Scores of a study's settings, without drawing. A setting is one combination of varied values; its runs differ only in
-// the seed.
+// Scores of a study's settings. This file does not draw. A setting is one combination of varied values, and its runs
+// differ only in the seed.
 import {isNumber, lossOf, mean} from './statistics.js';
 
-// {rows, mean, sd} of each setting with a score, in the order of rows; sd is null for one run.
+// {rows, mean, sd} of each setting that has a score, in the order of `rows`. sd is null for a single run.
 export function settingsOf(rows, score) {
   const groups = new Map();
   for (const row of rows) {
@@ -23,17 +23,18 @@ export function bestSetting(settings, goal) {
       (best, one) => (best === null || lossOf(goal, one.mean) < lossOf(goal, best.mean) ? one : best), null);
 }
 
-// Summary of settings: the best one, so that the best of all levels is the study's best, or the mean over their runs.
+// Summarises settings by the best one or by the mean over their runs. With the first choice, the best of all levels is
+// the study's best setting.
 export function reached(settings, goal, by) {
   if (!settings.length) return null;
   if (by === 'best') return bestSetting(settings, goal).mean;
   return mean(settings.flatMap((one) => one.rows.map(() => one.mean)));
 }
 
-// The level of a setting along an axis.
+// The level of the axis to which a setting belongs.
 export const levelOf = (axis, setting) => axis.of(setting.rows[0]);
 
-// The best cell as {a, b, value}; null if there is none.
+// The best cell as {a, b, value}; null if there is no cell.
 export function bestCell(cells, goal) {
   let best = null;
   cells.forEach((line, b) => line.forEach((value, a) => {

@@ -1,8 +1,8 @@
-// Runs' signals in the detail that a plot can show (series.hpp): the samples if few are in view, else extremes of
+// The signals of runs in the detail that a plot can show (series.hpp): samples if few are visible, else extremes of
 // buckets.
 import {array} from './page_data.js';
 
-// Index of the first sample at or after time t.
+// Index of the first sample at time t or later.
 function indexIn(times, t) {
   let low = 0, high = times.length;
   while (low < high) {
@@ -16,7 +16,7 @@ function indexIn(times, t) {
   return low;
 }
 
-// The clock of a run at its finest level: index by time, and time by index.
+// The clock of a run at its finest level. It converts times to indices and indices to times.
 export async function clock(axis) {
   if (axis.samples === 0) return {samples: 0, start: 0, end: 0, at: () => 0, near: () => 0};
   const {samples, start, end, period} = axis;
@@ -34,16 +34,16 @@ export async function clock(axis) {
   };
 }
 
-// The samples that a view of `range` shows, and the number of samples in a bucket of the drawing, which is about a
-// pixel wide. The number is a power of two. So each bucket consists of whole buckets of a stored level, and stays the
-// same while the view moves. One more bucket beyond each edge is drawn, so that lines continue to the edge.
+// The samples that a view of `range` shows, and the number of samples in a bucket of the drawing. A bucket is about a
+// pixel wide. The number is a power of two. So each bucket consists of whole stored buckets, and does not change while
+// the view moves. The drawing has one more bucket beyond each edge, so that lines continue to the edge.
 export function view(clockOf, range, pixels) {
   const first = clockOf.near(range[0]), last = clockOf.near(range[1]);
   const per = 2 ** Math.max(0, Math.round(Math.log2((last - first + 1) / pixels)));
   return {first: Math.max(0, first - 2 * per), last: Math.min(clockOf.samples - 1, last + 2 * per), per};
 }
 
-// The coarsest stored level whose buckets are not larger than those of the drawing.
+// The coarsest stored level whose buckets are at most as large as the buckets of the drawing.
 function levelFor(signal, per) {
   let best = signal.raw ? {bucket: 1, low: signal.raw, high: signal.raw} : null;
   for (const level of signal.levels) {
@@ -61,19 +61,19 @@ function merged(values, from, to, count, pick) {
   }
   return result;
 }
-// The lower or higher of two values; if one is NaN, the other.
+// The smaller or the larger of two values. If one is NaN, the result is the other.
 const lower = (a, b) => (a < b || Number.isNaN(b) ? a : b);
 const higher = (a, b) => (a > b || Number.isNaN(b) ? a : b);
 
-// How to compute a view's buckets from a stored level: `count` stored buckets for each, beginning at stored bucket
-// `from`.
+// How to compute the buckets of a view from a stored level. Each consists of `count` stored buckets; the first one
+// starts at stored bucket `from`.
 function grouping(level, shown) {
   const count = Math.max(1, Math.floor(shown.per / level.bucket)), per = level.bucket * count;
   return {count, per, from: Math.floor(shown.first / per) * count};
 }
 
-// Buckets of one signal in a view: {first, per, low, high}. Bucket i contains `per` samples from sample first + i per
-// on. If per is 1, low and high are the samples.
+// Buckets of one signal in a view: {first, per, low, high}. Bucket i contains the `per` samples that start at sample
+// first + i per. If per is 1, low and high are the samples.
 async function buckets(signal, shown, edge) {
   const level = levelFor(signal, shown.per);
   const {count, per, from} = grouping(level, shown);
@@ -86,7 +86,7 @@ async function buckets(signal, shown, edge) {
   return {first: from * level.bucket, per, low, high};
 }
 
-// x and y of a line through a signal; a bucket gives two points, its extremes.
+// x and y of a line through a signal. A bucket gives two points: its extremes.
 export async function line(signal, clockOf, shown) {
   const b = await buckets(signal, shown), n = b.low.length;
   if (b.per === 1) return {x: Float64Array.from({length: n}, (_, i) => clockOf.at(b.first + i)), y: b.low, per: 1};
@@ -101,7 +101,7 @@ export async function line(signal, clockOf, shown) {
   return {x, y, per: b.per};
 }
 
-// Means over `count` values each; unknown values are ignored.
+// Means over groups of `count` values. Unknown values are ignored.
 function means(values, from, to, count) {
   return Float32Array.from({length: Math.ceil((to - from) / count)}, (_, i) => {
     let sum = 0, known = 0;
@@ -114,7 +114,7 @@ function means(values, from, to, count) {
   });
 }
 
-// The same with one mean per bucket, for shares.
+// Same as `line`, but with one mean per bucket. For shares.
 export async function share(signal, clockOf, shown) {
   const level = levelFor(signal, shown.per), values = await array(level.low);
   const {count, per, from} = grouping(level, shown);
@@ -122,9 +122,9 @@ export async function share(signal, clockOf, shown) {
   return {x: Float64Array.from(y, (_, i) => clockOf.at((from + i * count) * level.bucket)), y, per};
 }
 
-const few = 16;  // up to this number of samples per bucket, the edges of a band are computed sample by sample
+const few = 16;  // largest number of samples per bucket for which band edges are computed sample by sample
 
-// Smallest and largest edge of center +- half in buckets of shown.per samples.
+// For buckets of shown.per samples, the smallest and the largest edge of center +- half.
 async function edgesOfSamples(center, half, shown) {
   const c = await array(center.raw), w = await array(half.raw), per = shown.per;
   const first = Math.floor(shown.first / per) * per, length = shown.last + 1 - first;
@@ -138,8 +138,8 @@ async function edgesOfBuckets(lowest, highest, shown) {
   return {first, per, low, high};
 }
 
-// A band between center - half and center + half: closed outlines, one for each part without gaps. For buckets, the
-// outline is the smallest and the largest edge in each bucket.
+// A band from center - half to center + half. It consists of closed outlines, one for each part without gaps. The
+// outline of buckets follows the smallest and the largest edge in each bucket.
 export async function band({center, half, lowest, highest}, clockOf, shown) {
   const bySample = !lowest.levels.length || (center.raw && shown.per < few);
   const {first, per, low, high} = bySample ?
@@ -178,7 +178,7 @@ function outlines(low, high, time) {
   return {x, y};
 }
 
-// Bounds at +half and -half.
+// Two lines at +half and -half.
 export async function bounds(half, clockOf, shown) {
   const up = await line(half, clockOf, shown);
   return {up, down: {...up, y: up.y.map((v) => -v)}};

@@ -1,12 +1,12 @@
-// Statistics that the pages compute from C++'s numbers.
+// Statistics that the pages compute from the numbers of C++.
 
 export const isNumber = (v) => typeof v === 'number' && Number.isFinite(v);
 export const mean = (values) => values.reduce((a, b) => a + b, 0) / values.length;
 
-const enough = 20000;  // enough values of a list to estimate its quantiles
+const enough = 20000;  // number of values that is enough to estimate the quantiles of a list
 
-// The range of nearly all values in the lists. Outliers of badly determined windows are excluded, because they would
-// hide the other windows.
+// The range of nearly all values in the lists. Windows that determine the parameters badly give outliers. These are
+// excluded, because they would hide the other windows.
 export function usualRange(...lists) {
   const some = lists.flatMap((list) => {
     const step = Math.max(1, Math.floor(list.length / enough));
@@ -19,13 +19,13 @@ export function usualRange(...lists) {
   return [low - pad, high + pad];
 }
 
-// A score as a loss by its goal (study_page.cpp); smaller is better.
+// Converts a score to a loss according to its goal (study_page.cpp). A smaller loss is better.
 export function lossOf(goal, score) {
   if (!goal || goal.kind === 'higher') return -score;
   return goal.kind === 'lower' ? score : Math.abs(score - goal.nominal);
 }
 
-// Points {x, loss} such that no other point is better in both.
+// The points {x, loss} for which no other point is better in both numbers.
 export function paretoFront(points) {
   const front = [];
   for (const point of [...points].sort((a, b) => a.x - b.x || a.loss - b.loss)) {

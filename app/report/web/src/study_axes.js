@@ -1,11 +1,12 @@
-// Columns of a study as axes of plots, and the common state of the plots. `context` of a plot: {study, shown: {rows,
+// Columns of a study as axes of plots, and state that the plots share. `context` of a plot: {study, shown: {rows,
 // listeners}, showRun(row)}.
 import {choice} from './elements.js';
 import {plainValue} from './ordering.js';
 import {columnTitle} from './score_names.js';
 import {isNumber} from './statistics.js';
 
-// Values of a column over the study: numbers in rising order if all are numbers, else in the study's order.
+// Values of a column over the study. They are increasing numbers if all values are numbers, else they have the study's
+// order.
 export function axisOf(study, name) {
   const i = study.columns.findIndex((column) => column.name === name);
   const of = (row) => plainValue(row.cells[i]);
@@ -17,7 +18,7 @@ export function axisOf(study, name) {
   return {name, of, numeric, levels, position, goal, label: columnTitle(name)};
 }
 
-// Names of the columns of a kind (varied, score, cost).
+// Names of the columns of one kind (varied, score or cost).
 export const namesOf = (study, kind) => study.columns.filter((column) => column.kind === kind).map(({name}) => name);
 export const positionOf = (list, wanted) => Math.max(0, list.indexOf(wanted));
 
@@ -26,7 +27,7 @@ export function scoreChoice(study, begin, onchange) {
   return choice('Score', scores.map(columnTitle), positionOf(scores, begin), (i) => onchange(scores[i]));
 }
 
-// Two summaries of a value over all other keys: the best score, which agrees with the verdict, or the mean.
+// A value has runs for all other keys. They are summarised by the best score, as in the verdict, or by the mean.
 const ways = [['best', 'best over the other keys'], ['mean', 'average over the other keys']];
 export const wayWords = {
   best: 'best',
@@ -34,7 +35,7 @@ export const wayWords = {
 };
 export const wayChoice = (onchange) => choice('Show', ways.map(([, text]) => text), 0, (i) => onchange(ways[i][0]));
 
-// Redraws the figure when the shown runs change.
+// Draws the figure again when other runs are shown.
 export function follow(context, element) {
   context.shown.listeners.push(() => element.update());
 }

@@ -1,4 +1,4 @@
-// Is the best setting of a study better than the next ones?
+// The section that answers whether the best setting of a study is better than the next settings.
 import {h} from './elements.js';
 import {section} from './page.js';
 import {table} from './table.js';

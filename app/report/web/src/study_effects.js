@@ -1,4 +1,4 @@
-// Main effects of a study: scores by the values of each varied key.
+// Main effects of a study: scores for each value of each varied key.
 import {figure} from './chart.js';
 import {controls, h} from './elements.js';
 import {palette} from './look.js';
@@ -7,9 +7,9 @@ import {bestCell, bestSetting, levelOf, reached, settingsOf} from './settings.js
 import {isNumber} from './statistics.js';
 import {axisOf, follow, namesOf, scoreChoice, wayChoice, wayWords} from './study_axes.js';
 
-const spread = 0.16;  // share of a level's width over which its runs are scattered
+const spread = 0.16;  // width over which the runs of a level are scattered, relative to the width of the level
 
-// Runs as dots, a line at each level's summary, and a star at the best.
+// Runs as dots, a line at the summary of each level, and a star at the best level.
 function effectMarks(axis, score, rows, by, showRun) {
   const level = (row) => axis.position.get(axis.of(row));
   const strewn = (row) => level(row) + spread * (((row.number * 0.618) % 1) - 0.5);
@@ -36,8 +36,7 @@ function effectMarks(axis, score, rows, by, showRun) {
   ];
 }
 
-// The range in which levels differ, so that one bad level of another key does not flatten the lines. Null means all
-// values.
+// The range in which levels differ. Without it, one bad level of another key would flatten the lines. Null: all values.
 function usefulRange(axes, score, rows, by) {
   const settings = settingsOf(rows, score);
   const values =

@@ -1,4 +1,4 @@
-// The page of a study: a table of runs with sorting and filters, and the effects of the varied keys on scores.
+// The page of a study: a table of runs with sorting and filters, and the effects of varied keys on scores.
 import {copyButton, details, facts, h, note} from './elements.js';
 import {draw, head, section} from './page.js';
 import {pageData} from './page_data.js';
@@ -36,7 +36,7 @@ function drawVerdict(study, showRun) {
                      h('p', {}, h('button', {type: 'button', id: 'show-best', onclick: show}, 'Show the best run')));
 }
 
-// [key, value] pairs with which the run can be repeated.
+// [key, value] pairs of the configuration that repeats the run.
 function configurationOf(study, row) {
   return [...study.varied.map(({key}, i) => [key, String(row.varied[i])]), ['job.seed', String(row.seed)]];
 }
@@ -47,7 +47,7 @@ function archiveOf(row) {
   return h('span', {}, 'Its page is made by ', h('code', {}, `modebank report ${row.archive}`));
 }
 
-// One run: its configuration, its scores, and its page or the command that makes it.
+// One run: its configuration, its scores, and its page or the command that makes this page.
 function runDetail(study, row) {
   const configuration = configurationOf(study, row);
   const scores = study.columns.map((column, i) => ({name: columnTitle(column.name), cell: row.cells[i]}))
@@ -71,7 +71,7 @@ function markChosen(row) {
 
 draw(async () => {
   const data = pageData(), {study} = data;
-  const shown = {rows: study.rows, listeners: []};  // the runs that pass the filters; all plots show these
+  const shown = {rows: study.rows, listeners: []};  // runs that pass the filters; all plots show these runs
   const detail = h(
       'div', {id: 'run-detail', tabindex: -1, 'aria-live': 'polite'}, note('Choose a run in the table or in a plot.'));
   let chosen = null;

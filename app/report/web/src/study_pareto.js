@@ -1,4 +1,4 @@
-// Pareto plot of a study: a score against a cost, with the front marked.
+// Pareto plot of a study: a score against a cost. The Pareto front is marked.
 import {figure} from './chart.js';
 import {choice, controls} from './elements.js';
 import {palette} from './look.js';
@@ -9,7 +9,7 @@ import {axisOf, follow, namesOf, scoreChoice} from './study_axes.js';
 
 const shown = (v) => Number(v.toPrecision(5));
 
-// `points`: {x, y, row}; `look`: further properties of the mark.
+// `points`: {x, y, row}. `look`: other properties of the mark.
 function runsMark({study, showRun}, points, look) {
   const varied = (row) => study.varied.map(({key}, i) => `${key} = ${row.varied[i]}`);
   const tip = (i) => {
@@ -28,7 +28,7 @@ function runsMark({study, showRun}, points, look) {
   };
 }
 
-// The range of the front, and as much again below: runs far below would flatten the front.
+// The range of the front, extended downwards by its own height. Runs far below the front would flatten it.
 function rangeAround(points, front) {
   const values = front.map((p) => p.y), all = points.map((p) => p.y);
   const low = Math.min(...values), high = Math.max(...values), room = high - low;

@@ -1,5 +1,5 @@
-// The table of a study's runs. A click on a heading sorts, text under a heading filters, a click or Enter on a row
-// chooses the run. Repeats of a setting share one row unless the reader selects single runs.
+// The table of a study's runs. A click on a heading sorts, text below a heading filters, and a click or Enter on a row
+// selects the run. All repeats of a setting share one row, unless the reader chooses single runs.
 import {check, controls, details, h} from './elements.js';
 import {filterOf} from './filter_text.js';
 import {sortedRows} from './ordering.js';
@@ -7,10 +7,10 @@ import {groupedRows} from './repeats.js';
 import {columnTitle} from './score_names.js';
 import {ariaSort, cellOf, headingOf, pressed, scrolling, sortButton} from './table.js';
 
-const at_once = 30;  // number of rows at first
+const at_once = 30;  // number of rows that are shown at first
 
 class StudyTable {
-  // `reader`: filter(rows), showRun(row), chosen() => row.
+  // `reader`: an object with filter(rows), showRun(row) and chosen() => row.
   constructor(study, reader) {
     this.study = study;
     this.reader = reader;
@@ -27,7 +27,7 @@ class StudyTable {
     this.more = h('button', {type: 'button', onclick: () => this.showMore()}, 'Show more');
   }
 
-  // Varied keys first, then the verdict's score, the number of modes and the rest.
+  // The order of columns: varied keys, the verdict's score, the number of modes, all others.
   inOrder(columns) {
     const place = ({kind, name}) =>
         (kind === 'varied'                      ? 0 :
@@ -39,7 +39,7 @@ class StudyTable {
         .map(([, , column]) => column);
   }
 
-  // Sorts by the verdict's score, the best first.
+  // Sorts by the score of the verdict, the best first.
   bestFirst() {
     const column = this.columns.find(({name}) => name === this.study.standard_score) || null;
     return {column, down: Boolean(column && (!column.goal || column.goal.kind === 'higher'))};
@@ -78,14 +78,14 @@ class StudyTable {
     this.more.hidden = !cut;
   }
 
-  // Rows of the table: runs, or settings with their repeats.
+  // Rows of the table: single runs, or settings with all their repeats.
   lines() {
     const rows = this.grouped ? groupedRows(this.study.columns, this.rows) : this.rows;
     const {column, down} = this.order;
     return column ? sortedRows(rows, column.of, down) : rows;
   }
 
-  // Filters and sorts the rows again.
+  // Applies filters and order to the rows again.
   update() {
     const tests = this.columns.filter(({filter}) => filter.trim()).map(({filter, of}) => [filterOf(filter), of]);
     this.rows = this.study.rows.filter((row) => tests.every(([test, of]) => test(of(row))));
@@ -117,7 +117,7 @@ class StudyTable {
              }));
   }
 
-  // Headings and the fields under them.
+  // The headings and the input fields below them.
   frame() {
     this.headings.replaceChildren(...this.visible().map((column) => this.heading(column)));
     this.inputs.replaceChildren(...this.visible().map((column) => this.input(column)));

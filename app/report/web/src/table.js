@@ -1,4 +1,4 @@
-// Tables with headings that sort.
+// Tables that can be sorted by their headings.
 import {downloads, tableFile} from './downloads.js';
 import {h, swatch, value} from './elements.js';
 import {sortedRows} from './ordering.js';
@@ -16,17 +16,17 @@ export function cellOf(column, row) {
   return cell;
 }
 
-// `content`: the heading's text, or the button that sorts by it. Both have a tip with the column's meaning.
+// `content`: the text of the heading, or the button that sorts. Both have a tip that explains the column.
 export function headingOf(column, attributes, content) {
   const told = content instanceof Element ? describe(content, meaningOf(column.name)) : headingWithTip(content);
   return h('th', {scope: 'col', class: column.text || column.prose ? 'text' : null, ...attributes}, told);
 }
 
-// A heading's button; `order`: the table's present order {column, down}.
+// The button of a heading. `order`: the present order of the table, {column, down}.
 export const sortButton = (onclick, ...content) => h('button', {type: 'button', onclick}, content);
 export const ariaSort = (order, column) => (order.column === column ? (order.down ? 'descending' : 'ascending') : null);
 
-// The order after a press on a heading: ascending by its column, then descending.
+// The order after a click on a heading: first ascending by its column, then descending.
 export function pressed(order, column) {
   return {column, down: order.column === column && !order.down};
 }
@@ -35,7 +35,7 @@ export const scrolling = (label, element) =>
     h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label}, element,
       downloads(label, {csv: () => tableFile(element)}));
 
-// options: caption, chosen: row => bool, sortable.
+// `options`: caption, chosen: row => bool, sortable.
 export function table(columns, rows, options = {}) {
   const body = h('tbody'), headings = h('tr');
   let order = {column: null, down: false};

@@ -1,4 +1,4 @@
-// Definitions of terms, in the words of `modebank help TERM`.
+// Definitions of terms, in the same words as `modebank help TERM`.
 import terms from '../terms.json';
 
 import {Glossary} from './glossary.js';

@@ -1,4 +1,4 @@
-// Geometry of a time plot's panels: their inside, scales and ticks.
+// Geometry of the panels of a time plot: inner area, scales and ticks.
 import scaleLinear from 'd3-scale/src/linear.js';
 import scaleLog from 'd3-scale/src/log.js';
 

@@ -1,4 +1,4 @@
-// One panel of a plot over time, drawn by a pen.
+// Draws one panel of a time plot with a pen.
 import {extent, margins, timeScale, valueScale} from './time_axes.js';
 
 /**
@@ -14,9 +14,9 @@ import {extent, margins, timeScale, valueScale} from './time_axes.js';
  * @typedef {{ink: string, faint: string, ground: string, mark: string}} Look
  */
 
-export const axis_px = 34;  // height of the time axis, below the last panel
+export const axis_px = 34;  // height of the time axis below the last panel
 const above = 6, below = 6;
-const least_px = 0.05;  // thinner shares are invisible
+const least_px = 0.05;  // smallest height that is drawn; a thinner share would be invisible
 
 const known = (v) => v !== null && !Number.isNaN(v);
 

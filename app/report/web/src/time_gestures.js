@@ -1,5 +1,6 @@
-// Pointer actions on a time plot: a mouse drags a window of time; with Shift, or a finger, it moves the view.
-const still_px = 4;  // a press with less movement is a click
+// Pointer actions on a time plot. Dragging with the mouse selects a window of time. Dragging with Shift, or with a
+// finger, moves the view.
+const still_px = 4;  // a press with less movement counts as a click
 const wheel_rate = 0.0015;
 
 /**
@@ -50,7 +51,7 @@ export function listenToPointer(plot, state, place) {
   listenToWheel(plot, state, place);
 }
 
-// The wheel scrolls the page until the plot was clicked, unless Ctrl is pressed.
+// The wheel scrolls the page until the user clicks on the plot. With Ctrl it always acts on the plot.
 function listenToWheel(plot, state, place) {
   plot.addEventListener('wheel', (event) => {
     if (!event.ctrlKey && document.activeElement !== plot) return;

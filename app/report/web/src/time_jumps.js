@@ -1,9 +1,9 @@
-// Jumps to interesting samples: a filter's largest errors, and changes of the likeliest mode.
+// Buttons that jump to interesting samples: the largest errors of a filter, and changes of the most probable mode.
 import {h} from './elements.js';
 import {secondsText, shortNumber} from './number_text.js';
 import {array} from './page_data.js';
 
-const stretches = 2000;  // largest number of parts of a run, each with one worst sample
+const stretches = 2000;  // largest number of parts of a run; each part has one largest error
 const most_worst = 20;
 
 const finest = (signal) => (signal.raw ? {bucket: 1, low: signal.raw, high: signal.raw} : signal.levels[0]);

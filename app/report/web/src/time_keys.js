@@ -1,10 +1,10 @@
-// Keys of a time plot with the focus, and the list of them on the page.
+// Keys of a time plot that has the focus, and the list of these keys on the page.
 import {details, facts} from './elements.js';
 
 const coarse_steps = 10;
 const pixels_across = 500;
 
-// One step of the crosshair: a sample, or a share of the view if that shows more samples than pixels.
+// One step of the crosshair. It is a sample, or a share of the view if the view has more samples than pixels.
 function step(state, direction, coarse) {
   const [from, to] = state.shown(), {start, end, samples} = state.current.time;
   const by = Math.max((end - start) / Math.max(1, samples - 1), (to - from) / pixels_across);
@@ -19,7 +19,7 @@ const edge = (state, which) => {
   if (which === 'to' && state.at > from) state.zoom([from, state.at]);
 };
 
-// [names of keys in events, name for people, description, action]
+// [names of the keys in events, name for people, description, action]
 /**
  * @type {[string[], string, string, (state: import('./time_state.js').TimeState, event: KeyboardEvent) => unknown][]}
  */

@@ -1,4 +1,4 @@
-// Panels over time, one above the other, each below the readout of its signals.
+// Panels over time, one above the other. Above each panel is the readout of its signals.
 import {downloads} from './downloads.js';
 import {h, s, swatch} from './elements.js';
 import {canvasLook, coloured, groundNow} from './look.js';
@@ -12,7 +12,7 @@ import {listenToPointer} from './time_gestures.js';
 import {listenToKeys} from './time_keys.js';
 import {inTurn, whenNear} from './turns.js';
 
-const title_px = 22;  // height of a panel's title in a file
+const title_px = 22;  // height of a panel's title in an exported file
 
 /** Resolves at the next frame, or at once in a hidden page, which has no frames. */
 const nextFrame = () => new Promise((done) => (document.hidden ? done() : requestAnimationFrame(() => done())));
@@ -59,7 +59,7 @@ class TimePlot {
     this.saidIn = null;
   }
 
-  // A heading with a readout and a canvas for each row; rebuilt only if the rows have changed.
+  // Makes a heading with a readout and a canvas for each row. They are made again only if the rows have changed.
   fit(rows) {
     const same = rows.length === this.panels.length && rows.every((row, i) => row.title === this.panels[i].title);
     if (same) return;
@@ -76,7 +76,7 @@ class TimePlot {
     this.plot.replaceChildren(...this.panels.flatMap(({head, canvas}) => [head, canvas]), this.crosshair, this.chosen);
   }
 
-  // Content of the rows for a plot of this width in pixels.
+  // Content of the rows for a plot of `width` pixels.
   async contents(rows, width) {
     const {state} = this, range = state.shown(), clock = await state.clock(), {left, right} = margins(width);
     const seen = {run: state.current, clock, shown: view(clock, range, width - left - right), range};
@@ -124,13 +124,13 @@ class TimePlot {
     if (!hidden) this.crosshair.style.left = `${this.scale().to(at)}px`;
   }
 
-  // The readout: every signal's value at the crosshair; without a crosshair only names.
+  // Writes the readout: the value of every signal at the crosshair. Without a crosshair it has only names.
   async read() {
     const {at, current} = this.state, clock = await this.state.clock(), k = at === null ? -1 : clock.near(at);
     const rows = this.rows();
     const entries = await Promise.all(rows.map((row) => row.read(current, k)));
     if (rows.length !== this.panels.length) return;
-    // Writes only changes; otherwise every frame of a drag would lay out the whole page.
+    // Writes only changes. Otherwise every frame of a drag would cause a new layout of the page.
     const said = JSON.stringify([at, k, entries]);
     if (said === this.said && this.panels === this.saidIn) return;
     Object.assign(this, {said, saidIn: this.panels});
@@ -147,7 +147,7 @@ class TimePlot {
     this.chosen.style.width = `${Math.abs(span[1] - span[0])}px`;
   }
 
-  // Draws the whole figure: `begin(top)` returns the pen of a panel, with its origin at the panel's corner.
+  // Draws the whole figure. `begin(top)` returns the pen of a panel, with its origin at the panel's corner.
   async drawFile(width, begin) {
     const rows = this.rows(), parts = await this.contents(rows, width), colours = canvasLook();
     let top = 0;
@@ -201,7 +201,7 @@ function uniqueNames(traces) {
   return [...seen.values()].slice(0, 8);
 }
 
-// `rows()`: rows of time_rows.js, from top to bottom; `jumps`: further keys (time_keys.js).
+// `rows()`: the rows of time_rows.js, from top to bottom. `jumps`: more keys (time_keys.js).
 export function timePlot(state, label, rows, caption, jumps = []) {
   const it = new TimePlot(state, label, rows), {plot} = it;
   const files = downloads(label, {svg: () => it.svg(), png: () => it.png()});

@@ -1,9 +1,9 @@
 // Rows of time plots: states with predictions, inputs, mode probabilities, innovations, NIS. A layer draws one filter:
 // {of: run => its filter or null, prefix: '', band, line: colours, nis: colour, stroke: {dash}, symbol}. A page of one
-// run has one layer, a page that compares runs has several.
+// run has one layer. A page that compares runs has several layers.
 //
 // A row is {title, height, draw: async ({run, clock, shown, range}) => traces, read: async (run, k) => entries, range,
-// log, levels}. `read` returns the signals' values at sample k; for k = -1 the entries are a legend.
+// log, levels}. `read` returns the values of the signals at sample k. For k = -1 it returns entries of a legend.
 import {INK, modeColour, palette, translucent} from './look.js';
 import {modeTitle, rankOf} from './mode_names.js';
 import {array} from './page_data.js';
@@ -19,7 +19,7 @@ const told_modes = 4;
 
 export const titleOf = ({name, unit}) => (unit ? `${name} [${unit}]` : name);
 
-// An entry of a row's readout; only name and colour if k < 0.
+// An entry in the readout of a row. For k < 0 it has only a name and a colour.
 async function told(signal, k, entry) {
   return k < 0 || !signal ? entry : {...entry, value: await valueAt(signal, k)};
 }
@@ -37,7 +37,7 @@ async function toldBand(filter, i, k, entry) {
 
 async function predictionTraces(layer, filter, i, {clock, shown}) {
   const edges = {
-    center: (filter.center || filter.prediction)[i],  // a free run's band need not be symmetric
+    center: (filter.center || filter.prediction)[i],  // the band of a free run need not be symmetric about the prediction
     half: filter.half_width[i],
     lowest: filter.lower[i],
     highest: filter.upper[i],
@@ -109,7 +109,8 @@ function stateEntries(layers, i, unit, run, k) {
   return Promise.all(entries);
 }
 
-// Measured state i with each layer's band and prediction, and the truth; outliers only with a single layer.
+// Measured state i with the band and prediction of each layer, and the true state. Outliers are drawn only if there is
+// a single layer.
 export function stateRow(runs, i, layers, height = 230) {
   return {
     title: titleOf(runs.states[i]),
@@ -119,7 +120,7 @@ export function stateRow(runs, i, layers, height = 230) {
   };
 }
 
-// Inputs with the same unit, in one row; their colours differ from those of modes.
+// All inputs with the same unit in one row. Their colours differ from the colours of modes.
 export function inputRows(runs) {
   const look = (k) => ({
     colour: palette.inputs[k % palette.inputs.length],
@@ -138,7 +139,7 @@ export function inputRows(runs) {
   });
 }
 
-// The likeliest modes at sample k, sorted by probability.
+// The most probable modes at sample k, sorted by probability.
 async function modeEntries(filter, k, colourOf) {
   const byUse = filter.probability.map((_, mode) => mode).sort((a, b) => rankOf(a) - rankOf(b));
   const shares = await Promise.all(
@@ -147,12 +148,12 @@ async function modeEntries(filter, k, colourOf) {
   return shares.filter(({value}) => value.low > 0.005).sort((a, b) => b.value.low - a.value.low).slice(0, told_modes);
 }
 
-// `of`: run => the filter. `title` and the modes' colours differ on pages with several filters.
+// `of`: run => the filter. Pages with several filters pass another title and other colours.
 export function probabilityRow(of, title = 'probability of the modes', colourOf = modeColour) {
   const draw = ({run, clock, shown}) => {
     const filter = of(run);
     if (!filter || !filter.probability) return [];
-    // Most used modes first, as in tables and legends.
+    // The most used modes come first, as in tables and legends.
     const order = filter.probability.map((_, k) => k).sort((a, b) => rankOf(a) - rankOf(b));
     return Promise.all(order.map(async (k) => {
       const curve = await share(filter.probability[k], clock, shown);

@@ -1,16 +1,20 @@
-// Common state of all time plots of a page.
+// State that all time plots of a page share.
 import {clock} from './signals.js';
 
-const fewest_samples = 4;    // smallest number of samples in a view
-const around_samples = 200;  // samples on either side of the target, when a jump starts from the whole run
+const fewest_samples = 4;    // smallest number of visible samples
+const around_samples = 200;  // after a jump from the view of the whole run, the view shows this number of samples on each side
 
 /**
  * @typedef {{refresh: () => Promise<unknown>, point?: () => void}} View a plot, a field or the link, which shows the\n
  * state
  */
 
-// run; range: [from, to] in seconds, or null for the whole run; mark: [from, to] or null; at: the crosshair's time or
-// null. `changed` notifies views of changes, `pointed` of the crosshair.
+// Members:
+// run;
+// range: [from, to] in seconds, or null for the whole run;
+// mark: [from, to] or null;
+// at: time of the crosshair or null.
+// `changed` notifies views of all changes, `pointed` only of changes of the crosshair.
 export class TimeState {
   constructor(runs) {
     this.runs = runs;
@@ -53,7 +57,7 @@ export class TimeState {
     Object.assign(this, {run, range, mark, at: null});
     return this.changed();
   }
-  // Keeps a range inside the run.
+  // Limits a range to the run.
   inside(range) {
     const [start, end] = this.whole(), samples = Math.max(1, this.current.time.samples);
     const least = Math.min(end - start, fewest_samples * (end - start) / samples);
@@ -70,7 +74,7 @@ export class TimeState {
     const [a, b] = this.shown(), by = share * (b - a);
     return this.zoom([a + by, b + by]);
   }
-  // `about`: the time that keeps its position on the screen.
+  // `about`: the time that stays at the same place on the screen.
   scale(factor, about = null) {
     const [a, b] = this.shown(), center = about === null ? (a + b) / 2 : about;
     return this.zoom([center - factor * (center - a), center + factor * (b - center)]);
@@ -79,13 +83,13 @@ export class TimeState {
     this.mark = null;
     return this.zoom(this.whole());
   }
-  // Moves the crosshair to the sample next to a time; null removes it.
+  // Moves the crosshair to the sample nearest to time t; null removes the crosshair.
   async point(t) {
     const clockOf = await this.clock();
     this.at = t === null ? null : clockOf.at(clockOf.near(t));
     this.pointed();
   }
-  // Moves the crosshair and the middle of the view to a time.
+  // Moves the crosshair and the middle of the view to time t.
   async jump(t) {
     const [start, end] = this.whole(), period = (end - start) / Math.max(1, this.current.time.samples);
     const half = this.range ? (this.range[1] - this.range[0]) / 2 : around_samples * period;

@@ -1,4 +1,4 @@
-// Time plots with a common run and view, and their controls.
+// Time plots that share a run and a view, and their controls.
 import {choice, h} from './elements.js';
 import {roleOf} from './filters.js';
 import {shortName} from './run_names.js';
@@ -8,7 +8,7 @@ export {TimeState} from './time_state.js';
 
 const shortTime = (t) => String(Number(t.toFixed(4)));
 
-// Two fields for the first and the last visible time.
+// Two fields for the start and the end of the visible time.
 function windowFields(state) {
   const field = (label, i) => {
     const input = h('input', {type: 'number', step: 'any', class: 'seconds', 'aria-label': `${label}, in seconds`});
@@ -32,7 +32,7 @@ function windowFields(state) {
   return h('span', {class: 'window-fields'}, fields[0], ' to ', fields[1], ' s');
 }
 
-// The mouse actions of a plot, for keyboards and screen readers.
+// Buttons for the mouse actions of a plot, for users of keyboards and screen readers.
 export function timeControls(state) {
   const button = (text, label, act) =>
       h('button', {type: 'button', 'aria-label': label, title: label, onclick: act}, text);
@@ -46,7 +46,7 @@ export function timeControls(state) {
   ];
 }
 
-// A drop-down of the runs.
+// A drop-down list of the runs.
 export function runChoice(state) {
   return choice(
       'Run', state.runs.map((run) => `${shortName(run.name)} (${roleOf(run.role)})`), state.run,

@@ -1,4 +1,4 @@
-// Definitions of terms, on hover and on focus: the words of `modebank help TERM`.
+// Shows the definition of a term on hover and on focus, in the same words as `modebank help TERM`.
 import {h} from './elements.js';
 import {meaningOf, termsIn} from './terms.js';
 

@@ -1,4 +1,4 @@
-// Scheduling of figures: near the window, and one after the other.
+// Order in which figures are drawn: those near the visible part first, one after the other.
 
 let turn = Promise.resolve();
 /** Runs a task after the earlier ones, so that the first figure appears before a large one starts. */

@@ -1,4 +1,5 @@
-// The part of a page's address with the view of its time plots: #view?run=...&from=...&to=...&at=...&filter=...
+// The part of a page's address that contains the view of its time plots:
+// #view?run=...&from=...&to=...&at=...&filter=...
 
 const prefix = '#view?';
 const text = (seconds) => String(Number(seconds.toFixed(6)));

@@ -1,4 +1,4 @@
-// Local models as points of a cloud: their groups, Gaussians and visibility. Draws nothing.
+// Local models as points of a cloud: their groups, Gaussians and visibility. This file does not draw.
 import {part} from './ellipse.js';
 import {modeCell, modeTitle, rankOf} from './mode_names.js';
 
@@ -26,7 +26,7 @@ export class WindowCloud {
     this.count = this.run.length;
     this.axes = windows.default_axes;
     this.by = this.firstGrouping();
-    this.showAll = false;  // also outlying windows
+    this.showAll = false;  // whether outlying windows are also shown
     this.showBank = true;
     this.picked = -1;
     this.hidden = new Set();  // hidden groups
@@ -46,7 +46,7 @@ export class WindowCloud {
     return list ? list[i] : -1;
   }
 
-  // [group, its windows]: components in order, modes by use, windows without a group first.
+  // [group, its windows]. Windows without a group come first, then components in order, or modes by use.
   groups() {
     const lists = new Map();
     for (let i = 0; i < this.count; ++i) {
@@ -63,7 +63,7 @@ export class WindowCloud {
     return this.by === 'none' ? 'windows' : 'not clustered';
   }
 
-  // The extent of a group over the axes.
+  // The extent of a group along the axes.
   reach(list, axes) {
     const some = list.filter((_, j) => j % Math.max(1, Math.floor(list.length / 300)) === 0);
     return axes.reduce((product, a) => {
@@ -72,7 +72,7 @@ export class WindowCloud {
     }, 1);
   }
 
-  // The visible groups. Wide groups are drawn first; otherwise they would hide the narrow ones.
+  // The visible groups. Wide groups are drawn first, so that they do not hide narrow groups.
   shownGroups(axes) {
     return this.groups()
         .filter(([key]) => !this.hidden.has(key))
@@ -80,12 +80,12 @@ export class WindowCloud {
         .sort((a, b) => b.reach - a.reach);
   }
 
-  // Whether all these axes are parameters, which have standard errors and exist in the bank.
+  // Whether all axes are parameters. Only parameters have standard errors and exist in the bank.
   parametersOnly(axes) {
     return axes.every((a) => a < this.windows.parameters);
   }
 
-  // Entry of window i's error covariance, which is stored as its lower triangle, row by row.
+  // Entry (a, b) of the error covariance of window i. The covariance is stored as its lower triangle, row by row.
   covarianceOf(i, a, b) {
     const row = Math.max(a, b), column = Math.min(a, b);
     return this.covariance[(row * (row + 1)) / 2 + column][i];
@@ -97,7 +97,7 @@ export class WindowCloud {
     return axes.map((a) => this.values[a][i]);
   }
 
-  // The Gaussians of the visible groups: mixture components, or the covariance of the bank's modes.
+  // The Gaussians of the visible groups: mixture components, or the bank's modes with their covariance.
   ellipses(axes) {
     const {components, bank, parameters, axes: named} = this.windows;
     if (this.by === 'none') return [];
@@ -117,7 +117,7 @@ export class WindowCloud {
     return `run ${this.runs[this.run[i]]}, ${this.begin[i].toFixed(3)} to ${this.end[i].toFixed(3)} s`;
   }
 
-  // Description of a window: its parameters with their standard errors, and its groups.
+  // Description of a window: its parameters with standard errors, and its groups.
   described(i) {
     const numbers = this.windows.axes.map((axis, a) => {
       const known = this.covariance && a < this.windows.parameters;

@@ -17,7 +17,7 @@ const panel = {
   marks: [points]
 };
 
-// Whether texts that are centred at these places in a row do not overlap.
+// Whether texts centred at these places in a row do not overlap.
 function clear(places, width) {
   return places.every((place, i) => i === 0 || Math.abs(place - places[i - 1]) >= width);
 }

@@ -10,7 +10,7 @@ test('colours mix channel by channel', () => {
   assert.equal(mixed('#000000', '#ffffff', 0.5), '#808080');  // 127.5 rounds up
   assert.equal(mixed('#102030', '#ffffff', 0), '#102030');
   assert.equal(mixed('#102030', '#ff00ff', 1), '#ff00ff');
-  assert.equal(mixed('#6496c8', '#000000', 0.25), '#4b7196');  // 100, 150, 200 by 3/4: 75, 112.5, 150
+  assert.equal(mixed('#6496c8', '#000000', 0.25), '#4b7196');  // 3/4 of 100, 150, 200: 75, 112.5, 150
 });
 
 test('the palette comes again darker, then lighter, then as it was', () => {

@@ -3,7 +3,7 @@ import {test} from 'node:test';
 
 import {ellipseLine, factor, part} from '../src/ellipse.js';
 
-// (x - mean)' C^-1 (x - mean) by Cramer's rule for two variables, and by an explicit inverse for three.
+// (x - mean)' C^-1 (x - mean), for two variables by Cramer's rule, and for three by an explicit inverse.
 const covariance = [[4, 2, 0], [2, 3, 0], [0, 0, 0.25]];
 const inverse = [[3 / 8, -2 / 8, 0], [-2 / 8, 4 / 8, 0], [0, 0, 4]];
 const distance = (d) => d.reduce((sum, a, i) => sum + a * d.reduce((row, b, j) => row + inverse[i][j] * b, 0), 0);

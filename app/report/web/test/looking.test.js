@@ -27,7 +27,7 @@ test('the worst of each stretch, the worst first', () => {
   const values = new Float32Array(10000).fill(NaN);
   Object.assign(values, {7: 3, 9: 4, 5000: 9, 9999: 5});
   assert.deepEqual(greatest(values, 2), [{at: 5000, value: 9}, {at: 9999, value: 5}]);
-  assert.deepEqual(greatest(values).map(({at}) => at), [5000, 9999, 9]);  // 7 and 9 are in the same part
+  assert.deepEqual(greatest(values).map(({at}) => at), [5000, 9999, 9]);  // samples 7 and 9 are in the same part
 });
 
 test('a change of the likeliest mode is where another becomes the greatest', () => {
@@ -61,7 +61,7 @@ test('keys lead the crosshair and let the view begin and end there', async () =>
     await new Promise(setImmediate);
   };
   await press('ArrowLeft');
-  assert.ok(Math.abs(state.at - 4.98) < 1e-9);  // a five-hundredth of the view
+  assert.ok(Math.abs(state.at - 4.98) < 1e-9);  // one step is a five-hundredth of the view
   await press('[');
   assert.deepEqual(state.range, [state.at, 10]);
   await press('ArrowRight', true);

@@ -16,7 +16,7 @@ test('pairs that differ come first, those of one bank alone last', () => {
 });
 
 test('what a pair differs in', () => {
-  assert.equal(differingWords(pair(0, 1, null, false), [], 'B'), '–');  // modes of different models
+  assert.equal(differingWords(pair(0, 1, null, false), [], 'B'), '–');  // the modes belong to different models
   assert.equal(differingWords(modes[1], ['A [1/s]', 'B'], 'B'), 'differ in A (8.0), B (-2.5)');
   assert.equal(differingWords(modes[0], ['A', 'B'], 'B'), 'agree within their errors');
   assert.equal(differingWords(modes[2], ['A', 'B'], 'C'), 'only in A');
@@ -31,7 +31,7 @@ test('matched modes share the colour of the first bank, others come after it', (
   ];
   const [a, b, c] = matchedRanks(banks, matches);
   assert.deepEqual(a, [1, 2, 0, Infinity]);
-  // Mode 3 matches a merged mode of A, mode 2 matches none. Both get the next colours, in the order of use.
+  // Mode 3 matches a merged mode of A; mode 2 has no match. Both get the next colours, in the order of their use.
   assert.deepEqual(b, [2, 1, 4, 3]);
   assert.deepEqual(c, [0]);
   assert.deepEqual(matchedRanks([null, banks[2]], [{modes: [], difference: ''}]), [[], [0]]);

@@ -5,7 +5,7 @@ import {groupedRows} from '../src/repeats.js';
 import {columnTitle} from '../src/score_names.js';
 import {bestCell, levelOf, reached, settingsOf} from '../src/settings.js';
 
-// K is 1, 2 or 3, and a filter is good or bad. With the bad one few components are best, with the good one many.
+// K is 1, 2 or 3, and a filter is good or bad. Few components are best with the bad filter, many with the good filter.
 const scores = {
   good: [1.0, 1.4, 1.6],
   bad: [-1.0, -2.0, -5.0]

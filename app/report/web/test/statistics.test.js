@@ -4,7 +4,7 @@ import {test} from 'node:test';
 import {lossOf, paretoFront, usualRange} from '../src/statistics.js';
 
 test('the usual range leaves the outermost hundredth of either side out', () => {
-  const values = Float32Array.from({length: 101}, (_, i) => i);  // percentiles 1 and 99 are 1 and 99
+  const values = Float32Array.from({length: 101}, (_, i) => i);  // percentiles 1 and 99 have the values 1 and 99
   values[100] = 1e9;
   const [low, high] = usualRange(values);
   assert.ok(Math.abs(low - (1 - 0.12 * 98)) < 1e-9);
@@ -27,7 +27,7 @@ test('losses by goal', () => {
 
 test('the Pareto front holds what no other point beats in both', () => {
   const points = [[1, 5], [2, 5], [2, 3], [3, 4], [4, 1], [4, 1], [5, 1]].map(([x, loss]) => ({x, loss}));
-  // The definition, point by point: no other point is at least as good in both and better in one.
+  // The definition, for each point: no other point is at least as good in both numbers and better in one.
   const beaten = (p) => points.some((q) => q.x <= p.x && q.loss <= p.loss && (q.x < p.x || q.loss < p.loss));
   const best = new Set(points.filter((p) => !beaten(p)).map(({x, loss}) => `${x} ${loss}`));
   assert.deepEqual(paretoFront(points).map(({x, loss}) => `${x} ${loss}`), [...best]);

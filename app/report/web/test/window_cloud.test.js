@@ -3,7 +3,7 @@ import {test} from 'node:test';
 
 import {digits, WindowCloud} from '../src/window_cloud.js';
 
-// Four windows of a model with two parameters and another feature; component 1 has two of them.
+// Four windows of a model with two parameters and one other feature. Two windows belong to component 1.
 function cloudOf(windows = {}, arrays = {}) {
   const identity = [[1, 0], [0, 1]];
   const axes = [{name: 'A', unit: ''}, {name: 'B', unit: '1/s'}, {name: 'log q', unit: ''}];
@@ -46,7 +46,7 @@ test('windows without a group are drawn first, then wide groups before narrow on
 test('ellipses of components follow the axes, whatever order the features have', () => {
   const cloud = cloudOf();
   assert.deepEqual(cloud.ellipses([0, 1]), [{k: 0, mean: [20, 10], covariance: [[9, 1], [1, 4]]}]);
-  assert.deepEqual(cloud.ellipses([0, 2]), []);  // not a feature of the mixture
+  assert.deepEqual(cloud.ellipses([0, 2]), []);  // the mixture does not have this feature
 });
 
 test('error covariances are stored row by row below the diagonal', () => {
