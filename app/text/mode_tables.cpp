@@ -50,7 +50,7 @@ std::string time_words(const ModeFamily& family) {
   return mean ? estimate_text(slowest.time_constant_s, slowest.time_constant_error_s) + " s" : decay_words(slowest);
 }
 
-/// For a robot with two rows of wheels, the track width [m] of each family; empty for other systems.
+/// The track width [m] of each family, for a robot with two rows of wheels; empty for other systems.
 std::vector<std::string> track_cells(const Archive& archive, const std::vector<ModeFamily>& families) {
   if (!archive.recording) return {};
   const RobotBank robot{*archive.bank, archive.recording->states, archive.recording->inputs};
@@ -114,7 +114,7 @@ int widest_line(const std::string& text) {
   return widest;
 }
 
-/// Every mode with all of its decays.
+/// A table of all modes with all of their decays.
 std::string all_modes(const Archive& archive, const GainNames& gains, int width) {
   const std::vector<bool> open = unidentifiable_gains(archive, archive.bank->structure);
   const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
@@ -137,7 +137,8 @@ std::string all_modes(const Archive& archive, const GainNames& gains, int width)
   return text_of(headings, rows, !archive.mode_names.empty(), width);
 }
 
-/// Families with their modes, and the modes that enter their means; only if some family has several modes.
+/// A table of the families, with the modes of each family and the modes that enter its means. Empty unless some family
+/// has several modes.
 std::string all_families(const Archive& archive, const GainNames& gains, int width) {
   const std::vector<ModeFamily> families = mode_families(archive);
   if (!some_have_several(families)) return "";

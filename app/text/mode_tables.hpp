@@ -6,33 +6,34 @@
 #include "app/text/mode_families.hpp"
 #include "io/archive/archive.hpp"
 
-/// The bank's modes as tables. The first screen and the page show families; `show` also shows single modes.
+/// The bank's modes as tables. The first screen and the page show families. `show` also shows single modes.
 namespace modebank::app {
 
-/// The most used families as text, one row each: modes, use, stay, slowest time constant, gains.
+/// The most used families as text. Each row has modes, use, stay, slowest time constant and gains.
 struct ModeTable {
   struct Row {
-    std::vector<Index> modes;  ///< most used first
-    std::string title;         ///< of the family
+    std::vector<Index> modes;  ///< the family's modes, the most used mode first
+    std::string title;         ///< name of the family
     std::vector<std::string> cells;
   };
   std::vector<std::string> headings;
   std::vector<Row> rows;
-  Index families = 0;       ///< of the bank
-  Index others = 0;         ///< families that have no row
-  double others_use = 0.0;  ///< sum of their use
-  std::string gain_unit;    ///< common unit of all gains; empty if they have none or several
+  Index families = 0;       ///< number of families of the bank
+  Index others = 0;         ///< number of families without a row of their own
+  double others_use = 0.0;  ///< sum of the use of these families
+  std::string gain_unit;    ///< unit of all gains; empty if the gains have no unit or different units
 };
-/// At most `rows` rows; the last one may hold the other families. 0: all families that told_of counts.
+/// The table with at most `rows` rows. Its last row may stand for all other families. 0: all families that `told_of`
+/// counts.
 ModeTable mode_table(const Archive& archive, Index rows = 0);
 
-/// The same as text: a heading and at most `rows` lines of `width` columns. Gains without room are left out.
+/// The table as text: a heading and at most `rows` lines of `width` columns. Gains that do not fit are omitted.
 struct ShortModes {
   std::string text;
   Index gains_left_out = 0;
 };
 ShortModes short_modes(const Archive& archive, Index rows, int width);
-/// All families and all modes with all numbers, for `show`. width 0: no limit.
+/// All families and all modes with all numbers, for `show`. `width`: 0 means no limit.
 std::string modes_in_words(const Archive& archive, int width = 0);
 
 }  // namespace modebank::app

@@ -16,12 +16,12 @@ namespace modebank::app {
 namespace {
 
 constexpr Index most_modes = 8;
-constexpr double least_use = 0.01;  // families with less use are among the "others" of a short table
-constexpr int longest_name = 16;    // columns of a name in a table
+constexpr double least_use = 0.01;  // a short table lists families with less use among the "others"
+constexpr int longest_name = 16;    // largest width of a name in a table
 constexpr double standard_errors_95 = 1.96;
 
-/// The lower end of the 95 % interval, if the interval of the rate 1 / tau reaches zero, which is a mode that never
-/// dies out; else zero. The interval is that of the rate because the data determine the rate.
+/// Lower end of the 95 % interval of tau, if the interval of the rate 1 / tau reaches zero, so that the mode may never
+/// die out. Otherwise zero. The rate is used because the data determine the rate.
 double least_time_constant(const Decay& decay) {
   const double time = decay.time_constant_s, reach = standard_errors_95 * decay.time_constant_error_s;
   return time != 0.0 && std::abs(time) <= reach ? time * time / (time + reach) : 0.0;
@@ -80,7 +80,8 @@ std::string per_sample_words(const std::vector<Decay>& decays) {
 
 namespace {
 
-/// From the transition matrix. For state-dependent transition probabilities, from the sequence of most probable modes.
+/// The stay is computed from the transition matrix. For state-dependent transition probabilities, it is computed from
+/// the sequence of most probable modes.
 UsedMode with_stay(const Archive& archive, Index mode, double use, const DiagnosticsRow* row) {
   const Bank& bank = *archive.bank;
   const double leave = 1.0 - bank.transition.matrix()(mode, mode);

@@ -6,17 +6,17 @@
 #include "app/text/mode_dynamics.hpp"
 #include "io/archive/archive.hpp"
 
-/// The bank's modes in words: use, stay, time constants, gains. app/text/mode_tables.hpp makes tables of them;
-/// app/text/summary_tables.hpp prints their parameters.
+/// The bank's modes in words: use, stay, time constants, gains. app/text/mode_tables.hpp makes tables of these words.
+/// app/text/summary_tables.hpp prints the parameters of the modes.
 namespace modebank::app {
 
-/// "0.163 +- 0.004 s", "integrates", "unstable: grows e-fold in 2 s". "over 3 s" if the standard error reaches a mode
-/// that never dies out. "... , period 0.5 s" for a mode that oscillates.
+/// Text such as "0.163 +- 0.004 s", "integrates" or "unstable: grows e-fold in 2 s". "over 3 s" if, within the standard
+/// error, the mode may never die out. "... , period 0.5 s" for a mode that oscillates.
 std::string decay_words(const Decay& decay, const char* plus_minus = "+-");
-/// Share left after one sample, for each eigenvalue or pair, slowest first.
+/// Factor per sample for each eigenvalue or pair, the slowest first.
 std::string per_sample_words(const std::vector<Decay>& decays);
 
-/// One mode on the judged runs.
+/// Use and stay of one mode on the judged runs.
 struct UsedMode {
   Index mode = 0;
   double use = 1.0;  ///< mean probability
@@ -25,34 +25,36 @@ struct UsedMode {
   double stay_s = 0.0;
   bool at_least = false;
 };
-/// "6.61 s", "over 60 s"; "-" if the mode was never entered.
+/// Text such as "6.61 s" or "over 60 s"; "-" if the mode was never entered.
 std::string stay_words(const UsedMode& mode);
-/// Most used first. If no run was scored, the use is the mode's weight.
+/// The modes of the bank, the most used first. If no run was scored, the use is the mode's weight.
 std::vector<UsedMode> used_modes(const Archive& archive);
 
-/// Text for a parameter that the training runs do not determine: an input is always zero, or one input is a sum of
-/// others.
+/// Text for a parameter that the training runs do not determine. Example: an input is always zero, or one input is a
+/// sum of others.
 inline constexpr const char* not_identifiable = "not identifiable";
-/// For each parameter of a linear model, whether it is unidentifiable: it has no standard error in the global model.
+/// For each parameter of a linear model, whether it is unidentifiable. Such a parameter has no standard error in the
+/// global model.
 std::vector<bool> unidentifiable_parameters(const Archive& archive, const LinearStructure& structure);
-/// Whether the decays are unidentifiable, because the effect of some state is. All gains depend on the decays.
+/// Whether the decays are unidentifiable, because the effect of some state is unidentifiable. The gains are then also
+/// unidentifiable.
 bool unidentifiable_decays(const Archive& archive, const LinearStructure& structure);
-/// The same for each gain (states x inputs, row by row): some effect of the input on the state is unidentifiable.
+/// For each gain (states x inputs, row by row), whether some effect of the input on the state is unidentifiable.
 std::vector<bool> unidentifiable_gains(const Archive& archive, const LinearStructure& structure);
 
-/// A name for a heading or a cell: at most 16 columns, cut with "..".
+/// A name for a heading or a cell. It has at most 16 columns; a longer name is cut and ends in "..".
 std::string shortened(const std::string& name);
 
-/// Names of the gains: "wz per velL", row by row. Each name has its unit if the units differ.
+/// Names of the gains, such as "wz per velL", row by row. Each name contains a unit if the units differ.
 struct GainNames {
   std::vector<std::string> names;
-  std::string unit;  ///< common unit of all gains; empty if they have none or several
+  std::string unit;  ///< unit of all gains; empty if the gains have no unit or different units
 };
 GainNames gain_names(const Bank& bank, const std::vector<Channel>& states, const std::vector<Channel>& inputs);
 
-/// Number of modes or families that get their own row in a table: the most used, at most eight, none below 1 %, but at
-/// least one. The others share the row "others".
-/// `use`: the use of each, most used first.
+/// Number of modes or families that get their own row in a table. These are the most used ones: at most eight, each
+/// with a use of at least 1 %, but at least one. All others share the row "others". `use`: the use of each, in
+/// decreasing order.
 Index told_of(const std::vector<double>& use);
 
 }  // namespace modebank::app

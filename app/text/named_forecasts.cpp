@@ -40,7 +40,7 @@ void add(const std::vector<Row>& rows, Role role, Index steps, std::vector<Reach
   }
 }
 
-/// Scores of the training runs.
+/// Scores of all filters on the training runs.
 std::vector<Reached> reached_in_training(const Archive& archive, Index steps) {
   std::vector<Reached> reached;
   add(archive.left_out, Role::train, steps, reached);
@@ -50,7 +50,8 @@ std::vector<Reached> reached_in_training(const Archive& archive, Index steps) {
   return reached;
 }
 
-/// The largest relative excess, over all states, of the filter's error over the smallest error of all filters.
+/// Excess of the filter's error over the smallest error of all filters, relative to that error. It is the largest over
+/// all states.
 double excess_error(const Reached& one, const std::vector<const Reached*>& all) {
   Eigen::VectorXd least = one.rmse;
   for (const Reached* other : all)
@@ -65,7 +66,7 @@ constexpr double about_equal = 0.002;
 
 bool is_single(const std::string& filter) { return filter != combined_name; }
 
-/// The highest log score among filters for which `may` is true; minus infinity if there are none.
+/// The highest log score among the filters for which `may` returns true; minus infinity if there are none.
 template <class May>
 double highest_score(const std::vector<Reached>& all, May may) {
   double best = -std::numeric_limits<double>::infinity();
@@ -74,8 +75,9 @@ double highest_score(const std::vector<Reached>& all, May may) {
   return best;
 }
 
-/// Considers single filters for which `may` is true and that lose less than 0.02 nats to the best of these. Returns the
-/// one with the smallest error, or the first of nearly equal ones. Null if there are none.
+/// The filter with the smallest error, or the first of nearly equal ones. Only single filters for which `may` returns
+/// true are considered, and of these only filters whose log score is less than 0.02 nats below the best. Null if there
+/// are none.
 template <class May>
 const Reached* best_single(const std::vector<Reached>& all, May may) {
   const auto counts = [&](const std::string& filter) { return is_single(filter) && may(filter); };
@@ -89,8 +91,8 @@ const Reached* best_single(const std::vector<Reached>& all, May may) {
   return chosen;
 }
 
-/// The combination if it gains over every single filter: its weights adapt to the run, while a single filter is chosen
-/// before the run. Null without any filter.
+/// The combination, if its log score is better than that of every single filter; else the best single filter. The
+/// combination has an advantage because its weights adapt to the run. Null without filters.
 const Reached* best_of(const std::vector<Reached>& all) {
   const double best = highest_score(all, is_single);
   for (const Reached& one : all)
@@ -98,9 +100,9 @@ const Reached* best_of(const std::vector<Reached>& all) {
   return best_single(all, is_single);
 }
 
-constexpr double worth_a_name = 0.02;  // share of an error
+constexpr double worth_a_name = 0.02;  // relative to an error
 
-/// Names the filter with the smallest error, if its error is smaller by that share than the chosen filter's.
+/// Names the filter with the smallest error, if its error is smaller than the chosen filter's error by this fraction.
 void name_point(const std::vector<Reached>& all, const Reached& chosen, NamedForecast& forecast) {
   forecast.point_filter = chosen.filter;
   std::vector<const Reached*> every;
@@ -114,7 +116,7 @@ void name_point(const std::vector<Reached>& all, const Reached& chosen, NamedFor
   forecast.point_gain = saved;
 }
 
-/// Mean log score and samples of each judged run.
+/// Mean log score and number of samples of each judged run.
 struct OfRuns {
   std::vector<double> score, samples;
 };
@@ -140,7 +142,7 @@ struct Gain {
   double mean = not_a_number, error = not_a_number;
 };
 
-/// Gain of log score on the judged runs.
+/// Gain of log score on the judged runs, over another filter.
 Gain gain_over(const Archive& archive, const std::string& better, const std::string& other, Index steps) {
   const OfRuns a = runs_of(archive, better, steps), b = runs_of(archive, other, steps);
   if (a.score.empty() || a.samples != b.samples) return {};
@@ -153,7 +155,7 @@ Gain gain_over(const Archive& archive, const std::string& better, const std::str
   return {sums.sum() / samples.sum(), sums.size() > 1 ? clustered_error(sums, samples) : not_a_number};
 }
 
-/// Whether `export --to c` supports the filter.
+/// Whether the C code of `export --to c` supports the filter.
 bool runs_in_c(const Archive& archive, const std::string& filter) {
   if (filter == combined_name) return false;
   const std::optional<Bank> bank = archive.bank_of(filter);
@@ -186,13 +188,14 @@ std::string understanding(const Archive& archive) {
   return archive.bank->mode_count() == 1 ? "the one mode" : "the modes, with care";
 }
 
-/// The filter to compare with: the finding's best competitor, or the bank if that competitor is the named forecast.
+/// The filter to compare with: the finding's best competitor. If that competitor is itself the named forecast, the
+/// bank.
 std::string reference_of(const NamedForecast& forecast, const Finding& finding) {
   const std::string& competitor = finding.best_competitor;
   return competitor.empty() || competitor == forecast.filter ? "bank" : competitor;
 }
 
-/// " (against `drifting` each sample is 4.2 % more likely, +0.041 +- 0.012 nats; in C `bank`, -0.041)"
+/// Text such as " (against `drifting` each sample is 4.2 % more likely, +0.041 +- 0.012 nats; in C `bank`, -0.041)".
 std::string worth(const Archive& archive, const NamedForecast& forecast) {
   std::vector<std::string> parts;
   const std::string other = reference_of(forecast, *archive.finding);
@@ -211,9 +214,10 @@ std::string worth(const Archive& archive, const NamedForecast& forecast) {
 
 std::string steps_words(Index steps) { return fmt::format("{} step{} ahead", steps, steps == 1 ? "" : "s"); }
 
-/// "; least error 10 steps ahead: `baseline` (4 % less)"
+/// Text such as "; least error 10 steps ahead: `baseline` (4 % less)".
 std::string least_errors(const std::vector<NamedForecast>& forecasts) {
-  constexpr double worth_a_line = 0.05;  // share of an error; the line replaces the line of a mode on the screen
+  constexpr double worth_a_line = 0.05;  // relative to an error; on the screen, the line takes the place of a mode's
+                                         // line
   std::string text;
   for (const NamedForecast& forecast : forecasts)
     if (forecast.point_gain > worth_a_line)

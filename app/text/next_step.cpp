@@ -22,7 +22,7 @@ struct Situation {
   const Archive& archive;
   const Settings& settings;
   const Finding& finding;
-  const DiagnosticsRow& bank;  ///< the whole filter, on the judged runs
+  const DiagnosticsRow& bank;  ///< row of the whole filter on the judged runs
   std::vector<Warning> warnings;
 
   std::string setting(const std::string& key) const {
@@ -43,7 +43,7 @@ bool warns(const Situation& s, WarningKind kind) {
 
 int state_lags(const Situation& s) { return std::atoi(s.setting("window.state_lags").c_str()); }
 
-/// Samples dropped between blocks of a run.
+/// Number of samples that are dropped between blocks of a run.
 Index window_and_lags(const Situation& s) {
   const Index lags = s.setting("window.state_lags") == "auto" ? usual_lags : state_lags(s);
   const std::string length = s.setting("window.length");
@@ -54,8 +54,8 @@ bool is_uncertain_wrongly(const Situation& s) {
   return s.bank.verdict == Calibration::overconfident || s.bank.verdict == Calibration::underconfident;
 }
 
-/// Whether few restarts agree. Applies only to a bank that comes straight from the mixture: refinement has its own
-/// starts.
+/// Whether few restarts agree. This applies only to a bank made directly from the mixture, because refinement has its
+/// own starts.
 bool has_few_agreeing_restarts(const Situation& s) {
   if (!s.archive.mixture_makes_bank() || std::atoi(s.setting("mixture.restarts").c_str()) >= many_restarts)
     return false;
@@ -66,15 +66,17 @@ bool has_few_agreeing_restarts(const Situation& s) {
 
 std::string counted_runs(Index runs) { return fmt::format("{} run{}", runs, runs == 1 ? "" : "s"); }
 
-/// "ready: use the simpler one_motion (one linear model with changing noise): `modebank track ARCHIVE ...`"
+/// Advice such as "ready: use the simpler one_motion (one linear model with changing noise): `modebank track ARCHIVE
+/// ...`".
 std::string use_simpler(const Situation& s, const std::string& simpler, const std::string& why) {
   return fmt::format("ready: use the simpler {0} ({1}){2}: `modebank track ARCHIVE --track.filter {0}`", simpler,
                      description_of(simpler, s.archive.one_motion_drifts()), why);
 }
 
-/// "record about 9 more runs like these". Errors and margins fall with the square root of the number of runs.
+/// Advice such as "record about 9 more runs like these". Errors and margins decrease with the square root of the number
+/// of runs.
 std::string more_runs(const Finding& finding) {
-  constexpr double too_many = 20.0;  // longest advice: this many times the present number of runs
+  constexpr double too_many = 20.0;  // largest advised number of runs, relative to the present number
   const char* const and_repeat = ", and repeat with them: `modebank run CONFIG`; --data.test holds out more";
   const PairedGain* const least = least_beaten(finding);
   if (!least) return fmt::format("record longer runs, and more than {}{}", counted_runs(finding.runs), and_repeat);
@@ -104,7 +106,7 @@ std::string advice_on_doubt(const Situation& s) {
          "names them";
 }
 
-/// A pattern in the errors remains although lags were searched for.
+/// Advice for a pattern that remains in the errors after a search for lags.
 std::string left_pattern(const Situation& s) {
   const std::vector<NamedForecast> named = named_forecasts(s.archive);
   return fmt::format(
@@ -113,8 +115,8 @@ std::string left_pattern(const Situation& s) {
       named.empty() ? "bank" : named.front().filter);
 }
 
-/// The order is from faults that spoil all numbers to possible improvements. docs/howto/troubleshooting.md has the same
-/// list.
+/// Rules in order of importance: first faults that make all numbers wrong, last possible improvements.
+/// docs/howto/troubleshooting.md has the same list.
 const Rule rules[] = {
     {[](const Situation& s) { return warns(s, WarningKind::failed_windows); },
      [](const Situation&) -> std::string {

@@ -7,15 +7,15 @@
 
 namespace modebank::app {
 
-/// Number of restarts to advise or try. It is tried once: if this number does not help, a larger one does not help
+/// Number of restarts to advise or try. It is tried only once. If it does not help, a larger number does not help
 /// either.
 inline constexpr int many_restarts = 20;
 
-/// Resolved keys with their values, from the archive's configuration.
+/// Resolved keys and their values, from the configuration in the archive.
 using Settings = std::map<std::string, std::string>;
 
-/// One sentence of advice on a run, with the option or command. It comes from the first rule in next_step.cpp that
-/// applies. Empty without a scored bank.
+/// One sentence of advice on a run, with the option or command to type. It comes from the first rule in next_step.cpp
+/// that applies. Empty without a scored bank.
 std::string next_step(const Archive& archive, const Settings& settings);
 
 }  // namespace modebank::app

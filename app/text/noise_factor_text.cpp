@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// A signal that moves a noise factor, in words: "u", "change of u", or "the inputs' share in a forecast".
+/// A signal on which the noise factor depends, in words: "u", "change of u", or "the inputs' share in a forecast".
 std::string noise_feature(const Bank& bank, Index direction) {
   const std::vector<std::string> labels = regressor_labels(bank.structure, bank.state_names, bank.input_names);
   const auto row = bank.noise_factor.directions.row(direction);

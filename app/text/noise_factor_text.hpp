@@ -6,7 +6,7 @@
 
 namespace modebank::app {
 
-/// The range of the noise factor over the training samples, if the archive has them, and the signals that move it.
+/// The signals on which the noise factor depends, and its range over the training samples if the archive has these.
 /// Empty for a bank without a noise factor.
 std::string noise_factor_text(const Archive& archive, int width);
 

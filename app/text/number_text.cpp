@@ -9,14 +9,14 @@ namespace modebank::app {
 
 std::string fixed_or_short(double value, int decimals) {
   constexpr double largest_fixed = 1e5;
-  constexpr int many = 4;  // with fewer decimals the value could print as 0
+  constexpr int many = 4;  // with this many decimals or more, a value other than 0 must not print as 0
   const bool vanishes = decimals >= many && value != 0.0 && std::abs(value) < 0.5 * std::pow(10.0, -decimals);
   const bool fixed = (std::abs(value) < largest_fixed && !vanishes) || std::isnan(value);
   return fixed ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.4g}", value);
 }
 
 std::string size_text(double value, int decimals) {
-  constexpr double least = 10.0;  // a significand of two digits
+  constexpr double least = 10.0;  // for smaller products, `decimals` decimals show fewer than two digits
   const bool tiny = value > 0.0 && value * std::pow(10.0, decimals) < least;
   return tiny ? fmt::format("{:.3g}", value) : fixed_or_short(value, decimals);
 }

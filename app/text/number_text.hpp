@@ -4,22 +4,23 @@
 
 namespace modebank::app {
 
-/// `value` with this many decimals if the text fits a column, else with four significant digits: 0.03480, 1.235e+15.
+/// The value with `decimals` decimals if this text fits a column, else with four significant digits: 0.03480,
+/// 1.235e+15.
 std::string fixed_or_short(double value, int decimals);
 
-/// A value to the second digit of its standard error: "-0.597 +- 0.031"; four digits if the error is unknown.
+/// A value, rounded to the second digit of its standard error: "-0.597 +- 0.031". Four digits if the error is unknown.
 std::string estimate_text(double value, double standard_error, const char* plus_minus = "+-");
 
-/// The likelihood ratio per sample that a gain of log score means: "1.3 times as likely", "3.4 % less likely".
+/// A gain of log score as a likelihood ratio per sample: "1.3 times as likely", "3.4 % less likely".
 std::string likelihood_words(double nats);
 
-/// "0.0301 rad/s (1.72 deg/s)": three digits and the unit. Angles are also given in degrees.
+/// Text such as "0.0301 rad/s (1.72 deg/s)": three digits and the unit. Angles are also given in degrees.
 std::string with_degrees(double value, const std::string& unit);
 
-/// fixed_or_short for sizes such as an RMSE. Uses three significant digits if `decimals` would show fewer.
+/// Same as fixed_or_short, for sizes such as an RMSE. Uses three significant digits if `decimals` would show fewer.
 std::string size_text(double value, int decimals);
 
-/// The same for several values, separated by spaces.
+/// Same as size_text for several values, separated by spaces.
 template <class Values>
 std::string size_list(const Values& values, int decimals) {
   std::string text;

@@ -1,4 +1,4 @@
-// Numbers of a robot over the modes of a family.
+// Numbers of a robot, as means over the modes of a family.
 #include <cmath>
 
 #include "app/text/robot_numbers.hpp"
@@ -10,7 +10,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Estimates that enter the mean, with the weights and modes they belong to.
+/// The estimates that enter a mean, with their weights and modes.
 struct Counted {
   VectorXd values, errors, weights;
   std::vector<Index> modes;
@@ -35,7 +35,7 @@ Estimate with_modes(const PooledNumber& number, const Counted& of, const ModeFam
   return {number.value, number.error, of.modes.size() < family.modes.size() ? of.modes : std::vector<Index>()};
 }
 
-/// Mean of the estimates that are known and not vague; of the vague ones where there are no others.
+/// Mean of the estimates that are known and not vague. If all known estimates are vague, their mean.
 Estimate mean_of(const std::vector<Estimate>& estimates, const ModeFamily& family) {
   Counted of = those_that_count(estimates, family, [](const Estimate& one) { return one.known() && !one.vague(); });
   if (of.modes.empty()) of = those_that_count(estimates, family, [](const Estimate& one) { return one.known(); });
@@ -43,8 +43,8 @@ Estimate mean_of(const std::vector<Estimate>& estimates, const ModeFamily& famil
   return with_modes(pooled_number(of.values, of.errors, of.weights), of, family);
 }
 
-/// The separation is infinite if the wheels turn and the robot does not. So the mean is taken over its inverse, the
-/// turn per difference of wheel speeds.
+/// If the wheels turn but the robot does not, the separation is infinite. So the mean is taken over the inverse, which
+/// is the turn per difference of wheel speeds.
 Estimate mean_separation(std::vector<Estimate> separations, const ModeFamily& family) {
   const auto inverse = [](Estimate of) {
     of.error /= of.value * of.value;
@@ -61,8 +61,8 @@ VectorXd shares_of(const VectorXd& weights) {
   return sum > 0.0 ? VectorXd(weights / sum) : VectorXd(VectorXd::Constant(weights.size(), 1.0 / count));
 }
 
-/// The error is that of the variance over the whole time, the mean of the modes' variances. Differences between the
-/// modes do not add to this error.
+/// The variance over the whole time is the mean of the modes' variances. The error is the error of this mean.
+/// Differences between the modes do not add to it.
 Estimate mean_variance(const std::vector<Estimate>& estimates, const ModeFamily& family) {
   const Counted of = those_that_count(estimates, family, [](const Estimate& one) { return one.known(); });
   if (of.modes.empty()) return {not_a_number, not_a_number};

@@ -19,8 +19,8 @@ bool holds_any(const std::string& name, std::initializer_list<const char*> words
                      [&](const char* word) { return boost::algorithm::icontains(name, word); });
 }
 
-/// The only channel with the unit, or the only one of these with a suitable name. -1 if there is none, or if the choice
-/// is ambiguous.
+/// The only channel with the unit, or the only channel with both the unit and a suitable name. -1 if there is none or
+/// more than one.
 Index find_channel(const std::vector<Channel>& channels, const char* unit, std::initializer_list<const char*> words) {
   std::vector<Index> by_unit, by_name;
   for (Index i = 0; i < std::ssize(channels); ++i) {
@@ -33,7 +33,7 @@ Index find_channel(const std::vector<Channel>& channels, const char* unit, std::
   return found.size() == 1 ? found.front() : -1;
 }
 
-/// Whether a name contains a side: "left", "wheel_left", "velL", "vel_l".
+/// Whether a name contains a side, as in "left", "wheel_left", "velL" or "vel_l".
 bool is_side(const std::string& name, const char* word, char letter) {
   return holds_any(name, {word}) || boost::algorithm::ends_with(name, std::string("_") + letter) ||
          boost::algorithm::ends_with(name, std::string(1, static_cast<char>(letter - 'a' + 'A')));
@@ -58,8 +58,8 @@ void find_wheels(const std::vector<Channel>& inputs, RobotChannels& channels) {
   channels.left = channels.right = -1;
 }
 
-/// Steady gains per recorded input, and the slope of the transfer function at z = 1 with negative sign. This slope is
-/// the sum over samples of lag times impulse response.
+/// Steady gains per recorded input, and the negative slope of the transfer function at z = 1. This slope is the sum of
+/// lag times impulse response.
 struct Response {
   MatrixXd gain, delay_gain;  ///< n_y x inputs
 };
@@ -79,13 +79,13 @@ Response response_of(const Bank& bank, const LinearModel& model) {
   return {bank.C * once, bank.C * (lu.solve(once) + lu.solve(late))};
 }
 
-/// The mean delay of a response [s]: first moment of the impulse response over its sum, from the middle of the sample
-/// in which an input is held.
+/// The mean delay of a response [s]. It is the first moment of the impulse response divided by its sum. It counts from
+/// the middle of the sample in which the input is held.
 double mean_delay_s(double gain, double delay_gain, double dt_s, double input_lag_s) {
   return dt_s * (delay_gain / gain - 0.5) + input_lag_s;
 }
 
-/// Wheel separation, left and right multiplier, delay of the yaw rate and of the forward speed.
+/// Wheel separation, left and right multiplier, and the delays of the yaw rate and of the forward speed.
 VectorXd wheel_numbers(const RobotBank& robot, const LinearModel& model, const RobotChannels& at,
                        const RobotSizes& sizes) {
   VectorXd numbers = VectorXd::Constant(5, not_a_number);
@@ -113,7 +113,7 @@ VectorXd wheel_numbers(const RobotBank& robot, const LinearModel& model, const R
   return numbers;
 }
 
-/// P = F P F' + Q by doubling; empty where the mode is not stable.
+/// Solves P = F P F' + Q by doubling; empty if the mode is not stable.
 MatrixXd stationary_covariance(MatrixXd F, MatrixXd P) {
   constexpr int doublings = 60;
   if (eigenvalues(F).cwiseAbs().maxCoeff() >= 1.0) return {};
@@ -124,7 +124,7 @@ MatrixXd stationary_covariance(MatrixXd F, MatrixXd P) {
   return P;
 }
 
-/// Variances of the measured states about their stationary values, P = A P A' + Q; NaN where the mode is not stable.
+/// Variances of the measured states about their stationary values, from P = A P A' + Q. NaN if the mode is not stable.
 VectorXd stationary_variances(const RobotBank& robot, const LinearModel& model, const MatrixXd& Q) {
   const MatrixXd& C = robot.bank.C;
   const MatrixXd P = stationary_covariance(model.full_form(), Q);
@@ -132,8 +132,8 @@ VectorXd stationary_variances(const RobotBank& robot, const LinearModel& model, 
   return (C * P * C.transpose()).diagonal();
 }
 
-/// The same with standard errors. The delta method gives the part from theta. The part from Q is added entry by entry,
-/// since the variances are linear in Q.
+/// Same as stationary_variances, with standard errors. The delta method gives the part from theta. The part from Q is
+/// the sum over the entries of Q, because the variances are linear in Q.
 DerivedNumbers variances_of(const RobotBank& robot, Index mode) {
   const Mode& of = robot.bank.modes[static_cast<std::size_t>(mode)];
   DerivedNumbers result = derived_numbers(
@@ -180,7 +180,7 @@ RobotNumbers robot_numbers(const RobotBank& robot, Index mode, const RobotChanne
   const auto at = [&](Index i) { return Estimate{derived.values(i), derived.errors(i)}; };
   RobotNumbers numbers{
       at(0), at(1), at(2), at(3), at(4), variance(channels.yaw_rate), variance(channels.forward_speed)};
-  // Gains of an unstable mode have no meaning. The separation has none for a mode that turns against its wheels.
+  // The gains of an unstable mode have no meaning. The separation has no meaning if a mode turns against its wheels.
   const bool settles = variances.values.allFinite();
   for (Estimate* estimate : {&numbers.separation_m, &numbers.left_multiplier, &numbers.right_multiplier})
     if (!settles || !(numbers.left_multiplier.value > 0.0 && numbers.right_multiplier.value > 0.0))

@@ -19,14 +19,14 @@
 namespace modebank::app {
 namespace {
 
-/// How much later than recorded the inputs act: estimated, or stated in the configuration.
+/// Time by which the inputs act later than recorded. It is estimated, or stated in the configuration.
 double input_lag(const Archive& archive, const Settings& settings) {
   if (archive.lag) return archive.lag->correction == LagCorrection::none ? 0.0 : archive.lag->lag.mean;
   const auto stated = settings.find("data.lag_s");
   return stated == settings.end() ? 0.0 : std::atof(stated->second.c_str());
 }
 
-/// "wz [rad/s], v [m/s]"
+/// Text such as "wz [rad/s], v [m/s]".
 std::string channel_words(const std::vector<Channel>& channels) {
   std::vector<std::string> words;
   for (const Channel& channel : channels)
@@ -75,8 +75,8 @@ const FreeRunRow* free_run_of(const Archive& archive, const std::string& filter,
   return found == archive.free_runs.end() ? nullptr : &*found;
 }
 
-/// "RMSE one step ahead 0.03 rad/s (1.72 deg/s), FIT 92.3 % (drifting 0.04); 10 steps ahead ...;
-/// in free run from 3 samples FIT 71.2 % (...)"
+/// Text such as "RMSE one step ahead 0.03 rad/s (1.72 deg/s), FIT 92.3 % (drifting 0.04); 10 steps ahead ...; in free
+/// run from 3 samples FIT 71.2 % (...)".
 std::string mean_words(const FirstScreen& screen) {
   const auto beside = [](const std::string& words) { return words.empty() ? "" : fmt::format(" ({})", words); };
   std::vector<std::string> parts;
@@ -98,7 +98,7 @@ std::string warning_words(const Archive& archive) {
                                             warnings.size(), warnings.front().text);
 }
 
-/// Sets the numbers of the scores. `screen` must already contain the role and the competitor.
+/// Sets the members that contain scores. Call it after the role and the competitor are set.
 void add_scores(FirstScreen& screen, const Archive& archive) {
   screen.errors = errors_ahead(archive, screen.role, screen.competitor);
   if (const FreeRunRow* bank = free_run_of(archive, "bank", screen.role)) {

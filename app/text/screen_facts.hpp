@@ -11,37 +11,40 @@
 #include "app/text/next_step.hpp"
 #include "io/archive/archive.hpp"
 
-/// The content of a run's first screen, in words and numbers: for a terminal (first_screen.hpp) and for the report's
-/// page.
+/// Content of the first screen of a run, in words and numbers. It is printed on a terminal (first_screen.hpp) and shown
+/// on the report's page.
 namespace modebank::app {
 
-/// Whether the archive contains a bank and its scores, which the screen needs.
+/// Whether the archive contains a bank and the bank's scores. The screen needs both.
 bool has_first_screen(const Archive& archive);
 
-/// The screen's content, computed once. first_screen prints it, the report's page shows it. A sentence is empty if it
-/// does not apply.
+/// Content of the screen, computed once. first_screen prints it, and the report's page shows it. A sentence that does
+/// not apply is empty.
 struct FirstScreen {
   std::string read, structure, finding, band, mean, warning, next;
-  std::string use;                       ///< the filter that explains the motion, and the filter to predict with
-  std::vector<NamedForecast> forecasts;  ///< the filter to predict with, as numbers
-  bool inputs_ahead = false;             ///< whether the stamps of the inputs are late
-  Role role = Role::test;                ///< role of the judged runs
-  std::string competitor;  ///< competitor with the highest log score, with which the gain is compared; empty without
+  std::string use;                       ///< text: the filter that explains the motion, and the filter to predict with
+  std::vector<NamedForecast> forecasts;  ///< the filters to predict with, with their numbers
+  bool inputs_ahead = false;             ///< whether the inputs' stamps are late
+  Role role = Role::test;                ///< role of the runs on which the filters are judged
+  std::string competitor;  ///< competitor with the highest log score; the gain is over this competitor. Empty if there
+                           ///< is none
   std::optional<Answer> answer;
-  double gain = 0.0, gain_error = 0.0;  ///< of log score over the competitor [nats/sample]; NaN if unknown
-  double coverage = 0.0, coverage_lower = 0.0, coverage_upper = 0.0;  ///< coverage of the 95 % band; NaN if unknown
+  double gain = 0.0, gain_error = 0.0;  ///< gain of log score over the competitor [nats/sample]; NaN if unknown
+  double coverage = 0.0, coverage_lower = 0.0, coverage_upper = 0.0;  ///< coverage of the 95 % band with its interval;
+                                                                      ///< NaN if unknown
   Calibration verdict = Calibration::undecided;
-  std::string verdict_words;       ///< verdict on the band and the number of samples; empty if the bank was not scored
-  std::vector<ErrorAhead> errors;  ///< one step ahead, and at the longest scored horizon
-  Index free_run_start = 0;        ///< measured samples at the start of free runs; 0: there are no free runs
-  Eigen::VectorXd fit, other_fit;  ///< n_y, FIT of the bank's free runs [%], and the best FIT of the competitors
-  std::string other_fit_words;     ///< the best competitor's free run, with its name
+  std::string verdict_words;       ///< verdict on the band, and the number of samples; empty if the bank was not scored
+  std::vector<ErrorAhead> errors;  ///< errors one step ahead and at the longest scored horizon
+  Index free_run_start = 0;        ///< number of measured samples at the start of free runs; 0 if there are no free
+                                   ///< runs
+  Eigen::VectorXd fit, other_fit;  ///< n_y, FIT of the bank's free runs, and the best FIT among the competitors [%]
+  std::string other_fit_words;     ///< FIT of the best competitor's free runs, with the competitor's name
   Index mode_count = 0;
-  ModeTable modes;  ///< filled if the bank was scored
+  ModeTable modes;  ///< empty if the bank was not scored
 };
 FirstScreen make_first_screen(const Archive& archive, const Settings& settings);
 
-/// "evidence for modes of motion": the answer as a headline.
+/// The answer as a headline, such as "evidence for modes of motion".
 std::string answer_words(Answer answer);
 
 }  // namespace modebank::app

@@ -5,7 +5,7 @@
 
 namespace modebank::app {
 
-/// A word at the start of a line of the screen, and what this line states, for `modebank help`.
+/// A label: the word at the start of a line of the screen. `modebank help` explains what this line states.
 struct ScreenLabel {
   std::string name, means;
 };
@@ -13,7 +13,7 @@ struct ScreenLabel {
 /// Every label of the screens of `run`, `show` and `run LOG`.
 const std::vector<ScreenLabel>& screen_labels();
 
-/// "read ": the label as its line begins. Throws std::logic_error for a label that is not in the table.
+/// The label as the start of a line, such as "read ". Throws std::logic_error for a label that is not in the table.
 std::string padded_label(const std::string& name);
 
 }  // namespace modebank::app

@@ -12,23 +12,23 @@
 namespace modebank::app {
 namespace {
 
-constexpr int width_of_files = 100;  // width of files, which have no limit
+constexpr int width_of_files = 100;  // width for files, which have no limit of their own
 constexpr int shortest_run = 4;      // in characters
 
 struct StripRun {
   const Trajectory* run;
-  std::size_t position;  ///< index in the recording
+  std::size_t position;  ///< index of the run in the recording
   Index characters = 0;
 };
 
-/// The bank's evaluation; null without one.
+/// The bank's evaluation; null if there is none.
 const FilterEvaluation* bank_evaluation(const Archive& archive) {
   const auto found = std::find_if(archive.evaluations.begin(), archive.evaluations.end(),
                                   [](const FilterEvaluation& filter) { return filter.filter == "bank"; });
   return found == archive.evaluations.end() || found->runs.empty() ? nullptr : &*found;
 }
 
-/// Runs of the role, in the recording's order.
+/// Runs with this role, in the order of the recording.
 std::vector<StripRun> runs_of(const Archive& archive, Role role) {
   std::vector<StripRun> runs;
   for (std::size_t i = 0; i < archive.recording->runs.size(); ++i)
@@ -36,8 +36,8 @@ std::vector<StripRun> runs_of(const Archive& archive, Role role) {
   return runs;
 }
 
-/// Sets each run's number of characters, `width` in all with a separator between runs. Drops runs at the end until the
-/// others have at least shortest_run each.
+/// Sets the number of characters of each run. All runs and their separators together have `width` characters. Drops
+/// runs at the end until all others have at least shortest_run characters.
 void share_width(std::vector<StripRun>& runs, Index width) {
   const auto most = static_cast<std::size_t>(std::max<Index>(1, (width + 1) / (shortest_run + 1)));
   if (runs.size() > most) runs.resize(most);

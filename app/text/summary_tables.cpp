@@ -28,7 +28,7 @@ std::string unit_suffix(const Archive& archive) {
   return unit.empty() ? "" : " [" + unit + "]";
 }
 
-/// Alignment of a column of modes: numbers, or numbers with names.
+/// Alignment of a column of modes: right for numbers alone, left for numbers with names.
 TextTable::Align align_of(const std::vector<std::string>& mode_names) {
   return mode_names.empty() ? TextTable::Align::right : TextTable::Align::left;
 }
@@ -38,7 +38,8 @@ std::string share(double value) { return fmt::format("{:.2f} %", 100 * value); }
 std::string tails(double above, double below) { return fmt::format("{:.2f} % {:>5.2f} %", 100 * above, 100 * below); }
 
 std::string estimate(double value, double standard_error) {
-  // Four decimals suit neither a value with a much smaller error nor a much larger value.
+  // Outside this range, four decimals are unsuitable: a smaller error would print as zero, and a larger value is too
+  // long.
   constexpr double smallest = 5e-5, largest = 1e5;
   if (std::abs(value) >= largest || standard_error >= largest || standard_error < smallest)
     return fmt::format("{:.6g} +- {:.2g}", value, standard_error);
@@ -150,7 +151,8 @@ std::string mode_diagnostics_text(const Archive& archive, int width) {
 
 namespace {
 
-/// The modes in the parameters of a motion model. Empty for linear models, whose table already has all parameters.
+/// A table of the modes in the parameters of a motion model. Empty for linear models, because their table already has
+/// all parameters.
 std::string motion_parameters_text(const Bank& bank, const std::vector<std::string>& names, int width) {
   if (bank.motion_parameters.empty()) return "";
   std::vector<TextTable::Column> columns{{"mode", 4, align_of(names)}};
@@ -168,7 +170,7 @@ std::string motion_parameters_text(const Bank& bank, const std::vector<std::stri
 
 }  // namespace
 
-/// Weights of state-dependent transition probabilities.
+/// A table of the weights of state-dependent transition probabilities.
 std::string switches_text(const Bank& bank, const std::vector<std::string>& names, int width) {
   const TransitionLogit& logit = bank.transition_logit;
   if (logit.empty()) return "";

@@ -20,7 +20,8 @@
 namespace modebank::app {
 namespace {
 
-/// Number of windows with memberships: clustered or assigned windows, including those with label -1 (noise).
+/// Number of windows with memberships. These windows were clustered or assigned, including windows with label -1
+/// (noise).
 Index member_windows(const MixtureResult& result) {
   if (!result.mixture.noise.present()) return (result.labels.array() >= 0).count();
   constexpr Index at_once = 16384;
@@ -55,7 +56,7 @@ std::string mixture_text(const Archive& archive) {
   return text;
 }
 
-/// Cost of a limit on the number of modes, on held-out runs if there are any.
+/// Loss that a limit on the number of modes causes, on held-out runs if there are any.
 std::string merging_text(const Archive& archive) {
   const Role role = judged_role(archive);
   for (const MergingCost& cost : archive.merging)
@@ -107,14 +108,14 @@ std::string residuals_text(const Archive& archive) {
   return text;
 }
 
-/// Whether the filter has several modes, and so rows of its own for its modes.
+/// Whether the filter has several modes. Only then its modes have their own rows.
 bool has_modes(const Archive& archive, const DiagnosticsRow& row) {
   return std::any_of(archive.diagnostics.begin(), archive.diagnostics.end(), [&row](const DiagnosticsRow& other) {
     return other.filter == row.filter && other.role == row.role && other.mode >= 0;
   });
 }
 
-/// "50 %: 51.2 [49.0, 53.1]; 90 %: ..."
+/// Text such as "50 %: 51.2 [49.0, 53.1]; 90 %: ..."
 std::string coverage_words(const DiagnosticsRow& row) {
   const auto words = [](int level, double share, double lower, double upper) {
     return fmt::format("{} %: {:.1f} [{:.1f}, {:.1f}]", level, 100 * share, 100 * lower, 100 * upper);
@@ -125,7 +126,7 @@ std::string coverage_words(const DiagnosticsRow& row) {
                      words(99, row.coverage_99, row.coverage_99_lower, row.coverage_99_upper));
 }
 
-/// Verdict on each filter's stated uncertainty, with its numbers and unusual findings.
+/// The verdict on each filter's stated uncertainty, with its numbers and what is unusual.
 std::string verdicts_text(const Archive& archive) {
   std::string text;
   const Role role = judged_role(archive);
@@ -151,7 +152,7 @@ std::string verdicts_text(const Archive& archive) {
       words_for(role), text);
 }
 
-/// "combined, 10 steps ahead: bank 2 %, drifting 56 %": mean weight of each filter, one line per horizon.
+/// The mean weight of each filter, one line per horizon: "combined, 10 steps ahead: bank 2 %, drifting 56 %".
 std::string combination_text(const Archive& archive, Role role) {
   std::string text;
   Index horizon = 0;
@@ -165,7 +166,7 @@ std::string combination_text(const Archive& archive, Role role) {
   return text.empty() ? "" : text + "\n";
 }
 
-/// Predictions several samples ahead, on held-out runs if there are any.
+/// Scores of predictions several samples ahead, on held-out runs if there are any.
 std::string horizon_text(const Archive& archive) {
   if (archive.horizons.empty()) return "";
   const Role role = judged_role(archive);

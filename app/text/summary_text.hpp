@@ -11,10 +11,10 @@ namespace modebank::app {
 std::string data_text(const Recording& recording);
 
 /// The summary of an archive for people: data, windows, mixture, bank, scores and the bank's gains. Lines longer than
-/// `width` columns are broken; 0: never.
+/// `width` columns are broken. 0 means no limit.
 std::string summary_text(const Archive& archive, int width = 0);
 
-/// Origin of the archive.
+/// The archive's provenance as text.
 std::string provenance_text(const Archive& archive);
 
 }  // namespace modebank::app

@@ -10,11 +10,11 @@
 namespace modebank::app {
 namespace {
 
-constexpr int label_width = 10;  // width of "windows   ", the start of the summary's lines
+constexpr int label_width = 10;  // width of the labels at the start of the summary's lines
 
 int stated_width() {
   const char* columns = std::getenv("COLUMNS");
-  constexpr int widest = 10'000;  // a larger width would only pad text
+  constexpr int widest = 10'000;  // limit of the width; a larger width would only add blanks
   return columns ? std::clamp(std::atoi(columns), 0, widest) : 0;
 }
 
@@ -32,8 +32,8 @@ bool locale_is_utf8() {
   return false;
 }
 
-/// Indentation of continuation lines: the width of the label ("windows   ", or a word and two or more spaces), else
-/// that of the line itself.
+/// Indentation of continuation lines. It is the width of the label ("windows ", or a word and two or more spaces).
+/// Without a label, it is the indentation of the line itself.
 std::string indentation_of(const std::string& line, int width) {
   std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
   if (indent == 0 && line.size() > label_width) {
@@ -52,7 +52,7 @@ std::string wrapped_line(const std::string& line, int width) {
   while (columns_of(rest) > width) {
     std::size_t bytes = 0, last_space = 0;
     const std::size_t first =
-        std::min(rest.find_first_not_of(' ', indent.size()), rest.size());  // no break at the label
+        std::min(rest.find_first_not_of(' ', indent.size()), rest.size());  // a line is not broken within its label
     for (int column = 0; bytes < rest.size(); ++bytes) {
       if ((static_cast<unsigned char>(rest[bytes]) & 0xC0) != 0x80 && column++ > width) break;
       if (rest[bytes] == ' ' && bytes > first) {

@@ -21,14 +21,14 @@ void TextTable::add(std::vector<std::string> cells, std::string remark) {
 
 namespace {
 
-/// Shortens the front, because long names differ at their ends.
+/// Removes the front of the text, because long names differ at their ends.
 std::string shortened(const std::string& text, int most) {
   if (columns_of(text) <= most) return text;
   std::string end = text;
   while (columns_of(end) > most - 2) {
     std::size_t next = 1;
     while (next < end.size() && (static_cast<unsigned char>(end[next]) & 0xC0U) == 0x80U)
-      ++next;  // skips to the start of a UTF-8 character
+      ++next;  // moves to the start of the next UTF-8 character
     end.erase(0, next);
   }
   return ".." + end;

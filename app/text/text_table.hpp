@@ -5,23 +5,23 @@
 
 namespace modebank::app {
 
-/// A table of text that fits a terminal. Columns that do not fit continue below, with the key columns repeated.
+/// A table of text that fits a terminal. Columns that do not fit continue below, together with the key columns.
 class TextTable {
  public:
   enum class Align { left, right };
   struct Column {
     std::string title;
-    int width;  ///< smallest width; wider cells widen the column
+    int width;  ///< smallest width; the column is wider if a cell is wider
     Align align = Align::right;
   };
 
-  /// The first `keys` columns are repeated in every part.
+  /// `keys`: number of columns at the start that every part repeats.
   TextTable(std::vector<Column> columns, std::size_t keys = 1) : columns_(std::move(columns)), keys_(keys) {}
 
-  /// One cell per column, or fewer for a row that ends early. `remark` follows the row.
+  /// Adds a row with one cell per column, or fewer if the row ends early. `remark` follows the row.
   void add(std::vector<std::string> cells, std::string remark = {});
 
-  /// width 0: no limit. Otherwise only the end of a cell that is too wide is shown.
+  /// `width`: 0 means no limit. Otherwise only the end of a cell that is too wide is shown.
   std::string text(int width) const;
 
  private:

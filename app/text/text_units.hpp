@@ -2,7 +2,7 @@
 
 namespace modebank::app {
 
-/// Factors for printing shares.
+/// Factor from a fraction to percent.
 inline constexpr double percent = 1e2;
 inline constexpr double per_mille = 1e3;
 

@@ -73,7 +73,7 @@ std::string unscored_warning(const Archive& archive, double least_share) {
       lost, all, worst, archive.bank->structure.state_lags);
 }
 
-constexpr double many_unscored = 0.05;  // a smaller share is not worth a warning
+constexpr double many_unscored = 0.05;  // a smaller fraction causes no warning
 
 std::vector<Warning> archive_warnings(const Archive& archive) {
   std::vector<Warning> warnings;

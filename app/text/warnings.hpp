@@ -9,7 +9,7 @@
 
 namespace modebank::app {
 
-/// Numbers of windows by the result of their fits, for windows that are not in memory.
+/// Numbers of windows by the result of their fit. Used for windows that are not in memory.
 struct WindowCounts {
   std::array<Index, 4> status{};  ///< index: FitStatus
   void add(const WindowFits& fits);
@@ -17,11 +17,11 @@ struct WindowCounts {
   Index total() const { return std::accumulate(status.begin(), status.end(), Index{0}); }
 };
 
-/// Subject of a warning.
+/// Subject of a warning:
 /// - replaced_windows, failed_windows: the batch solver's audit, and fits that are not finite.
-/// - mixture: the choice of the mixture from which the bank is made.
+/// - mixture: the choice of the mixture that the bank is made of.
 /// - iteration_limit, stalled: the fit with measurement noise.
-/// - no_stable_mode: stability.
+/// - no_stable_mode: all modes are unstable.
 /// - unscored: measured samples without a score.
 enum class WarningKind {
   replaced_windows,
@@ -38,21 +38,21 @@ struct Warning {
   std::string text;
 };
 
-/// Warnings on windows: solutions that the audit replaced, and windows without a finite fit.
+/// Warnings on windows whose solution the audit has replaced, and on windows without a finite fit.
 std::vector<Warning> window_warnings(const WindowFits& fits, const WindowCounts& counts);
 
-/// Warning on the bank's refinement; empty if it converged.
+/// Warning on the refinement of the bank; empty if it has converged.
 std::string refinement_warning(MeasuredFit fit);
 
-/// Warning that no mode of the bank is stable; empty if one is.
+/// Warning that no mode of the bank is stable; empty if a mode is stable.
 std::string stability_warning(const Bank& bank);
 
-/// Warning that measured samples have no score: the bank's filter starts only when its lags are complete. Empty for a
-/// share up to `least_share`. The first samples of each run do not count.
+/// Warning that measured samples have no score. The bank's filter starts only when all its lags are known. Empty if at
+/// most `least_share` of the samples have no score. The first samples of each run do not count.
 std::string unscored_warning(const Archive& archive, double least_share = 0.0);
 
-/// All warnings on an archive's final result. Warnings on a mixture that refinement replaced are left out. `show`
-/// prints each in its section.
+/// All warnings on an archive's final result. A warning on a mixture that refinement has replaced does not count.
+/// `show` prints each warning in its section.
 std::vector<Warning> archive_warnings(const Archive& archive);
 
 }  // namespace modebank::app

@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-/// The windows' solvers and the batch solver's audit; empty for archives without them.
+/// The solvers of the windows, and the batch solver's audit. Empty if the archive has no audit.
 std::string audit_text(const WindowAudit& audit) {
   if (audit.ceres_method.empty()) return "";
   std::string text = "solved    ";

@@ -10,14 +10,14 @@
 namespace modebank::app {
 
 /// The summary's lines on windows: their number and status, the global model, and the batch solver's audit. `labels`:
-/// of the parameters.
+/// labels of the parameters.
 std::string windows_text(const WindowFits& common, const WindowCounts& counts, const std::vector<std::string>& labels);
 
-/// parameter_labels of the archive's windows; empty if it has none.
+/// The parameter_labels of the archive's windows; empty if it has no windows.
 std::vector<std::string> window_labels(const Archive& archive);
-/// The features' names, with labels in place of parameter names. Also for one-lag fits.
+/// The names of the features. Parameters have their labels. Works for one-lag fits, too.
 std::vector<std::string> feature_labels(const Archive& archive, std::vector<std::string> names);
-/// " of one-lag fits of the same windows" if these fits are clustered, else empty.
+/// The text " of one-lag fits of the same windows" if such fits are clustered, else empty.
 std::string features_origin(const Archive& archive);
 
 }  // namespace modebank::app

@@ -8,7 +8,7 @@
 namespace modebank::test {
 
 CliTest::CliTest() {
-  unsetenv("MODEBANK_DATA");  // these tests must not use the user's data folder
+  unsetenv("MODEBANK_DATA");  // the tests must not use the user's data folder
   write("run_00.csv", csv_run(80, 1));
   write("run_01.csv", csv_run(80, 2));
   write("test.ini", config_text());
@@ -46,7 +46,7 @@ ProgramResult CliTest::modebank(std::vector<std::string> arguments) const {
 }
 
 ProgramResult CliTest::run(std::vector<std::string> options) const {
-  // --force, because tests change the runs and write the same archive again.
+  // --force is needed, because tests change the runs and write the same archive again.
   std::vector<std::string> arguments{
       "run", config(), "--force", "--archive.output", archive(), "--data.root", folder_.path().string()};
   arguments.insert(arguments.end(), options.begin(), options.end());

@@ -11,20 +11,20 @@
 
 namespace modebank::test {
 
-/// A folder with two small runs in one-file layout and their configuration; every test changes what it tests.
+/// A folder with two small runs, each in one file, and their configuration. Each test changes what it needs.
 class CliTest : public ::testing::Test {
  protected:
   CliTest();
 
   ProgramResult modebank(std::vector<std::string> arguments) const;
-  /// Runs `modebank run` on the configuration, with further options.
+  /// Runs `modebank run` on the configuration. `options`: more options.
   ProgramResult run(std::vector<std::string> options = {}) const;
 
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const std::string& content) const { write_file(file(name), content); }
   std::string archive() const { return file("out.h5").string(); }
   std::string config() const { return file("test.ini").string(); }
-  /// Everything in the folder that the fixture did not make.
+  /// All files in the folder that the fixture did not make.
   std::vector<std::string> left_behind() const;
 
   static std::string csv_run(int samples, unsigned seed);

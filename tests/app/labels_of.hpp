@@ -7,8 +7,8 @@
 
 namespace modebank::test {
 
-/// The labels of a screen's lines: read, structure, .... Labels are in the first ten columns. Tables, which begin with
-/// a column "filter", have no labels.
+/// The labels at the start of a screen's lines, such as "read" or "structure". They are in the first ten columns.
+/// Tables, which begin with a column "filter", have no labels.
 inline std::set<std::string> labels_of(const std::string& screen) {
   const std::regex label("^([a-z]+) +(?=\\S)");
   std::set<std::string> labels;

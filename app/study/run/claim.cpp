@@ -86,7 +86,7 @@ struct FoundClaim {
   double time_s = 0.0;  ///< time by the folder's clock
 };
 
-/// Reads the file again, so that a network file system does not answer from its cache. Nullopt if there is no claim.
+/// Reads the file again, so that a network file system does not answer from its cache. Nullopt without a claim.
 std::optional<FoundClaim> read_claim(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (file < 0) return std::nullopt;

@@ -23,7 +23,7 @@
 namespace modebank::app {
 namespace {
 
-constexpr double most_cached_mb = 1000.0;  // largest size of the stored stages that runs share [1e6 bytes]
+constexpr double most_cached_mb = 1000.0;  // largest size of the stored stages that runs share
 
 using nlohmann::json;
 

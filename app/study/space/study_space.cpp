@@ -49,7 +49,7 @@ std::vector<VariedKey> read_varied(const StudyConfig& study) {
   return varied;
 }
 
-/// The group that each `together` line defines. Throws if a key of a line is not varied.
+/// The group that each `together` line defines. Checks that the keys of these lines are varied.
 std::vector<Axis> read_groups(const StudyConfig& study, const std::vector<VariedKey>& varied) {
   std::vector<Axis> groups;
   std::set<std::size_t> taken;

@@ -1,4 +1,4 @@
-// Patterns in a bank's errors, compared with closed forms for simulated errors.
+// Patterns in a bank's errors. For simulated errors, the gains are compared with closed forms.
 #include "app/chain/error_pattern.hpp"
 
 #include <gmock/gmock.h>
@@ -19,13 +19,13 @@ using Eigen::VectorXd;
 
 double normal_probability(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
-/// Training runs of one state and one input, and a bank's errors on them.
+/// Training runs with one state and one input, and errors of a bank on these runs.
 struct Drawn {
   Archive archive;
   FilterEvaluation bank{"bank", {}};
 
-  /// `error(k, z, u, w)` returns the next error from earlier errors, from the inputs up to its own sample, and from
-  /// white noise.
+  /// `error(k, z, u, w)` returns the next error. It depends on earlier errors z, on the inputs u up to sample k, and on
+  /// white noise w.
   Drawn(int runs, Index samples, const std::function<double(Index, const VectorXd&, const VectorXd&, double)>& error) {
     std::mt19937_64 generator(7);
     boost::random::normal_distribution<double> normal;
@@ -41,11 +41,11 @@ struct Drawn {
         u(k) = normal(generator);
         z(k) = error(k, z, u, normal(generator));
       }
-      run.input = 300.0 * u.transpose();  // the unit must not matter
+      run.input = 300.0 * u.transpose();  // the factor tests that the unit does not matter
       archive.recording->runs.push_back(run);
       RunEvaluation said;
       said.pit = z.unaryExpr(&normal_probability).transpose();
-      said.pit(0, 0) = not_a_number;  // start of the filter
+      said.pit(0, 0) = not_a_number;  // the filter has not started here
       bank.runs.push_back(said);
     }
   }
@@ -61,7 +61,8 @@ TEST(ErrorPattern, WhiteErrorsHaveNone) {
   EXPECT_FALSE(pattern.told());
 }
 
-/// Errors of an autoregression with coefficient r can lose 1 - r^2 of their variance: -ln(1 - r^2) / 2 nats per sample.
+/// With an autoregression of coefficient r, the errors' variance can decrease by the factor 1 - r^2. The gain is -ln(1
+/// - r^2) / 2 nats per sample.
 TEST(ErrorPattern, OfAnAutoregressionGainsWhatItsCoefficientSays) {
   for (const int runs : {6, 2}) {
     const ErrorPattern pattern = Drawn(runs, 2400 / runs, [](Index k, const VectorXd& z, const VectorXd&, double w) {
@@ -73,7 +74,8 @@ TEST(ErrorPattern, OfAnAutoregressionGainsWhatItsCoefficientSays) {
   }
 }
 
-/// White errors from an unmodelled dead time: inputs are redrawn at each sample, so no autocorrelation shows it.
+/// An unmodelled dead time makes white errors here: the inputs are drawn anew at each sample, so the errors have no
+/// autocorrelation.
 TEST(ErrorPattern, OfAnInputThatActsLateIsFound) {
   const ErrorPattern pattern = Drawn(6, 400, [](Index k, const VectorXd&, const VectorXd& u, double w) {
                                  return k < 5 ? w : 0.6 * u(k - 5) + 0.8 * w;
@@ -98,7 +100,7 @@ TEST(ErrorPattern, IsNotAskedForWhereLagsAreSettled) {
 
 using ErrorPatternOfRuns = test::CliTest;
 
-/// A second-order motion, fitted with one lag: y[k+1] = 1.1 y[k] - 0.4 y[k-1] + 0.2 u[k] + noise.
+/// A second-order motion that is fitted with one lag: y[k+1] = 1.1 y[k] - 0.4 y[k-1] + 0.2 u[k] + noise.
 TEST_F(ErrorPatternOfRuns, OneLagTooFewEndsInTheKeyThatLooksForLags) {
   std::mt19937_64 generator(5);
   boost::random::normal_distribution<double> normal;

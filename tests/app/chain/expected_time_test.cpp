@@ -41,7 +41,7 @@ TEST(ExpectedTime, IsToldFromHalfAMinuteOn) {
                           "bank: expected to take 10 min of processor time; --bank.refine none leaves this out"));
 }
 
-/// Runs of the demo's size are not announced, but a day at 10 Hz is.
+/// No line is printed for runs of the demo's size, but one is printed for a day at 10 Hz.
 TEST(ExpectedTime, GrowsWithSamplesAndCoefficients) {
   const Recording few = one_run(1000), many = one_run(864'000);
   const LinearStructure structure{1, 2, false};

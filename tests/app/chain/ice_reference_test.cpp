@@ -1,4 +1,4 @@
-// Values of the reference analysis of the Husky-on-ice runs (BorealTC), computed by an independent numpy script.
+// Values of the reference analysis of the Husky-on-ice runs (BorealTC). An independent numpy script has computed them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 namespace modebank::app {
 namespace {
 
-constexpr double theta_tolerance = 2e-4;      // the reference is printed to four decimals
-constexpr double variance_tolerance = 1e-3;   // relative; printed to four digits
-constexpr double log_score_tolerance = 0.01;  // both maximise the same flat likelihood
+constexpr double theta_tolerance = 2e-4;      // the reference has four decimals
+constexpr double variance_tolerance = 1e-3;   // relative; the reference has four digits
+constexpr double log_score_tolerance = 0.01;  // both programs maximise the same flat likelihood
 constexpr double rmse_tolerance = 2e-4;
-constexpr double tail_tolerance = 1e-3;  // printed to three decimals
+constexpr double tail_tolerance = 1e-3;  // the reference has three decimals
 
 Config ice_config(bool odd_runs_train) {
   Config config;
@@ -29,12 +29,12 @@ Config ice_config(bool odd_runs_train) {
   config.data.states = "borealtc/ICE/imu_*.csv";
   config.data.state = {"wz"};
   config.data.input = {"velL", "velR"};
-  config.structure.automatic_model = false;  // the reference has one lag
+  config.structure.automatic_model = false;  // the reference uses one lag
   if (odd_runs_train) config.data.train = {"02", "04", "06", "08", "10", "12"};
   return config;
 }
 
-/// Reference values for one fold.
+/// Values of the reference for one fold.
 struct Fold {
   bool odd_runs_train;
   Index transitions, windows;
@@ -42,7 +42,7 @@ struct Fold {
   double residual_variance;
   double train_log_score, test_log_score, train_rmse, test_rmse;
   double noise_only_log_score;
-  double bank_log_score_at_least, bank_rmse_at_most;  // 12 components, mean over seeds
+  double bank_log_score_at_least, bank_rmse_at_most;  // bank with 12 components; mean over seeds
 };
 
 void PrintTo(const Fold& fold, std::ostream* out) {
@@ -60,7 +60,7 @@ const SummaryRow& pooled(const std::vector<SummaryRow>& rows, const std::string&
   });
 }
 
-/// The reference's residual variance is about the mean of the residuals; Q is the mean square.
+/// The reference uses the variance about the mean of the residuals, but Q is the mean square.
 double variance_about_mean(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
   const LinearModel model = unpack(structure, global.theta);
   double sum = 0.0;
@@ -115,8 +115,8 @@ TEST_P(IceReference, TwelveComponentsReachTheLevel) {
   const Fold& fold = GetParam();
   Config config = ice_config(fold.odd_runs_train);
   config.mixture.selection.components = {12};
-  config.bank.refine = Refine::none;           // the reference pools windows without refinement
-  config.mixture.windows = WindowChoice::all;  // as in the reference analysis
+  config.bank.refine = Refine::none;           // the reference pools windows and does not refine the bank
+  config.mixture.windows = WindowChoice::all;  // as in the reference
   constexpr int seeds = 10;
   double log_score = 0.0, rmse = 0.0;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -135,7 +135,7 @@ TEST_P(IceReference, TwelveComponentsReachTheLevel) {
   EXPECT_LE(rmse, fold.bank_rmse_at_most);
 }
 
-/// K depends on the data: it is the same for covariance floors over four decades and for five seeds.
+/// Only the data determine K. It is the same for covariance floors over four decades and for five seeds.
 TEST_P(IceReference, TheNumberOfComponentsDoesNotDependOnTheFloorOrTheSeed) {
   MODEBANK_NEEDS_SHARED_DATA();
   for (const bool varx : {false, true}) {

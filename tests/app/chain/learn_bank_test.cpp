@@ -1,4 +1,4 @@
-// The library's learn_bank gives the same bits as `modebank run` on the same runs.
+// The library function learn_bank and `modebank run` give identical banks on the same runs.
 #include <gtest/gtest.h>
 
 #include "io/archive/archive.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 class LearnBank : public CliTest {
  protected:
-  /// Makes an archive by `run` with these arguments, learns from its runs and compares the banks.
+  /// Makes an archive by `run` with these arguments, learns a bank from the archive's runs, and compares both banks.
   void expect_the_bank_of_run(const std::vector<std::string>& arguments, const LearnOptions& options) {
     const ProgramResult result = run(arguments);
     ASSERT_EQ(result.status, 0) << result.err;

@@ -11,19 +11,20 @@ namespace modebank::test {
 
 inline constexpr Index window_length = 25;
 
-/// A kind of simulated recording, and a way to choose K on it. Windows have window_length transitions and the features
+/// A kind of simulated recording, and a way to choose K. Windows have window_length transitions, and the features are
 /// parameters+noise.
 struct RecoveryCase {
   std::string name;
-  Index hold_samples = 1;      ///< number of samples between two draws of the inputs
-  double dwell_windows = 0.0;  ///< mean stay in a mode, in window lengths; 0: each run stays in one mode
+  Index hold_samples = 1;      ///< number of samples for which each input is held
+  double dwell_windows = 0.0;  ///< mean stay in a mode, in units of the window length; 0 if each run stays in one mode
   Index step = 1;
   Criterion criterion = Criterion::bic;
   bool noise_component = false;
   bool error_aware = false;
 };
 
-/// Like configs/simulate_linear.ini, with 2 to 6 modes (by seed), 40 runs of 500 samples and R = Q / 25.
+/// A system as in configs/simulate_linear.ini, with 40 runs of 500 samples and R = Q / 25. It has 2 to 6 modes,
+/// depending on the seed.
 SimulationOptions recovery_system(const RecoveryCase& recovery, int seed);
 
 struct Simulated {
@@ -32,19 +33,19 @@ struct Simulated {
 };
 Simulated simulate_recording(const SimulationOptions& options, int seed);
 
-/// Choices of the criteria for one seed, from 1 to true K + 3.
+/// Choices of K by different criteria for one seed. Candidates are 1 to the true K + 3.
 struct RecoveredSize {
   Index truth = 0;
-  Index chosen = 0;        ///< by the case's criterion
-  Index naive = 0;         ///< by BIC as if windows were independent
-  double clustered = 0.0;  ///< share of clustered windows
+  Index chosen = 0;        ///< choice by the criterion of the case
+  Index naive = 0;         ///< choice by BIC for independent windows
+  double clustered = 0.0;  ///< share of the windows that are clustered
 };
 RecoveredSize recover_size(const RecoveryCase& recovery, int seed);
 
-/// All seeds 1 to `seeds`, in parallel.
+/// Results of the seeds 1 to `seeds`. The seeds run in parallel.
 std::vector<RecoveredSize> recover_sizes(const RecoveryCase& recovery, int seeds);
 
-/// Number of seeds on which the difference to the true K is 0.
+/// Number of seeds for which the choice equals the true K.
 int right(const std::vector<RecoveredSize>& sizes, Index RecoveredSize::*choice);
 
 }  // namespace modebank::test

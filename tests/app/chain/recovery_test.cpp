@@ -1,4 +1,4 @@
-// Whole chains on simulated switching systems with known truth.
+// Whole chains on simulated switching systems whose modes are known.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -19,9 +19,9 @@ namespace modebank::test {
 namespace {
 
 constexpr int seeds = 50;
-constexpr Index window_step = 5;  // a fifth of the windows, to keep the suite short; N_eff hardly changes
+constexpr Index window_step = 5;  // a fifth of all windows, so that the tests are short; N_eff hardly changes
 
-/// 2 to 4 well separated modes with R = Q / 25; the seed determines their number.
+/// A system of 2 to 4 well separated modes with R = Q / 25. The seed determines the number of modes.
 SimulationOptions system_of(int seed) {
   static const std::vector<Eigen::Vector3d> modes{
       {-0.60, -0.72, 0.72}, {-0.25, -0.20, 0.20}, {-0.45, -0.10, 0.50}, {-0.80, -0.50, 0.15}};
@@ -51,7 +51,7 @@ WindowFits fit(const Recording& recording) {
   return fit_windows(recording, options);
 }
 
-/// For every mode of the bank, the nearest true mode.
+/// For each mode of the bank, the nearest true mode.
 std::vector<Index> match(const Bank& bank, const SimulationOptions& system) {
   std::vector<Index> nearest;
   for (Index k = 0; k < bank.mode_count(); ++k) {
@@ -70,7 +70,7 @@ bool is_permutation_of_modes(std::vector<Index> matched, std::size_t modes) {
   return matched == all;
 }
 
-/// Results of one seed when every run stays in one mode.
+/// Results for one seed if every run stays in one mode.
 struct Stationary {
   bool found_k = false;
   bool matched = false;
@@ -117,10 +117,10 @@ TEST(Recovery, RunsThatStayInOneMode) {
   EXPECT_GE(within, 0.97 * parameters);
 }
 
-/// Results of one seed when runs switch modes, with a mean stay of 20 windows.
+/// Results for one seed if the mode switches within runs. The mean stay is 20 windows.
 struct Switching {
   Index overshoot = 0;             // chosen K minus true K
-  double worst_theta_error = 0.0;  // relative to the distance to the nearest other mode
+  double worst_theta_error = 0.0;  // relative to the distance between a mode and its nearest neighbour
   double sequence_right = 0.0;
 };
 
@@ -143,7 +143,7 @@ double share_of_right_modes(const Bank& bank, const Simulated& simulated, const 
     for (Index k = 1; k < evaluation.mode_probability.cols(); ++k, ++all) {
       Index best = 0;
       evaluation.mode_probability.col(k).maxCoeff(&best);
-      // The true mode over the transition into sample k.
+      // The mode at k - 1 holds for the transition into sample k.
       right += truth[static_cast<std::size_t>(best)] == simulated.runs[r].mode(k - 1);
     }
   }
@@ -184,7 +184,7 @@ TEST(Recovery, SwitchesInsideRuns) {
              one_more, more, switching_seeds);
 }
 
-/// Requires this share of a few seeds; measure_recovery runs all 50 of docs/results/mixture.md.
+/// Requires that `share` of a few seeds are right. measure_recovery runs all 50 seeds of docs/results/mixture.md.
 void expect_recovery(const RecoveryCase& recovery, int few_seeds, double share) {
   const std::vector<RecoveredSize> sizes = recover_sizes(recovery, few_seeds);
   fmt::print("{}: {} of {}, naive BIC {}\n", recovery.name, right(sizes, &RecoveredSize::chosen), few_seeds,

@@ -1,4 +1,4 @@
-// Every window of real and simulated runs, solved by both solvers of linear models.
+// Every window of real and simulated runs is solved by both solvers for linear models.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -18,12 +18,12 @@ constexpr double stationary = 1e-10;
 
 /// Differences between the two solutions of a window.
 struct Comparison {
-  double cost_above = 0.0;      ///< cost of the batch solver, relative to Ceres'
-  double gradient = 0.0;        ///< relative gradient at the batch solver's solution
-  double ceres_gradient = 0.0;  ///< at the solution of Ceres and Newton's method
+  double cost_above = 0.0;      ///< cost of the batch solver's solution, relative to the cost of Ceres' solution
+  double gradient = 0.0;        ///< relative gradient at the solution of the batch solver
+  double ceres_gradient = 0.0;  ///< relative gradient at the solution of Ceres and Newton's method
 };
 
-/// Ceres starts where the batch solver does: at least squares, or at the Huber optimum.
+/// Both solvers have the same start: least squares or the Huber optimum.
 std::vector<Comparison> compare(const Recording& recording, FitOptions options) {
   options.solver = WindowSolver::batch;
   const LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), options);
@@ -43,7 +43,7 @@ std::vector<Comparison> compare(const Recording& recording, FitOptions options) 
                                          prior.sd.array().square().inverse().cast<test::Real>()};
     const test::Regression samples = test::window_of(context.run_of(window), window.start, options.length, structure);
     const auto gradient = [&](const LocalModel& model) {
-      if (model.status == FitStatus::iteration_limit) return 0.0;  // its status states it
+      if (model.status == FitStatus::iteration_limit) return 0.0;  // the status of the fit already reports it
       return problem.relative_gradient(samples, model.theta.cast<test::Real>());
     };
     result[w] = {audited.cost, gradient(fit), gradient(context.fit(window, &prior))};
@@ -51,8 +51,8 @@ std::vector<Comparison> compare(const Recording& recording, FitOptions options) 
   return result;
 }
 
-/// Non-convex losses may end in another minimum in one window of a thousand. Audits count these and take Ceres'
-/// solution.
+/// For non-convex losses, one window of a thousand may end in another minimum. The audit counts these windows and uses
+/// the solution of Ceres.
 void expect_agreement(const Recording& recording, FitOptions options, const std::string& name) {
   for (const Loss loss : test::all_losses) {
     options.loss = loss;

@@ -1,6 +1,7 @@
-// If another value of a configuration key changes a stage's output, the stage's key must also change. Otherwise trials
-// of a study that share stages by key would differ from `run`. This test tries other values of every key of the option
-// table. The first stage that changes must be the one in the key's row.
+// If another value of a configuration key changes the output of a stage, the stage's key must also change. Otherwise
+// trials of a study that share stages by key would differ from `run`.
+// This test tries other values of every key of the option table. The first stage that changes must be the stage in the
+// key's row.
 #include "app/chain/stage_key.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ namespace {
 using test::TemporaryFolder;
 using test::write_file;
 
-/// A scalar system that switches between three responses to its inputs, in two blocks of time.
+/// A scalar system in two blocks of time. It switches between three responses to its inputs.
 std::string csv_run(unsigned seed) {
   std::mt19937_64 generator(seed);
   const auto uniform = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53 - 0.5; };
@@ -44,7 +45,7 @@ std::string csv_run(unsigned seed) {
   return text.str();
 }
 
-/// Computes every stage, and stores its key and the bytes of its part of the archive.
+/// Computes every stage. Stores the key of each stage and the bytes of its part of the archive.
 class Recorder : public StageSource {
  public:
   explicit Recorder(std::filesystem::path scratch) : scratch_(std::move(scratch)) {}
@@ -63,12 +64,12 @@ class Recorder : public StageSource {
 
  private:
   std::filesystem::path scratch_;
-  Provenance provenance_;  ///< empty, except while a part is written
+  Provenance provenance_;  ///< filled only while a part is written
 };
 
 class StageKey : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() { ::unsetenv("MODEBANK_DATA"); }  // paths in this test's configuration are its own
+  static void SetUpTestSuite() { ::unsetenv("MODEBANK_DATA"); }  // the test's configuration contains all paths
   StageKey() {
     std::filesystem::create_directory(file("elsewhere"));
     for (unsigned run = 0; run < 3; ++run) {
@@ -84,7 +85,7 @@ class StageKey : public ::testing::Test {
 
   std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
   Config configured(const KeyValues& keys) const { return load_config(file("base.ini"), keys); }
-  /// Reduces slow work that has no key to the amount of `base`, for any key.
+  /// For any key, limits slow work that no key limits to the amount in `base`.
   static ChainOptions quick(const Config& config, const Config& base) {
     ChainOptions options = chain_options(config);
     options.bank.em.folds = 2;
@@ -112,7 +113,7 @@ const std::vector<KeyValues> bases{
     {{"window.scale", "run"}, {"bank.noise", "fixed"}, {"bank.transition", "stay"}},
 };
 
-/// Other values for keys whose range no rule describes.
+/// Other values for keys whose range is not described by a rule.
 const std::map<std::string, std::vector<std::string>> texts{
     {"data.root", {"elsewhere"}},
     {"data.inputs", {"run_0*.csv"}},
@@ -146,7 +147,7 @@ const std::map<std::string, std::vector<std::string>> texts{
     {"data.quantum", {"0.02", "auto"}},
 };
 
-/// Other values that the option accepts: words, or some numbers.
+/// Other values that the option accepts: words or a few numbers.
 std::vector<std::string> others(const Option& option, const Config& base) {
   std::vector<std::string> candidates{"2", "0.5", "0", "7", "0.05", "1"};
   const auto text = texts.find(option.key);
@@ -174,12 +175,12 @@ struct Case {
 
   std::size_t base;
   std::string key, value;
-  std::string refusal = {};             ///< message of an exception; empty if the chain ran
-  std::vector<std::string> stale = {};  ///< stages that changed although their keys did not
-  std::size_t first = stage_count;      ///< first stage whose numbers changed
+  std::string refusal = {};             ///< message of the exception; empty if the chain ran
+  std::vector<std::string> stale = {};  ///< stages that changed although their keys stayed the same
+  std::size_t first = stage_count;      ///< first stage whose numbers have changed
 };
 
-/// Valid reasons for a chain to refuse a value. Any other exception is a failure of the test.
+/// The exceptions that a chain may throw for a value. Any other exception is a failure of the test.
 struct RuledOut {
   std::string key, reason;
 };
@@ -202,11 +203,11 @@ const std::vector<RuledOut> ruled_out{
     {"filter.variant", "bank.drift = auto needs"},
 };
 
-/// Keys without a second value on these data.
+/// Keys that can have only one value with these data.
 const std::map<std::string, std::string> one_value{{"data.root", "it has one folder"},
                                                    {"data.time_format", "its times are seconds"}};
 
-/// Keys without any effect on these data, which this test therefore does not cover.
+/// Keys that have no effect on these data. This test does not cover them.
 const std::map<std::string, std::string> without_effect{
     {"data.states", "the other value names the same files"},
     {"data.derive", "no base uses what is derived"},
@@ -234,7 +235,7 @@ bool may_be_refused(const Case& c) {
 
 bool is_tried(const Option& option) { return option.stage || option.key == "data.root"; }
 
-/// A thousand chains take minutes, so the keys are split into parts that run in parallel.
+/// A thousand chains take minutes. So the keys are split into parts that run in parallel.
 constexpr std::size_t parts = 12;
 
 std::vector<Option> keys_of(std::size_t part) {
@@ -265,7 +266,7 @@ TEST_P(StageKeyPart, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
   }
   const std::vector<Option> keys = keys_of(GetParam());
   std::vector<Case> cases = cases_of(keys, configs);
-  // One after another, because HDF5 refuses a second in-memory image with the same name.
+  // The cases run one after another, because HDF5 refuses a second image in memory with the same name.
   for (Case& c : cases) try {
       Config config = configs[c.base];
       const std::string value = c.key == "data.root" ? file(c.value).string() : c.value;
@@ -282,7 +283,7 @@ TEST_P(StageKeyPart, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
       c.refusal = error.what();
     }
   std::set<std::string> tried;
-  std::map<std::string, std::size_t> effective;  // by key: the first stage that changes
+  std::map<std::string, std::size_t> effective;  // for each key, the first stage that changes
   for (const Case& c : cases) {
     if (c.refusal.empty()) tried.insert(c.key);
     if (c.first < stage_count) {
@@ -303,7 +304,7 @@ TEST_P(StageKeyPart, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
     }
 }
 
-/// Each part of the test above checks its keys against `without_effect`.
+/// Each part of the test above checks that its keys have an effect, unless `without_effect` lists them.
 TEST(StageKeys, OfMostKeysAreTested) {
   const auto& options = option_table();
   const auto effective = std::count_if(options.begin(), options.end(), [](const Option& option) {
@@ -312,7 +313,7 @@ TEST(StageKeys, OfMostKeysAreTested) {
   EXPECT_GE(effective, 56) << "too few change anything for the test to mean much (59 do)";
 }
 
-/// Scores of the merging once came from wrong stages in a study; this defect led to stage keys.
+/// In a study, scores after merging once came from stages of another trial. Keys of stages were added to prevent this.
 TEST_F(StageKey, OfABankWhoseModesAreMergedHoldsTheFilter) {
   const auto key = [&](KeyValues keys) {
     keys.emplace_back("bank.refine", "none");
@@ -329,7 +330,7 @@ TEST_F(StageKey, OfABankWhoseModesAreMergedHoldsTheFilter) {
   EXPECT_EQ(automatic("icr"), Refine::none) << "shares its bank with what says none";
 }
 
-/// The choice of lags depends on the fit of one model, not on the bank.
+/// The choice of lags depends on how one model is fitted, but not on the bank.
 TEST_F(StageKey, OfAStructureThatIsFoundHoldsHowOneModelIsFitted) {
   const auto options = [&](KeyValues keys) {
     keys.emplace_back("window.model", "varx");

@@ -1,4 +1,4 @@
-// Stages and banks taken from archives, and archives made again, with the same numbers each time.
+// Stages and banks are read from archives, and archives are made again. The numbers must be equal each time.
 #include <gmock/gmock.h>
 #include <tbb/global_control.h>
 
@@ -25,7 +25,7 @@ TEST_F(StoredStages, NumbersAreTheSameForAnyThreadCount) {
   EXPECT_EQ(all_stages(archive()), one);
 }
 
-/// The chain of `run` in a part of the training transitions; 0: in all.
+/// The archive of `run` if it learns from `transitions` training transitions. 0 means all.
 Archive learned_from(const std::string& config, Index transitions, std::size_t threads) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   ChainOptions options = chain_options(app::load_config(config, {}));
@@ -51,7 +51,7 @@ TEST_F(StoredStages, ALimitOfAllTransitionsChangesNothing) {
   EXPECT_EQ(all_stages(limit), all_stages(all));
 }
 
-/// The way in which recordings are written whose evaluations exceed memory.
+/// Recordings whose evaluations exceed the memory are written in this way.
 TEST_F(StoredStages, EvaluationsWrittenAsTheyAreMadeAreTheSame) {
   ASSERT_EQ(run().status, 0);
   const std::string streamed = file("streamed.h5").string();
@@ -85,7 +85,7 @@ TEST_F(StoredStages, StoredBankGivesBitIdenticalScores) {
   EXPECT_EQ(numbers_of(again, "/bank"), numbers_of(archive(), "/bank"));
 }
 
-/// kf is the global model, for any stored bank.
+/// For any stored bank, the filter kf is the global model.
 TEST_F(StoredStages, AStoredBankRunAsOneKalmanFilterIsTheBaseline) {
   ASSERT_EQ(run({"--mixture.components", "3"}).status, 0);
   const std::string again = file("again.h5").string();

@@ -1,4 +1,4 @@
-// window.model = auto in the program: its result, archive and texts, and which keys keep their values.
+// window.model = auto in the program: its result, archive and texts, and the keys that keep their values.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ TEST_F(StructureOfRuns, IsInTheArchiveWithItsScoresAndInWhatIsPrinted) {
        {&StructureScore::linear, &StructureScore::one_motion, &StructureScore::drifting})
     EXPECT_EQ(std::count_if(found.scores.begin(), found.scores.end(), [&](const auto& s) { return s.*taken; }), 1);
   for (const StructureScore& s : found.scores) {
-    if (std::isnan(s.log_score)) continue;  // a candidate of other stages
+    if (std::isnan(s.log_score)) continue;  // this candidate belongs to other stages
     EXPECT_NEAR(s.loss, found.scores.front().log_score - s.log_score, 1e-12);
     EXPECT_EQ(s.rmse.size(), made.recording->state_count());
     if (!s.chosen) continue;
@@ -64,7 +64,7 @@ TEST_F(StructureOfRuns, IsInTheArchiveWithItsScoresAndInWhatIsPrinted) {
   EXPECT_THAT(modebank({"show", archive()}).out, AllOf(HasSubstr("log score"), HasSubstr("state lags")));
   const ProgramResult verified = modebank({"verify", archive()});
   EXPECT_EQ(verified.status, 0) << verified.err;
-  // Stating the same numbers gives the same bank.
+  // If the found numbers are stated in the configuration, the bank is the same.
   ASSERT_EQ(run_stated(found).status, 0);
   const Archive stated = read_archive(archive());
   EXPECT_FALSE(stated.structure.has_value());
@@ -94,7 +94,7 @@ TEST_F(StructureOfRuns, IsRefusedWhereThereAreNoLags) {
   EXPECT_EQ(run({"--window.model", "varx", "--window.input_lags", "0"}).status, 2);
 }
 
-/// On the command line the model replaces the file's, with its lags.
+/// window.model on the command line replaces the model of the file together with the file's lags.
 TEST_F(StructureOfRuns, OfTheCommandLineForgetsTheLagsOfTheFile) {
   write_file(file("lags.ini"), "[window]\nmodel = varx\nstate_lags = 3\n");
   const auto text = [&](const app::KeyValues& keys) {
@@ -125,7 +125,7 @@ TEST(WindowLengthKey, FollowsTheModelUnlessItIsGiven) {
   EXPECT_TRUE(app::chain_options(config).automatic_windows.length);
 }
 
-/// From thirteen coefficients on, windows are longer and the cloud is of one-lag fits; the texts state both.
+/// If there are thirteen coefficients or more, windows are longer and one-lag fits are clustered. The texts state both.
 TEST_F(StructureOfRuns, WindowsOfManyLagsAreLongerAndClusteredByOneLagFits) {
   ASSERT_EQ(
       run({"--window.model", "varx", "--window.state_lags", "6", "--window.input_lags", "6", "--window.length", "auto"})
@@ -147,8 +147,8 @@ TEST_F(StructureOfRuns, WindowsOfManyLagsAreLongerAndClusteredByOneLagFits) {
       2);
 }
 
-/// Inputs act with opposite signs in two modes. A single linear model may therefore take a later sample of the input,
-/// and with that delay no modes would be found.
+/// The inputs act with opposite signs in two modes. In a single linear model these effects cancel, so it may choose a
+/// wrong delay. With that delay no modes would be found.
 TEST(StageStructures, ModesAreAskedForTheUsualDelayToo) {
   std::mt19937_64 generator(1);
   boost::random::normal_distribution<double> normal;
@@ -173,7 +173,8 @@ TEST(StageStructures, ModesAreAskedForTheUsualDelayToo) {
   EXPECT_EQ(kept->input_delay, 2);
 }
 
-/// Stated lags may need more samples than a free run has. These lags stay, and no other lags are tried.
+/// Lags in the configuration may need more measured samples than a free run has at its start. These lags stay, and no
+/// other lags are tried.
 TEST(StageStructures, StatedLagsBeyondAFreeRunStay) {
   Recording recording = empty_recording(1, 1);
   for (Index r = 0; r < 4; ++r) add_run(recording, Eigen::MatrixXd::Random(1, 100), Eigen::MatrixXd::Random(1, 100));

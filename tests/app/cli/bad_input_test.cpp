@@ -5,7 +5,7 @@
 namespace modebank::test {
 namespace {
 
-/// Each case has one fault, with the message that the user must get.
+/// Each case has one fault, and the message that a user must get.
 class BadInput : public CliTest {
  protected:
   void expect(const ProgramResult& result, int status, const std::vector<std::string>& message) const {

@@ -1,4 +1,4 @@
-// Results of the libraries for pauses, and for regressors that data leave unidentifiable.
+// Library results for pauses, and for regressors that the data leave unidentifiable.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The grid around a pause equals the grid without a pause, except deep inside the pause.
+/// A pause changes the grid only deep inside the pause.
 TEST(ClocksAndNumbersGrid, LeavesOutOnlyWhatLiesDeepInAPause) {
   VectorXd time_s(200);
   for (Index k = 0; k < 200; ++k) time_s(k) = 0.1 * static_cast<double>(k) + (k < 100 ? 0.0 : 5000.0);
@@ -37,7 +37,8 @@ TEST(ClocksAndNumbersGrid, LeavesOutOnlyWhatLiesDeepInAPause) {
   EXPECT_EQ(joint_times(time_s, time_s, {10.0, 0.0, 0.0, 0.0}).size(), 1100) << "a gap of 90 s at 10 Hz is short";
 }
 
-/// A pause of 1e9 s has 4e8 windows. These must cost no time and leave the matches on either side unchanged.
+/// A pause of 1e9 s has 4e8 windows. They must take no time, and the matches before and after the pause must not
+/// change.
 TEST(ClocksAndNumbersLag, PassesOverAPause) {
   Stream inputs{VectorXd(2000), Eigen::MatrixXd(1, 2000)};
   for (Index k = 0; k < 2000; ++k) {
@@ -49,11 +50,11 @@ TEST(ClocksAndNumbersLag, PassesOverAPause) {
   for (Index k = 3; k < 2000; ++k) states.values(0, k) = inputs.values(0, k - 3);
   const LagTrack track = track_lag(states, inputs, {.range_s = 1.0});
   ASSERT_GT(track.windows(), 4);
-  EXPECT_NEAR(track.median_s(), 0.3, 0.07);  // held inputs may add half a period
+  EXPECT_NEAR(track.median_s(), 0.3, 0.07);  // inputs that are held may add half a period
   EXPECT_GT(track.time_s(track.windows() - 1), 1e9);
 }
 
-/// Removing the unidentifiable column leaves the regression unchanged.
+/// If the unidentifiable column is removed, the regression stays the same.
 TEST(ClocksAndNumbersGlobal, Finding_D9_AnOpenRegressorDoesNotChangeTheOthers) {
   const auto recording = [](bool zero) {
     Recording result;

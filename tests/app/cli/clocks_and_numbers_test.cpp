@@ -1,4 +1,4 @@
-// Wrong clocks and values that are not numbers: messages before any fit, and results that are right in spite of them.
+// Wrong clocks and invalid numbers. They cause messages before any fit, or results that are right in spite of them.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -26,9 +26,9 @@ using ::testing::Not;
 
 class ClocksAndNumbers : public CliTest {
  protected:
-  using Row = std::vector<std::string>;  // time, wz, left, right
+  using Row = std::vector<std::string>;  // fields: time, wz, left, right
 
-  /// Changes the rows of a run's file; `line`: line number in the file, where the header has 1.
+  /// Changes the rows of a run's file. `line`: line number in the file; the header is line 1.
   void change(const std::string& name, const std::function<void(int line, Row& row)>& change_row) const {
     std::istringstream in(csv_run(80, name == "run_00.csv" ? 1 : 2));
     std::string all, text;
@@ -73,7 +73,7 @@ TEST_F(ClocksAndNumbers, Finding_D4_APauseOfADayCostsNoGrid) {
 
 TEST_F(ClocksAndNumbers, Finding_D7_AValueThatNoScoreWouldCountIsRefusedWithItsPlace) {
   for (const char* value : {"1e30", "-1e50", "1e155", "1e300"})
-    for (const char* name : {"run_00.csv", "run_01.csv"}) {  // training and held-out run
+    for (const char* name : {"run_00.csv", "run_01.csv"}) {  // training run and held-out run
       change("run_00.csv", [](int, Row&) {});
       change(name, [&](int line, Row& row) { row[1] = line == 42 ? value : row[1]; });
       for (const ProgramResult& result : {run(), check()}) {
@@ -87,7 +87,7 @@ TEST_F(ClocksAndNumbers, Finding_D7_AValueThatNoScoreWouldCountIsRefusedWithItsP
   EXPECT_THAT(run().err, HasSubstr("run_00.csv:7: column left: 1e+40"));
 }
 
-/// Filters accept every number that import accepts.
+/// Filters accept every number that the import accepts.
 static_assert(largest_value == largest_measurement);
 
 TEST_F(ClocksAndNumbers, Finding_D7_AValueBelowTheLimitIsScored) {
@@ -128,7 +128,7 @@ TEST_F(ClocksAndNumbers, Finding_D9_AZeroInputLeavesTheOthersTheirErrors) {
   EXPECT_GT(variance(0), 0.0);
   EXPECT_TRUE(std::isnan(variance(1)));
   EXPECT_GT(variance(2), 0.0);
-  // The value of an unidentifiable parameter comes from its prior, and texts must not present this value as a result.
+  // The value of an unidentifiable parameter comes from its prior. Texts must not present this value as a result.
   for (const std::optional<Bank>& bank :
        {archive.bank, archive.unrefined, archive.baseline, archive.noise_only, archive.one_motion})
     for (const Mode& mode : bank.value().modes) {
@@ -162,7 +162,7 @@ TEST_F(ClocksAndNumbers, Finding_D9_CollinearInputsLeaveTheStateItsErrors) {
   EXPECT_THAT(check().out, Not(HasSubstr("nan")));
 }
 
-/// If an input equals the state, the decay and every gain are unidentifiable.
+/// If an input equals the state, the decay and all gains are unidentifiable.
 TEST_F(ClocksAndNumbers, Finding_D9_AnOpenStateLeavesNoTimeConstantAndNoGain) {
   change_both([](int, Row& row) { row[3] = row[1]; });
   const ProgramResult result = run();
@@ -175,7 +175,7 @@ TEST_F(ClocksAndNumbers, Finding_D9_AnOpenStateLeavesNoTimeConstantAndNoGain) {
   EXPECT_THAT(check().out, HasSubstr("the effect of the state wz, right, which are zero or sums of multiples"));
 }
 
-/// Half of this period would need a rate beyond the range of data.rate_hz.
+/// Half of this period would need a larger rate than data.rate_hz allows.
 TEST_F(ClocksAndNumbers, AFasterRateThanAnyIsNotTried) {
   change_both([](int line, Row& row) { row[0] = std::to_string(line) + "e-8"; });
   const ProgramResult result = check();
@@ -217,7 +217,7 @@ TEST_F(ClocksAndNumbers, AColumnWithoutAValueIsNamed) {
   }
 }
 
-/// Every measured sample without a score is counted.
+/// Counts every measured sample that has no score.
 TEST_F(ClocksAndNumbers, MeasuredSamplesWithoutAScoreAreCounted) {
   change("run_00.csv", [](int, Row&) {});
   change("run_01.csv", [](int line, Row& row) {
@@ -226,7 +226,8 @@ TEST_F(ClocksAndNumbers, MeasuredSamplesWithoutAScoreAreCounted) {
   const ProgramResult result =
       run({"--data.missing", "predict", "--window.model", "varx", "--window.state_lags", "3", "--bank.refine", "none"});
   ASSERT_EQ(result.status, 0) << result.err;
-  // Every third of 80 samples is missing, from the second on. 53 remain, three of them at the start.
+  // Every third of 80 samples is missing, starting with the second. The other 53 samples remain; three of these are at
+  // the start.
   EXPECT_THAT(result.err, HasSubstr("scores: 50 of 133 measured samples have no score, most of them in run 01"));
   EXPECT_THAT(modebank({"show", archive()}).out, HasSubstr("measured samples have no score"));
   const ProgramResult gaps = run({"--data.missing", "gap", "--bank.refine", "none"});
@@ -241,8 +242,7 @@ TEST_F(ClocksAndNumbers, Finding_D16_OneOutlierThatOwnsTheGlobalModelIsNamed) {
   const char* said = "run_00.csv:42: run \"00\": wz = 100000 holds 100 % of the variance of wz in the training runs";
   EXPECT_THAT(run().err, HasSubstr(said));
   EXPECT_THAT(check().out, HasSubstr("run_00.csv:42: run \"00\": wz = 100000"));
-  // In a held-out run the column affects scores, but no model. Samples for which data.where is false do not belong to
-  // the data.
+  // In a held-out run, the column affects scores but no model. Samples with data.where = false are not data.
   change("run_00.csv", [](int, Row&) {});
   EXPECT_THAT(run().err, Not(HasSubstr("% of the variance of")));
   change("run_01.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e5" : row[1]; });
@@ -264,7 +264,7 @@ TEST_F(ClocksAndNumbers, Finding_D15_NoControlCharacterReachesTheTerminal) {
     EXPECT_THAT(result.err, HasSubstr("w\\x1b[31mRED\\x07"));
     EXPECT_THAT(result.out + result.err, Not(HasSubstr("\x1b")));
   };
-  expect_shown(run());  // in the list of existing columns
+  expect_shown(run());  // part of the list of existing columns
   expect_shown(run({"--data.state", escape}));
   expect_shown(modebank({"check", config(), "--data.root", file(".").string(), "--data.state", escape}));
   for (const char* name : {"run_00.csv", "run_01.csv"}) change(name, [](int, Row&) {});

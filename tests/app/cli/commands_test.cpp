@@ -55,7 +55,7 @@ TEST_F(Commands, ResidualTestsAreInTheArchiveAndInTheSummary) {
   EXPECT_NE(shown.out.find("R^2 of the increments"), std::string::npos) << shown.out;
 }
 
-/// The loss is the difference of the summary's scores, even if some samples have no score because of lags.
+/// The loss is the difference of the scores in the summary, even if lags leave some samples without a score.
 TEST_F(Commands, MergingModesSaysWhatItCostsInTheSummarysScores) {
   std::vector<std::string> options{"--window.model", "varx", "--window.state_lags", "3", "--mixture.components", "3"};
   const auto pooled = [&](Role role) {
@@ -87,7 +87,7 @@ TEST_F(Commands, MergingModesSaysWhatItCostsInTheSummarysScores) {
   EXPECT_NE(shown.find(cost), std::string::npos) << cost << '\n' << shown;
 }
 
-/// A gyro that occasionally reads 1e15: every line must keep its columns.
+/// The gyro sometimes reads 1e15. All columns must stay aligned.
 TEST_F(Commands, HugeNumbersStayInTheirColumns) {
   std::string text = csv_run(80, 1);
   for (const double share : {0.3, 0.6}) {
@@ -107,7 +107,7 @@ TEST_F(Commands, HugeNumbersStayInTheirColumns) {
   EXPECT_EQ(result.out.find("00000000000"), std::string::npos) << result.out;
 }
 
-/// A column of zeros and ones has the same effect as leaving out transitions. An invalid weight is refused.
+/// A column of zeros and ones has the same effect as removing transitions. An invalid weight is refused.
 TEST_F(Commands, SampleWeightsComeFromAColumn) {
   std::string text = csv_run(80, 1), weighted = "time,wz,left,right,w\n";
   std::istringstream lines(text);
@@ -134,7 +134,7 @@ TEST_F(Commands, AHorizonThatNoRunReachesIsAnError) {
   EXPECT_TRUE(left_behind().empty());
 }
 
-/// y[k+1] = 0.9 y[k] + 0.2 u[k], with all digits.
+/// Data without noise: y[k+1] = 0.9 y[k] + 0.2 u[k], with all digits.
 TEST_F(Commands, DataWithoutNoiseEndInCoefficients) {
   for (const char* name : {"run_00.csv", "run_01.csv"}) {
     std::string text = "time,y,u\n";
@@ -155,7 +155,8 @@ TEST_F(Commands, DataWithoutNoiseEndInCoefficients) {
     EXPECT_NE(screen.find(said), std::string::npos) << said << '\n' << screen;
 }
 
-/// A lag of 1 s with gain 2, discretised exactly at steps of 0.05 to 0.35 s. An earlier version found four modes.
+/// A first-order lag of 1 s with gain 2, discretised exactly for steps of 0.05 to 0.35 s. An earlier version found four
+/// modes in these data.
 TEST_F(Commands, StepsThatScatterEndInOneModelAndItsTimeConstant) {
   std::mt19937_64 generator(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -184,7 +185,7 @@ TEST_F(Commands, StepsThatScatterEndInOneModelAndItsTimeConstant) {
   EXPECT_NEAR(-archived.recording->median_period_s() / std::log1p(archived.bank->theta(0)(0)), 1.0, 0.1);
 }
 
-/// Import refuses values without a square in a double, so this test makes such values itself.
+/// The import refuses values whose square is too large for a double. So the test makes such values itself.
 TEST(WindowWarnings, NameWindowsWithoutAFiniteFit) {
   app::WindowCounts counts;
   counts.status[static_cast<std::size_t>(FitStatus::converged)] = 5;
@@ -275,7 +276,7 @@ TEST_F(Commands, HelpOfACommandShowsItsUse) {
   }
 }
 
-/// A command on the screen must work in the user's folder.
+/// A command on the screen must work in the folder of the user.
 TEST_F(Commands, NextCommandsNameTheProgramAsItWasCalled) {
   const std::string path = std::getenv("PATH"), program = MODEBANK_PROGRAM;
   const std::string log = file("run_00.csv").string();
@@ -287,7 +288,7 @@ TEST_F(Commands, NextCommandsNameTheProgramAsItWasCalled) {
   EXPECT_NE(by_name.find("next: modebank run "), std::string::npos) << by_name;
 }
 
-/// Each term has one definition, which all of its names find. A key has its own definition.
+/// Each term has one definition. All names of the term lead to it. A key has its own definition.
 TEST_F(Commands, HelpSaysWhatATermOrAKeyMeans) {
   const std::string definition = modebank({"help", "NIS"}).out;
   EXPECT_NE(definition.find("Normalised innovation squared"), std::string::npos) << definition;

@@ -1,5 +1,5 @@
-// `modebank demo`: its modes beside the truth, the commands that it prints, the configurations inside the program, and
-// its own folder.
+// `modebank demo`: its modes beside the true modes, the printed commands, the built-in configurations, and the demo's
+// folder.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using ::testing::Not;
 class Demo : public CliTest {
  protected:
   std::string folder() const { return file("demo").string(); }
-  /// The demo of tyres with few runs, so that it takes only seconds.
+  /// The tyre demo with few runs, so that it takes only seconds.
   ProgramResult tyres(std::vector<std::string> options = {}) const {
     options.insert(options.begin(), "tyres");
     return small_demo(options);
@@ -46,7 +46,7 @@ class Demo : public CliTest {
   }
 };
 
-/// Found, error and truth in each line like "time constant  0.1507 +- 0.0006 s  true 0.150".
+/// The found value, error and true value of each line such as "time constant 0.1507 +- 0.0006 s true 0.150".
 std::vector<std::array<double, 3>> compared_numbers(const std::string& text) {
   const std::regex line(R"((-?[\d.]+) \+- ([\d.]+) \S+ +true +(-?[\d.]+)\n)");
   std::vector<std::array<double, 3>> numbers;
@@ -55,7 +55,7 @@ std::vector<std::array<double, 3>> compared_numbers(const std::string& text) {
   return numbers;
 }
 
-/// The truth is that of configs/systems/two_grounds.ini: 0.15 s, 0.95 and 0.6 s, 0.5 (rad/s)/(m/s), 0.005 rad/s.
+/// The true values are in configs/systems/two_grounds.ini: 0.15 s, 0.95 and 0.6 s, 0.5 (rad/s)/(m/s), 0.005 rad/s.
 TEST_F(Demo, FindsTheGroundsThatItSimulates) {
   const ProgramResult shown = modebank({"demo", "-o", folder()});
   ASSERT_EQ(shown.status, 0) << shown.err;
@@ -106,7 +106,8 @@ TEST_F(Demo, IsTheCommandsThatItNames) {
   const ProgramResult by_hand = modebank(words);
   ASSERT_EQ(by_hand.status, 0) << by_hand.err;
   const std::size_t next = by_hand.out.find("next   "),
-                    use = by_hand.out.find("use   ");  // the next step may contain the archive's name
+                    use = by_hand.out.find("use   ");  // the next step is not compared, because it may contain the
+                                                       // archive's name
   EXPECT_THAT(shown.out, HasSubstr(by_hand.out.substr(0, next)));
   EXPECT_THAT(shown.out, HasSubstr(by_hand.out.substr(use, by_hand.out.find("archive   ") - use)));
 }

@@ -29,14 +29,14 @@ TEST_F(Help, OfEveryCommandFitsAScreenAndIsTheSameBothWays) {
     ASSERT_EQ(help.status, 0) << command.name << help.err;
     EXPECT_EQ(help.out, modebank({command.name, "--help"}).out);
     const std::vector<std::string> lines = app::lines_of(help.out);
-    EXPECT_LE(lines.size(), 41u) << help.out;  // including the empty text after the last line end
+    EXPECT_LE(lines.size(), 41u) << help.out;  // includes the empty text after the last line break
     for (const std::string& line : lines) EXPECT_LE(app::columns_of(line), 100) << line;
     for (const app::CommandOption& option : command.options)
       EXPECT_NE(help.out.find("--" + option.long_name()), std::string::npos) << option.name;
   }
 }
 
-/// The labels of `run` and `show`; run_log_test has those of `run LOG`.
+/// The labels of `run` and `show`. run_log_test tests the labels of `run LOG`.
 TEST_F(Help, ExplainsEveryLabelOfTheScreen) {
   const ProgramResult made = run();
   ASSERT_EQ(made.status, 0) << made.err;
@@ -50,7 +50,7 @@ TEST_F(Help, ExplainsEveryLabelOfTheScreen) {
     EXPECT_NE(app::help_on(label.name).find(label.means), std::string::npos) << label.name;
 }
 
-/// All names of a term find it, and so do the words that are not used for it.
+/// All names of a term lead to it. Words that are not used for the term also lead to it.
 TEST_F(Help, AnswersEveryWordOfTheGlossary) {
   for (const nlohmann::json& term : nlohmann::json::parse(app::assets::terms_json())) {
     std::vector<std::string> names{term.at("term")};
@@ -86,7 +86,7 @@ TEST_F(Help, OfEveryKeySaysWhenToTouchIt) {
   EXPECT_NE(help.find("changes the stage data and those that follow"), std::string::npos) << help;
 }
 
-/// Options are declared in the table alone: commands with the same option set the same member.
+/// Only the table declares options: all commands with an option of one name set the same member.
 TEST_F(Help, OptionsOfOneNameHaveOneTarget) {
   std::map<std::string, app::CommandOption> known;
   for (const app::Command& command : app::command_table())
@@ -117,7 +117,7 @@ TEST_F(Help, WordsAfterACommandAreCounted) {
   }
 }
 
-/// An option that a command does not read is a user error, for any value.
+/// An option that a command does not read is a user error, whatever its value.
 TEST_F(Help, OptionsThatACommandDoesNotReadAreRefused) {
   const std::vector<std::vector<std::string>> lines{{"show", archive(), "-o", "x"},
                                                     {"run", config(), "-o", "x"},
@@ -201,7 +201,7 @@ TEST_F(Help, DryRunNamesFilesAndWritesNone) {
   EXPECT_TRUE(left_behind().empty());
 }
 
-/// Stages from an archive bring their data with them.
+/// If stages come from an archive, the data also come from this archive.
 TEST_F(Help, DryRunOnAnArchivesStagesReadsTheArchive) {
   write("out.h5", "is not opened");
   const ProgramResult result = modebank({"cluster", config(), "--archive.input", archive(), "--dry-run"});
@@ -230,7 +230,7 @@ TEST_F(Help, BashCompletesCommandsOptionsKeysAndWords) {
   EXPECT_EQ(completed("modebank help 'log sc'"), " log\\ score \n");
 }
 
-/// Each topic that completion offers is one that help explains.
+/// `help` explains each topic that the completion offers.
 TEST_F(Help, EveryTermOfTheGlossaryIsExplained) {
   EXPECT_GT(app::term_names().size(), 50u);
   for (const std::string& term : app::term_names()) EXPECT_NO_THROW(app::help_on(term)) << term;

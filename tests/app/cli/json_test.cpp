@@ -16,7 +16,7 @@ using nlohmann::json;
 
 class Json : public CliTest {
  protected:
-  /// The single object on standard output.
+  /// The only object on standard output.
   json object(const std::vector<std::string>& arguments, int status = 0) const {
     std::vector<std::string> all = arguments;
     all.emplace_back("--json");
@@ -32,7 +32,7 @@ class Json : public CliTest {
   }
 };
 
-/// Words in backquotes of the documentation's lines of that command.
+/// Words in backquotes in the documentation's lines on this command.
 std::set<std::string> documented(const std::string& command) {
   std::ifstream stream(project_dir() / "docs/reference/json.md");
   std::set<std::string> words;
@@ -54,7 +54,7 @@ void expect_documented(const json& object) {
     }
 }
 
-/// `track` prints one object per sample.
+/// `track` prints one object per sample, so it is tested separately.
 TEST_F(Json, EveryCommandButScriptsHasIt) {
   const std::set<std::string> without{"completion", "manual"};
   for (const app::Command& command : app::command_table()) {

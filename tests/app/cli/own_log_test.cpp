@@ -1,4 +1,5 @@
-// From a typical user's log (epoch nanoseconds, semicolons, decimal commas, ground as words) to an archive.
+// From a typical log of a user to an archive. The log has epoch nanoseconds, semicolons, decimal commas, and names of
+// grounds.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -72,7 +73,8 @@ TEST_F(OwnLog, ModesAreCalledAsTheUserSaysWhereverTheyAreListed) {
 TEST_F(OwnLog, AloneAndWholeProposesASplit) {
   const ProgramResult result = run({"--data.inputs", "log.csv", "--data.time", "stamp"});
   ASSERT_EQ(result.status, 0) << result.err;
-  // 400 samples are too few for four blocks of four windows and their lag each. The screen wraps its lines.
+  // 400 samples are too few for four blocks, each with four windows and their lags. The screen may break the line at
+  // any space.
   EXPECT_TRUE(std::regex_search(result.out, std::regex("--data.split\\s+'last\\s+30\\s+%'"))) << result.out;
   EXPECT_EQ(proposed_split(399, 26), "last 30 %");
   EXPECT_EQ(proposed_split(420, 26), "blocks 4");

@@ -1,4 +1,4 @@
-// Free runs through the program: scored by `run`, and by `predict` on new inputs.
+// Free runs: `run` scores them, and `predict` makes them for new inputs.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -18,7 +18,7 @@ class Predict : public CliTest {
  protected:
   struct Line {
     std::string run;
-    std::vector<double> values;  ///< time, wz, sd, lower, upper, mode
+    std::vector<double> values;  ///< fields: time, wz, sd, lower, upper, mode
   };
   static std::vector<Line> lines_of(const std::string& csv) {
     std::istringstream text(csv);
@@ -35,7 +35,7 @@ class Predict : public CliTest {
     return lines;
   }
 
-  /// The lines equal the archive's free run of this run, sample by sample.
+  /// The lines must equal the archive's free run of the same run, sample by sample.
   static void expect_archived(const std::vector<Line>& lines, const FreeRun& expected, Index first) {
     ASSERT_EQ(std::ssize(lines), expected.mean.cols() - first);
     for (Index k = first; k < expected.mean.cols(); ++k) {
@@ -48,7 +48,7 @@ class Predict : public CliTest {
     }
   }
 
-  /// Writes new.csv: run 01 with the states of its first `known` rows only.
+  /// Writes new.csv: run 01, with states only in the first `known` rows.
   void write_new_inputs(int known) const {
     std::ifstream old(file("run_01.csv"));
     std::string line, text;
@@ -65,7 +65,7 @@ TEST_F(Predict, RunScoresEveryFilter) {
   const ProgramResult result = run({"--filter.simulate", "5"});
   ASSERT_EQ(result.status, 0) << result.err;
   const Archive stored = read_archive(archive());
-  EXPECT_EQ(stored.free_runs.size(), 6u * 4u);  // five filters and their combination, two runs, each alone and pooled
+  EXPECT_EQ(stored.free_runs.size(), 6u * 4u);  // five filters and their combination, for two runs and two pools
   for (const FreeRunRow& row : stored.free_runs) {
     EXPECT_EQ(row.samples, 75);
     EXPECT_NEAR(row.fit(0), 100.0 * (1.0 - row.nrmse(0)), 1e-12);

@@ -1,4 +1,4 @@
-// Damage to the program by users, foreign study folders or file names; each case was a real defect.
+// Damage that users, foreign study folders or file names can cause. Each case was a real defect.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ using ::testing::Not;
 
 class Robustness : public CliTest {
  protected:
-  /// The folder of a study whose plan has one trial with this key.
+  /// The folder of a study. Its plan has one trial with this key.
   fs::path study_of(const std::string& key) const {
     const fs::path folder = file("study");
     fs::create_directories(folder / "trials");
@@ -140,7 +140,7 @@ TEST_F(Robustness, D15BytesThatAreNoUtf8AreShownAsNumbers) {
                       "e \xe2\x82\xac \xf0\x9f\xa4\x96"),
             "gr\xc3\xb6\xc3\x9f"
             "e \xe2\x82\xac \xf0\x9f\xa4\x96");
-  // Cut off, longer than needed, an unpaired surrogate, beyond Unicode.
+  // Invalid UTF-8: cut off, longer than needed, an unpaired surrogate, beyond Unicode.
   EXPECT_EQ(printable("\xe2\x82"), "\\xe2\\x82");
   EXPECT_EQ(printable("\xc0\xaf"), "\\xc0\\xaf");
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");
@@ -150,7 +150,7 @@ TEST_F(Robustness, D15BytesThatAreNoUtf8AreShownAsNumbers) {
   EXPECT_TRUE(name_holds_controls("gr\xf6\n"));
 }
 
-/// attack_05: JSON threw for a byte that is not UTF-8.
+/// attack_05: a byte that is not UTF-8 made the JSON library throw.
 TEST_F(Robustness, D15TracksLinesAreUtf8WhateverTheName) {
   FilterEstimate estimate;
   estimate.state = estimate.mode_probability = Eigen::VectorXd::Ones(1);
@@ -226,7 +226,7 @@ TEST_F(Robustness, P8AnArchiveOfOtherDataIsNotReplaced) {
   EXPECT_EQ(go({"--force"}).status, 0) << "a damaged archive is one";
 }
 
-/// Each command with an output that is one of its inputs, and one of another form.
+/// For each command: an output that is also an input, and an output that is an existing file of another form.
 TEST_F(Robustness, P8NoOutputTakesThePlaceOfWhatIsReadOrOfAnotherForm) {
   ASSERT_EQ(run({"--mixture.components", "1"}).status, 0);
   fs::create_directories(file("pages"));
@@ -298,7 +298,7 @@ TEST_F(Robustness, P8AnOutputIsReplacedByItsLike) {
       {"export", archive(), "--force", "--to", "c", "-o", file("a.c").string()},
       {"export", archive(), "--force", "--to", "ros2", "-o", file("ros2").string()},
       {"export", archive(), "--to", "csv", "--table", "/evaluation/summary", "-o", file("a.csv").string()}};
-  write("predicted.csv", "");  // an empty file may be replaced
+  write("predicted.csv", "");  // an empty file can be replaced
   for (const std::vector<std::string>& words : commands)
     for (int time = 0; time < 2; ++time) {
       const ProgramResult result = modebank(words);
@@ -347,7 +347,7 @@ TEST_F(Robustness, P8WhatACommandDoesNotReadIsRefused) {
   refuses({"run", config(), "--repair"}, "--repair", "--force");
   refuses({"track", "none.h5", "--dry-run"}, "--dry-run", "--track.*");
   refuses({"report", "none.h5", "--to", "c"}, "--to", "--output");
-  // Also keys of a section that would have no effect.
+  // This includes keys of a section that have no effect on the command.
   refuses({"track", "none.h5", "--data.label", "x"}, "--data.label", "but for --data.truth, --data.weight");
   refuses({"track", "none.h5", "--filter.horizon", "9"}, "--filter.horizon", "--filter.variant");
   refuses({"track", "none.h5", "--job.threads", "1"}, "--job.threads", "--track.*");
@@ -406,7 +406,7 @@ TEST_F(Robustness, VerifyNamesAFileOnce) {
   EXPECT_THAT(modebank({"verify", study.string()}).out, Not(HasSubstr(plan + ": " + plan)));
 }
 
-/// Characters that change how a log, a table or C source is displayed.
+/// Characters that change how a terminal displays a log, a table or C source.
 TEST_F(Robustness, D15CharactersThatTurnTheDirectionAreShown) {
   EXPECT_EQ(printable("a\u202eb\u2066c\u2028d\u2029"), "a\\u202eb\\u2066c\\u2028d\\u2029");
   EXPECT_EQ(printable("\u2027\u202f\u2065\u206a \u05d0"), "\u2027\u202f\u2065\u206a \u05d0");

@@ -1,4 +1,4 @@
-// `modebank run LOG...`: from logs with known truth to a page, an archive and the configuration that repeats them.
+// `modebank run LOG...`: from simulated logs to a page, an archive and the configuration that repeats them.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -21,8 +21,8 @@ using ::testing::Not;
 
 constexpr double measured_sd = 0.02;
 
-/// Speed of a body that follows its command within two samples, v[k+1] = 0.2 v[k] + 0.8 u[k], measured with noise of
-/// standard deviation measured_sd. In every fourth part of 40 samples the command is zero and the body rests.
+/// Speed of a body that follows its command within two samples: v[k+1] = 0.2 v[k] + 0.8 u[k]. The measurement noise has
+/// standard deviation measured_sd. In every fourth block of 40 samples the command is zero and the body rests.
 std::string body_log(int samples, unsigned seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -59,7 +59,7 @@ TEST_F(RunLog, EndsInThreeFilesWhoseConfigurationGivesTheSameBits) {
     EXPECT_THAT(result.out, HasSubstr(said));
   EXPECT_THAT(read_file(html()), HasSubstr("<!DOCTYPE html>"));
   const std::string made = read_file(ini());
-  EXPECT_THAT(made, HasSubstr("state lag"));  // the structure, as the reason of window.model
+  EXPECT_THAT(made, HasSubstr("state lag"));  // the structure is the reason for window.model
   const std::string again = file("again.h5").string();
   ASSERT_EQ(modebank({"run", ini(), "--archive.output", again}).status, 0);
   EXPECT_EQ(all_stages(again), all_stages(h5()));
@@ -67,7 +67,7 @@ TEST_F(RunLog, EndsInThreeFilesWhoseConfigurationGivesTheSameBits) {
 }
 
 TEST_F(RunLog, RefusesFilesThatExistBeforeAnythingIsComputed) {
-  write("log.csv", "time,wz,left\n");  // also refused, because it has no rows
+  write("log.csv", "time,wz,left\n");  // would also be refused, because it has no rows
   write("drive.html", "<!DOCTYPE html>a page");
   write("drive.ini", "[data]\nstate = x\n");
   const ProgramResult result = run_log({file("log.csv").string()});
@@ -93,7 +93,7 @@ TEST_F(RunLog, LogsOfOneKindAreRunsAndOtherColumnsAreRefused) {
   EXPECT_THAT(other.err, HasSubstr("tank.csv have different columns"));
 }
 
-/// A tank's pump and a gyro look like input and state, but they were recorded at different times.
+/// The pump of a tank and a gyro look like input and state, but the files were recorded at different times.
 TEST_F(RunLog, TwoFilesOfOtherTimesAreNoInstrumentsOfOneRun) {
   std::string pump = "time,pump\n", gyro = "time,wz\n";
   for (int k = 0; k < 300; ++k) {
@@ -120,8 +120,8 @@ TEST_F(RunLog, ALogWithoutDataIsRefusedInOneSentence) {
   }
 }
 
-/// Two instruments whose clocks differ by half a second. The configuration contains the lag with its gain, and the
-/// screen states what a robot must do. The states' file has twice the rate of the inputs'.
+/// Two instruments with clocks that differ by half a second. The configuration contains the lag and its gain. The
+/// screen states what a robot must do. The states' file has twice the rate of the inputs' file.
 TEST_F(RunLog, LateInputsOfAnotherInstrumentAreFoundAndNamed) {
   std::mt19937_64 generator(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -141,7 +141,7 @@ TEST_F(RunLog, LateInputsOfAnotherInstrumentAreFoundAndNamed) {
   ASSERT_EQ(result.status, 0) << result.err;
   const Archive archive = read_archive(h5());
   ASSERT_TRUE(archive.lag);
-  EXPECT_NEAR(archive.lag->lag.mean, -0.5, 0.1);  // within a period of the inputs
+  EXPECT_NEAR(archive.lag->lag.mean, -0.5, 0.1);  // the tolerance is a period of the inputs
   EXPECT_THAT(read_file(ini()), ::testing::ContainsRegex("\nlag_s = auto +# inputs act -0\\.[45]"));
   EXPECT_THAT(result.out, HasSubstr("robot     the stamps of left, right are 0."));
   std::set<std::string> labels = labels_of(result.out);
@@ -151,8 +151,9 @@ TEST_F(RunLog, LateInputsOfAnotherInstrumentAreFoundAndNamed) {
   EXPECT_THAT(read_file(ini()), HasSubstr("are taken for two instruments of one run: they have 149."));
 }
 
-/// The variance at rest, tried as R, is measured_sd^2. The training half rests for about 150 samples, whose variance
-/// has a relative standard error of sqrt(2 / 150), 12 %; three of these are allowed.
+/// The variance at rest is tried as R; its true value is measured_sd^2. In the training half, the body rests for about
+/// 150 samples. The variance of these has a relative standard error of sqrt(2 / 150), 12 %. The test allows three of
+/// these errors.
 TEST_F(RunLog, TheNoiseAtRestIsTriedAndItsGainStated) {
   write("body.csv", body_log(1600, 1));
   const ProgramResult result = run_log({file("body.csv").string(), "--json"});

@@ -15,7 +15,7 @@
 namespace modebank::test {
 namespace {
 
-/// Sets an environment variable for one test.
+/// Sets an environment variable during one test.
 class WithVariable {
  public:
   WithVariable(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
@@ -96,7 +96,7 @@ TEST_F(Show, DrawsModeProbabilitiesOfHeldOutRunsAtTheWidthOfTheTerminal) {
   }
 }
 
-/// At every place the marks of all modes sum to one, as probabilities do.
+/// At every position the heights of all modes sum to one, because they are probabilities.
 TEST_F(Show, SparklineIsTheArchivesProbabilities) {
   ASSERT_EQ(run({"--mixture.components", "2", "--bank.refine", "none"}).status, 0);
   Archive archived = read_archive(archive());

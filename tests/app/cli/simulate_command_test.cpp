@@ -1,4 +1,4 @@
-// `modebank simulate`, and `run` on its files.
+// `modebank simulate`, and `run` on the simulated files.
 #include <gmock/gmock.h>
 
 #include "app/config/options/sections.hpp"
@@ -27,7 +27,7 @@ TEST_F(SimulateCommand, SimulateWritesRunsThatRunReads) {
   EXPECT_EQ(content.recording->runs[0].truth.cols(), 120);
 }
 
-/// The configuration of a simulation can also read the simulated runs.
+/// The configuration of a simulation also works for `run` on the simulated runs.
 TEST_F(SimulateCommand, ShippedSimulationsAreReadByTheirOwnConfiguration) {
   for (const char* name : {"simulate_ice.ini", "simulate_linear.ini"}) {
     const std::string config = (project_dir() / "configs" / name).string(), folder = file(name).string() + ".runs";
@@ -96,7 +96,7 @@ TEST_F(SimulateCommand, RefusesWhatASystemDoesNotHave) {
               HasSubstr("simulate.lag_s belongs to system.kind = vehicle, but three_grips is linear"));
 }
 
-/// The shipped systems are those inside the program, and have every parameter of their kind.
+/// The files of systems equal the built-in ones, and state every parameter that their kind of system has.
 TEST_F(SimulateCommand, ShippedSystemsStateEveryParameter) {
   for (const char* name : {"husky_ice", "three_grips", "two_grounds"}) {
     const std::string system = (project_dir() / "configs/systems" / (std::string(name) + ".ini")).string();

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 const std::string stage_hash(64, 'a'), another_hash(64, 'b');
 
-/// A stage that takes long enough to be stored; its result is one number.
+/// A stage that is slow enough to be stored. Its result is one number.
 struct SlowStage {
   int computed = 0;
   double value = 0.0;
@@ -42,13 +42,13 @@ struct SlowStage {
 
 class StoppedRun : public CliTest {
  protected:
-  /// Stops a process by Ctrl-C after one stage, and returns its message. `computed`: number of stages it computed.
+  /// Stops a process by Ctrl-C after one stage and returns its message. `computed`: number of stages that it computed.
   std::string stopped_after(double result, int& computed) const {
     std::array<int, 2> ends{}, counts{};
     EXPECT_EQ(pipe(ends.data()) | pipe(counts.data()), 0);
     const pid_t child = fork();
     if (child == 0) {
-      signal(SIGINT, SIG_DFL);  // background processes of a shell ignore it
+      signal(SIGINT, SIG_DFL);  // a background process of a shell ignores SIGINT
       dup2(ends[1], STDERR_FILENO);
       app::KeptStages kept(output());
       SlowStage stage;
@@ -57,7 +57,7 @@ class StoppedRun : public CliTest {
       raise(told > 0 ? SIGINT : SIGKILL);
       _exit(0);
     }
-    // So that the reads below end even if the child writes no message.
+    // Without this, the reads below would not end if the child writes no message.
     close(ends[1]);
     close(counts[1]);
     int status = 0;
@@ -72,14 +72,13 @@ class StoppedRun : public CliTest {
   fs::path output() const { return file("robot.h5"); }
 };
 
-/// If keys agree, the next process uses the stages that a stopped process has stored. A completed run removes these
-/// stages.
+/// If the keys agree, the next process uses the stages that a stopped process has stored. A complete run removes them.
 TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   int computed = -1;
   EXPECT_NE(stopped_after(3, computed).find("are kept in"), std::string::npos);
   EXPECT_EQ(computed, 1);
   ASSERT_EQ(left_behind(), std::vector<std::string>{".robot.h5.stages"});
-  // Stopped again before another stage was finished: the stages of the first process are still there.
+  // The process is stopped again before it finishes another stage. The stages of the first process must still exist.
   EXPECT_NE(stopped_after(5, computed).find("are kept in"), std::string::npos);
   EXPECT_EQ(computed, 0);
   {
@@ -95,12 +94,12 @@ TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   EXPECT_TRUE(left_behind().empty());
 }
 
-/// As under nohup. Afterwards the signals have their earlier handlers.
+/// The signal is ignored, as under nohup. Afterwards the signals must have their earlier handlers.
 TEST_F(StoppedRun, ASignalThatIsIgnoredStaysIgnored) {
   const auto before = signal(SIGINT, SIG_IGN);
   {
     const app::KeptStages kept(output());
-    EXPECT_EQ(raise(SIGINT), 0);  // otherwise this process would end here
+    EXPECT_EQ(raise(SIGINT), 0);  // without the handler, this process would end here
   }
   EXPECT_EQ(signal(SIGINT, before), SIG_IGN);
   const auto at_end = signal(SIGTERM, SIG_DFL);
@@ -108,7 +107,7 @@ TEST_F(StoppedRun, ASignalThatIsIgnoredStaysIgnored) {
   EXPECT_EQ(at_end, SIG_DFL);
 }
 
-/// Millions of windows are fitted in a second, but storing them took seconds and a gigabyte.
+/// Millions of windows are fitted in a second, but writing them would take seconds and a gigabyte.
 TEST_F(StoppedRun, KeepsWhatTakesLongerThanItsWritingAlone) {
   app::KeptStages kept(output());
   const fs::path folder = output().parent_path() / ".robot.h5.stages";
@@ -122,7 +121,7 @@ TEST_F(StoppedRun, KeepsWhatTakesLongerThanItsWritingAlone) {
   EXPECT_TRUE(fs::exists(folder / stage_file_name(Stage::structure, another_hash)));
 }
 
-/// Beside the output there may be a folder, or a link to one, that came from somebody else.
+/// A folder beside the output, or a link to a folder, may belong to somebody else.
 TEST_F(StoppedRun, NothingOfOthersIsRemovedOrWrittenThroughALink) {
   fs::create_directory(file("home"));
   const fs::path folder = file(".robot.h5.stages");

@@ -17,7 +17,8 @@ TEST(StretchMeans, AreMeansOfEqualParts) {
   EXPECT_EQ(stretch_means(rows, 100), rows);
 }
 
-/// Parts of unequal length cover every column once: the mean weighted by lengths is the mean of all columns.
+/// Parts of unequal length cover every column once. So the mean of the parts, weighted by their lengths, is the mean of
+/// all columns.
 TEST(StretchMeans, CoverEveryColumnOnce) {
   const Eigen::MatrixXd rows = Eigen::RowVectorXd::LinSpaced(17, 0.0, 16.0);
   const Eigen::MatrixXd means = stretch_means(rows, 5);

@@ -1,4 +1,4 @@
-// The live filter's checkpoints, through the program.
+// Checkpoints of the live filter, tested through the program.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -18,8 +18,8 @@ using ::testing::HasSubstr;
 
 class TrackCheckpoint : public Track {
  protected:
-  /// Sends samples first .. last - 1 of a run after the header, and appends the answers. `ending`: a signal, or 0 for
-  /// the end of the input.
+  /// Sends samples `first` to `last` - 1 of a run after the header, and appends the answers. `ending`: a signal, or 0
+  /// to end the input.
   void feed(const std::vector<std::string>& options, std::size_t first, std::size_t last, int ending,
             std::vector<std::string>& answers) const {
     const std::vector<std::string> samples = lines("run_01.csv");
@@ -40,7 +40,7 @@ class TrackCheckpoint : public Track {
 
   std::string checkpoint() const { return file("state.json").string(); }
 
-  /// Gives noise_only, which has several modes, state-dependent transitions.
+  /// noise_only has several modes; this gives it state-dependent transition probabilities.
   void give_noise_only_a_logit() const {
     Archive stored = read_archive(archive());
     Bank& bank = *stored.noise_only;
@@ -112,7 +112,7 @@ TEST_F(TrackCheckpoint, GoesOnWithCoefficientsThatWander) {
   EXPECT_EQ(parts, whole);
 }
 
-/// Killed right after a checkpoint was due: the next process continues with identical bits.
+/// The process is killed right after a checkpoint was due. The next process must continue with identical results.
 TEST_F(TrackCheckpoint, GoesOnAfterItWasKilledWhereSwitchesSeeStateAndInput) {
   const std::string option = "--track.filter", filter = "noise_only";
   std::vector<std::string> constant, whole, parts;

@@ -1,4 +1,4 @@
-// Samples as lines of CSV: quoted fields, and names that need quotes.
+// Samples as CSV lines, with quoted fields and with names that need quotes.
 #include <gmock/gmock.h>
 
 #include "tests/app/cli/track_fixture.hpp"
@@ -18,7 +18,7 @@ TEST_F(Track, ReadsQuotedFieldsAsTheImportDoes) {
   EXPECT_EQ(quoted.errors(), "");
 }
 
-/// Names as Excel on Windows writes them, in logs and in lines of samples.
+/// Names as Excel on Windows writes them, both in logs and in lines of samples.
 TEST_F(Track, ReadsOtherBytesThanUtf8AsWindows1252) {
   for (const char* run_file : {"run_00.csv", "run_01.csv"}) {
     const std::string text = csv_run(80, run_file[5] == '0' ? 1 : 2);
@@ -44,7 +44,7 @@ TEST_F(Track, ReadsOtherBytesThanUtf8AsWindows1252) {
   EXPECT_EQ(utf8.errors(), "");
 }
 
-/// A reader of CSV gets the original names from the header, and a spreadsheet reads them as text.
+/// A CSV reader gets the original names from the header, and a spreadsheet shows them as text.
 TEST_F(Track, NamesInTheHeaderAreQuoted) {
   for (const char* run_file : {"run_00.csv", "run_01.csv"}) {
     const std::string text = csv_run(80, run_file[5] == '0' ? 1 : 2);

@@ -13,7 +13,7 @@
 
 namespace modebank::test {
 
-/// An archive of a small run, with lines of its files to send to `modebank track`.
+/// An archive of a small run, and lines of the run's files that tests send to `modebank track`.
 class Track : public CliTest {
  protected:
   void SetUp() override { ASSERT_EQ(run().status, 0); }
@@ -24,7 +24,7 @@ class Track : public CliTest {
     return words;
   }
 
-  /// Lines of a run's file: the header, then samples.
+  /// Lines of a run's file: the header and the samples.
   std::vector<std::string> lines(const std::string& name) const {
     std::ifstream stream(file(name));
     std::vector<std::string> result;

@@ -1,4 +1,4 @@
-// Flags in the output of `track` that mark unreliable lines.
+// Flags that mark unreliable lines in the output of `track`.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 
 class TrackFlags : public Track {
  protected:
-  /// Sends lines of CSV after the header; returns the answers as objects.
+  /// Sends CSV lines after the header. Returns the answers as objects.
   std::vector<json> answers(const std::vector<std::string>& sent, const std::vector<std::string>& options = {}) const {
     std::vector<std::string> words{"--json"};
     words.insert(words.end(), options.begin(), options.end());
@@ -43,7 +43,7 @@ class TrackFlags : public Track {
       if (line.at(name).get<bool>()) names.emplace_back(name);
     return names;
   }
-  /// The largest value of the first input in the training run's file.
+  /// The largest value of the first input in the file of the training run.
   double largest_input() const {
     double largest = -1.0;
     const std::vector<std::string> all = lines("run_00.csv");
@@ -64,7 +64,7 @@ TEST_F(TrackFlags, EachSampleHasItsOwn) {
   sent.push_back(fmt::format("1.3,,{},0.1", limit + 1e-9));
   sent.push_back("1.4,100,0.1,0.1");
   sent.push_back("1.5,,0.1,0.1");
-  sent.push_back("1.64,,0.1,");     // 1.4 steps later; the input repeats the last one
+  sent.push_back("1.64,,0.1,");     // 1.4 steps later; the input is missing, so the last value is repeated
   sent.push_back("1.79,,0.1,0.1");  // 1.5 steps
   sent.push_back("90,0.01,0.1,0.1");
   const std::vector<json> said = answers(sent);
@@ -91,7 +91,7 @@ TEST_F(TrackFlags, CsvHasThemBehindTheAlarm) {
   EXPECT_THAT(std::vector<double>(v.begin() + 9, v.begin() + 14), ElementsAre(0, 1, 0, 0, 0));
 }
 
-/// Combined filters need as many samples as the filter with the most lags.
+/// Combined filters start with the filter that has the most lags.
 TEST_F(TrackFlags, LagsAndTheFiltersTogetherWarmUpLonger) {
   ASSERT_EQ(run({"--window.model", "varx", "--window.state_lags", "4"}).status, 0);
   for (const std::string filter : {"bank", "combined"}) {

@@ -1,4 +1,4 @@
-// The live filter on logs in the forms that `run` reads: stamps, dialects, derived channels, rates and lags. Expected
+// The live filter on logs in all forms that `run` reads: stamps, dialects, derived channels, rates and lags. Expected
 // values come from `evaluate` on the same run, or from the same numbers in the simplest form.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ class TrackLogs : public Track {
         result.push_back({numbers(line)[0], numbers(line)[1], numbers(line)[2], numbers(line)[3]});
     return result;
   }
-  /// Writes both runs in another form.
+  /// Writes both runs again in another form.
   void rewrite(const std::string& header, const std::function<std::string(const Row&)>& line) const {
     for (const char* name : {"run_00.csv", "run_01.csv"}) {
       std::string text = header;
@@ -38,7 +38,7 @@ class TrackLogs : public Track {
       write(name, text);
     }
   }
-  /// Writes both runs at 51.5 Hz: wz and left change at each row, right is held for five rows.
+  /// Writes both runs at 51.5 Hz. wz and left change at each row; right is held for five rows.
   void write_faster(const std::function<std::string(double)>& stamp) const {
     for (const char* name : {"run_00.csv", "run_01.csv"}) {
       const std::vector<Row> slow = rows(name);
@@ -67,7 +67,7 @@ class TrackLogs : public Track {
     while (std::getline(text, line)) rows.push_back(numbers(line));
     return rows;
   }
-  /// The estimates of run 01 equal those of `evaluate` at its times after `origin_s`.
+  /// The estimates for run 01 must equal those of `evaluate`. The times of `track` are later by `origin_s`.
   void expect_evaluated(const ProgramResult& result, double origin_s = 0.0, double within = 1e-12) const {
     const Archive stored = read_archive(archive());
     const Trajectory& run = stored.recording->runs[1];
@@ -134,7 +134,7 @@ TEST_F(TrackLogs, ReadsSemicolonsDecimalCommasUnitsAndNoHeader) {
   EXPECT_THAT(result.err, HasSubstr("without a header (columns c1 to c4)"));
 }
 
-/// diff and unwrap need the previous row, which may be in an earlier batch.
+/// `diff` and `unwrap` need the previous row, which may belong to an earlier batch of lines.
 TEST_F(TrackLogs, DerivesChannelsRowByRow) {
   double heading = 0.0;
   rewrite("time,heading_deg,left,right\n", [&](const Row& row) {
@@ -157,10 +157,10 @@ TEST_F(TrackLogs, DerivesChannelsRowByRow) {
     program.write(samples[k] + "\n");
     const std::vector<double> v = numbers(program.read_line().value());
     const auto i = static_cast<Index>(k - 1);
-    if (k < 20) continue;  // live, the first row has no slope, so the filter starts later
+    if (k < 20) continue;  // in a live stream the first row has no slope, so the filter starts later
     EXPECT_NEAR(v[2], expected.prediction(0, i), 1e-6) << k;
   }
-  // If the stream has the channel itself, that is used.
+  // If the stream has a column with the channel's name, this column is used.
   const ProgramResult direct =
       run_program({"/bin/sh", "-c",
                    fmt::format("printf 'time,turn,left,right\\n0,0.5,0,0\\n0.1,0.4,0,0\\n' | '{}' track '{}'",
@@ -177,7 +177,7 @@ TEST_F(TrackLogs, BringsAFasterLogToTheArchivesRate) {
     const ProgramResult result = track("run_01.csv");
     expect_evaluated(result, 0.0, 1e-9);
     EXPECT_EQ(track("", "--data.inputs run_01.csv").out, result.out);
-    // Sends the first half, then the second half to a filter that continues.
+    // Sends the first half to one filter, and the second half to a filter that continues from a checkpoint.
     const std::vector<std::string> samples = lines("run_01.csv");
     std::string first = samples[0] + "\n", second = first;
     for (std::size_t k = 1; k < samples.size(); ++k)
@@ -192,14 +192,14 @@ TEST_F(TrackLogs, BringsAFasterLogToTheArchivesRate) {
   }
 }
 
-/// A double of seconds since 1970 would shift the ends of each step by up to 0.1 us.
+/// Doubles of seconds since 1970 would shift the ends of each step by up to 0.1 us.
 TEST_F(TrackLogs, BringsDatesToTheArchivesRate) {
   write_faster([](double time_s) { return fmt::format("2024-05-01T10:00:{:09.6f}Z", time_s); });
   ASSERT_EQ(run({"--data.rate_hz", "10"}).status, 0);
-  expect_evaluated(track("run_01.csv"), day_s + 0.003, 1e-9);  // the first row
+  expect_evaluated(track("run_01.csv"), day_s + 0.003, 1e-9);  // time of the first row
 }
 
-/// In the new log all columns are held; in the archive's log wz and left changed at every row.
+/// In the new log all columns are held. In the archive's log, wz and left changed at every row.
 TEST_F(TrackLogs, AveragesWhatWasAveragedForTheArchive) {
   const std::vector<Row> slow = rows("run_01.csv");
   for (const char* name : {"run_00.csv", "run_01.csv"}) {
@@ -234,7 +234,7 @@ TEST_F(TrackLogs, HoldsBackTheStreamThatIsEarly) {
   }
 }
 
-/// The last estimate is 0.5 s old. The forecast is five filter steps without measurement and with held input.
+/// The last estimate is 0.5 s old. The forecast has five filter steps without a measurement and with held inputs.
 TEST_F(TrackLogs, ForecastsToTheNewestSample) {
   ASSERT_EQ(run({"--data.lag_s", "-0.5"}).status, 0);
   const auto plain = table(track("run_01.csv").out), said = table(track("run_01.csv", "--track.forecast true").out);
@@ -244,7 +244,8 @@ TEST_F(TrackLogs, ForecastsToTheNewestSample) {
   for (std::size_t k = 0; k < plain.size(); ++k)
     for (std::size_t i = 0; i < plain[k].size(); ++i)
       EXPECT_TRUE(plain[k][i] == said[k][i] || std::isnan(plain[k][i])) << "the forecast leaves the filter as it was";
-  // The same, computed in this test: the aligned run, its last state and input, then a sample without measurement.
+  // This test computes the same forecast: the aligned run, its last state and input, then a sample without a
+  // measurement.
   const Trajectory run = read_archive(archive()).recording->runs[1];
   std::string text = "time,wz,left,right\n";
   for (Index k = 0; k < run.samples(); ++k)
@@ -267,7 +268,7 @@ TEST_F(TrackLogs, ReadsFilesAsRunDoes) {
   EXPECT_EQ(nlohmann::json::parse(ndjson.out.substr(0, ndjson.out.find('\n'))).at("time"), 0.0);
 }
 
-/// A row every two hours for a week, in one batch of lines, and line by line.
+/// One row every two hours for a week, sent in one batch of lines and then line by line.
 TEST_F(TrackLogs, PassesEveryMidnight) {
   std::string text = "time,wz,left,right\n";
   std::vector<double> times_s;
@@ -313,7 +314,7 @@ TEST_F(TrackLogs, TellsOfALineWithoutItsEnd) {
   EXPECT_THAT(track("cut.json").err, HasSubstr("fields are missing"));
 }
 
-/// The unit of a single whole number is unknown; two determine it.
+/// One whole number does not determine the unit of times, but two do.
 TEST_F(TrackLogs, FindsWhatTimesCountAsTheImportDoes) {
   rewrite("time,wz,left,right\n", [](const Row& row) {
     return fmt::format("{},{},{},{}", std::llround(1000.0 * row.time_s) + 5000, row.wz, row.left, row.right);

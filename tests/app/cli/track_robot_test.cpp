@@ -1,4 +1,4 @@
-// The live filter in failing surroundings: full disks, logs without a reader, kills.
+// The live filter with failures around it: full disks, logs without a reader, killed processes.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// Runs the program in a shell, whose redirections set up the failures.
+/// Runs the program in a shell. The shell's redirections cause the failures.
 class TrackRobot : public Track {
  protected:
   ProgramResult shell(const std::string& script) const {
@@ -39,13 +39,13 @@ TEST_F(TrackRobot, Finding_D5_GoesOnWhereStandardErrorIsFullOrClosed) {
 TEST_F(TrackRobot, Finding_D5_NoCommandIsAbortedByItsOwnMessage) {
   for (const char* errors : {"2>/dev/full", "2>&-", "<&- >&- 2>&-"})
     EXPECT_EQ(shell(std::string("$M run nofile.ini ") + errors).status, 2) << errors;
-  // A file must not get the number of a standard stream; otherwise messages would go into the file.
+  // If a standard stream is closed, no file may get its number. Otherwise messages would be written into that file.
   EXPECT_EQ(shell("$M run test.ini --archive.output closed.h5 2>&-").status, 0);
   EXPECT_EQ(shell("$M verify closed.h5").status, 0);
   EXPECT_EQ(shell("$M show out.h5 >&-").status, 1) << "nobody got the text";
 }
 
-/// A log whose reader has stopped reading: the pipe is full, and a blocking write would never return.
+/// The reader of the log has stopped reading, so the pipe is full. A blocking write would never return.
 TEST_F(TrackRobot, GoesOnWhereNobodyReadsItsMessages) {
   std::ofstream input(file("garbage.csv"));
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -84,7 +84,8 @@ TEST_F(TrackRobot, Finding_D6_GoesOnWhereACheckpointCannotBeWritten) {
   EXPECT_THAT(errors, HasSubstr("is written again"));
 }
 
-/// The last checkpoint cannot be written. All estimates come first, then the status reports it.
+/// The last checkpoint cannot be written. The program must first write all estimates and then exit with an error
+/// status.
 TEST_F(TrackRobot, Finding_D6_EstimatesLeaveBeforeAFailure) {
   std::filesystem::create_directory(file("sub"));
   PipedProgram program(command({"--track.checkpoint", file("sub/state.json").string()}));
@@ -105,9 +106,9 @@ TEST_F(TrackRobot, Finding_D7_TellsOfAMeasurementThatCountsAsMissing) {
   EXPECT_EQ(result.err, "modebank: line 5: wz = 1e+50 is beyond 1e+30, and counts as missing\n");
 }
 
-/// Each kill is at another distance from the last checkpoint, and some inputs are missing. The output of the processes
-/// must equal the output of a single process. Each output is cut at the sample from which the next process continues. A
-/// missing input repeats the last finite one.
+/// Each kill is at another distance from the last checkpoint, and some inputs are missing. Each output is cut at the
+/// sample from which the next process continues. Together the outputs must equal the output of a single process. A
+/// missing input repeats the last finite value.
 TEST_F(TrackRobot, TellsOfAnInputThatIsNoNumberToReckonWith) {
   const char* const header = "time,wz,left,right\\n0,0.1,0.1,0.2\\n0.1,0.2,0.1,0.2\\n";
   const std::string before = header;
@@ -128,7 +129,7 @@ TEST_F(TrackRobot, AStampBeyondAllOthersIsNone) {
 
 TEST_F(TrackRobot, WritesTheSameBitsThroughKillsAsWithoutThem) {
   std::vector<std::string> samples = lines("run_01.csv");
-  for (std::size_t k = 3; k < samples.size(); k += 7)  // removes the last field, an input
+  for (std::size_t k = 3; k < samples.size(); k += 7)  // removes the last field, which is an input
     samples[k].erase(samples[k].rfind(',') + 1);
   const auto feed = [&](PipedProgram& program, std::size_t first, std::size_t last, std::vector<std::string>& out) {
     program.write(samples[0] + "\n");
@@ -156,7 +157,7 @@ TEST_F(TrackRobot, WritesTheSameBitsThroughKillsAsWithoutThem) {
     }
     program.send_signal(SIGKILL);
     program.wait();
-    // There is a checkpoint after every fourth sample of a process.
+    // A process writes a checkpoint after every fourth sample.
     const std::size_t kept = last == samples.size() ? out.size() : out.size() / 4 * 4;
     parts.insert(parts.end(), out.begin(), out.begin() + static_cast<std::ptrdiff_t>(kept));
     next = last == samples.size() ? last : next + kept;

@@ -1,4 +1,4 @@
-// The live filter as a program between two pipes.
+// The live filter as a program with a pipe at each end.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -38,7 +38,7 @@ TEST_F(Track, SaysLineByLineWhatEvaluateSaidOfTheSameRun) {
   };
   for (std::size_t k = 1; k < samples.size(); ++k) {
     program.write(samples[k] + "\n");
-    const auto line = program.read_line();  // waits for each answer before it sends the next sample
+    const auto line = program.read_line();  // waits for an answer before it sends the next sample
     ASSERT_TRUE(line) << "sample " << k;
     const std::vector<double> v = numbers(*line);
     ASSERT_EQ(v.size(), names.size());
@@ -77,7 +77,7 @@ TEST_F(Track, SpeaksNdjson) {
   }
 }
 
-/// filter.variant = kf uses the global model, not the bank's first mode.
+/// With filter.variant = kf the filter uses the global model, not the first mode of the bank.
 TEST_F(Track, AKalmanFilterIsTheGlobalModel) {
   PipedProgram kf(command({"--filter.variant", "kf"})), baseline(command({"--track.filter", "baseline"}));
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -90,7 +90,7 @@ TEST_F(Track, AKalmanFilterIsTheGlobalModel) {
   }
 }
 
-/// Competitors of every kind give the same estimates live as in evaluate.
+/// For every kind of competitor, live estimates equal those of `evaluate`.
 TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
   const Archive stored = read_archive(archive());
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -112,7 +112,7 @@ TEST_F(Track, CompetitorsSayWhatEvaluateSays) {
   EXPECT_EQ(modebank({"track", archive(), "--track.filter", "combined", "--track.checkpoint", "c.json"}).status, 2);
 }
 
-/// The one-step predictions of the combined filters in `track` equal those that `evaluate` scored.
+/// One step ahead, the combined filters of `track` make the predictions that `evaluate` has scored.
 TEST_F(Track, CombinedFiltersAreThoseThatWereScored) {
   const Archive stored = read_archive(archive());
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -144,7 +144,7 @@ TEST_F(Track, CombinedFiltersAreThoseThatWereScored) {
   EXPECT_EQ(modebank({"predict", archive(), "--samples", "3", "--track.filter", "combined"}).status, 0);
 }
 
-/// Without scored training samples all filters have equal weights.
+/// If no training sample was scored, all filters have equal weights.
 TEST_F(Track, CombinedFiltersStartEquallyWhereTrainingScoredNothing) {
   Archive unscored = read_archive(archive());
   std::vector<std::string> filters{"combined"};
@@ -155,7 +155,7 @@ TEST_F(Track, CombinedFiltersStartEquallyWhereTrainingScoredNothing) {
   }
   write_archive(archive(), unscored);
   const std::vector<std::string> samples = lines("run_01.csv");
-  std::vector<double> densities;  // of the first scored sample
+  std::vector<double> densities;  // densities of the first scored sample
   for (const std::string& filter : filters) {
     PipedProgram program(command({"--track.filter", filter}));
     program.write(samples[0] + "\n");
@@ -217,14 +217,14 @@ TEST_F(Track, TakesWhatOtherProgramsWrite) {
   };
   const std::vector<double> a = numbers(samples[1]), b = numbers(samples[2]);
   const auto plain = answer({samples[0] + "\n", samples[1] + "\n", samples[2] + "\n"}, 3);
-  // Byte order mark, CR LF, empty lines, more columns in another order, no newline at the end.
+  // The file has a byte order mark, CR LF, empty lines, more columns in another order, and no newline at the end.
   const auto row = [](const std::vector<double>& v) { return fmt::format("{},x,{},{},{}", v[3], v[1], v[0], v[2]); };
   EXPECT_EQ(answer({"\xEF\xBB\xBF"
                     "right,note,\"wz\",time,left\r\n",
                     "\r\n", row(a) + "\r\n\n", row(b)},
                    3),
             plain);
-  // Python's NaN and Infinity count as missing measurements.
+  // NaN and Infinity, as Python writes them, count as missing measurements.
   const auto object = [](const std::vector<double>& v, const std::string& wz) {
     return fmt::format("{{\"time\": {}, \"note\": \"NaN\", \"wz\": {}, \"left\": {}, \"right\": {}}}\n", v[0], wz, v[2],
                        v[3]);

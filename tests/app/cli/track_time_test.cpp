@@ -1,4 +1,4 @@
-// The live filter's clock: gaps, times that go back, wrong times.
+// The clock of the live filter: gaps, times that go back, wrong times.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -25,13 +25,13 @@ TEST_F(TrackTime, PredictsOverMissingMeasurementsAndGaps) {
   EXPECT_EQ(missing[1], 1);
   EXPECT_TRUE(std::isfinite(missing[2]) && missing[2] == missing[5]) << "prediction is the estimate";
   EXPECT_TRUE(std::isnan(missing[7])) << "no NIS";
-  program.write("1.2,0.01,,\n");  // three periods later; inputs are held
+  program.write("1.2,0.01,,\n");  // three periods later; the inputs are held
   EXPECT_EQ(numbers(program.read_line().value())[1], 3);
   program.write("900,0.01,0.1,0.1\n");
   const std::vector<double> fresh = numbers(program.read_line().value());
   EXPECT_EQ(fresh[1], 0);
   EXPECT_EQ(fresh[5], 0.01);
-  program.write("0.5,0.02,0.1,0.1\n");  // goes back: another clock
+  program.write("0.5,0.02,0.1,0.1\n");  // the time goes back, as with another clock
   EXPECT_EQ(numbers(program.read_line().value())[1], 0);
   program.write("0.6,100,0.1,0.1\n");
   const std::vector<double> outlier = numbers(program.read_line().value());
@@ -115,7 +115,7 @@ TEST_F(TrackTime, AClockThatGoesOnFarAheadIsBelieved) {
     program.write(line);
     program.read_line();
   }
-  program.write("1.0,0.02,0.1,0.1\n");  // goes back after two samples: another clock
+  program.write("1.0,0.02,0.1,0.1\n");  // after two samples the time goes back, as with another clock
   EXPECT_EQ(numbers(program.read_line().value())[1], 0);
   program.close_input();
   EXPECT_EQ(program.wait(), 0);

@@ -68,12 +68,12 @@ TEST_F(ConfigFile, OtherBytesThanUtf8AreWindows1252) {
   EXPECT_EQ(load("[data]\nstate = größe\n").data.state, std::vector<std::string>{"größe"});
 }
 
-/// configs/reference.ini, written by `make reference-ini`, agrees with the program.
+/// configs/reference.ini, which `make reference-ini` writes, agrees with the program.
 TEST_F(ConfigFile, TheReferenceHoldsEveryKeyAtItsDefault) {
   const std::filesystem::path file = test::project_dir() / "configs/reference.ini";
   const Config read = load_config(file, {}), defaults{};
   for (const Option& option : option_table())
-    // These keys have defaults that depend on the file's place and name.
+    // The defaults of these keys depend on the folder and name of the file.
     if (option.key != "data.root" && option.key != "archive.output" && option.key != "study.output") {
       EXPECT_EQ(option.get(read), option.get(defaults)) << option.key;
     }
@@ -132,7 +132,7 @@ TEST_F(ConfigFile, EveryOptionReadsItsOwnDefaultBack) {
   }
 }
 
-/// One line for each fault of the file and of the command line, with its place and what would be right.
+/// Each fault of the file and of the command line gives one line, with its place and a correct value.
 TEST_F(ConfigFile, AllFaultsAreReportedAtOnce) {
   const auto faults = [&](const std::string& text, const KeyValues& overrides) -> std::string {
     try {
@@ -165,7 +165,7 @@ TEST_F(ConfigFile, KeyOutsideAnySectionIsExplained) {
   }
 }
 
-/// Words of former versions that are no longer accepted.
+/// Words of earlier versions that are not accepted any more.
 TEST_F(ConfigFile, WordsThatAreGoneAreAnsweredWithThoseThatAreLeft) {
   using Case = std::array<std::string, 3>;
   for (const auto& [key, gone, left] :
@@ -178,7 +178,7 @@ TEST_F(ConfigFile, WordsThatAreGoneAreAnsweredWithThoseThatAreLeft) {
     }
 }
 
-/// Keys and values of former versions are refused, with the replacement.
+/// Keys and values of earlier versions are refused. The message names the replacement.
 TEST_F(ConfigFile, KeysThatWentAreAnsweredWithWhatTakesTheirPlace) {
   using Case = std::array<std::string, 2>;
   for (const auto& [text, instead] :

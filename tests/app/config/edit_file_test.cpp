@@ -1,4 +1,4 @@
-// Setting keys in the text of a configuration file.
+// Tests that set keys in the text of a configuration file.
 #include "app/config/edit_file.hpp"
 
 #include <gtest/gtest.h>

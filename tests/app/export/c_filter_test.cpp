@@ -1,4 +1,4 @@
-// The exported C compared with the filter, on banks and runs that reach every part of the C code.
+// Compares the exported C code with the filter. Banks and runs reach every part of the C code.
 #include <gmock/gmock.h>
 
 #include "app/export/forms.hpp"
@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 constexpr Index samples = 400;
 constexpr double dt_s = 0.1;
 
-/// A run for any bank. The numbers do not matter, because both filters get the same run.
+/// A run that fits any bank. Its values do not matter, because both filters get the same run.
 Trajectory run_for(const Bank& bank, std::uint64_t seed) {
   Bank source = example_bank(bank.C.rows(), bank.structure.inputs, 2, 1e-3);
   return disturbed(modebank::test::simulate_bank(source, samples, seed), dt_s);
@@ -37,7 +37,7 @@ Bank with_clock(Bank bank) {
   return bank;
 }
 
-/// z and v with two states, three lags of the state and two of the inputs.
+/// A bank with two states (z and v), three lags of the states and two lags of the inputs.
 Bank lagged_bank(Index input_delay) {
   Bank bank = example_bank(2, 2, 2, 1e-4);
   bank.structure = {2, 2, true, 3, 2, input_delay};

@@ -1,4 +1,4 @@
-// The exported C over all held-out samples of the demos and of real robots, with the configurations as they stand.
+// The exported C code on all held-out samples of the demos and of real robots, with unchanged configurations.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -57,7 +57,7 @@ TEST_F(ExportedCOfRobots, Demo) {
 
 TEST_F(ExportedCOfRobots, Tyres) {
   simulate("simulate_ice.ini");
-  // Noise that follows the inputs cannot be exported.
+  // A bank whose noise depends on the inputs cannot be exported.
   learn("tyres.ini", {"--data.root", file("data").string(), "--bank.noise_by_input", "none"});
   expect_same();
 }

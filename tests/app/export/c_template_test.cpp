@@ -1,4 +1,5 @@
-// filter.h and filter.c unchanged, compiled with the table in small_bank, and the files that export makes of them.
+// filter.h and filter.c are compiled unchanged with the table of small_bank. The files that `export` makes are
+// compiled, too.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -25,7 +26,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Every number has few binary digits, so that its text is short. The bank has every feature that C supports.
+/// Every number has few binary digits, so that its text is short. The bank has all features that the C code supports.
 ExportedBank small_bank() {
   Bank bank = modebank::test::example_bank(1, 1, 2, 0.0);
   bank.structure = {1, 1, true, 2, 1, 1};
@@ -101,7 +102,7 @@ TEST(CTemplate, StepsAsBankFilterDoes) {
   }
 }
 
-/// The bounds in C++ and in C are equal.
+/// The bounds in C++ equal the bounds in C.
 TEST(CTemplate, HasTheBoundsOfTheEquations) {
   const std::string text(assets::filter_c());
   const auto value = [&](const std::string& name) {
@@ -131,7 +132,7 @@ TEST(CTemplate, ModesHaveEnumerators) {
                                 "  ROBOT_MODE_grip = 2, /* grip */\n  ROBOT_MODE_grip_2 = 3 /* grip */\n"));
 }
 
-/// Names of signals or files that equal names of the program.
+/// Signals or files have the same names as identifiers of the program.
 TEST(CTemplate, CompilesUnderAnyName) {
   ExportedBank exported = as_exported(modebank::test::example_bank(1, 3, 3));
   exported.mode_names = {"S", "mode 0", "2"};

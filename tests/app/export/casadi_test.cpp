@@ -1,4 +1,4 @@
-// The CasADi module, evaluated by CasADi or by a stub in its place, compared with the bank's own numbers.
+// Compares the CasADi module with the bank's own numbers. It is evaluated by CasADi, or by a stub if CasADi is missing.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -46,7 +46,7 @@ MatrixXd matrix_of(const json& rows, Index cols) {
   return M;
 }
 
-/// The bank's expected state, then probabilities.
+/// The bank's expected state, and the mode probabilities after it.
 std::pair<VectorXd, VectorXd> expected_step(const Bank& bank, const Point& at) {
   TransitionWorkspace workspace(bank.mode_count(), bank.transition_logit);
   const VectorXd nu =
@@ -68,7 +68,8 @@ void expect_same(const Bank& bank) {
   const MatrixXd A = matrix_of(said["linearised"][0], n), B = matrix_of(said["linearised"][1], m),
                  c = matrix_of(said["linearised"][2], 1);
   EXPECT_LE((A * at.x + B * at.u + c - next).cwiseAbs().maxCoeff(), 1e-9);
-  // Exact for a constant T; with state-dependent transitions, central differences have this error.
+  // The comparison is exact for a constant T. For state-dependent transition probabilities, it has the error of central
+  // differences.
   const double step = 1e-5, tolerance = bank.transition_logit.empty() ? 1e-9 : 1e-7;
   for (Index j = 0; j < n + m; ++j) {
     Point up = at, down = at;

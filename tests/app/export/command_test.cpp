@@ -1,4 +1,4 @@
-// The command modebank export.
+// The command `modebank export`.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ class Export : public CliTest {
     words.insert(words.end(), options.begin(), options.end());
     return modebank(words);
   }
-  /// Gives the bank this verdict.
+  /// Sets the bank's verdict.
   void judge(Calibration verdict) const {
     Archive stored = read_archive(archive());
     for (DiagnosticsRow& row : stored.diagnostics) row.verdict = verdict;
@@ -65,8 +65,8 @@ TEST_F(Export, JsonIsTheArchivesBank) {
   EXPECT_EQ(page.at("filter").at("noise"), "gaussian");
 }
 
-/// Values below their standard errors, unidentifiable parameters and an R at its bound are never exported without a
-/// remark.
+/// No export contains these numbers without a remark: a value below its standard error, an unidentifiable parameter, an
+/// R at its bound.
 TEST_F(Export, DoubtfulNumbersAreRemarkedInEveryForm) {
   judge(Calibration::calibrated);
   Archive stored = read_archive(archive());
@@ -89,7 +89,7 @@ TEST_F(Export, DoubtfulNumbersAreRemarkedInEveryForm) {
                                  text_of(file("bank.mat"))};
   for (const auto& entry : std::filesystem::directory_iterator(file("ros"))) texts.push_back(text_of(entry.path()));
   for (std::string& text : texts) {
-    std::erase(text, '\0');  // MATLAB characters have 16 bits
+    std::erase(text, '\0');  // MATLAB's characters have 16 bits
     EXPECT_THAT(
         text, testing::AllOf(HasSubstr("standard errors exceed the values"),
                              HasSubstr("not identifiable from the training runs"), HasSubstr("is at its lower bound")));
@@ -110,7 +110,7 @@ TEST_F(Export, ModesHaveTheirNames) {
   for (std::size_t k = 1; k < modes.size(); ++k) EXPECT_EQ(modes.at(k).at("name"), "mode " + std::to_string(k));
 }
 
-/// Every mode is in the family that it names, families are ordered by use, and both pages have the same families.
+/// Every mode belongs to the family that it names. Families are ordered by use. Both forms have the same families.
 TEST_F(Export, ModesHaveTheirFamily) {
   judge(Calibration::calibrated);
   Archive stored = read_archive(archive());

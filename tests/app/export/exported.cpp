@@ -19,7 +19,8 @@ using modebank::test::write_file;
 
 constexpr int look_ahead = 5, look_every = 37;
 
-/// Reads samples and prints the filter's estimates with 17 digits; every 37th time also its forecast 5 steps ahead.
+/// Reads samples and prints the filter's estimates with 17 digits. At every 37th sample it also prints a forecast of 5
+/// steps.
 constexpr const char* driver = R"(#include "robot.h"
 
 #include <math.h>
@@ -65,7 +66,7 @@ int main(void) {
 }
 )";
 
-/// Reads numbers one by one.
+/// Reads numbers one after another.
 struct Numbers {
   std::istringstream text;
   explicit Numbers(const std::string& line) : text(line) {}
@@ -82,7 +83,8 @@ struct Numbers {
   }
 };
 
-/// Two unknown numbers are equal; a single unknown one is infinitely far off.
+/// Distance of two matrices. Two unknown numbers count as equal. If only one number is unknown, the distance is
+/// infinite.
 double distance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   double largest = 0.0;
   for (Index i = 0; i < a.size(); ++i) {
@@ -100,7 +102,8 @@ double relative(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return distance(a, b) / scale;
 }
 
-/// Standard deviations of predictions; a missing signal counts as the least certain of the others.
+/// Differences in units of the predictions' standard deviations. A missing signal has the largest standard deviation of
+/// the others.
 double in_deviations(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const Eigen::MatrixXd& S) {
   const double variance = S.array().isNaN().any() ? 1.0 : S.diagonal().minCoeff();
   return distance(a, b) / std::sqrt(std::max(variance, 1e-30));
@@ -118,7 +121,7 @@ std::string input_of(const Trajectory& run) {
   return fmt::to_string(text);
 }
 
-/// Difference of the forecasts of the next samples, without measurements.
+/// Difference of the forecasts for the next samples, without measurements.
 double distance_ahead(BankFilter& filter, const Bank& bank, const Trajectory& run, Index k, Numbers& numbers) {
   const Index n_y = bank.C.rows();
   const FilterSnapshot snapshot = filter.snapshot();

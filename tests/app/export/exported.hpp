@@ -12,19 +12,20 @@
 
 namespace modebank::app::test {
 
-/// A bank in the form of an archive's; channels without names get names.
+/// A bank with everything that an export needs. Channels without names get names.
 ExportedBank as_exported(Bank bank, const FilterOptions& options = {});
 
-/// A run with typical faults: signals missing singly and together, an unknown input, short gaps in time and one that is
-/// too long.
+/// Adds typical faults to a run: one or several missing signals, an unknown input, short gaps in time and one long gap.
 Trajectory disturbed(Trajectory run, double dt_s);
 
-/// Results of BankFilter::step for a run, sample by sample.
+/// Results of BankFilter::step for each sample of a run.
 std::vector<FilterEstimate> stepped(const Bank& bank, const FilterOptions& options, const Trajectory& run);
 
-/// The largest differences of the exported C from BankFilter over a run: of means in predicted standard deviations, of
-/// probabilities, of covariances relative to the larger one, of log densities. The C is compiled by gcc and clang with
-/// the strictest options of C99.
+/// The largest differences between the exported C code and BankFilter over a run. The units are:
+/// - means: predicted standard deviations,
+/// - probabilities and log densities: absolute,
+/// - covariances: relative to the larger one.
+/// gcc and clang compile the C code with the strictest options of C99.
 struct Differences {
   double mean = 0.0, probability = 0.0, covariance = 0.0, log_density = 0.0, ahead = 0.0;
   Index compared = 0;

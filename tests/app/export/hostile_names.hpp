@@ -5,7 +5,7 @@
 
 namespace modebank::app::test {
 
-/// Possible column names in users' files.
+/// Names that columns in users' files may have.
 inline const std::vector<std::string>& hostile_names() {
   static const std::vector<std::string> names{"*/ int x; /*",
                                               "*$F/ int x; /$f*",

@@ -1,4 +1,4 @@
-// The MAT-file, read by other programs.
+// The MAT-file as other programs read it.
 #include <gmock/gmock.h>
 #include <matio.h>
 
@@ -99,7 +99,7 @@ TEST(ExportedMat, HoldsHostileNames) {
   }
 }
 
-/// A bank whose channels have these names.
+/// A bank whose channels have the given names.
 ExportedBank named(const std::vector<std::string>& names) {
   ExportedBank exported = as_exported(modebank::test::example_bank(static_cast<Index>(names.size()), 1, 1));
   for (std::size_t i = 0; i < names.size(); ++i) exported.states[i] = exported.measurements[i] = {names[i], names[i]};
@@ -107,7 +107,7 @@ ExportedBank named(const std::vector<std::string>& names) {
   return exported;
 }
 
-/// Their letters take two and three bytes in UTF-8; the last name has a character that takes two units of UTF-16.
+/// Their letters have two or three bytes in UTF-8. The last name has a character of two UTF-16 units.
 const std::vector<std::string> foreign_names{"Glätte", "µ", "速度 m/s", "a*/ \\b", "\xff", "go \U0001F600"};
 
 TEST(ExportedMat, ScipyReadsEveryName) {

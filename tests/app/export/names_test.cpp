@@ -1,4 +1,4 @@
-// Generated text stays valid for any names in users' files.
+// Generated texts are valid for any name in a user's file.
 #include "app/export/names.hpp"
 
 #include <gmock/gmock.h>
@@ -42,7 +42,7 @@ TEST(Names, StayWithinCommentsQuotesAndFields) {
   }
 }
 
-/// A table with hostile columns and texts, read by Python's CSV reader: no cell is a formula.
+/// Python's CSV reader reads a table with hostile columns and texts. No cell may be a formula.
 TEST(Names, AreNoFormulasInTables) {
   nlohmann::json table = {{"columns", nlohmann::json::array()}, {"value", {nlohmann::json::object()}}};
   for (const std::string& name : hostile_names()) {
@@ -71,7 +71,7 @@ TEST(Names, AreNoFormulasInTables) {
   }
 }
 
-/// JSON stays valid, even for bytes that are not UTF-8.
+/// JSON is valid even if a text has bytes that are not UTF-8.
 TEST(Names, StayWithinJson) {
   ExportedBank exported = as_exported(modebank::test::example_bank(1, 1, 1));
   for (const std::string& name : hostile_names()) {

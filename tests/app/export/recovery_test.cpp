@@ -1,6 +1,6 @@
-// Robots without slip, with known width, wheels, delays and noise: how often the exported numbers are within two of
-// their standard errors. MODEBANK_EXPORT_SEEDS: the number of robots (make export-recovery: 1000), or a range such as
-// 301-1000.
+// Robots without slip, with known width, wheels, delays and noise. The test counts how often an exported number is
+// within two standard errors of the true number. MODEBANK_EXPORT_SEEDS: the number of robots (make export-recovery:
+// 1000), or a range such as 301-1000.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ constexpr std::array<const char*, 7> names{"separation",  "left wheel",  "right 
                                            "delay of vx", "noise of wz", "noise of vx"};
 using Truth = std::array<double, names.size()>;
 
-/// Parameters, drawn for every seed.
+/// True parameters of a robot, drawn for every seed.
 struct Robot {
   double separation_m, left, right, yaw_time_s, forward_time_s, yaw_variance, forward_variance, dt_s = 0.1;
 
@@ -76,7 +76,7 @@ Trajectory drive(const Robot& robot, Index samples, std::mt19937_64& generator) 
   return run;
 }
 
-/// A bank of one mode, learned as by the chain.
+/// A bank of one mode. It is learned as in the chain.
 Bank learned(const Recording& recording) {
   const WindowFits fits = fit_windows(recording, {});
   ClusterOptions mixture;
@@ -89,7 +89,7 @@ Bank learned(const Recording& recording) {
   return learn_as_asked(recording, fits, one, bank, baseline.bank.R, FilterOptions(), nullptr).bank;
 }
 
-/// Errors divided by stated standard errors.
+/// Errors divided by the stated standard errors.
 using Deviations = std::array<double, names.size()>;
 
 Deviations deviations(int seed) {
@@ -127,7 +127,7 @@ long count_inside(const std::vector<Deviations>& errors, std::size_t quantity) {
                        [&](const Deviations& seed) { return std::abs(seed[quantity]) <= 2.0; });
 }
 
-/// One line per seed, so that the results of several processes can be merged: many seeds take long.
+/// Prints one line per seed. Many seeds take long, so several processes share them, and their lines can be merged.
 void print_row(int seed, const Deviations& errors) {
   fmt::print("seed {}: {:.3f}\n", seed, fmt::join(errors, " "));
   std::fflush(stdout);
@@ -165,7 +165,7 @@ TEST(ExportedRos2, IsWithinTwoStandardErrorsOfRobotsWithoutSlip) {
   print_counts(errors);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const long count = count_inside(errors, i);
-    // 93 to 98 %, widened for fewer seeds at the 1 % level.
+    // 93 to 98 % must be within the interval. For fewer seeds, the limits are wider (at the 1 % level).
     const double share = static_cast<double>(count) / seeds, slack = seeds >= 1000 ? 0.0 : 0.57 / std::sqrt(seeds);
     EXPECT_GE(share, 0.93 - slack) << names[i];
     EXPECT_LE(share, 0.98 + slack) << names[i];

@@ -1,4 +1,4 @@
-// Parameter files of ROS 2 for robots with known width, wheels, delay and noise, read back as YAML.
+// Parameter files for ROS 2, read as YAML, for robots with known width, wheels, delay and noise.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -33,14 +33,15 @@ json read_yaml(const std::string& text) {
   return result.status == 0 ? json::parse(result.out) : json();
 }
 
-/// A robot whose speeds follow the wheels' speeds with one time constant each.
+/// A robot whose speeds follow the wheels' speeds, each with one time constant.
 struct Robot {
-  double separation_m = 0.55, left = 1.02, right = 0.97;  ///< multipliers of the radius
+  double separation_m = 0.55, left = 1.02, right = 0.97;  ///< left, right: multipliers of the wheel radius
   double yaw_time_s = 0.3, forward_time_s = 0.2, dt_s = 0.05;
   double yaw_noise = 4e-4, forward_noise = 9e-4, shared_noise = 1e-4;
 };
 
-/// [yaw rate, forward speed], or the yaw rate alone, from [left, right] speeds. `radius_m` converts rad/s to m/s.
+/// A bank that predicts [yaw rate, forward speed], or only the yaw rate, from the [left, right] speeds. `radius_m`
+/// converts rad/s to m/s.
 ExportedBank bank_of(const Robot& robot, bool forward, double radius_m = 1.0) {
   const Index n = forward ? 2 : 1;
   Bank bank = modebank::test::example_bank(n, 2, 1, 0.0);
@@ -91,7 +92,7 @@ TEST(ExportedRos2, GivesTheRobotBack) {
     EXPECT_NEAR(noise[6 * 15 + 11], robot.shared_noise / robot.dt_s, 1e-12);
     EXPECT_EQ(noise[11 * 15 + 6], noise[6 * 15 + 11]);
     const json plan = parameters(exported, sizes, "controller_server").at("FollowPath");
-    // A first-order lag sampled with held input: dt / 2 coth(dt / 2 tau), about tau.
+    // Delay of a first-order lag with held input: dt / 2 coth(dt / 2 tau), which is about tau.
     const double half = 0.5 * robot.dt_s;
     EXPECT_NEAR(plan.at("model_delay_wz"), half / std::tanh(half / robot.yaw_time_s), 1e-9);
     EXPECT_NEAR(plan.at("model_delay_vx"), half / std::tanh(half / robot.forward_time_s), 1e-9);
@@ -109,7 +110,7 @@ TEST(ExportedRos2, CountsDeadTimeAndLags) {
   EXPECT_NEAR(later - without, 0.12 + 2.0 * Robot().dt_s, 1e-9);
 }
 
-/// Without a forward speed the wheels' mean multiplier is taken as one, and a comment names what is missing.
+/// Without a forward speed, the mean multiplier of the wheels is set to one. A comment names what is missing.
 TEST(ExportedRos2, SaysWhatIsMissing) {
   MODEBANK_NEEDS_YAML();
   Robot robot;
@@ -136,13 +137,13 @@ TEST(ExportedRos2, SaysWhatIsMissing) {
   EXPECT_THAT(spinning, HasSubstr("give --wheel_radius_m"));
 }
 
-/// A value below its standard error is a comment with both numbers; lists keep ROS' default there.
+/// A value below its standard error becomes a comment with both numbers. In a list, its place has the default of ROS.
 TEST(ExportedRos2, LeavesOutWhatItsErrorExceeds) {
   MODEBANK_NEEDS_YAML();
   const Robot robot;
   ExportedBank vague = bank_of(robot, true);
   Mode& mode = vague.bank.modes[0];
-  mode.standard_error.setConstant(10.0);  // large against gains of order one
+  mode.standard_error.setConstant(10.0);  // large compared with gains of about one
   mode.Q_standard_error = Eigen::Matrix2d{{1e-6, 0.0}, {0.0, 2.0 * robot.forward_noise}};
   const std::string text = to_ros2(vague, {1.0, 0.0}).at(0).second;
   for (const std::string key : {"wheel_separation_multiplier", "left_wheel_radius_multiplier", "model_delay_wz"})
@@ -160,7 +161,7 @@ TEST(ExportedRos2, LeavesOutWhatItsErrorExceeds) {
   EXPECT_TRUE(read_yaml(nothing).is_null()) << nothing;
 }
 
-/// sd(separation) = separation^2 / 2 sd(G_R - G_L) where B alone is uncertain.
+/// If only B is uncertain, sd(separation) = separation^2 / 2 sd(G_R - G_L).
 TEST(ExportedRos2, StatesErrorsByTheDeltaMethod) {
   const Robot robot;
   ExportedBank exported = bank_of(robot, false);
@@ -172,8 +173,8 @@ TEST(ExportedRos2, StatesErrorsByTheDeltaMethod) {
   EXPECT_THAT(text, HasSubstr(fmt::format("# +- {:.2g} of wheel_separation = 1 m", expected)));
 }
 
-/// Two modes of one family with different widths, used for 60 and 20 % of the time, and a third mode that is too vague
-/// to count.
+/// Two modes of one family have different widths. They are used for 60 and 20 % of the time. The width of a third mode
+/// is too vague to count.
 ExportedBank family_of_three() {
   Robot wide;
   wide.separation_m = 0.65;
@@ -214,11 +215,11 @@ TEST(ExportedRos2, AFamilyIsOneFileOfMeansByUse) {
   EXPECT_NEAR(drive.at("left_wheel_radius_multiplier"), Robot().left, 1e-9);
   const json noise = read_yaml(text).at("ekf_filter_node").at("ros__parameters").at("process_noise_covariance");
   EXPECT_NEAR(noise[11 * 15 + 11].get<double>() * Robot().dt_s, (0.7 * 4e-4 + 0.2 * 8e-4) / 0.9, 1e-12);
-  EXPECT_THAT(text, HasSubstr(", its modes 0.008 to 0.016"));  // Q / dt_s
+  EXPECT_THAT(text, HasSubstr(", its modes 0.008 to 0.016"));  // each is Q / dt_s
 }
 
-/// Both modes have precise widths, so the standard error is the difference between these. For 1 / width it is (1 / 0.55
-/// - 1 / 0.65) sqrt(0.75 0.25) per metre; for the width it is 0.5722^2 times that.
+/// Both modes have precise widths, so the standard error comes only from their difference. For 1 / width it is (1 /
+/// 0.55 - 1 / 0.65) sqrt(0.75 0.25) per metre. For the width it is 0.5722^2 times this number.
 TEST(ExportedRos2, TheErrorOfAFamilyHoldsHowFarItsModesAreApart) {
   ExportedBank exported = family_of_three();
   for (Mode& mode : exported.bank.modes) mode.standard_error.setConstant(1e-9);

@@ -1,6 +1,7 @@
-// Runs every command on a disk that becomes full: each call that writes to a file fails. Existing files must stay, and
-// new files must be complete or absent. The message must name the file and the reason. By default a seeded sample of
-// the calls fails; with MODEBANK_FAULTS=all (`make faults`) each call fails once.
+// Runs every command on a disk that becomes full, so that a call that writes to a file fails. Existing files must stay.
+// New files must be complete or absent. The message must name the file and the reason.
+// By default, a random sample of the calls fails, with a fixed seed. With MODEBANK_FAULTS=all (`make faults`), each
+// call fails once.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-/// Files of a folder and its subfolders: content by relative name.
+/// Files of a folder and its subfolders: relative name and content.
 using Content = std::map<std::string, std::string>;
 
 std::string bytes_of(const fs::path& path) {
@@ -37,7 +38,7 @@ Content content_of(const fs::path& folder) {
   return content;
 }
 
-/// Output of failing_call: the number of calls, and those that failed.
+/// Output of failing_call: the number of calls, and the calls that failed.
 struct Report {
   std::size_t calls = 0;
   std::vector<std::string> failed;  ///< "write /path"
@@ -52,8 +53,8 @@ Report read_report(const fs::path& path) {
   return report;
 }
 
-/// Names of a call's file that a message may use: the file without the parts of a temporary name, and the folders
-/// above.
+/// Names that a message may use for a call's file: the file without the parts of a temporary name, and the folders
+/// above it.
 std::vector<std::string> names_in(const std::string& failed) {
   if (failed.ends_with("standard output")) return {"standard output"};
   std::vector<std::string> names;
@@ -78,13 +79,13 @@ class DiskFull : public CliTest {
           "runs = 4\nsamples = 80\nrate_hz = 6.5\nstate_rate_hz = 6.5\n");
   }
 
-  /// Makes an archive of the runs, for report, track and export.
+  /// Makes an archive of the runs. The commands report, track and export need it.
   void make_archive() const { EXPECT_EQ(in("whole", {"run", "test.ini", "--archive.output", "two.h5"}).status, 0); }
 
-  /// Runs the command in a folder of the fixture.
+  /// Runs the command in a subfolder of the fixture's folder.
   ProgramResult in(const std::string& folder, const std::vector<std::string>& arguments,
                    const std::string& which = "0") const {
-    // Relative names are relative to the folder; a shell sends lines to `track`.
+    // Relative names refer to this folder. A shell sends the lines to `track`.
     std::string line = "cd \"$1\" && shift && exec \"$@\"";
     if (arguments.front() == "track") line += " < run_01.csv";
     std::vector<std::string> whole{
@@ -94,7 +95,7 @@ class DiskFull : public CliTest {
     return run_program(whole);
   }
 
-  /// Numbers of the calls that will fail: all, or a sample.
+  /// Numbers of the calls that shall fail: all calls, or a sample.
   static std::vector<std::size_t> chosen(std::size_t calls, std::size_t few) {
     std::vector<std::size_t> numbers(calls);
     std::iota(numbers.begin(), numbers.end(), std::size_t{1});
@@ -105,7 +106,8 @@ class DiskFull : public CliTest {
     return numbers;
   }
 
-  /// Runs the command undisturbed; then with each chosen call failing alone, and with all calls from there on failing.
+  /// Runs the command without failures. Then, for each chosen call, runs it twice: only this call fails, and this call
+  /// and all later calls fail.
   void every_call(const std::vector<std::string>& arguments, std::size_t few = 5) {
     fs::copy(file("whole"), file("undisturbed"), fs::copy_options::recursive);
     const ProgramResult fine = in("undisturbed", arguments);
@@ -129,7 +131,7 @@ class DiskFull : public CliTest {
     fs::copy(file("whole"), file("full"), fs::copy_options::recursive);
     const ProgramResult result = in("full", arguments, which);
     const Report report = read_report(file("report"));
-    if (report.failed.empty()) return;  // the program made fewer calls this time
+    if (report.failed.empty()) return;  // this time the program made fewer calls, so none has failed
     SCOPED_TRACE("call " + which + ", " + report.failed.front() + "; status " + std::to_string(result.status) + ": " +
                  result.err);
     const Content now = content_of(file("full"));
@@ -150,9 +152,9 @@ class DiskFull : public CliTest {
     EXPECT_TRUE(names_a_file(report, result.err)) << "no file is named";
   }
 
-  /// Whether a file is as after an undisturbed command. Times in it may differ, so lines are counted.
+  /// Whether a file equals that of an undisturbed command. Times in the file may differ, so only its lines are counted.
   bool is_whole(const std::string& name, const std::string& bytes) const {
-    if (name.ends_with("log.csv")) return bytes.empty() || bytes.back() == '\n';  // grows by whole lines
+    if (name.ends_with("log.csv")) return bytes.empty() || bytes.back() == '\n';  // the log grows by whole lines
     if (name.ends_with(".h5")) return verify_archive(file("full") / name).ok();
     const auto expected = after_.find(name);
     if (expected == after_.end()) return bytes.empty() || bytes.back() == '\n';
@@ -160,8 +162,8 @@ class DiskFull : public CliTest {
     return bytes == expected->second || (lines(bytes) == lines(expected->second) && bytes.back() == '\n');
   }
 
-  /// Success is right if all files are complete in spite of the failure (a file closed after its sync, a probe), or if
-  /// a warning names the missing file.
+  /// Whether the command may succeed. It may if all files are complete in spite of the failure (a file closed after its
+  /// sync, a probe), or if a warning names the missing file.
   bool may_pass(const Report& report, const ProgramResult& result, const Content& now) const {
     if (result.err.find("No space left on device") != std::string::npos) return names_a_file(report, result.err);
     return std::all_of(after_.begin(), after_.end(), [&](const auto& entry) {
@@ -169,7 +171,7 @@ class DiskFull : public CliTest {
     });
   }
 
-  /// Whether the message names a file in the folder, not only a folder above it.
+  /// Whether the message names a file in the folder. It is not enough if it names a folder above.
   bool names_a_file(const Report& report, const std::string& text) const {
     const std::string above = file("full").string();
     return std::any_of(report.failed.begin(), report.failed.end(), [&](std::string failed) {

@@ -26,7 +26,7 @@ TEST_F(InitCommand, WritesAConfigurationThatRuns) {
   EXPECT_TRUE(std::filesystem::exists(archive));
 }
 
-/// On a terminal `init` asks questions; with --yes it never does.
+/// On a terminal `init` asks questions. With --yes it does not ask.
 TEST_F(InitCommand, AsksOnATerminal) {
   write("one.csv", csv_run(300, 1));
   const char* script =
@@ -60,7 +60,7 @@ TEST_F(InitCommand, AsksOnATerminal) {
   EXPECT_THAT(read_file(ini), HasSubstr("state = wz"));
 }
 
-/// A folder stands for the logs in it, other files left out; the configuration is named after the folder.
+/// A folder stands for the logs in it. Other files in it are ignored. The configuration has the name of the folder.
 TEST_F(InitCommand, AFolderStandsForTheLogsInIt) {
   const std::filesystem::path drives = file("drives");
   std::filesystem::create_directory(drives);
@@ -93,7 +93,7 @@ TEST_F(InitCommand, IsWhatOtherCommandsAskForWhenGivenALog) {
   EXPECT_EQ(modebank({"init"}).status, 2);
 }
 
-/// A name must not add lines to the configuration, or words to the proposed commands.
+/// A name must not add lines to the configuration, and no words to the proposed commands.
 TEST_F(InitCommand, NamesOfFoldersAndFilesStayWhatTheyAre) {
   const std::filesystem::path folder = file("nl\nstate = oops # \x1b[31m");
   std::filesystem::create_directory(folder);
@@ -140,7 +140,7 @@ TEST_F(InitCommand, AFileThatNoConfigurationCanNameIsRefused) {
   }
 }
 
-/// Bags of C++ nodes have their topics only in the connections' headers.
+/// In bags of C++ nodes, only the headers of the connections contain the topics.
 TEST_F(InitCommand, TellsTheTopicsOfARecordingApart) {
   const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
   ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);

@@ -1,5 +1,6 @@
-// Logs with the state and the inputs that a person would choose: logs of ../shared/data, of the cases, of the
-// documentation and of typical users. If init writes a configuration, its data can be imported and cut into windows.
+// Logs with the state and the inputs that a person would choose. The logs come from ../shared/data, from the cases,
+// from the documentation and from typical users. If `init` writes a configuration, its data can be imported and cut
+// into windows.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -53,7 +54,7 @@ class InitLogs : public ::testing::Test {
     return {config.data.state, config.data.input, text};
   }
 
-  /// In the first run each state has the values of the column with its name.
+  /// In the first run, each state must have the values of the column with its name.
   void expect_columns(const Names& header, const std::vector<std::vector<double>>& columns) const {
     Config config = load_config(folder.path() / "log.ini", {});
     validate(config);
@@ -80,7 +81,7 @@ class InitLogs : public ::testing::Test {
     return files;
   }
   std::string data(const std::string& name) const { return (test::shared_data_dir() / name).string(); }
-  /// A log of a case, made by its script.
+  /// A log of a case. The script of the case makes it.
   std::string made(const std::string& name, const std::string& arguments = "") const {
     const fs::path at = folder.path() / name;
     fs::create_directories(at);
@@ -95,7 +96,7 @@ class InitLogs : public ::testing::Test {
   }
 };
 
-/// A robot whose yaw rate follows its wheels at 20 rows a second; wheel speeds are held for 40 rows.
+/// A robot whose yaw rate follows its wheels, with 20 rows per second. Wheel speeds are held for 40 rows.
 struct Drive {
   double t, left, right, rate, noise;
 };
@@ -202,7 +203,7 @@ TEST_F(InitLogs, FindsStateAndInputsOfNearlyAllOfAList) {
   EXPECT_LE(10 * wrong, static_cast<int>(list.size()));
 }
 
-/// Texts that name runs: each lasts from one gap to the next.
+/// Texts that name runs. Each run lasts from one gap to the next.
 TEST_F(InitLogs, ATextThatChangesAtGapsNamesRuns) {
   std::string text = ",time,gyro_z,cmd_left,cmd_right,run,surface\n";
   int k = 0;
@@ -231,7 +232,7 @@ TEST_F(InitLogs, ListsWhatMovesAndWasNotTaken) {
               HasSubstr("# not taken, measured beside the state, or without a hint of its role: pressure\n"));
 }
 
-/// Users expect columns of text to be channels, so `init` gives the reason why they are not.
+/// Users expect that columns of text become channels, so `init` gives the reason why they do not.
 TEST_F(InitLogs, SaysWhyTextIsNotTaken) {
   int k = 0;
   const auto cell = [&k](double value, const char* word) {
@@ -269,8 +270,8 @@ TEST_F(InitLogs, NamesChannelsThatAConfigurationCannotName) {
               HasSubstr("# not taken, the name contains a line end or another control character: u\\x0aV\n"));
 }
 
-/// Random names of all kinds. Either the configuration has these names and imports their data, or the message names the
-/// column to rename.
+/// Random names of all kinds. Either the configuration has these names and its data can be imported, or the message
+/// names the column to rename.
 TEST_F(InitLogs, NamesOfAnyLetters) {
   const Names pieces{"v",  "w z", " ", ",", "=", "#", ";",  "\"",   "'",          "[",      "]",     "(",   ")",
                      "\\", "ä",   "µ", "*", "+", "/", "\t", "\x01", "\u0085",     "\u202e", "speed", "cmd", "1",
@@ -310,7 +311,7 @@ TEST_F(InitLogs, NamesOfAnyLetters) {
   EXPECT_GT(written, 100);
 }
 
-/// Columns with clock times are times under any name. A column that cannot be read as times is reported once.
+/// Columns with clock times are times, whatever their name. If a column cannot be read as times, this is reported once.
 TEST_F(InitLogs, TimesOfAnyName) {
   const auto log = [](const std::string& name, auto stamp) {
     return log_of(name + ",wz,cmd\n", 400, [&](const Drive& d) {
@@ -333,7 +334,7 @@ TEST_F(InitLogs, TimesOfAnyName) {
   EXPECT_THAT(minutes, HasSubstr("# ! column time: 393 of 400 rows repeat the time of the row before"));
 }
 
-/// Dates of two files that have two readings in common: the format is proposed with a doubt.
+/// Dates of two files can be read in two ways. The format is proposed with a doubt.
 TEST_F(InitLogs, DatesOfSeveralFiles) {
   const auto dated = [&](const std::string& name, const std::string& date) {
     return write(name, log_of("time,wz,cmd\n", 400, [&](const Drive& d) {
@@ -347,7 +348,7 @@ TEST_F(InitLogs, DatesOfSeveralFiles) {
         << first;
 }
 
-/// Notes of the table's reader become doubts, even where the time column's name has the unit.
+/// Notes of the table's reader become doubts, even if the name of the time column contains the unit.
 TEST_F(InitLogs, NotesOfTheTableAreDoubts) {
   std::string text = "Rig 3\n" + log_of("Time [ms];wz;cmd\n", 400, [](const Drive& d) {
                        return fmt::format("{:.0f};{:.5f};{}", 1e3 * d.t, d.rate, d.left);
@@ -357,7 +358,7 @@ TEST_F(InitLogs, NotesOfTheTableAreDoubts) {
   EXPECT_THAT(written.text, HasSubstr("# column Time [ms] counts milliseconds (data.time_unit = ms)\n"));
 }
 
-/// Values with few levels repeat; a lower rate would not change that.
+/// Values with few levels repeat. A lower rate would not help.
 TEST_F(InitLogs, RoundedReadingsAreNoSlowSource) {
   const Written written = init({write("coarse.csv", log_of("time,y,u\n", 600, [](const Drive& d) {
                                         return fmt::format("{:.3f},{:.1f},{}", d.t, d.rate, d.left);
@@ -378,7 +379,7 @@ TEST_F(InitLogs, WritesNothingThatRunRefuses) {
   EXPECT_TRUE(fs::is_empty(folder.path()) || !fs::exists(folder.path() / "log.ini"));
   const std::string still = write("still.csv", "time,y\n0,1\n1,1\n2,1\n");
   EXPECT_THROW(init({still}), DataError);
-  // Runs shorter than a window, in a log that is long enough as a whole.
+  // Every run is shorter than a window, but the log as a whole is long enough.
   std::string text = "time,y,u,run\n";
   int k = 0;
   for (const Drive& d : drive(600))
@@ -391,12 +392,12 @@ TEST_F(InitLogs, WritesNothingThatRunRefuses) {
   }
 }
 
-/// Their data need no preparation by a script.
+/// The data of these configurations need no script before they can be read.
 TEST(ShippedConfigurations, FindTheirData) {
   MODEBANK_NEEDS_SHARED_DATA();
   int imported = 0;
   for (const auto& entry : fs::directory_iterator(test::project_dir() / "configs")) {
-    if (!entry.is_regular_file()) continue;  // the folder of systems
+    if (!entry.is_regular_file()) continue;  // skips the folder of systems
     const std::string name = entry.path().stem().string();
     if (name == "minimal" || name == "reference" || name == "demo" || name == "tyres" || name.starts_with("simulate"))
       continue;

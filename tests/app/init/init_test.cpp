@@ -1,4 +1,4 @@
-// Results of modebank init for logs of all kinds; its configurations can be read unchanged.
+// Results of `modebank init` for logs of all kinds. The program can read the written configurations unchanged.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ TEST(CommonPattern, EndsWhereWordsEnd) {
   EXPECT_EQ(common_pattern({"log", "data"}), "");
 }
 
-/// Writes a configuration as init does, and imports its data.
+/// Writes a configuration as `init` does, and imports its data.
 class Init : public ::testing::Test {
  protected:
   std::string write(const std::vector<std::string>& files) {
@@ -95,7 +95,7 @@ class Init : public ::testing::Test {
   std::string listing, asked;
 };
 
-/// 60 s at 50 Hz of a gyro on its side, with its y axis up or down.
+/// A gyro that lies on its side, for 60 s at 50 Hz. Its y axis points up or down.
 std::string sideways(double gravity) {
   std::string text = "time,wx,wy,wz,ax,ay,az,cmd_left,cmd_right\n";
   for (int k = 0; k < 3000; ++k) {
@@ -118,7 +118,7 @@ TEST_F(Init, FindsAGyroMountedSideways) {
   EXPECT_NO_THROW(import_data(config.data));
 }
 
-/// Wheels that reach 4 under commands up to `most`; the yaw rate follows the wheels.
+/// Wheels with a largest speed of 4, for commands up to `most`. The yaw rate follows the wheels.
 std::string driven(double most) {
   std::string text = "time,wz,cmd_left,cmd_right,wheel_left,wheel_right\n";
   for (int k = 0; k < 1000; ++k) {
@@ -169,7 +169,7 @@ TEST_F(Init, PairsFilesAndNamesRuns) {
   EXPECT_EQ(import_data(config.data).recording.runs.size(), 3U);
 }
 
-/// A state that follows an input, 300 rows at 10 Hz; `row` writes one.
+/// A state that follows an input, with 300 rows at 10 Hz. `row` writes one row.
 std::string plant(const std::string& head, const std::function<std::string(double, double, double)>& row) {
   std::string text = head;
   double y = 0.0, u = 0.0;
@@ -325,7 +325,7 @@ TEST_F(Init, NamesAPlaceWhereNamesSayNothing) {
   EXPECT_NO_THROW(import_data(config.data));
 }
 
-/// 20 s at 20 Hz: time, wz, cmd and the columns in `more`, which count up in steps of 3.
+/// 20 s at 20 Hz with time, wz, cmd and the columns in `more`. The values of these columns increase in steps of 3.
 std::string driven(const std::string& more, double input_scale = 1.0) {
   std::string text = "time,wz,cmd" + more + "\n";
   for (int k = 0; k < 400; ++k) {

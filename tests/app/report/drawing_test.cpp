@@ -1,4 +1,4 @@
-// Data of drawings of long series and of many runs.
+// Data for drawings of long series and of many runs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ TEST(BucketExtremes, KeepEveryExtremeAndLeaveOutWhatIsMissing) {
   EXPECT_THROW(bucket_extremes(values, 0), std::invalid_argument);
 }
 
-/// Buckets of buckets equal larger buckets: a coarse level never shows less than a fine one.
+/// Buckets of buckets equal larger buckets, so a coarse level shows the same extremes as a fine level.
 TEST(BucketExtremes, LevelsAgree) {
   std::mt19937_64 generator(7);
   boost::random::normal_distribution<double> normal;

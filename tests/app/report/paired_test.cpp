@@ -1,4 +1,4 @@
-// Pairing: of modes of two banks, of samples of two archives, of repeats of two settings.
+// Pairs of modes from two banks, of samples from two archives, and of repeats of two settings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using app::report::match_modes;
 using app::report::MatchedMode;
 using Eigen::Index;
 
-/// One state, one input, no constant term: theta = (A, B), each with the standard error `error`.
+/// A bank with one state, one input and no constant term. theta = (A, B), and both have the standard error `error`.
 Bank bank_of(const std::vector<Eigen::Vector2d>& thetas, double error) {
   Bank bank;
   bank.structure.inputs = 1;
@@ -61,7 +61,7 @@ TEST(MatchedModes, AreTheSameOnesInAnotherOrder) {
   }
 }
 
-/// No permutation has a smaller sum of log(1 + distance^2).
+/// No other permutation has a smaller sum of log(1 + distance^2).
 TEST(MatchedModes, AreTheBestOfAllPermutations) {
   std::mt19937_64 generator(5);
   for (int trial = 0; trial < 10; ++trial) {
@@ -98,12 +98,12 @@ TEST(MatchedModes, LeaveOverWhatOneHasMore) {
   EXPECT_NE(match_modes(first, other).difference, "");
 }
 
-/// Numbers of modes are arbitrary. Modes that are probable at the same samples match, whatever their parameters are.
+/// The numbers of modes are arbitrary. Modes that are probable at the same samples match, whatever their parameters.
 TEST(MatchedModes, HaveTimeInCommon) {
   const Bank first = bank_of({{-0.5, 1.0}, {0.0, 0.0}, {-0.9, 2.0}}, 0.1),
              second = bank_of({{-0.5, 1.0}, {0.0, 0.0}}, 0.1);
   Eigen::MatrixXd shared(3, 2);
-  shared << 0.01, 0.9,  // by parameters the first modes of both would match
+  shared << 0.01, 0.9,  // by their parameters, the first modes of both banks would match
       0.6, 0.02, 0.05, 0.02;
   const auto match = match_modes(first, second, shared);
   ASSERT_EQ(match.modes.size(), 3u);
@@ -116,7 +116,7 @@ TEST(MatchedModes, HaveTimeInCommon) {
   EXPECT_TRUE(std::isnan(match.modes[2].shared));
 }
 
-/// Modes at different times do not match, however similar their parameters are.
+/// Modes that are probable at different times do not match, even if their parameters are similar.
 TEST(MatchedModes, ThatNeverRuleTogetherStayAlone) {
   const Bank bank = bank_of({{-0.5, 1.0}, {0.0, 0.0}}, 0.1);
   Eigen::MatrixXd shared(2, 2);
@@ -127,7 +127,7 @@ TEST(MatchedModes, ThatNeverRuleTogetherStayAlone) {
   EXPECT_EQ(match.modes[1].second, 1);
   shared(1, 1) = 0.0;
   shared(1, 0) = 0.05;
-  const auto apart = match_modes(bank, bank, shared);  // 0.5 and 0 in place of 0.4 and 0.05
+  const auto apart = match_modes(bank, bank, shared);  // with 0.5 and 0 instead of 0.4 and 0.05
   ASSERT_EQ(apart.modes.size(), 3u);
   EXPECT_EQ(apart.modes[0].second, 0);
   EXPECT_EQ(apart.modes[1].second, -1);
@@ -156,7 +156,7 @@ TEST(MatchedModes, OfOtherModelsAreMatchedByTimeAlone) {
   EXPECT_FALSE(match.modes[0].agree());
 }
 
-/// Six held-out runs with the same rate; every sample of run r is predicted better by `gains[r]`.
+/// Six held-out runs with the same rate. `gains[r]`: how much better every sample of run r is predicted.
 Archive archive_with(const std::vector<double>& gains) {
   Archive archive;
   archive.recording.emplace();
@@ -183,7 +183,7 @@ Archive archive_with(const std::vector<double>& gains) {
   return archive;
 }
 
-/// Runs of equal length: the error is that of a mean of six numbers.
+/// The runs have equal length, so the error is that of the mean of six numbers.
 TEST(PairedRuns, TheErrorIsThatOfTheRunsMeans) {
   const std::vector<double> gains{0.1, 0.3, 0.2, -0.1, 0.4, 0.15};
   const auto result = gain_between(archive_with(gains), archive_with(std::vector<double>(6, 0.0)));
@@ -208,13 +208,13 @@ TEST(PairedRuns, OtherSamplesDoNotCount) {
   EXPECT_NE(none.difference, "");
 }
 
-/// Two modes in the first and three in the second; the runs differ in their measurements.
+/// The first archive has two modes and the second has three. The measurements of the runs differ.
 TEST(PairedRuns, TimeInCommonIsThatOfCommonRuns) {
   Archive first = archive_with({0.0, 0.0}), second = first;
   for (std::size_t r = 0; r < 2; ++r) {
     first.evaluations[0].runs[r].mode_probability = Eigen::Vector2d(0.75, 0.25).replicate(1, 50);
     second.evaluations[0].runs[r].mode_probability = Eigen::Vector3d(0.5, 0.5, 0.0).replicate(1, 50);
-    second.evaluations[0].runs[r].mode_probability(0, 0) = NAN;  // before the start
+    second.evaluations[0].runs[r].mode_probability(0, 0) = NAN;  // here the filter has not started
   }
   second.recording->runs[1].state *= 2.0;
   const Eigen::MatrixXd shared = app::report::time_in_common(first, second);
@@ -223,13 +223,13 @@ TEST(PairedRuns, TimeInCommonIsThatOfCommonRuns) {
   EXPECT_NEAR(shared(0, 0), 0.5 / 0.75, 1e-12);
   EXPECT_NEAR(shared(1, 1), 0.25 / 0.5, 1e-12);
   EXPECT_EQ(shared(0, 2), 0.0);
-  // Groups add up: 0.25 and 0.75 with 0.5 and 0.5.
+  // The probabilities in each group add up: 0.25 and 0.75 with 0.5 and 0.5.
   const Eigen::MatrixXd grouped = app::report::time_in_common(first, second, {1, 0}, {1, 0, 0});
   EXPECT_NEAR(grouped(1, 1), 0.5 / 0.75, 1e-12);
   EXPECT_NEAR(grouped(0, 0), 0.25 / 0.5, 1e-12);
   const Eigen::MatrixXd joined = app::report::time_in_common(first, second, {0, 0}, {0, 0, 1});
   EXPECT_NEAR(joined(0, 0), 1.0, 1e-12) << "what the modes of a group share with several counts once";
-  // A bank and itself share all time, however undecided it is.
+  // A bank shares all time with itself, however undecided its probabilities are.
   EXPECT_TRUE(app::report::time_in_common(first, first).diagonal().isOnes(1e-12));
   second.recording->runs.clear();
   EXPECT_EQ(app::report::time_in_common(first, second).size(), 0);
@@ -247,7 +247,7 @@ TEST(RepeatGain, IsPairedByRepeat) {
   const auto gain = app::report::repeat_gain(table, {0, 1, 2}, {3, 4, 5}, 0);
   EXPECT_EQ(gain.repeats, 3);
   EXPECT_NEAR(gain.gain, 0.2, 1e-12);
-  EXPECT_NEAR(gain.standard_error, 0.1 / std::sqrt(3.0), 1e-12);  // of 0.2, 0.1, 0.3
+  EXPECT_NEAR(gain.standard_error, 0.1 / std::sqrt(3.0), 1e-12);  // standard error of the mean of 0.2, 0.1, 0.3
   EXPECT_NEAR(gain.margin, 4.302652729749464 * 0.1 / std::sqrt(3.0), 1e-9);
   EXPECT_TRUE(std::isnan(app::report::repeat_gain(table, {0}, {3}, 0).margin));
   EXPECT_EQ(app::report::repeat_gain(table, {0}, {4}, 0).repeats, 0);

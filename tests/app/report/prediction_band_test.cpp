@@ -10,7 +10,7 @@
 namespace modebank::test {
 namespace {
 
-/// The measurement is outside of the 95 % band exactly where its innovation exceeds 1.96 standard deviations.
+/// A measurement is outside the 95 % band exactly if its innovation exceeds 1.96 standard deviations.
 TEST(PredictionBand, IsAboutTheExpectedMeasurement) {
   const Bank bank = example_bank(2, 1, 2, 1e-4);
   const Trajectory run = simulate_truth(bank, 60, 7).run;
@@ -42,9 +42,9 @@ TEST(PitHistogram, EveryKnownTransformIsCountedOnce) {
   EXPECT_THROW(pit_histogram({}, {}, 1), std::invalid_argument);
 }
 
-/// The binomial distribution function, summed in Python. 100 in 10 bins: P(X <= 4) = 0.0237, P(X <= 15) = 0.9601, P(X
-/// <= 16) = 0.9794. 2394 in 20 bins: P(X <= 98) = 0.0210, P(X <= 99) = 0.0265, P(X <= 140) = 0.9722, P(X <= 141) =
-/// 0.9774. Quantiles are rounded outwards.
+/// The binomial distribution function, computed in Python. Quantiles are rounded outwards.
+/// 100 in 10 bins: P(X <= 4) = 0.0237, P(X <= 15) = 0.9601, P(X <= 16) = 0.9794.
+/// 2394 in 20 bins: P(X <= 98) = 0.0210, P(X <= 99) = 0.0265, P(X <= 140) = 0.9722, P(X <= 141) = 0.9774.
 TEST(PitHistogram, BandIsTheBinomials) {
   const RunEvaluation hundred = with_pit(Eigen::RowVectorXd::Constant(100, 0.5));
   EXPECT_EQ(pit_histogram({"bank", {hundred}}, {0}, 10).band.lower, 4.0);

@@ -36,11 +36,11 @@ TEST(ReportNumbers, AreWrittenAsPeopleWriteThem) {
   EXPECT_EQ(percent_text(0.02496), "2.50 %");
   EXPECT_EQ(count_text(1234567), "1\u202f234\u202f567");
   EXPECT_EQ(count_text(-123), "-123");
-  EXPECT_EQ(number(1.0 / 3.0)["v"].get<double>(), 1.0 / 3.0);  // includes the exact value
+  EXPECT_EQ(number(1.0 / 3.0)["v"].get<double>(), 1.0 / 3.0);  // the member v is the exact value
   EXPECT_TRUE(number(std::nan(""))["v"].is_null());
 }
 
-/// Decodes the stored form with zlib and code of this test.
+/// Decodes a stored array with zlib and with code of this test.
 std::string unpacked(const PageArrays& arrays, const json& place, std::size_t width) {
   static const std::string alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   const std::string& text = arrays.stored().at(std::stoul(place.at("id").get<std::string>().substr(1)));
@@ -88,11 +88,11 @@ TEST(ReportArrays, ComeBackAsTheyWentIn) {
   for (std::size_t i = 0; i < floats.size(); ++i)
     EXPECT_EQ(floats[i], static_cast<float>(values(static_cast<Index>(i))));
   const auto steps = values_of<std::uint16_t>(arrays, shares);
-  EXPECT_EQ(steps.front(), 0);  // below 0 becomes 0
+  EXPECT_EQ(steps.front(), 0);  // a value below 0 becomes 0
   EXPECT_EQ(steps.back(), 65534);
   EXPECT_NEAR(steps[500] / 65534.0, values(500) / 1e5, 1e-5);
   const auto most = [&](std::size_t width) { return PageArrays::most_bytes(values.size(), width); };
-  EXPECT_GE(most(8) + most(4) + most(2), arrays.bytes());  // a valid bound
+  EXPECT_GE(most(8) + most(4) + most(2), arrays.bytes());  // most() is an upper bound
 }
 
 TEST(ReportSeries, LevelsHoldTheExtremesOfEverySample) {
@@ -119,7 +119,7 @@ TEST(ReportRuns, OfThousandsTheFirstHundredOfEachRoleAreDrawn) {
   const std::vector<std::size_t> drawn = app::report::drawn_runs(recording);
   ASSERT_EQ(drawn.size(), 200u);
   EXPECT_TRUE(std::is_sorted(drawn.begin(), drawn.end()));
-  EXPECT_EQ(drawn.back(), 4u * 99u);  // the hundredth held-out run
+  EXPECT_EQ(drawn.back(), 4u * 99u);  // the hundredth held-out run is the last
   recording.runs.resize(40);
   EXPECT_EQ(app::report::drawn_runs(recording).size(), 40u);
 }
@@ -136,7 +136,8 @@ TEST(ReportPage, NamesCannotLeaveTheirPlace) {
   const std::string open = "<script type=\"application/json\" id=\"page-data\">";
   const std::size_t from = html.find(open) + open.size();
   const json data = json::parse(html.substr(from, html.find("</script>", from) - from));
-  EXPECT_EQ(data["ok"], "{{css}} é");  // not part of the template
+  EXPECT_EQ(data["ok"], "{{css}} é");  // a text in the data is not replaced, even if it looks like a part of the
+                                       // template
   EXPECT_EQ(data["name"].get<std::string>().substr(0, 35), "</script><script>alert(2)</script><");
 }
 
@@ -167,7 +168,7 @@ TEST_F(Report, PageHoldsTheArchivesNumbersAndReachesNowhere) {
   EXPECT_EQ(data["data"]["runs"].size(), stored.recording->runs.size());
   const std::string html = read_file(page());
   EXPECT_FALSE(std::regex_search(html.substr(0, 4000), std::regex("(src|href)=\"(https?:)?//")));
-  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);  // the browser blocks the network
+  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);  // the policy makes the browser block the network
   EXPECT_LE(html.size(), 64e6);
 }
 
@@ -181,7 +182,7 @@ TEST_F(Report, IsTheSameOfRunsThatStayInTheFile) {
                 html_of(app::report::run_page(read_archive(archive()), "a.h5", options)));
 }
 
-/// Largest size of all arrays in a section, without outliers [bytes].
+/// Largest possible size of all arrays in a section, without outliers [bytes].
 std::size_t most_bytes_of(const json& section) {
   std::size_t bytes = 0;
   if (section.is_object() && section.contains("id") && section.contains("type")) {
@@ -286,8 +287,8 @@ TEST_F(Report, BeginsWithWhatTheFirstScreenSaysAndAPicture) {
   }
 }
 
-/// The first of three modes is listed, the other two are merged. Transitions out of the merged ones are weighted by
-/// use.
+/// The first of three modes is listed, and the other two are merged. Transitions out of the merged modes are weighted
+/// by their use.
 TEST(ReportFolding, TransitionsOfTheOthersAreTheirMean) {
   const Eigen::MatrixXd T{{0.9, 0.06, 0.04}, {0.2, 0.7, 0.1}, {0.5, 0.1, 0.4}};
   using Group = std::vector<Index>;
@@ -309,7 +310,7 @@ TEST(ReportFolding, TransitionsOfTheOthersAreTheirMean) {
   EXPECT_NEAR(joined(1, 0), 0.1, 1e-15);
 }
 
-/// Two modes: p0 T01 = p1 T10, where the odds of the weights change T01 and T10.
+/// With two modes p0 T01 = p1 T10. The weights change the odds of T01 and T10.
 TEST(ReportGuard, SharesAreThoseThatStandStill) {
   Bank bank;
   bank.structure = {1, 1, false};
@@ -328,7 +329,7 @@ TEST_F(Report, DrawsTheGuardOfSwitchesThatSeeStateAndInput) {
   Archive stored = read_archive(archive());
   EXPECT_TRUE(app::report::mode_map_of(stored).is_null());
   ASSERT_GT(stored.noise_only->mode_count(), 1);
-  stored.bank = stored.noise_only;  // a filter with several modes
+  stored.bank = stored.noise_only;  // noise_only has several modes
   std::vector<FilterEvaluation> evaluations;
   for (const FilterEvaluation& evaluation : stored.evaluations)
     if (evaluation.filter == "noise_only") evaluations.push_back(evaluation);

@@ -1,4 +1,4 @@
-// A folder of results: the rows of the index, and which pages are made again.
+// A folder of results: the rows of the index, and the pages that are made again.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -29,7 +29,7 @@ class Site : public CliTest {
   }
 
   ProgramResult make() const { return modebank({"report", results.string(), "-o", site.string(), "--json"}); }
-  /// Files that `report` wrote or removed, relative to the site.
+  /// Files that `report` wrote or removed. Their names are relative to the site.
   std::vector<std::string> files(const char* member) const {
     const ProgramResult made = make();
     EXPECT_EQ(made.status, 0) << made.err;
@@ -38,7 +38,7 @@ class Site : public CliTest {
       names.push_back(fs::path(name).lexically_relative(site).string());
     return names;
   }
-  /// Rows of the index by name.
+  /// Rows of the index, by the name of the archive.
   std::map<std::string, json> rows() const {
     const std::string page = read_file(site / "index.html"), open = "id=\"page-data\">";
     const auto from = page.find(open) + open.size();
@@ -85,7 +85,7 @@ TEST_F(Site, WhatChangedIsMadeAgain) {
   EXPECT_THAT(files("written"), ElementsAre(a_page, "index.html"));
   fs::remove(site / b_page);
   EXPECT_THAT(files("written"), ElementsAre(b_page, "index.html"));
-  // As after an earlier version, and after a killed process.
+  // The record as it is after an earlier version, and after a killed process.
   app::report::SiteRecord record = app::report::read_site_record(site);
   record.at("a.h5").maker = "modebank 0.0.1";
   record.at("older/b.h5").archive = "";
@@ -121,7 +121,7 @@ TEST_F(Site, ABrokenArchiveIsALineThatSaysWhy) {
   EXPECT_THAT(lines.at("a.h5").at("problem").get<std::string>(), HasSubstr("SHA-256"));
   EXPECT_THAT(lines.at("c.h5").at("problem").get<std::string>(), HasSubstr("not a modebank archive"));
   EXPECT_FALSE(lines.at("a.h5").contains("page"));
-  EXPECT_FALSE(fs::exists(site / a_page));  // it showed the archive's earlier content
+  EXPECT_FALSE(fs::exists(site / a_page));  // the page showed earlier content of the archive
   EXPECT_TRUE(fs::exists(site / b_page));
 }
 
@@ -131,7 +131,7 @@ TEST_F(Site, AStudyIsOneLineWithItsPage) {
   words.push_back((results / "s").string());
   ASSERT_EQ(modebank(words).status, 0);
   const std::vector<std::string> written = files("written");
-  ASSERT_EQ(written.size(), 6u);  // for the study its page and those of two runs
+  ASSERT_EQ(written.size(), 6u);  // for the study, these are its page and the pages of two runs
   EXPECT_TRUE(fs::exists(site / "pages/s/study.html"));
   const auto lines = rows();
   ASSERT_EQ(lines.size(), 3u);
@@ -143,7 +143,7 @@ TEST_F(Site, AStudyIsOneLineWithItsPage) {
   EXPECT_FALSE(fs::exists(site / "pages/s"));
 }
 
-/// An unfinished study has a row, and the page of `report STUDY`, which is made anew each time.
+/// An unfinished study has a row. It also has the page of `report STUDY`, which is made anew each time.
 TEST_F(Site, AStudyThatGoesOnIsALineWithWhatIsDone) {
   const std::string folder = (results / "s").string();
   std::vector<std::string> half{"study",          config(), "--study.vary",  "window.length = 20 | 25 | 30",
@@ -178,7 +178,7 @@ TEST_F(Site, AFolderOfOtherFilesIsRefused) {
   EXPECT_FALSE(fs::exists(site));
 }
 
-/// A record that was edited by hand must not remove files outside of the pages.
+/// Even if a record was edited by hand, only pages are removed.
 TEST_F(Site, ARecordNamesPagesAlone) {
   ASSERT_EQ(make().status, 0);
   for (const std::string outside : {"../test.ini", "pages/../../test.ini", "/etc/passwd", ""}) {
@@ -190,7 +190,7 @@ TEST_F(Site, ARecordNamesPagesAlone) {
   EXPECT_TRUE(fs::exists(config()));
 }
 
-/// Comparison of an archive given twice.
+/// Compares an archive with itself.
 TEST_F(Site, AnArchiveBesideItself) {
   const std::string archive = (results / "a.h5").string();
   ASSERT_EQ(modebank({"report", archive, archive, "-o", file("both.html").string()}).status, 0);

@@ -15,7 +15,7 @@ using app::StudyTable;
 using app::TrialRow;
 using app::TrialStatus;
 
-/// Six runs over two keys, one of them with words; the fifth run failed.
+/// Six runs over two keys; the values of one key are words. The fifth run has failed.
 StudyTable example_table() {
   StudyTable table;
   table.varied_keys = {"mixture.components", "mixture.covariance"};

@@ -26,7 +26,7 @@ TrialRow trial(std::vector<std::string> varied, std::vector<double> scores, std:
   return row;
 }
 
-/// Two keys, two values each, two repeats: log score = 10 K + (full ? 1 : 0) + repeat / 10, K modes.
+/// Two keys with two values each, and two repeats. log score = 10 K + (full ? 1 : 0) + repeat / 10, for K modes.
 StudyTable grid() {
   StudyTable table{
       {"mixture.components", "mixture.covariance"}, {"modes", "bank_test_log_score", "bank_test_too_far"}, {}};
@@ -53,27 +53,27 @@ TEST(StudyAnswers, MainEffectsAreMeansOverTheOtherKeys) {
   const MainEffect& two = effect(answers, "mixture.components", "2", answers.headline);
   EXPECT_EQ(two.trials, 4);
   EXPECT_NEAR(two.mean, (21.0 + 21.1 + 20.0 + 20.1) / 4, 1e-12);
-  EXPECT_NEAR(two.sd, std::sqrt(4 * (0.25 + 0.0025) / 3), 1e-12);  // +-0.5 +-0.05 about the mean
+  EXPECT_NEAR(two.sd, std::sqrt(4 * (0.25 + 0.0025) / 3), 1e-12);  // deviations from the mean: +-0.5 +-0.05
   EXPECT_NEAR(effect(answers, "mixture.covariance", "full", answers.headline).mean, 26.05, 1e-12);
   EXPECT_NEAR(effect(answers, "mixture.components", "3", "bank_test_too_far").mean, 0.03, 1e-12);
 }
 
-/// In a full grid the shares of the keys and the rest due to repeats sum to one.
+/// In a full grid, the influences of the keys and of the repeats sum to one.
 TEST(StudyAnswers, InfluenceIsTheShareOfVarianceExplained) {
   const Answers answers = answer(grid());
   double components = 0, covariance = 0;
   for (const KeyInfluence& influence : answers.influences)
     if (influence.score == answers.headline)
       (influence.key == "mixture.components" ? components : covariance) = influence.share;
-  const double total = 25.0 + 0.25 + 0.0025;  // +-5, +-0.5 and +-0.05 about the mean
+  const double total = 25.0 + 0.25 + 0.0025;  // deviations from the mean: +-5, +-0.5 and +-0.05
   EXPECT_NEAR(components, 25.0 / total, 1e-12);
   EXPECT_NEAR(covariance, 0.25 / total, 1e-12);
 }
 
 TEST(StudyAnswers, BestIsJudgedByTheMeanOverRepeats) {
   StudyTable table = grid();
-  table.rows[0].scores[1] = 100.0;   // one very good seed of K = 2 full ...
-  table.rows[1].scores[1] = -100.0;  // ... and a very bad second seed
+  table.rows[0].scores[1] = 100.0;   // K = 2, full: one seed is very good ...
+  table.rows[1].scores[1] = -100.0;  // ... and the other seed is very bad
   const Answers answers = answer(table);
   const auto best = std::find_if(answers.best.begin(), answers.best.end(),
                                  [](const BestSetting& b) { return b.score == "bank_test_log_score"; });
@@ -141,7 +141,7 @@ TEST(StudyAnswers, OnlyFinishedTrialsCount) {
 
 TEST(StudyAnswers, ASampledKeyDoesNotExplainAllByHavingAValuePerTrial) {
   StudyTable table{{"window.prior", "filter.variant"}, {"modes", "bank_test_log_score"}, {}};
-  for (int i = 0; i < 20; ++i)  // the score depends on the variant alone
+  for (int i = 0; i < 20; ++i)  // the score depends only on the variant
     for (const int repeat : {0, 1})
       table.rows.push_back(trial({std::to_string(0.01 * (i * 7 % 20 + 1)), i % 2 == 0 ? "imm" : "kf"},
                                  {2.0, i % 2 == 0 ? 1.0 : 0.0}, repeat));
@@ -154,7 +154,8 @@ TEST(StudyAnswers, ASampledKeyDoesNotExplainAllByHavingAValuePerTrial) {
       EXPECT_LT(influence.share, 0.3);
     }
   }
-  StudyTable sweep{{"window.prior"}, table.score_names, {}};  // nothing else varies, so each value is kept
+  StudyTable sweep{{"window.prior"}, table.score_names, {}};  // only one key varies, so each of its values stays
+                                                              // separate
   for (int i = 0; i < 20; ++i) sweep.rows.push_back(trial({std::to_string(i)}, {2.0, 1.0 * i}));
   EXPECT_EQ(value_groups(sweep, 0).size(), 20u);
 }
@@ -167,7 +168,7 @@ TEST(StudyAnswers, ManyNumbersAreGroupedIntoRanges) {
   EXPECT_EQ(groups.front().label, "0..19");
   EXPECT_EQ(groups.back().label, "80..99");
   for (const ValueGroup& group : groups) EXPECT_EQ(group.rows.size(), 20U);
-  table.rows[0].varied[0] = "word";  // not all values are numbers now
+  table.rows[0].varied[0] = "word";  // now not all values are numbers
   EXPECT_EQ(value_groups(table, 0).size(), 100U);
 }
 

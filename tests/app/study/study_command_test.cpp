@@ -122,7 +122,7 @@ TEST_F(StudyCommands, ProcessesOnOneStudyShareTheWork) {
   for (std::size_t i = 0; i < status.size(); ++i) processes.emplace_back([&, i] { status[i] = study_six().status; });
   for (std::thread& process : processes) process.join();
   EXPECT_EQ(status, std::vector<int>(3, 0));
-  EXPECT_EQ(count(text("s/log.csv"), ",done,"), 6u);  // no run was made twice
+  EXPECT_EQ(count(text("s/log.csv"), ",done,"), 6u);  // each run was made only once
   ASSERT_EQ(study_six({}, "one").status, 0);
   EXPECT_EQ(text("s/study.csv"), text("one/study.csv"));
 }
@@ -169,7 +169,7 @@ TEST_F(StudyCommands, DamageIsFoundNamedAndRepaired) {
     stream.put(byte);
   };
   flip(trials()[1], 5000);
-  flip(trials()[3], 70);  // a byte in the user block
+  flip(trials()[3], 70);  // flips a bit of a byte in the user block
   leave_behind(trials()[0]);
   const ProgramResult found = modebank({"verify", file("s").string()});
   EXPECT_EQ(found.status, 1);
@@ -177,7 +177,7 @@ TEST_F(StudyCommands, DamageIsFoundNamedAndRepaired) {
   EXPECT_EQ(trials().size(), 7u);
   modebank({"verify", file("s").string(), "--repair"});
   EXPECT_EQ(trials().size(), 4u);
-  flip(trials()[0], 3000);  // a resumed study finds damage by itself
+  flip(trials()[0], 3000);  // when a study continues, it must find this damage itself
   const std::filesystem::path left = leave_behind(file("s/study.h5"));
   ASSERT_EQ(study_six().status, 0);
   EXPECT_EQ(text("s/study.csv"), table);
@@ -209,7 +209,7 @@ TEST_F(StudyCommands, PlansComputeNothing) {
   EXPECT_TRUE(trials().empty());
 }
 
-/// The page of a study that still runs, or is not merged, has the finished runs with their scores.
+/// The page of a study that still runs, or is not merged, shows the finished runs with their scores.
 TEST_F(StudyCommands, AReportOfARunningStudyShowsWhatIsDone) {
   ASSERT_EQ(study_six({"--study.stage", "run", "--study.shard", "0/2"}).status, 0);
   const std::size_t done = trials().size();
@@ -225,7 +225,7 @@ TEST_F(StudyCommands, AReportOfARunningStudyShowsWhatIsDone) {
   ASSERT_EQ(study_six().status, 0);
   ASSERT_EQ(report().status, 0);
   EXPECT_EQ(count(text("page.html"), "\"status\":\"done\""), 6U);
-  // More values are planned after the table was made.
+  // After the table was made, more values are planned.
   ASSERT_EQ(study({"--study.vary", "mixture.components = 1 | 2 | 3 | 4", "--study.vary",
                    "filter.variant = imm | salvi2025", "--study.stage", "plan"})
                 .status,
@@ -234,7 +234,7 @@ TEST_F(StudyCommands, AReportOfARunningStudyShowsWhatIsDone) {
   EXPECT_NE(more.out.find("6 done, 2 missing"), std::string::npos) << more.out;
 }
 
-/// D3 of the review: values that look like options, or contain equal signs. A fake sbatch receives them.
+/// D3 of the review: values that look like options or contain equal signs. A fake sbatch receives these values.
 TEST_F(StudyCommands, OptionsOfSbatchReachItAndNothingIsComputedHere) {
   std::filesystem::create_directory(file("bin"));
   write("bin/sbatch", "#!/bin/sh\nfor word; do printf '<%s>' \"$word\"; done >> \"$0.words\"; echo 41\n");
@@ -256,7 +256,7 @@ TEST_F(StudyCommands, OptionsOfSbatchReachItAndNothingIsComputedHere) {
   EXPECT_TRUE(trials().empty());
   const std::string script = text("s/slurm/run.sh");
   EXPECT_NE(script.find(" --study.slurm_options --comment=a=b "), std::string::npos) << script;
-  // The script's line is valid for modebank.
+  // modebank accepts the command line in the script.
   EXPECT_EQ(run_program({"/usr/bin/env", "SLURM_ARRAY_TASK_ID=0", "/bin/bash", file("s/slurm/run.sh").string()}).status,
             0);
   EXPECT_EQ(trials().size(), 6u);
@@ -268,7 +268,7 @@ TEST_F(StudyCommands, AKeyWithoutItsValueIsSaid) {
   EXPECT_NE(result.err.find("--study.vary' is missing"), std::string::npos) << result.err;
 }
 
-/// D12 of the review: reading must end.
+/// D12 of the review: reading a device or a pipe must not block.
 TEST_F(StudyCommands, DevicesAndPipesAreRefusedByName) {
   ASSERT_EQ(study_six().status, 0);
   const std::filesystem::path trial = trials()[0], log = file("s/log.csv"), plan = file("s/plan.h5");
@@ -303,7 +303,7 @@ TEST_F(StudyCommands, DevicesAndPipesAreRefusedByName) {
   EXPECT_EQ(looped.err.find("filesystem error"), std::string::npos) << looped.err;
 }
 
-/// A study's folder may be sent to somebody else, with its links.
+/// A study's folder, with its links, may come from somebody else.
 TEST_F(StudyCommands, FilesOfOthersAreNotWrittenThroughLinks) {
   namespace fs = std::filesystem;
   ASSERT_EQ(study_six().status, 0);
@@ -376,7 +376,7 @@ TEST_F(StudyCommands, ItsFilesTakeThePlaceOfNoData) {
   }
 }
 
-/// Topics give names with slashes.
+/// Names from topics contain slashes.
 TEST_F(StudyCommands, OfARecordingGoFromStartToItsBestConfiguration) {
   const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
   ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);
@@ -412,7 +412,7 @@ TEST_F(StudyCommands, UsageErrorsLeaveNothing) {
   EXPECT_EQ(value.status, 2);
   EXPECT_NE(value.err.find("mixture.components the value 'none'"), std::string::npos) << value.err;
   EXPECT_EQ(study({"--study.shard", "7/7"}).status, 2);
-  EXPECT_EQ(study_six({"--study.stage", "merge"}).status, 2);  // without a plan
+  EXPECT_EQ(study_six({"--study.stage", "merge"}).status, 2);  // before a plan is made
   EXPECT_FALSE(std::filesystem::exists(file("s")));
 }
 

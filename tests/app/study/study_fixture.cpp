@@ -59,7 +59,7 @@ bool StudyTest::kill_a_worker(const std::string& folder, std::mt19937_64& genera
   std::shuffle(claims.begin(), claims.end(), generator);
   for (const auto& claim : claims) {
     std::ifstream stream(claim);
-    const auto holder = nlohmann::json::parse(stream, nullptr, false);  // the claim may end meanwhile
+    const auto holder = nlohmann::json::parse(stream, nullptr, false);  // the claim may end while the file is read
     if (holder.is_object() && kill(holder.at("process").get<pid_t>(), SIGKILL) == 0) return true;
   }
   return false;
@@ -74,7 +74,7 @@ void StudyTest::run_undisturbed() const {
 Process::Process(const std::vector<std::string>& arguments) : child_(fork()) {
   if (child_ < 0) throw std::runtime_error("fork failed");
   if (child_ > 0) {
-    setpgid(child_, child_);  // in the child, too, since either may be first
+    setpgid(child_, child_);  // the child does this as well, because either process may be first
     return;
   }
   setpgid(0, 0);

@@ -93,7 +93,7 @@ TEST_F(StudyPlans, RepeatsBeginWithTheOwnSeedAndDoNotDependOnTheRest) {
   EXPECT_EQ(seeds.size(), 3u);
 }
 
-/// Runs that differ only in job.seed are repeats of one setting, like those of study.repeats.
+/// Runs that differ only in job.seed are repeats of one setting, as with study.repeats.
 TEST_F(StudyPlans, AVariedSeedCountsAsRepeats) {
   const StudyPlan seeded = plan({{"study.vary", "job.seed = 7 | 8 | 9"}, {"study.vary", "mixture.components = 1 | 2"}});
   EXPECT_EQ(seeded.table.varied_keys, std::vector<std::string>{"mixture.components"});
@@ -103,7 +103,7 @@ TEST_F(StudyPlans, AVariedSeedCountsAsRepeats) {
     EXPECT_EQ(seeded.table.rows[i].repeat, static_cast<std::int64_t>(i % 3));
     EXPECT_EQ(seeded.table.rows[i].seed, 7 + i % 3);
   }
-  // The key equals that of the same run without a varied seed.
+  // The key equals the key of the same run in a study that does not vary the seed.
   EXPECT_EQ(seeded.table.rows[4].key,
             plan({{"study.vary", "mixture.components = 2"}, {"job.seed", "8"}}).table.rows[0].key);
   const StudyPlan alone = plan({{"study.vary", "job.seed = 7 | 8"}, {"study.repeats", "2"}});
@@ -121,7 +121,7 @@ TEST_F(StudyPlans, TrialsAreConfigurationsOfTheirOwn) {
   EXPECT_EQ(trial.mixture.selection.components, std::vector<Index>{3});
   EXPECT_TRUE(trial.study.vary.empty());
   EXPECT_EQ(trial.archive.output, trial_archive(file("study"), made.table.rows[0].key).string());
-  // The configuration in an archive reads back to the same hash.
+  // The configuration in an archive has the same hash after it is read back.
   EXPECT_EQ(config_hash(resolved_config(resolved_text(trial))), config_hash(trial));
 }
 
@@ -148,7 +148,7 @@ TEST_F(StudyPlans, MoreValuesGoOnOthersAreRefusedWithTheDifference) {
   const StudyPlan before = plan(three);
   EXPECT_EQ(refusal(before, plan({{"study.vary", "mixture.components = {1..5}"}})), "");
   EXPECT_EQ(refusal(before, plan({{"study.vary", "mixture.components = {1..3}"}, {"study.repeats", "2"}})), "");
-  // A new key continues the plan if its values include the configured one.
+  // A new varied key is accepted if its values include the configured value.
   EXPECT_EQ(refusal(before,
                     plan({{"study.vary", "mixture.components = {1..3}"}, {"study.vary", "filter.variant = imm | kf"}})),
             "");
@@ -171,7 +171,7 @@ TEST_F(StudyPlans, ChangedDataAreRefusedWithTheFile) {
 }
 
 TEST_F(StudyPlans, TrialsAreGroupedByWhatTheyShareAndShardsPartThem) {
-  const KeyValues keys{{"bank.refine", "none"},  // otherwise a bank would be learned for every filter
+  const KeyValues keys{{"bank.refine", "none"},  // otherwise a bank would be learned for each filter
                        {"study.vary", "filter.variant = imm | salvi2025"},
                        {"study.vary", "bank.stay = 0.9 | 0.95"},
                        {"study.vary", "mixture.components = 1 | 2 | 3"}};

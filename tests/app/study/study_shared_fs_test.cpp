@@ -14,15 +14,15 @@
 namespace modebank::test {
 namespace {
 
-/// A machine with its view of a study's folder; see shared_mount.cpp.
+/// A machine and how it sees a study's folder; see shared_mount.cpp.
 struct Node {
   std::string name;
   int skew_s = 0;
 };
 
-constexpr const char* cache_s = "600";  // longer than any test, so that wrong caching would last to the end
+constexpr const char* cache_s = "600";  // longer than any test, so that an error of caching would last to the end
 
-/// One folder, "backing", which machines with different clocks access as "mount".
+/// The folder "backing". Machines with different clocks access it as "mount".
 class SharedFileSystem : public StudyTest {
  protected:
   void SetUp() override {
@@ -55,7 +55,7 @@ class SharedFileSystem : public StudyTest {
   std::vector<std::string> study_on(const Node& node, const std::vector<std::string>& options = {}) const {
     return on(node, study_line("mount/study", six(options)));
   }
-  /// Six runs with three mixtures.
+  /// Options for six runs with three mixtures.
   static std::vector<std::string> six(const std::vector<std::string>& options = {}) {
     std::vector<std::string> all{"--study.vary", "mixture.components = {1..3}",
                                  "--study.vary", "filter.variant = imm | salvi2025",
@@ -78,7 +78,7 @@ class SharedFileSystem : public StudyTest {
     const auto at = output.find("\nrun       ");
     return at == std::string::npos ? 0 : std::atoi(output.c_str() + at + std::string("\nrun       ").size());
   }
-  /// Sets the state in which the machine has not renewed its claims for eleven minutes.
+  /// Sets the times of the machine's claims, as if it had not renewed them for eleven minutes.
   void age_claims(const std::string& host) const {
     std::error_code gone;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(file(shared))) {
@@ -91,7 +91,7 @@ class SharedFileSystem : public StudyTest {
             entry.path(), std::filesystem::last_write_time(entry.path(), gone) - std::chrono::minutes(11), gone);
     }
   }
-  /// On the server all archives are complete, and the table equals that of one machine.
+  /// Checks that all archives on the server are complete, and that the table equals that of a single machine.
   void check(const std::string& numbers_expected) const {
     const ProgramResult verified = modebank({"verify", file(shared).string()});
     EXPECT_EQ(verified.status, 0) << verified.out << verified.err;
@@ -101,7 +101,7 @@ class SharedFileSystem : public StudyTest {
   static constexpr const char* shared = "backing/study";
 };
 
-/// Two machines start at the same time with clocks twelve minutes apart. No run is made twice.
+/// Two machines with clocks twelve minutes apart start at the same time. Each run must be made only once.
 TEST_F(SharedFileSystem, TwoMachinesAtOnceLeaveTheTableOfOne) {
   const std::string numbers_expected = expected();
   ProgramResult first, second;
@@ -116,7 +116,7 @@ TEST_F(SharedFileSystem, TwoMachinesAtOnceLeaveTheTableOfOne) {
   EXPECT_EQ(runs_made(first.out) + runs_made(second.out), 6) << "made twice though claims are seen";
 }
 
-/// A file that this machine has cached as absent is made by another one.
+/// This machine's cache says that a file is absent, but another machine has made it.
 TEST_F(SharedFileSystem, AMergeSeesWhatAnotherMachineHasMade) {
   const std::string numbers_expected = expected();
   const std::string ready = file("ready").string(), made = file("made").string();
@@ -140,7 +140,7 @@ TEST_F(SharedFileSystem, AMergeSeesWhatAnotherMachineHasMade) {
   check(numbers_expected);
 }
 
-/// For any clocks of machines and files.
+/// This must hold for any clocks of machines and files.
 TEST_F(SharedFileSystem, FailuresAreTriedAgainWhateverTheClocksSay) {
   const auto failing = [&](const Node& node, std::vector<std::string> options) {
     options.insert(options.begin(), {"--study.vary", "window.length = 10 | 500"});
@@ -159,8 +159,8 @@ int rounds() {
   return asked ? std::atoi(asked) : 1;
 }
 
-/// A machine is lost at a random moment. When its claims were not renewed for ten minutes, which this test simulates,
-/// other machines take them over. Its unfinished files stay.
+/// A machine is lost at a random moment. The test sets its claims as if they had not been renewed for ten minutes.
+/// Other machines then take them over. The lost machine's unfinished files stay.
 TEST_F(SharedFileSystem, AMachineThatIsLostChangesNoNumber) {
   const std::string numbers_expected = expected();
   std::mt19937_64 generator(20261123);

@@ -28,12 +28,12 @@ std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Trials that share stages, compared with `modebank run`'s own archives.
+/// Trials that share stages. Their archives must equal those of `modebank run`.
 class StudySharing : public CliTest {
  protected:
   StudySharing() { spdlog::set_level(spdlog::level::off); }
   ~StudySharing() override { spdlog::set_level(spdlog::level::info); }
-  /// An archive's bytes without provenance and path; they depend on its content alone.
+  /// The bytes of an archive without provenance and path. They depend only on its content.
   std::string content(Archive archive) const {
     archive.provenance = {};
     archive.config.clear();
@@ -57,7 +57,7 @@ class StudySharing : public CliTest {
   }
 };
 
-/// Neighbours differ in a key of each stage in turn, and then return to earlier values.
+/// Consecutive trials differ in a key of one stage after the other. At the end they return to earlier values.
 const std::vector<KeyValues> trials{
     {},
     {{"filter.variant", "salvi2025"}},
@@ -70,7 +70,7 @@ const std::vector<KeyValues> trials{
     {{"bank.measurement_variance", "0.01"}},
     {{"mixture.components", "2"}},
     {{"mixture.components", "2"}, {"mixture.features", "parameters"}},
-    // The cost of merging modes is computed by a run of the filter.
+    // The cost of merging modes is computed by a run of the filter, so the filter's keys affect it.
     {{"mixture.components", "3"}, {"bank.modes", "2"}},
     {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.variant", "salvi2025"}},
     {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.noise", "adaptive"}},
@@ -88,13 +88,13 @@ TEST_F(StudySharing, TrialsAreWhatRunWritesToTheBit) {
   for (const KeyValues& keys : trials) alone.push_back(run_alone(keys));
   for (std::size_t i = 0; i < trials.size(); ++i)
     EXPECT_TRUE(content(runner.run(configured(trials[i]), "")) == alone[i]) << "trial " << i;
-  // Another process finds the stages in the store.
+  // Another process must find the stages in the store.
   TrialRunner other(file("cache"), 100.0, 0.0);
   for (std::size_t i = trials.size(); i-- > 0;)
     EXPECT_TRUE(content(other.run(configured(trials[i]), "")) == alone[i]) << "trial " << i << " from the store";
 }
 
-/// The store of `run` and of studies stores each stage except the data, up to a given last one.
+/// The store of `run` and of studies contains every stage up to a given last stage, except the data.
 TEST_F(StudySharing, TheStoreKeepsTheStagesThatAreLaterUsed) {
   const Config trial = configured({{"bank.refine", "em"}});
   TrialRunner(file("cache"), 100.0, 0.0).run(trial, "");
@@ -103,7 +103,7 @@ TEST_F(StudySharing, TheStoreKeepsTheStagesThatAreLaterUsed) {
     const std::string name = entry.path().filename();
     stages.insert(name.substr(0, name.find('-')));
   }
-  // Lags are stated, so no structure is searched for. Scores of the bank belong to one trial alone.
+  // The configuration states the lags, so no structure is searched for. The bank's scores belong to only one trial.
   EXPECT_EQ(stages, (std::set<std::string>{"windows", "mixture", "competitors", "bank", "competitor_scores"}));
 }
 
@@ -121,7 +121,7 @@ TEST_F(StudySharing, TheStoreIsBounded) {
   EXPECT_GT(bytes_in(file("cache")), 0.0);
 }
 
-/// The folder may be on another disk, with other files; the store touches only files of stages.
+/// The folder may be on another disk and contain other files. The store may only touch the files of stages.
 TEST_F(StudySharing, TheStoreRemovesAndFollowsNothingOfOthers) {
   std::filesystem::create_directories(file("elsewhere/cache"));
   std::filesystem::create_directory_symlink("elsewhere/cache", file("cache"));
@@ -139,7 +139,7 @@ TEST_F(StudySharing, TheStoreRemovesAndFollowsNothingOfOthers) {
     return part;
   };
   const auto take = [](Archive&& part) {
-    ASSERT_TRUE(part.structure);  // the given stage, not the link's target
+    ASSERT_TRUE(part.structure);  // the part from `give`, not the content of the link's target
     EXPECT_EQ(part.structure->state_lags, 7);
   };
   store.provide(Stage::bank, key, {[] {}, give, take});
@@ -158,10 +158,10 @@ TEST_F(StudySharing, AFailedTrialLeavesNothingForTheNext) {
   EXPECT_TRUE(content(runner.run(configured({}), "")) == run_alone({}));
 }
 
-/// Claims on one file, by this process and by others.
+/// Claims on one file that this process and other processes take.
 class Claims : public StudySharing {
  protected:
-  /// Starts a process that takes the claim and holds it until it is killed.
+  /// Starts a process that takes the claim and keeps it until it is killed.
   pid_t holder() const {
     int ready[2];
     EXPECT_EQ(::pipe(ready), 0);
@@ -181,7 +181,7 @@ class Claims : public StudySharing {
     ::kill(process, SIGKILL);
     ::waitpid(process, nullptr, 0);
   }
-  /// Makes the claim this much older by the clock of its folder.
+  /// Makes the claim older by this time, according to the clock of its folder.
   void age(double seconds) const {
     namespace chrono = std::chrono;
     write_file(file("now"), "");
@@ -189,7 +189,7 @@ class Claims : public StudySharing {
         chrono::duration_cast<std::filesystem::file_time_type::duration>(chrono::duration<double>(seconds));
     std::filesystem::last_write_time(path(), std::filesystem::last_write_time(file("now")) - back);
   }
-  /// Changes a value in the existing claim.
+  /// Changes a value in an existing claim.
   void rewrite(const std::string& key, const nlohmann::json& value) const {
     auto claim = nlohmann::json::parse(bytes_of(path()));
     claim[key] = value;
@@ -219,7 +219,7 @@ TEST_F(Claims, StateHostProcessAndTime) {
   EXPECT_EQ(text.at("time").get<std::string>().size(), std::string("2026-01-01T00:00:00Z").size());
 }
 
-/// The same process number with another start time: the process with the claim is gone.
+/// If a process has the same number but another start time, the claim's process is gone.
 TEST_F(Claims, AReusedProcessNumberIsNotTakenForTheHolder) {
   const pid_t other = holder();
   rewrite("start", 1);
@@ -227,7 +227,7 @@ TEST_F(Claims, AReusedProcessNumberIsNotTakenForTheHolder) {
   end(other);
 }
 
-/// Only renewals show whether a process on another machine is alive.
+/// For a process on another machine, only renewals of its claim show that it is alive.
 TEST_F(Claims, OfOtherMachinesLastTenMinutesByTheFoldersClock) {
   end(holder());
   rewrite("host", "another machine");
@@ -237,7 +237,7 @@ TEST_F(Claims, OfOtherMachinesLastTenMinutesByTheFoldersClock) {
   EXPECT_TRUE(Claim::take(path()));
 }
 
-/// The folder's clock was an hour ahead when the other machine wrote its claim, and was then corrected.
+/// The folder's clock was an hour ahead when another machine wrote its claim. Then the clock was corrected.
 TEST_F(Claims, FromAClockThatWasSetBackEndToo) {
   end(holder());
   rewrite("host", "another machine");
@@ -259,7 +259,7 @@ TEST_F(Claims, OfALivingProcessThatDoesNotRenewEndToo) {
   end(other);
 }
 
-/// A process whose claim was taken over must not remove the new claim.
+/// If another process has taken over a claim, the first process must not remove the new claim.
 TEST_F(Claims, AreRemovedByTheirHolderAlone) {
   {
     const auto mine = Claim::take(path());
@@ -273,7 +273,7 @@ TEST_F(Claims, AreRemovedByTheirHolderAlone) {
   EXPECT_FALSE(std::filesystem::exists(path()));
 }
 
-/// A file without a valid claim counts by its time; the target of a link stays.
+/// A file without a valid claim expires by its time. The target of a link stays unchanged.
 TEST_F(Claims, OtherFilesOfTheNameDoNotStopAStudyForGood) {
   for (const char* text : {"", "half a li", "[1, 2]", R"({"host": 1, "process": "x", "start": []})"}) {
     write_file(path(), text);

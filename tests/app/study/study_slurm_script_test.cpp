@@ -49,7 +49,7 @@ TEST(StudySlurmScript, ArrayListsNameRanges) {
   EXPECT_EQ(array_list({1, 4, 5, 9}), "1,4-5,9");
 }
 
-/// The shell turns a quoted word back into the word.
+/// A shell converts the quoted word back to the word.
 TEST(StudySlurmScript, ShellWordsComeBackAsTheyWere) {
   for (const std::string word : {"plain", "two words", "it's", "$HOME", "a\"b", "back\\slash", "", "{1..3} | *"})
     EXPECT_EQ(run_shell("printf %s " + shell_word(word)).out, word);
@@ -71,7 +71,7 @@ TEST(StudySlurmScript, AbsentSbatchIsSaid) {
   setenv("PATH", path.c_str(), 1);
 }
 
-/// Fakes of sbatch, squeue and sacct with given output.
+/// Fakes of sbatch, squeue and sacct that print given texts.
 class FakeSlurm : public ::testing::Test {
  protected:
   FakeSlurm() : before_(std::getenv("PATH")) { setenv("PATH", (folder_.path().string() + ":" + before_).c_str(), 1); }
@@ -102,7 +102,7 @@ TEST_F(FakeSlurm, ArrayThenMergeWhateverBecomesOfIt) {
   EXPECT_NE(submission.commands[0].find("--time=60"), std::string::npos);
 }
 
-/// D10 of the review: a path became lines of the script, patterns, or several words.
+/// D10 of the review: a path was read as lines of the script, as a pattern, or as several words.
 TEST_F(FakeSlurm, NoPathStandsWhereSlurmReadsIt) {
   program("sbatch", "for word; do printf '<%s>' \"$word\"; done >> \"$0.words\"; echo 41");
   SlurmRequest wanted = request();

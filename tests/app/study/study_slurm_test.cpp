@@ -16,7 +16,7 @@ namespace {
 #define MODEBANK_NEEDS_SLURM() \
   MODEBANK_NEEDS(SlurmCluster::installed(), "Slurm is absent: apt-get install slurmctld slurmd slurm-client munge")
 
-/// A line of SlurmCluster::queue().
+/// A line that SlurmCluster::queue() returns.
 struct Task {
   std::string id, state, node;
   int restarts = 0;
@@ -30,7 +30,7 @@ std::vector<Task> tasks_of(const SlurmCluster& cluster) {
     Task task;
     fields >> task.id >> task.state;
     if (!(fields >> task.node)) continue;
-    if (!(fields >> task.restarts)) {  // without a node yet
+    if (!(fields >> task.restarts)) {  // the task has no node yet
       task.restarts = std::atoi(task.node.c_str());
       task.node.clear();
     }
@@ -41,7 +41,7 @@ std::vector<Task> tasks_of(const SlurmCluster& cluster) {
 
 class StudySlurm : public StudyTest {
  protected:
-  /// Waits until every job has ended; false after half an hour.
+  /// Waits until every job has ended. Returns false after half an hour.
   static bool settled(const SlurmCluster& cluster) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(30);
     while (std::chrono::steady_clock::now() < end) {
@@ -80,7 +80,7 @@ TEST_F(StudySlurm, TableEqualsTheLocalOne) {
   EXPECT_EQ(again.out.find("sbatch"), std::string::npos) << "nothing is left to submit: " << again.out;
 }
 
-/// Workers on two nodes are killed, and the remaining runs are submitted again.
+/// Workers on two nodes are killed. The remaining runs are then submitted again.
 TEST_F(StudySlurm, KilledWorkersChangeNoNumber) {
   MODEBANK_NEEDS_SLURM();
   const char* asked = std::getenv("MODEBANK_STUDY_REPEATS");
@@ -107,7 +107,7 @@ TEST_F(StudySlurm, KilledWorkersChangeNoNumber) {
   EXPECT_EQ(numbers("slurm"), numbers(undisturbed));
 }
 
-/// Lines of the first code block below a heading of a documentation page.
+/// Lines of the first code block after a heading of a documentation page.
 std::vector<std::string> commands_below(const std::string& page, const std::string& heading) {
   std::ifstream stream(project_dir() / "docs" / page);
   std::vector<std::string> commands;
@@ -124,13 +124,13 @@ std::vector<std::string> commands_below(const std::string& page, const std::stri
   return commands;
 }
 
-/// Runs commands in a folder, by a shell that finds this build's modebank.
+/// Runs a command in a folder. The shell finds the modebank of this build.
 ProgramResult typed_in(const std::filesystem::path& folder, const std::string& command) {
   return run_program({"/bin/sh", "-c", "cd \"$1\" && PATH=$2:$PATH && eval \"$3\"", "sh", folder.string(),
                       std::filesystem::path(MODEBANK_PROGRAM).parent_path().string(), command});
 }
 
-/// The commands that the how-to prints, run on a study whose name is in them. Paths contain characters that shells,
+/// The commands of the how-to, for a study whose name is in these commands. The paths contain characters that shells,
 /// Slurm's lines and Slurm's patterns interpret differently.
 class StudySlurmPaths : public StudySlurm {
  protected:
@@ -176,7 +176,7 @@ TEST_F(StudySlurmPaths, AFolderWithALineBreakIsRefusedBeforeAnythingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(folder / "study_ice.study"));
 }
 
-/// A node dies while it works, as by a power cut; its tasks start again on another node.
+/// A node is lost while it works, as after a power cut. Its tasks start again on another node.
 TEST_F(StudySlurm, LostNodeChangesNoNumber) {
   MODEBANK_NEEDS_SLURM();
   const std::vector<std::string> slow{"--mixture.restarts", "60"};

@@ -28,7 +28,8 @@ std::vector<double> column(const StudySpace& space, std::size_t key) {
   return values;
 }
 
-/// For each of the N strata, the number of the N values in [0, 1) in it.
+/// The interval [0, 1) has N equal strata, where N is the number of values. For each stratum, how many values are in
+/// it.
 std::multiset<int> strata(const std::vector<double>& values) {
   std::vector<int> counts(values.size(), 0);
   for (const double value : values) ++counts.at(static_cast<std::size_t>(value * static_cast<double>(values.size())));
@@ -43,7 +44,8 @@ TEST(VaryText, ExpandsValuesAndBraces) {
   EXPECT_EQ(parse_vary("data.lag_s = {0..1 step 0.1}").values.size(), 11u);
   EXPECT_EQ(parse_vary("filter.variant = imm|kf").values, (Texts{"imm", "kf"}));
   EXPECT_EQ(parse_vary("mixture.components = 1..{5..7}").values, (Texts{"1..5", "1..6", "1..7"}));
-  EXPECT_EQ(parse_vary("bank.measurement_variance =  | 0.010").values, (Texts{"", "0.01"}));  // in resolved form
+  EXPECT_EQ(parse_vary("bank.measurement_variance =  | 0.010").values, (Texts{"", "0.01"}));  // values in the form of a
+                                                                                              // resolved configuration
 }
 
 TEST(VaryText, RangesAreForSampling) {
@@ -64,18 +66,19 @@ TEST(VaryText, ErrorsSayWhatIsWrong) {
     }
     return std::string("accepted");
   };
-  const std::map<std::string, std::string> cases{{"mixture.component = 3", "did you mean mixture.components"},
-                                                 {"mixture.components", "has no ="},
-                                                 {"mixture.components = 0", "mixture.components the value '0'"},
-                                                 {"mixture.components = {5..3}", "the first number must be the smaller"},
-                                                 {"bank.stay = {0..1 log 3}", "above 0"},
-                                                 {"bank.stay = {0..1 lin 1}", "2 to"},
-                                                 {"bank.stay = {0..1 cubic 3}", "expected a range"},
-                                                 {"bank.stay = {0.5", "one pair of braces"},
-                                                 {"bank.stay = {0.1..0.5} | 0.9", "add a number of values"},
-                                                 {"mixture.restarts = {1.5..3}", "whole number"},
-                                                 {"job.threads = 1 | 2", "changes no number"},
-                                                 {"study.repeats = 1 | 2", "changes no number"}};
+  const std::map<std::string, std::string> cases{
+      {"mixture.component = 3", "did you mean mixture.components"},
+      {"mixture.components", "has no ="},
+      {"mixture.components = 0", "mixture.components the value '0'"},
+      {"mixture.components = {5..3}", "the first number must be the smaller"},
+      {"bank.stay = {0..1 log 3}", "above 0"},
+      {"bank.stay = {0..1 lin 1}", "2 to"},
+      {"bank.stay = {0..1 cubic 3}", "expected a range"},
+      {"bank.stay = {0.5", "one pair of braces"},
+      {"bank.stay = {0.1..0.5} | 0.9", "add a number of values"},
+      {"mixture.restarts = {1.5..3}", "whole number"},
+      {"job.threads = 1 | 2", "changes no number"},
+      {"study.repeats = 1 | 2", "changes no number"}};
   for (const auto& [line, part] : cases) EXPECT_NE(reason(line).find(part), std::string::npos) << reason(line);
 }
 
@@ -122,7 +125,7 @@ TEST(StudySpace, ConditionalKeysVaryOnlyWhereTheirConditionHolds) {
 TEST(StudySpace, ConditionsOnKeysThatAreNotVariedLookAtTheConfiguration) {
   Config config = with({"bank.stay = 0.8 | 0.9"});
   config.study.when = {"bank.stay if bank.transition = stay"};
-  EXPECT_EQ(lay_out(config).points.size(), 1u);  // the default is labels
+  EXPECT_EQ(lay_out(config).points.size(), 1u);  // the default value is "labels"
   config.bank.transition = TransitionSource::stay;
   EXPECT_EQ(lay_out(config).points.size(), 2u);
 }

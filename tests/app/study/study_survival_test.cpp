@@ -23,14 +23,15 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// A part of a test that repeats one thing; parts run in parallel.
+/// One part of a test with many repeats. The parts run in parallel.
 class StudySurvivalPart : public StudySurvival, public ::testing::WithParamInterface<unsigned> {};
 
 constexpr unsigned parts = 5;
 INSTANTIATE_TEST_SUITE_P(Of5, StudySurvivalPart, ::testing::Range(0U, parts));
 
-/// Ten studies in all, each killed three times at random moments, alternately with and without its children. Children
-/// that survive meet the next process. Runs finished before a kill are not made again.
+/// All parts together run ten studies. Each is killed three times at random moments, alternately with and without its
+/// children. Children that survive work beside the next process. Runs that finished before a kill must not be made
+/// again.
 TEST_P(StudySurvivalPart, ThirtyKillsChangeNoNumber) {
   const Clock::time_point start = Clock::now();
   run_undisturbed();
@@ -58,14 +59,14 @@ TEST_P(StudySurvivalPart, ThirtyKillsChangeNoNumber) {
   }
 }
 
-/// Number of repeats of the 24 settings: 42 in `make nightly`, 1,008 trials.
+/// Number of repeats of the 24 settings. In `make nightly` it is 42, which gives 1,008 trials.
 std::string repeats() {
   const char* asked = std::getenv("MODEBANK_STUDY_REPEATS");
   return asked ? asked : "4";
 }
 
-/// Workers of a running study are killed twenty times. Their trials are recorded as failed or done by another worker,
-/// and the next study completes them. Halfway the study moves to another folder.
+/// Twenty workers of a running study are killed. Each of their trials is recorded as failed or is done by another
+/// worker. The next study completes them. In the middle of the test, the study moves to another folder.
 TEST_F(StudySurvival, TwentyKilledWorkersAndAMoveChangeNoNumber) {
   const std::vector<std::string> many{"--study.repeats", repeats(), "--study.jobs", "2"};
   const Clock::time_point start = Clock::now();
@@ -88,7 +89,7 @@ TEST_F(StudySurvival, TwentyKilledWorkersAndAMoveChangeNoNumber) {
     if (!over) process.kill_alone();
     waiter.join();
   };
-  // If all trials are done, one is removed, so that another worker can be killed.
+  // If all trials are done, one archive is removed, so that a worker has work and can be killed.
   while (killed < kills / 2) {
     kill_some("killed", kills / 2);
     if (killed < kills / 2) std::filesystem::remove(archives("killed").front());
@@ -109,7 +110,7 @@ TEST_F(StudySurvival, TwentyKilledWorkersAndAMoveChangeNoNumber) {
     EXPECT_NE(entry.path().extension(), ".claim") << entry.path();
 }
 
-/// A killed worker loses one trial; the study continues and records it.
+/// A killed worker loses only one trial. The study continues and records this trial as failed.
 TEST_F(StudySurvival, AKilledWorkerEndsItsTrialOnly) {
   const std::vector<std::string> slow{"--mixture.restarts", "60", "--study.jobs", "2"};
   std::mt19937_64 generator(1);
@@ -140,8 +141,8 @@ void flip_a_bit(const std::filesystem::path& path, std::mt19937_64& generator) {
   stream.put(static_cast<char>(byte ^ static_cast<char>(1U << (generator() % 8))));
 }
 
-/// 200 flipped bits in all, one in each archive of a round except two. verify names exactly these, resuming repeats
-/// only them, and the table is the same again.
+/// All parts together flip 200 bits, one in each archive of a round, except in two archives. `verify` must name exactly
+/// the damaged archives. The next `study` repeats only these, and the table is the same as before.
 TEST_P(StudySurvivalPart, TwoHundredFlippedBitsAreFoundAndRedone) {
   constexpr int flips_of_part = 200 / parts;
   run_undisturbed();
@@ -170,7 +171,7 @@ TEST_P(StudySurvivalPart, TwoHundredFlippedBitsAreFoundAndRedone) {
   }
 }
 
-/// With small_disk.c preloaded the disk takes a limited number of bytes.
+/// With small_disk.c preloaded, the disk accepts only a limited number of bytes.
 TEST_F(StudySurvival, FullDiskIsSaidAndWorkGoesOnWhenThereIsSpace) {
   run_undisturbed();
   std::uintmax_t bytes = 0;
@@ -220,7 +221,7 @@ TEST_F(StudySurvival, ThreadsJobsAndShardsChangeNoNumber) {
   }
 }
 
-/// Every archive is created once and never replaced.
+/// Every archive is made once and is never replaced.
 TEST_F(StudySurvival, TwoProcessesShareOneStudy) {
   run_undisturbed();
   Process first(study_line("shared", {"--study.jobs", "1"})), second(study_line("shared", {"--study.jobs", "1"}));
@@ -245,7 +246,7 @@ TEST_F(StudySurvival, TwoProcessesShareOneStudy) {
   EXPECT_EQ(numbers("shared"), numbers(undisturbed));
 }
 
-/// study.best.ini can be run unchanged, and gives the score that the study states.
+/// study.best.ini can be run unchanged. It gives the score that the study states.
 TEST_F(StudySurvival, BestConfigurationGivesItsScoreAgain) {
   run_undisturbed();
   nlohmann::json best;

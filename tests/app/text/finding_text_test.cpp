@@ -1,4 +1,4 @@
-// Sentences of findings: each states exactly what its answer means.
+// Sentences of findings. Each must state exactly what its answer means.
 #include "app/text/finding_text.hpp"
 
 #include <gmock/gmock.h>
@@ -81,7 +81,8 @@ TEST(FindingText, OneMotionThatDriftsIsCalledSo) {
 
 TEST(FindingText, WhatCannotBeToldSaysWhy) {
   Finding finding = finding_of(Answer::cannot_tell);
-  // 7.6 standard errors over the best competitor, but within chance against another one: the sentence names that one.
+  // The gain over the best competitor is 7.6 standard errors, but the gain over another competitor may be chance. The
+  // sentence must name this other competitor.
   finding.gain = 0.717;
   finding.standard_error = 0.094;
   finding.gains = {{"one_motion", 700, 0.849, 0.388, 4.0, 1.077, false},
@@ -165,7 +166,7 @@ TEST(FindingText, AnErrorFromBlocksSaysSo) {
   EXPECT_THAT(finding_text(finding), HasSubstr("; error from 12 blocks of the 3 runs)."));
 }
 
-/// One line, one competitor: the screen's mean states errors beside those of the same one.
+/// The sentence names only one competitor. The screen gives the errors of the same competitor.
 TEST(FindingText, NamesOneCompetitorAlone) {
   Finding finding = finding_of(Answer::evidence);
   finding.better_means = {{"noise_only", 1, "", 0.0145, 0.0141}};

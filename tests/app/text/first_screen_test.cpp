@@ -1,4 +1,4 @@
-// The screen at the end of a run: its size, its content, and a case for every rule on the next step.
+// The screen at the end of a run: its size, its content, and one case for every rule of the next step.
 #include "app/text/first_screen.hpp"
 
 #include <gmock/gmock.h>
@@ -52,7 +52,7 @@ std::string as_one_line(std::string text) {
   return line;
 }
 
-/// A command is typed as it stands: with the configuration that made the archive, and its options.
+/// A command can be typed as it is. It has the configuration that made the archive, and the options of that run.
 TEST(FirstScreen, NextNamesTheConfiguration) {
   Archive archive = screen_archive(1, 2, 3);
   archive.diagnostics.front().verdict = Calibration::overconfident;
@@ -79,7 +79,7 @@ TEST(FirstScreen, SaysWhichStampsAreLate) {
               HasSubstr("the stamps of the inputs are 0.250 s late, so when filtering live delay wz by 0.250 s"));
 }
 
-/// Adds the longest finding and the longest warning.
+/// Adds the longest finding and the longest warning to an archive.
 Archive talkative(Archive archive) {
   for (int i = 0; i < 200; ++i) archive.finding->text += " And another word.";
   MixtureResult mixture;
@@ -120,17 +120,18 @@ TEST(FirstScreen, SaysWhatMatters) {
                     HasSubstr("3 on held-out runs"), HasSubstr("gains in (rad/s)/(m/s)"), HasSubstr("wz per vel1"),
                     HasSubstr("96.6 % (95.6 to 97.4) of the held-out samples lie in the 95 % "
                               "band: calibrated, you can rely on it (92.5 to 97.5 % passes)")));
-  // 0.03 rad/s are 1.72 deg/s.
+  // 0.03 rad/s is 1.72 deg/s.
   EXPECT_THAT(line, HasSubstr("RMSE one step ahead 0.03 rad/s (1.72 deg/s) (drifting 0.04); 10 steps "
                               "ahead 0.06 rad/s (3.44 deg/s) (drifting 0.08)"));
   EXPECT_THAT(screen,
-              AllOf(HasSubstr("1.2 s"),  // 12 samples of 0.1 s
+              AllOf(HasSubstr("1.2 s"),  // 12 samples of 0.1 s each
                     HasSubstr("ready: `modebank track"), HasSubstr("archive   demo.h5"), Not(HasSubstr("warning"))));
   EXPECT_THAT(screen_of(screen_archive(1, 2, 3, Role::train)), HasSubstr("none held out"));
 }
 
-/// RMSE 0.03 about measurements of mean square 0.01 about their mean: 100 (1 - 0.03 / 0.1) = 70. The first sample of
-/// each run cannot be predicted and does not count, nor do training runs.
+/// The RMSE is 0.03, and the measurements have a mean square deviation of 0.01 from their mean. FIT = 100 (1 - 0.03 /
+/// 0.1) = 70. The first sample of each run cannot be predicted, so it does not count. Training runs do not count
+/// either.
 TEST(FirstScreen, FitIsThatOfMatlab) {
   Archive archive = screen_archive(1, 1, 2);
   for (Trajectory& run : archive.recording->runs) run.state.row(0) << 9.0, 1.1, 0.9, 1.1, 0.9;
@@ -142,7 +143,7 @@ TEST(FirstScreen, FitIsThatOfMatlab) {
   EXPECT_EQ(screen.errors[1].fit_percent.size(), 0) << "no sample is 10 steps from the beginning";
 }
 
-/// One competitor in every line: that of the finding, though another one predicts the mean better.
+/// Every line has the competitor of the finding, although another competitor has smaller errors.
 TEST(FirstScreen, ErrorsStandBesideThoseOfTheFindingsCompetitor) {
   Archive archive = screen_archive(2, 1, 3);
   SummaryRow row = archive.summary.back();
@@ -171,7 +172,7 @@ TEST(FirstScreen, SaysWhatTheFiltersPredictTogether) {
                                                      HasSubstr("(3.44 deg/s) (drifting 0.08, combined 0.05)")));
 }
 
-/// Training runs that were left out decide; judged runs give the gain.
+/// Predictions of training runs left out decide. The judged runs give the gain.
 TEST(FirstScreen, EndsInWhatToUnderstandAndWhatToPredictWith) {
   Archive archive = screen_archive(1, 2, 3);
   const Eigen::VectorXd rmse = Eigen::VectorXd::Constant(1, 0.03);
@@ -194,16 +195,16 @@ TEST(FirstScreen, EndsInWhatToUnderstandAndWhatToPredictWith) {
   EXPECT_EQ(named[0].filter, "combined");
   EXPECT_EQ(named[0].other, "bank");
   EXPECT_NEAR(named[0].gain, 0.2, 1e-12);
-  EXPECT_NEAR(named[0].error, 0.1, 1e-12);  // from 0.1 and 0.3 in runs of equal length
+  EXPECT_NEAR(named[0].error, 0.1, 1e-12);  // standard error from 0.1 and 0.3 in runs of equal length
   EXPECT_EQ(named[0].c_filter, "bank");
   EXPECT_NEAR(named[0].c_loss, 0.2, 1e-12);
   EXPECT_EQ(named[1].steps, 10);
-  EXPECT_EQ(named[1].filter, "drifting");  // as good as combined, and a single filter
+  EXPECT_EQ(named[1].filter, "drifting");  // as good as the combination, but a single filter
   EXPECT_THAT(app::use_words(archive),
               testing::StartsWith("to understand the motion: the 3 modes; to predict 1 step ahead: "
                                   "`--track.filter combined` (in C `bank`, -0.200); 10 steps ahead: "
                                   "`--track.filter drifting`"));
-  // Compared with the finding's competitor, as the other lines are: e^0.3 = 1.35.
+  // The comparison is with the competitor of the finding, as in the other lines: e^0.3 = 1.35.
   for (const char* run : {"01", "02"}) {
     SummaryRow row = archive.summary.front();
     row.filter = "drifting";
@@ -215,25 +216,26 @@ TEST(FirstScreen, EndsInWhatToUnderstandAndWhatToPredictWith) {
   EXPECT_THAT(app::use_words(archive),
               HasSubstr("`--track.filter combined` (against `drifting` each sample is 1.3 times as likely, +0.300 +- "
                         "0.100 nats; in C `bank`, -0.200)"));
-  // Any gain over all single filters makes it the combination; among these, where they differ by less than 0.02 nats,
-  // the error chooses.
+  // If the combination is better than all single filters, it is chosen. Among single filters whose log scores differ by
+  // less than 0.02 nats, the smallest error decides.
   archive.left_out[0].log_score = 1.04;
   EXPECT_EQ(app::named_forecasts(archive)[0].filter, "combined");
   archive.left_out[0].log_score = 1.049;
   EXPECT_EQ(app::named_forecasts(archive)[0].filter, "bank");
-  archive.left_out[2].log_score = 1.04;  // drifting's score one step ahead is below bank's
+  archive.left_out[2].log_score = 1.04;  // one step ahead, the score of drifting is now below that of the bank
   archive.left_out[1].log_score = 1.035;
   archive.left_out[0].rmse *= 1.1;
   EXPECT_EQ(app::named_forecasts(archive)[0].filter, "drifting");
 }
 
-/// The filter with the best density may have a larger error than another one: 0.024 in place of 0.03 saves a fifth.
+/// The filter with the best density may have a larger error than another filter. 0.024 instead of 0.03 saves a fifth of
+/// the error.
 TEST(FirstScreen, NamesTheFilterOfLeastErrorWhereItIsAnother) {
   Archive archive = screen_archive(1, 2, 3);
   const Eigen::VectorXd rmse = Eigen::VectorXd::Constant(1, 0.03);
   archive.left_out.push_back({"bank", 1, 100, 1.0, rmse, 0.5});
   archive.left_out.push_back({"nonlinear", 1, 100, 0.5, 0.99 * rmse, 0.5});
-  EXPECT_EQ(app::named_forecasts(archive)[0].point_filter, "bank");  // 1 % is below the differences between runs
+  EXPECT_EQ(app::named_forecasts(archive)[0].point_filter, "bank");  // 1 % is less than the differences between runs
   EXPECT_EQ(app::named_forecasts(archive)[0].point_gain, 0.0);
   archive.left_out.back().rmse = 0.8 * rmse;
   const app::NamedForecast named = app::named_forecasts(archive)[0];
@@ -243,7 +245,7 @@ TEST(FirstScreen, NamesTheFilterOfLeastErrorWhereItIsAnother) {
   EXPECT_THAT(app::use_words(archive), testing::EndsWith("; least error 1 step ahead: `nonlinear` (20 % less)"));
 }
 
-/// 0.5, 0.3, 0.18, ... falls below a hundredth after the eighth. Page and terminal both take their text from this
+/// The uses 0.5, 0.3, 0.18, ... fall below 0.01 after the eighth mode. Page and terminal both take their text from this
 /// struct.
 TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {
   Archive archive = screen_archive(1, 2, 3);
@@ -310,7 +312,7 @@ TEST(FirstScreen, WarningsAreCountedAndTheFirstIsTold) {
                             HasSubstr("0 of 5 restarts")));
 }
 
-/// Terms that the glossary of `help` and of the page must contain.
+/// Terms that the glossary of `help` and of the pages must contain.
 TEST(FirstScreen, ItsTermsHaveAMeaning) {
   for (const char* term :
        {"evidence",      "mode",        "bank",         "drifting",      "competitor",    "nats",        "held-out",
@@ -329,7 +331,7 @@ struct NextStep : testing::Test {
   std::string advice() const { return app::next_step(archive, settings); }
 };
 
-/// Whatever is advised, there is a command in it.
+/// Each advice contains a command.
 TEST_F(NextStep, CanBeTyped) {
   for (const Answer answer : {Answer::one_mode, Answer::not_comparable, Answer::cannot_tell, Answer::no_evidence,
                               Answer::evidence, Answer::not_yet})
@@ -392,7 +394,7 @@ TEST_F(NextStep, APatternInErrorsAsksForMemory) {
   EXPECT_THAT(advice(), HasSubstr("--window.model auto")) << "one linear model lacks lags, too";
 }
 
-/// After a search for lags, or with coloured errors on held-out runs only, lags are not the cause.
+/// Lags are not the cause if lags were searched for, or if only the errors on held-out runs are coloured.
 TEST_F(NextStep, ColouredErrorsWithoutAPatternAskForACheck) {
   row().whiteness_p = 1e-6;
   row().autocorrelation = -0.92;
@@ -415,7 +417,7 @@ TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
   EXPECT_THAT(advice(), HasSubstr("record more held-out samples"));
 }
 
-/// The numbers behind a flag decide, not its words.
+/// The numbers in a row decide, not its texts.
 TEST_F(NextStep, GoesByNumbersAndNotByWords) {
   row().flags = "innovations not white: autocorrelation 0.45 at lag 1";
   EXPECT_THAT(advice(), HasSubstr("ready: `modebank track"));
@@ -429,7 +431,7 @@ TEST_F(NextStep, UnknownErrorsAskForThem) {
   EXPECT_THAT(advice(), HasSubstr("--bank.look_ahead 1"));
 }
 
-/// A gain of half its required size needs four times the runs: margins fall as 1 / sqrt(runs).
+/// The gain is half of the required gain, so four times the runs are needed: margins decrease as 1 / sqrt(runs).
 TEST_F(NextStep, ADoubtfulGainAsksForSoManyRuns) {
   archive.finding->answer = Answer::cannot_tell;
   archive.finding->modes_differ = true;
@@ -469,7 +471,7 @@ TEST_F(NextStep, ABankWithoutAStableModeWarns) {
   EXPECT_THAT(app::archive_warnings(archive), IsEmpty());
 }
 
-/// A warning takes precedence over advice on use.
+/// A warning has priority over advice on use.
 TEST_F(NextStep, WarningsComeBeforeUse) {
   archive.mixture.emplace();
   archive.mixture->candidates.resize(1);

@@ -1,4 +1,4 @@
-// Which modes are one family, and what their numbers are together: closed forms of scalar modes.
+// Which modes form a family, and the numbers of a family. The expected values are closed forms for scalar modes.
 #include "app/text/mode_families.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Scalar modes of gain 0.8 whose states keep `left` of themselves per sample of 0.1 s, with these errors of A.
+/// Scalar modes with gain 0.8 at a sample period of 0.1 s. `left`: factor of the state per sample. `errors`: standard
+/// errors of A.
 Archive scalar_modes(const std::vector<double>& left, const std::vector<double>& errors) {
   Archive archive = screen_archive(1, 1, std::ssize(left));
   archive.bank->structure.intercept = false;
@@ -37,8 +38,8 @@ std::vector<std::vector<Index>> modes_of(const Archive& archive) {
   return modes;
 }
 
-/// Time constants -0.1 / log 0.6 = 0.196 s and so on: 0 and 2 are 2.4 standard errors apart, 1 is within 1.4 of both
-/// and nearer to 2.
+/// The time constants are -0.1 / log 0.6 = 0.196 s and so on. Modes 0 and 2 are 2.4 standard errors apart. Mode 1 is
+/// within 1.4 standard errors of both and is nearer to mode 2.
 TEST(ModeFamilies, NearModesAreOneAndChainsAreNone) {
   const Archive archive = scalar_modes({0.6, 0.57, 0.545}, {0.016, 0.016, 0.016});
   const auto time = [](double left) { return -0.1 / std::log(left); };
@@ -50,7 +51,7 @@ TEST(ModeFamilies, NearModesAreOneAndChainsAreNone) {
   EXPECT_THAT(modes_of(archive), ElementsAre(ElementsAre(0), ElementsAre(1, 2)));
 }
 
-/// Mode 0, whose time constant is 0.2 +- 0.3 s, is within two standard errors of both others.
+/// Mode 0 has a time constant of 0.2 +- 0.3 s. It is within two standard errors of both other modes.
 TEST(ModeFamilies, AVagueModeStandsAlone) {
   const Archive archive = scalar_modes({0.6, 0.8, 0.3}, {0.5, 0.01, 0.01});
   EXPECT_THAT(modes_of(archive), ElementsAre(ElementsAre(0), ElementsAre(1), ElementsAre(2)));
@@ -67,7 +68,7 @@ TEST(ModeFamilies, GainsTellModesApart) {
   EXPECT_EQ(mode_families(archive).size(), 2u);
 }
 
-/// The mean is 1.5; the modes' variances have the mean 0.25, their values the variance 0.75.
+/// The mean is 1.5. The mean of the modes' variances is 0.25, and the variance of their values is 0.75.
 TEST(ModeFamilies, ErrorsHoldThoseOfTheModesAndTheirSpread) {
   const app::PooledNumber number =
       app::pooled_number(Eigen::Vector2d(1.0, 3.0), Eigen::Vector2d(0.5, 0.5), Eigen::Vector2d(0.3, 0.1));
@@ -79,8 +80,8 @@ TEST(ModeFamilies, ErrorsHoldThoseOfTheModesAndTheirSpread) {
   EXPECT_NEAR(unused.error, 1.0, 1e-12);
 }
 
-/// Uses are 0.5, 0.3 and 0.18, stays 1.2 s, and every switch leads to each other mode alike: half of those of ice lead
-/// to ice.
+/// Uses are 0.5, 0.3 and 0.18, and each stay is 1.2 s. A switch leads to each other mode with equal probability. So
+/// half of the switches from a mode of ice lead to ice.
 TEST(ModeFamilies, ModesOfOneNameAreOneByUse) {
   Archive archive = scalar_modes({0.9, 0.3, 0.6}, {0.01, 0.01, 0.01});
   archive.mode_names = {"ice", "grip", "ice"};
@@ -98,7 +99,7 @@ TEST(ModeFamilies, ModesOfOneNameAreOneByUse) {
   EXPECT_NEAR(families[1].gain(0, 0), 0.8, 1e-9);
   EXPECT_THAT(app::family_of_modes(families), ElementsAre(1, 0, 1));
 
-  archive.bank->modes[0].standard_error(0) = 0.5;  // 0.95 +- 4.7 s
+  archive.bank->modes[0].standard_error(0) = 0.5;  // the time constant is now 0.95 +- 4.7 s
   const ModeFamily certain = mode_families(archive)[1];
   EXPECT_THAT(certain.modes, ElementsAre(0, 2));
   EXPECT_THAT(certain.counted, ElementsAre(2));
@@ -119,7 +120,7 @@ TEST(ModeFamilies, HaveARowOfTheTableAndALineOfShow) {
   EXPECT_THAT(app::modes_in_words(archive), Not(HasSubstr("families")));
 }
 
-/// Steady gains of -1 and 1 (rad/s)/(m/s) are a track of 1 m; of -0.8 and 0.8 of 1.25 m.
+/// Steady gains of -1 and 1 (rad/s)/(m/s) give a track of 1 m. Gains of -0.8 and 0.8 give 1.25 m.
 TEST(ModeFamilies, ARobotOnWheelsHasATrackWidth) {
   Archive archive = screen_archive(1, 2, 2);
   archive.recording->inputs = {{"velL", "m/s"}, {"velR", "m/s"}};

@@ -1,4 +1,4 @@
-// Names of modes: from the user, from the label of enough of their samples, or none.
+// Names of modes come from the user, or from a label that enough samples of the mode have. A mode may have no name.
 #include "app/text/mode_names.hpp"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ class Warnings : public Listener {
   mutable std::string said;
 };
 
-/// Of 3 modes: 60 of 100 samples on ice, 59 of 100 on ice, 40 of 40 on grip.
+/// Three modes with the labels: 60 of 100 samples on ice, 59 of 100 on ice, 40 of 40 on grip.
 Archive labelled() {
   Archive archive = screen_archive(1, 1, 3);
   archive.confusion = {{"bank", Role::test, "grip", 0, 40, 40.0 / 121}, {"bank", Role::test, "grip", 1, 41, 41.0 / 121},
@@ -71,7 +71,7 @@ TEST(ModeNames, StandWhereverModesAreListed) {
   }
   const std::string confusion = app::confusion_text(archive, 0);
   EXPECT_THAT(confusion, HasSubstr("mode 0: ice"));
-  EXPECT_THAT(confusion, HasSubstr("50.4 %"));  // 60 of 119
+  EXPECT_THAT(confusion, HasSubstr("50.4 %"));  // 60 of 119 samples
 }
 
 }  // namespace

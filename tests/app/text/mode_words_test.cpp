@@ -1,4 +1,4 @@
-// Modes in words agree with their numbers.
+// Texts on modes agree with the modes' numbers.
 #include "app/text/mode_words.hpp"
 
 #include <gmock/gmock.h>
@@ -24,12 +24,12 @@ TEST(ModeWords, DecaysAreTold) {
   EXPECT_EQ(decay_words({1.0, std::numeric_limits<double>::infinity(), 0.0, unknown}), "integrates");
   EXPECT_EQ(decay_words({1.1, -3.0, 0.0, 0.1}), "unstable: grows e-fold in 3 s");
   EXPECT_EQ(decay_words({0.0, 0.0, 0.0, unknown}), "at once");
-  // Rates of 0.5 +- 0.5 and -0.5 +- 1 per second: at most 1.48 and 1.46 of them.
+  // Rates are 0.5 +- 0.5 and -0.5 +- 1 per second. The upper ends of their intervals are 1.48 and 1.46 per second.
   EXPECT_EQ(decay_words({0.95, 2.0, 0.0, 2.0}), "over 0.68 s");
   EXPECT_EQ(decay_words({1.05, -2.0, 0.0, 4.0}), "over 0.68 s");
 }
 
-/// A scalar AR(1) of decay 0.6 per sample of 0.1 s under a held input: tau = -0.1 / log 0.6 s, gain -B / A.
+/// A scalar AR(1) with factor 0.6 per sample of 0.1 s and a held input. tau = -0.1 / log 0.6 s, gain = -B / A.
 TEST(ModeWords, AScalarModeInClosedForm) {
   Archive archive = screen_archive(1, 1, 1);
   archive.bank->structure.intercept = false;
@@ -54,7 +54,7 @@ TEST(ModeWords, ModesComeByUse) {
   EXPECT_EQ(modes[0].mode, 1);
   EXPECT_EQ(modes[2].mode, 0);
   EXPECT_NEAR(modes[0].stay_s, 1.2, 1e-12);
-  archive.diagnostics.clear();  // without scores: T gives 1 / (1 - 0.9) samples
+  archive.diagnostics.clear();  // without scores, the stay comes from T: 1 / (1 - 0.9) samples
   modes = app::used_modes(archive);
   EXPECT_NEAR(modes[0].stay_s, 1.0, 1e-12);
   EXPECT_EQ(modes[0].mode, 0);

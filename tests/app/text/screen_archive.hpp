@@ -7,8 +7,8 @@
 
 namespace modebank::test {
 
-/// The parts of an archive that the first screen reads: runs of 5 samples, 0.1 s apart, its scores and a finding. The
-/// bank's modes differ equally and have decreasing use.
+/// The parts of an archive that the first screen reads: runs of 5 samples with a period of 0.1 s, their scores and a
+/// finding. Consecutive modes of the bank differ equally, and their use decreases.
 inline Archive screen_archive(Index states, Index inputs, Index modes, Role judged = Role::test) {
   Archive archive;
   Recording recording;

@@ -1,4 +1,4 @@
-// Sentences of random rows: their meaning, stated in this file, agrees with the numbers.
+// Sentences on random rows. This file states their meaning, which must agree with the numbers.
 #include <gtest/gtest.h>
 
 #include <boost/random/normal_distribution.hpp>
@@ -26,7 +26,7 @@ struct Draw {
 
 bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
-/// Errors relative to the stated ones, with random tails, middle and NIS.
+/// Errors relative to the stated errors, with random tails, middle and NIS.
 DiagnosticsRow random_row(Draw& draw) {
   const Bank bank = single_mode(example_bank(1, 0, 1, 1e-6), 0);
   Trajectory run;
@@ -72,7 +72,7 @@ TEST(Sentences, OnTheBandMeanWhatItsRowSays) {
   for (const int count : verdicts) EXPECT_GT(count, 10);
 }
 
-/// Scores of the bank and its competitors: a random level per run, and a few outliers.
+/// Scores of the bank and its competitors. Each run has a random level and a few outliers.
 std::vector<Densities> random_scores(Draw& draw) {
   std::vector<Densities> all{{"bank", {}}};
   for (const char* name : competitor_names) all.push_back({name, {}});
@@ -94,10 +94,10 @@ Eigen::VectorXd run_losses(const Densities& better, const Densities& other) {
   return losses;
 }
 
-/// At least five runs, all on one side: by chance this happens in less than 5 % of draws.
+/// At least five runs, and all losses have the same sign. By chance this happens in less than 5 % of draws.
 bool always(const Eigen::VectorXd& losses) { return losses.size() >= 5 && (losses.array() > 0.0).all(); }
 
-/// The text in a pattern's brackets; empty without a match.
+/// The text in the brackets of a pattern; empty if the pattern does not match.
 std::string named(const std::string& text, const std::string& pattern) {
   std::smatch found;
   return std::regex_search(text, found, std::regex(pattern)) ? found[1].str() : "";

@@ -89,7 +89,7 @@ const parsed = () => new Promise((resolve) => {
   document.addEventListener('DOMContentLoaded', resolve);
 });
 
-// Resolves after the next painting, or at once on a hidden page, which is never painted.
+// Resolves after the next painting, or after 300 ms, because a hidden page is never painted.
 const painted = () => new Promise((resolve) => {
   requestAnimationFrame(() => setTimeout(resolve, 0));
   setTimeout(resolve, 300);

@@ -34,7 +34,7 @@ export function reached(settings, goal, by) {
 // The level of the axis to which a setting belongs.
 export const levelOf = (axis, setting) => axis.of(setting.rows[0]);
 
-// The best cell as {a, b, value}; null if there is no cell.
+// The best cell as {a, b, value}; null without cells.
 export function bestCell(cells, goal) {
   let best = null;
   cells.forEach((line, b) => line.forEach((value, a) => {

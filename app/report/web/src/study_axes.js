@@ -27,7 +27,7 @@ export function scoreChoice(study, begin, onchange) {
   return choice('Score', scores.map(columnTitle), positionOf(scores, begin), (i) => onchange(scores[i]));
 }
 
-// A value has runs for all other keys. They are summarised by the best score, as in the verdict, or by the mean.
+// Two ways to summarise the runs with one value of a key: the best score, as in the verdict, or the mean.
 const ways = [['best', 'best over the other keys'], ['mean', 'average over the other keys']];
 export const wayWords = {
   best: 'best',

@@ -74,8 +74,8 @@ test('buckets are boxes beside each other that hold their extremes; a line\'s to
   const toX = (v) => 1.4 * v, toY = (v) => 100 - v, x = [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5];
   const y = [10, 20, 50, 40, NaN, NaN, 5, 7];
   const line = bucketBoxes({kind: 'line', x, y, width: 2}, toX, toY);
-  // The line goes from 10 to 20, from 40 to 50, and down to 20, the value before 40. After the gap it starts at its own
-  // value.
+  // The first bucket goes from 10 to 20. The second goes from 40 to 50 and is extended to 20, the value before. After a
+  // gap, a bucket is not extended.
   assert.deepEqual(line, [0, 79, 1, 12, 1, 49, 1, 32, 4, 92, 1, 4]);
   const band = bucketBoxes({kind: 'area', x, y}, toX, toY);
   assert.deepEqual(band, [0, 80, 1, 10, 1, 50, 1, 10, 4, 93, 1, 2]);

@@ -6,7 +6,7 @@
 
 namespace modebank::test {
 
-/// Runs `modebank check`.
+/// Tests that run `modebank check`.
 class Check : public CliTest {
  protected:
   nlohmann::json check_json(const std::string& config, std::vector<std::string> options = {}) const {

@@ -1,4 +1,4 @@
-// modebank check finds the facts in the READMEs of the real data.
+// `modebank check` must find the facts that the READMEs of the real data state.
 #include "tests/app/cli/check/check_fixture.hpp"
 
 namespace modebank::test {
@@ -7,7 +7,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-/// Must be read before the fixture hides the user's data folder from the program.
+/// This is read before the fixture hides the user's data folder from the program.
 const std::filesystem::path shared_data = shared_data_dir();
 
 #define NEEDS_SHARED_DATA() MODEBANK_NEEDS_DATA(!shared_data.empty())
@@ -24,7 +24,7 @@ TEST_F(CheckOfRealData, FindsTheFactsOfBorealTc) {
   NEEDS_SHARED_DATA();
   const json check =
       real("inputs = borealtc/ICE/pro_*.csv\nstates = borealtc/ICE/imu_*.csv\nstate = wz\ninput = velL, velR\n");
-  for (const json& channel : check.at("channels")) {  // README, oddities 2, 4, 7 and 8
+  for (const json& channel : check.at("channels")) {  // oddities 2, 4, 7 and 8 in the README
     const bool command = channel.at("kind") == "input";
     EXPECT_NEAR(channel.at("quantum").get<double>(), command ? 1.0 / 127.0 : 0.0, 1e-6);
     EXPECT_EQ(channel.at("saturated").get<double>() > 0.0, command);
@@ -57,7 +57,7 @@ TEST_F(CheckOfRealData, FindsTheFactsOfBorealTc) {
 
 TEST_F(CheckOfRealData, FindsTheLagsOfBorealTc) {
   NEEDS_SHARED_DATA();
-  constexpr double tolerance_s = 0.1;  // README's windows, box and single regressor differ
+  constexpr double tolerance_s = 0.1;  // the windows, box and single regressor of the README differ by this much
   const json ice =
       real("inputs = borealtc/ICE/pro_*.csv\nstates = borealtc/ICE/imu_*.csv\nstate = wz\ninput = velL, velR\n");
   const json flooring = real(
@@ -107,7 +107,7 @@ TEST_F(CheckOfRealData, FindsTheFactsOfDriveBuckAndBag) {
   EXPECT_NEAR(bag.at("runs")[0].at("rest_mean")[0].get<double>(), -0.4e-3, 3e-4);
 }
 
-/// The settings in configs/husky_ice.ini were found by such scores.
+/// The settings in configs/husky_ice.ini were chosen by such scores.
 TEST_F(CheckOfRealData, SuggestsForIceWhatGainsAndNamesWhatDoesNot) {
   NEEDS_SHARED_DATA();
   const json said =

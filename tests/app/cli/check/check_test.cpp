@@ -1,4 +1,4 @@
-// modebank check: what it prints and its exit status.
+// Output and exit status of `modebank check`.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -41,8 +41,8 @@ TEST_F(Check, ReadsWhatRunWouldRefuseAndSaysWhatAcceptsIt) {
   std::istringstream lines(csv_run(90, 5));
   std::string text, line;
   for (int k = 0; std::getline(lines, line); ++k) {
-    if (k == 30) text += line + "\n";                                  // repeats a time
-    if (k == 50) line = line.substr(0, line.find(',')) + ",,0.1,0.1";  // removes a state
+    if (k == 30) text += line + "\n";                                  // adds a line with a repeated time
+    if (k == 50) line = line.substr(0, line.find(',')) + ",,0.1,0.1";  // removes the state from a line
     text += line + "\n";
   }
   write("run_00.csv", text);
@@ -57,7 +57,7 @@ TEST_F(Check, ReadsWhatRunWouldRefuseAndSaysWhatAcceptsIt) {
   EXPECT_EQ(run({"--data.disorder", "sort", "--data.missing", "gap"}).status, 0) << "as it said";
 }
 
-/// A pseudo-random binary signal, the most common input of identification.
+/// A binary pseudo-random signal is the most common input for identification.
 TEST_F(Check, ABinaryInputIsNoLimiter) {
   for (const char* run : {"run_00.csv", "run_01.csv"}) {
     std::mt19937_64 generator(run[5] == '0' ? 1 : 2);
@@ -83,7 +83,7 @@ TEST_F(Check, ABinaryInputIsNoLimiter) {
   EXPECT_EQ(check.at("advice").at("rate_hz").at("reason").get<std::string>().find("repeat"), std::string::npos);
 }
 
-/// For 60 % of the time the input is zero and the state does not move.
+/// For 60 % of the time the input is zero and the state is constant.
 TEST_F(Check, RestIsNoCoarseMeasurement) {
   for (int run = 0; run < 4; ++run) {
     std::mt19937_64 generator(static_cast<unsigned>(run) + 1);

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Six runs from 0 s on with density `value` + the run's number.
+/// Six runs that start at 0 s. Their log density is a value plus the number of the run.
 LeftOut six_runs(Index samples, double period_s, double one_step, double common_step, double start_s = 0.0) {
   LeftOut left_out;
   left_out.period_s = period_s;
@@ -39,14 +39,14 @@ TEST(CompareLeftOut, OneStepAheadAtTheSameRate) {
 
 TEST(CompareLeftOut, EquallyLongAheadAtTheSlowerOnesSamples) {
   const LeftOut slow = six_runs(40, 0.4, 1.0, 1.0);
-  LeftOut fast = six_runs(160, 0.1, 99.0, 1.25, 0.03);  // its samples are 0.03 s away from those of the slow one
+  LeftOut fast = six_runs(160, 0.1, 99.0, 1.25, 0.03);  // samples are 0.03 s away from those of the slow configuration
   for (LeftOutRun& run : fast.runs)
     for (Index k = 0; k < 160; ++k)
-      if (k % 4 != 0) run.common_step(k) = -1e9;  // at times without a sample of the slow one
+      if (k % 4 != 0) run.common_step(k) = -1e9;  // the slow configuration has no samples at these times
   EXPECT_NEAR(compare_left_out(fast, slow).gain, 0.25, 1e-12);
   EXPECT_NEAR(compare_left_out(slow, fast).gain, -0.25, 1e-12);
   EXPECT_EQ(compare_left_out(fast, slow).samples, 240);
-  for (LeftOutRun& run : fast.runs) run.common_step.resize(0);  // no whole number of its samples has this length
+  for (LeftOutRun& run : fast.runs) run.common_step.resize(0);  // this length is not a whole number of samples
   EXPECT_TRUE(std::isnan(compare_left_out(fast, slow).gain));
 }
 

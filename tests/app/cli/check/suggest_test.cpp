@@ -1,4 +1,4 @@
-// Suggestions of modebank check: scored on training runs left out, written by --apply.
+// Suggestions of `modebank check`. They are scored on training runs left out, and --apply writes them.
 #include <array>
 #include <deque>
 #include <fstream>
@@ -16,8 +16,8 @@ using ::testing::Not;
 
 class Suggest : public Check {
  protected:
-  /// Twelve runs of 160 samples of one motion; every second one trains. `gross`: share of samples with an error of 1;
-  /// `late`: samples between an input's column and its effect.
+  /// Twelve runs of 160 samples with one motion; every second run trains. `gross`: share of samples with an error of 1.
+  /// `late`: number of samples between an input's row and its effect.
   Suggest() { write_runs(0.0); }
 
   void write_runs(double gross, int late = 0) {
@@ -40,8 +40,8 @@ class Suggest : public Check {
       write("run_" + std::string(run < 10 ? "0" : "") + std::to_string(run) + ".csv", text.str());
     }
   }
-  /// A Kalman filter with the known noise of runs with gross errors, whose mean square is 0.05. The true theta predicts
-  /// best. The filter's theta is the windows' mean, and the loss determines how far the errors change this mean.
+  /// A Kalman filter with known noise, for runs with gross errors of mean square 0.05. The true theta predicts best.
+  /// The filter's theta is the mean over the windows. The loss determines how far the errors change this mean.
   void write_config(const std::string& more) const {
     write("test.ini",
           "[data]\n# the robot's\ninputs = run_*.csv\nstate = wz\ninput = left, right  # wheels\n[mixture]\ncomponents "
@@ -56,7 +56,7 @@ class Suggest : public Check {
   }
 };
 
-/// Without a column of times the rate is stated, so other rates are not tried.
+/// Without a column of times the configuration states the rate, so no other rate is tried.
 TEST_F(Suggest, WithoutTimesTheRateIsNoChoice) {
   write_config("[data]\ntime =\nrate_hz = 10\n");
   const json said = check_json(config()).at("suggestions");
@@ -98,7 +98,7 @@ TEST_F(Suggest, HeldOutRunsHaveNoSay) {
   write_runs(0.05);
   write_config("[window]\nloss = trivial\n");
   const json before = check_json(config());
-  for (int run = 1; run < 12; run += 2)  // replaces every held-out run
+  for (int run = 1; run < 12; run += 2)  // overwrites every held-out run
     write("run_" + std::string(run < 10 ? "0" : "") + std::to_string(run) + ".csv", csv_run(100, 99));
   const json after = check_json(config());
   EXPECT_EQ(before.at("suggestions"), after.at("suggestions"));
