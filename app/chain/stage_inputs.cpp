@@ -8,8 +8,8 @@ ScoringOptions scoring_inputs(const ChainOptions& options) {
   ScoringOptions scoring = options.scoring;
   scoring.seed = options.seed;
   FreeRunOptions& free_run = scoring.free_run;
-  if (free_run.samples == 0) free_run = {};  // so that equal results have equal keys
-  // With transition probabilities that depend on state and input, moments do not follow where each path switches.
+  if (free_run.samples == 0) free_run = {};  // without a free run, its options must not change the key
+  // If transition probabilities depend on state and input, each path switches elsewhere, and moments do not show this.
   if (options.bank.transition == TransitionSource::logit && free_run.samples > 0)
     free_run.method = FreeRunMethod::paths;
   const bool drawn = free_run.method == FreeRunMethod::paths;

@@ -63,8 +63,8 @@ void find_pattern(FileSet& set) {
 bool is_of_a_kind(const std::vector<std::string>& a, const std::vector<std::string>& b) {
   const auto shared = std::count_if(
       a.begin(), a.end(), [&](const std::string& name) { return std::find(b.begin(), b.end(), name) != b.end(); });
-  // If two instruments of a robot have one column name in common (the frame of a gyro and of an odometry), their files
-  // still differ in kind.
+  // Two instruments of a robot may share a column name (the frame of a gyro and of an odometry). Their files still
+  // differ in kind.
   return 5 * shared >= 4 * std::ssize(a) && 5 * shared >= 4 * std::ssize(b);
 }
 

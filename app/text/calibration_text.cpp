@@ -49,8 +49,8 @@ std::string doubt_words(const DiagnosticsRow& row) {
   }
 }
 
-/// Short text for another band: "50 %: 57.5 % (too wide)" means that 57.5 % of the samples lie in the 50 % band, which
-/// is therefore too wide.
+/// Text on another band, such as "50 %: 57.5 % (too wide)". It means that 57.5 % of the samples lie in the 50 % band,
+/// so this band is too wide.
 std::string other_band(double level, double coverage, double lower, double upper) {
   const BandWidth width = width_of(level, lower, upper);
   return fmt::format("{:g} %: {:.1f} %{}", 100.0 * level, 100.0 * coverage,

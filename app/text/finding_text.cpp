@@ -64,9 +64,10 @@ std::string passing_gain(const Finding& finding) {
   return fmt::format("; more than {:.3f} passes", std::max(gain->margin, negligible_gain));
 }
 
-/// Sentence on the gain, for example: "switching between 5 linear models predicts the 6 held-out runs better than the
-/// best single model (`one_motion`: one linear model with changing noise): each sample is 14.4 % more likely (+0.134 +-
-/// 0.040 nats per sample; more than 0.103 passes)."
+/// Sentence on the gain. Example:
+/// "switching between 5 linear models predicts the 6 held-out runs better than the best single model (`one_motion`: one
+/// linear model with changing noise): each sample is 14.4 % more likely (+0.134 +- 0.040 nats per sample; more than
+/// 0.103 passes)."
 std::string gain_sentence(const Finding& finding, const char* start) {
   if (finding.best_competitor.empty()) return "";
   const char* const than = falls_short_of(finding, finding.best_competitor) ? "worse than"

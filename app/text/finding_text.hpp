@@ -6,8 +6,8 @@
 
 namespace modebank {
 
-/// A finding in sentences: the answer, the gain over the best competitor with its standard error, and any single model
-/// that describes the runs as well or better.
+/// A finding in sentences: the answer, and the gain over the best competitor with its standard error. A single model
+/// that describes the runs as well or better is named, too.
 std::string finding_text(const Finding& finding);
 
 }  // namespace modebank

@@ -33,7 +33,8 @@ bool some_have_several(const std::vector<ModeFamily>& families) {
                      [](const ModeFamily& family) { return family.modes.size() > 1; });
 }
 
-/// Name of a family in a table: "ice (0, 5, 3)" or "modes 2, 7" if some family has several modes, else "4 grip" or "2".
+/// Name of a family in a table. If some family has several modes: "ice (0, 5, 3)" or "modes 2, 7". Otherwise: "4 grip"
+/// or "2".
 std::string family_cell(const ModeFamily& family, bool several) {
   const std::string name = shortened(family.name);
   if (!several) return name.empty() ? family.numbers() : fmt::format("{} {}", family.numbers(), name);
@@ -42,7 +43,7 @@ std::string family_cell(const ModeFamily& family, bool several) {
 }
 
 /// Time constant of a family. The period is omitted here; `show` prints it for each mode. A mean over several modes is
-/// printed as it is, because its error is not an interval that could include a mode that never dies out.
+/// printed as it is. Its error does not show whether one of the modes may never die out.
 std::string time_words(const ModeFamily& family) {
   Decay slowest = family.slowest;
   slowest.frequency_hz = 0.0;

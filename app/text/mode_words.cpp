@@ -20,8 +20,8 @@ constexpr double least_use = 0.01;  // a short table lists families with less us
 constexpr int longest_name = 16;    // largest width of a name in a table
 constexpr double standard_errors_95 = 1.96;
 
-/// Lower end of the 95 % interval of tau, if the interval of the rate 1 / tau reaches zero, so that the mode may never
-/// die out. Otherwise zero. The rate is used because the data determine the rate.
+/// Lower end of the 95 % interval of tau. It is used if the interval of the rate 1 / tau reaches zero, so that the mode
+/// may never die out. Otherwise zero. The interval is that of the rate, because the data determine the rate.
 double least_time_constant(const Decay& decay) {
   const double time = decay.time_constant_s, reach = standard_errors_95 * decay.time_constant_error_s;
   return time != 0.0 && std::abs(time) <= reach ? time * time / (time + reach) : 0.0;

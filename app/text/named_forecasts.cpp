@@ -75,9 +75,9 @@ double highest_score(const std::vector<Reached>& all, May may) {
   return best;
 }
 
-/// The filter with the smallest error, or the first of nearly equal ones. Only single filters for which `may` returns
-/// true are considered, and of these only filters whose log score is less than 0.02 nats below the best. Null if there
-/// are none.
+/// The filter with the smallest error, or the first of nearly equal ones. Null if there are none. Only single filters
+/// for which `may` returns true are compared. Their log score must be less than 0.02 nats below the best of these
+/// filters.
 template <class May>
 const Reached* best_single(const std::vector<Reached>& all, May may) {
   const auto counts = [&](const std::string& filter) { return is_single(filter) && may(filter); };

@@ -63,8 +63,8 @@ RobotNumbers robot_numbers(const RobotBank& bank, Index mode, const RobotChannel
 RobotNumbers family_numbers(const RobotBank& bank, const ModeFamily& family, const RobotChannels& channels,
                             const RobotSizes& sizes);
 
-/// Covariance of the process noise per step, C Q C', for a family: the mean weighted by use, its standard errors (empty
-/// if unknown), and the smallest and largest values among the modes.
+/// Covariance of the process noise per step, C Q C', for a family. It has the mean weighted by use, the mean's standard
+/// errors (empty if unknown), and the smallest and largest values among the modes.
 struct FamilyNoise {
   Eigen::MatrixXd Q, error, least, largest;
 };

@@ -17,8 +17,9 @@ struct ComparedRun {
 
 inline constexpr std::size_t most_compared = 6;  ///< the page has this many letters and colours for runs
 
-/// The page that compares two or more archives. It states which one predicts better, and shows the different settings,
-/// the modes matched with those of the first archive, the scores side by side, and plots of all runs.
+/// The page that compares two or more archives. It states which archive predicts better and lists the different
+/// settings. It shows the modes beside the matching modes of the first archive, the scores side by side, and plots of
+/// all runs.
 Page compare_page(const std::vector<ComparedRun>& runs, const ReportConfig& options);
 
 }  // namespace modebank::app::report

@@ -162,7 +162,7 @@ class DiskFull : public CliTest {
     return bytes == expected->second || (lines(bytes) == lines(expected->second) && bytes.back() == '\n');
   }
 
-  /// Whether the command may succeed. It may if all files are complete in spite of the failure (a file closed after its
+  /// Whether the command may succeed in spite of the failure. It may if all files are complete (a file closed after its
   /// sync, a probe), or if a warning names the missing file.
   bool may_pass(const Report& report, const ProgramResult& result, const Content& now) const {
     if (result.err.find("No space left on device") != std::string::npos) return names_a_file(report, result.err);

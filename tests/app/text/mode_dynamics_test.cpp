@@ -121,7 +121,7 @@ TEST(ModeDynamics, OscillationsErrorsFollowTheEigenvaluesSize) {
   bank.modes[0].standard_error = vector({error, 0, 0, 0});
   const Decay decay = mode_dynamics(bank, 0).decays.at(0);
   EXPECT_NEAR(decay.per_sample, size, dynamics_rounding);
-  // det = a c + s^2 and a = c + e, so at constant c, d size / d a = c / (2 size).
+  // det = a c + s^2 with a = c + e. At constant c, d size / d a = c / (2 size).
   const double of_size = c / (2 * size), log_size = std::log(size);
   EXPECT_NEAR(decay.time_constant_error_s, error * of_size * dt / (size * log_size * log_size), 1e-9);
 }
