@@ -26,8 +26,9 @@ std::string rounded_time(double seconds) {
 }  // namespace
 
 double expected_windows_s(const Recording& recording, const FitOptions& window) {
-  constexpr double ceres_s = 7e-5, ceres_entry_s = 1.6e-8, batch_entry_s = 5e-9;  // [s]; entry: per entry of L products
-                                                                                  // of q x q
+  constexpr double ceres_s = 7e-5, ceres_entry_s = 1.6e-8,
+                   batch_entry_s = 5e-9;  // [s] per window (ceres_s), or per entry
+                                          // of L matrices of q x q (the other two)
   const LinearStructure s = linear_structure(recording.state_count(), recording.input_count(), window);
   const Index count = count_windows(recording, window);
   const double q = static_cast<double>(s.regressors()), entries = q * q * static_cast<double>(window.length);

@@ -48,7 +48,7 @@ void Adviser::done(Stage stage, const Archive& archive) const {
     counts.add(*archive.windows);
     warn_of_windows(*archive.windows, counts);
   }
-  // A refined bank does not depend on the mixture, so warnings about the mixture do not apply.
+  // A refined bank keeps nothing of the mixture, so warnings about the mixture do not apply.
   if (stage == Stage::bank && archive.mixture && !archive.unrefined)
     for (const std::string& text : selection_warnings(archive.mixture->candidates)) warning("mixture: " + text);
   if (const std::string text = refinement_warning(archive.measured_fit); stage == Stage::bank && !text.empty())

@@ -23,7 +23,7 @@ struct Mounting {
   bool reversed = false;        ///< whether this axis points down
   double gravity = 0.0;         ///< mean acceleration along this axis [m/s^2]
   std::string z_rate, up_rate;  ///< channels of angular rate about z, and about the axis that points up
-  /// Correlation of each of these channels with the yaw rate of another table; empty without such a table.
+  /// Correlation of each with the yaw rate of another table, if there is one.
   std::optional<double> z_correlation, up_correlation;
   std::string other;  ///< name of the other table's yaw rate
 };

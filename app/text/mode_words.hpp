@@ -19,10 +19,9 @@ std::string per_sample_words(const std::vector<Decay>& decays);
 /// Use and stay of one mode on the judged runs.
 struct UsedMode {
   Index mode = 0;
-  double use = 1.0;  ///< mean probability of the mode
-  /// Mean stay in the mode, from the transition matrix. NaN if the mode was never entered. Gaps that cut runs do not
-  /// shorten the stay. A stay longer than the longest run is replaced by the length of this run, and `at_least` is
-  /// true.
+  double use = 1.0;  ///< mean probability
+  /// Mean stay by the transition matrix; NaN if the mode was never entered. Gaps that cut runs do not shorten it. If it
+  /// exceeds the longest run, it is that run's length and `at_least` is true.
   double stay_s = 0.0;
   bool at_least = false;
 };

@@ -17,9 +17,9 @@ std::string base64(const std::string& bytes);
 class PageArrays {
  public:
   /// Adds an array and returns its reference for the page: {"id", "type": "f4" | "f8" | "i4" | "share", "size"}.
-  nlohmann::json add(const Eigen::Ref<const Eigen::VectorXd>& values);        ///< as float32, for drawings
+  nlohmann::json add(const Eigen::Ref<const Eigen::VectorXd>& values);        ///< as float32, for drawing
   nlohmann::json add_exact(const Eigen::Ref<const Eigen::VectorXd>& values);  ///< as float64, for times
-  /// Adds shares from 0 to 1 as two bytes each, with an error of 1.5e-5. For drawings of probabilities.
+  /// Shares from 0 to 1 with an error of 1.5e-5 in two bytes, to draw probabilities.
   nlohmann::json add_shares(const Eigen::Ref<const Eigen::VectorXd>& values);
   nlohmann::json add(const std::vector<std::int32_t>& values);
 

@@ -21,11 +21,9 @@ Trajectory disturbed(Trajectory run, double dt_s);
 /// Results of BankFilter::step for each sample of a run.
 std::vector<FilterEstimate> stepped(const Bank& bank, const FilterOptions& options, const Trajectory& run);
 
-/// The largest differences between the exported C code and BankFilter over a run. The units are:
-/// - means: predicted standard deviations,
-/// - probabilities and log densities: absolute,
-/// - covariances: relative to the larger one.
-/// gcc and clang compile the C code with the strictest options of C99.
+/// The largest differences between the exported C code and BankFilter over a run. Means are in units of the
+/// predictions' standard deviations, probabilities are absolute, and covariances and log densities are relative. gcc
+/// and clang compile the C code with the strictest options of C99.
 struct Differences {
   double mean = 0.0, probability = 0.0, covariance = 0.0, log_density = 0.0, ahead = 0.0;
   Index compared = 0;
