@@ -7,8 +7,8 @@
 namespace modebank::app {
 
 /// Shows the guessed state and inputs, and reads other channels from `answers`: one line for the states and one for the
-/// inputs. An empty line keeps the guess. Asks again if a channel does not exist or does not move. At the end of input,
-/// the other guesses stay.
+/// inputs. An empty line keeps the guess. Asks again if a channel does not exist or does not move. If the input ends,
+/// the remaining guesses stay.
 void confirm_roles(const std::vector<SurveyedFile>& files, Guess& guess, std::istream& answers,
                    std::ostream& questions);
 

@@ -93,7 +93,7 @@ bool is_of_axes(const Candidate& c) {
   return false;
 }
 
-/// For data in which no hint indicates a state. In tables of u and y, y is usually last. So this takes the channel that
+/// Guesses the state if no hint indicates one. In tables of u and y, y is usually last. So this takes the channel that
 /// is least likely an input, and the last one of equally likely channels.
 void guess_state_by_place(const std::vector<Candidate>& all, Guess& guess) {
   const auto least = std::min_element(
@@ -101,7 +101,7 @@ void guess_state_by_place(const std::vector<Candidate>& all, Guess& guess) {
   guess.states = {least->place};
 }
 
-/// For data in which no name indicates an input. Takes channels in the state's table that were not measured together
+/// Guesses the inputs if no name indicates one. Takes channels in the state's table that were not measured together
 /// with the state. They must be held, or the table must have few channels.
 void guess_inputs_by_place(const std::vector<Candidate>& all, bool by_place, Guess& guess) {
   constexpr std::ptrdiff_t few = 4;

@@ -10,8 +10,8 @@
 /// app/text/summary_tables.hpp prints the parameters of the modes.
 namespace modebank::app {
 
-/// Text such as "0.163 +- 0.004 s", "integrates" or "unstable: grows e-fold in 2 s". "over 3 s" if, within the standard
-/// error, the mode may never die out. "... , period 0.5 s" for a mode that oscillates.
+/// Text such as "0.163 +- 0.004 s", "integrates" or "unstable: grows e-fold in 2 s". If, within the standard error, the
+/// mode may never die out, the text is "over 3 s". For a mode that oscillates, it ends in ", period 0.5 s".
 std::string decay_words(const Decay& decay, const char* plus_minus = "+-");
 /// Factor per sample for each eigenvalue or pair, the slowest first.
 std::string per_sample_words(const std::vector<Decay>& decays);

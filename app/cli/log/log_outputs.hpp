@@ -19,11 +19,11 @@ struct LogOutputs {
 /// folder.
 LogOutputs log_outputs(const CommandLine& line, const std::vector<FileSet>& sets);
 
-/// Throws ConfigurationError if one of the files
-/// - exists and --force was not given,
-/// - cannot be written,
-/// - is one of the logs,
-/// - or has another form.
+/// Throws ConfigurationError if
+/// - a file exists and --force was not given,
+/// - a file cannot be written,
+/// - a file is one of the logs,
+/// - or an existing file has another form.
 void check_log_outputs(const CommandLine& line, const LogOutputs& outputs, const std::vector<FileSet>& sets);
 
 }  // namespace modebank::app
