@@ -60,7 +60,7 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
   sink_ = sink;
   seconds_.fill(0.0);
   inputs_ = chain_inputs(options);
-  wanted_ = stage_keys(inputs_, "");  // the data's hash is known after reading
+  wanted_ = stage_keys(inputs_, "");  // the data's hash becomes known only when the data are read
   import(inputs_.data);
   if (last >= Stage::bank_scores && options.scoring.horizon != ScoringOptions::default_horizon)
     refuse_unreached_horizons(*archive_.recording, options.scoring.horizon);

@@ -105,7 +105,7 @@ class Chain {
   ChainInputs inputs_;
   StageKeys wanted_, held_;
   std::array<double, stage_count> seconds_{};
-  const EvaluationSink* sink_ = nullptr;  ///< during run and judge_stored
+  const EvaluationSink* sink_ = nullptr;  ///< set only while run or judge_stored works
 };
 
 }  // namespace modebank

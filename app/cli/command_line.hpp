@@ -12,7 +12,7 @@ struct CommandLine {
   std::vector<std::string> files;                              ///< positional arguments after the command
   std::vector<std::pair<std::string, std::string>> overrides;  ///< configuration keys given as options, in order
   std::vector<std::string> given;                              ///< long names of all other options, in order
-  std::string typed;                                           ///< the whole line, for provenance
+  std::string typed;                                           ///< the whole command line, for the provenance
   std::string program;  ///< "modebank" if the shell finds the program by this name, else the program's path
 
   // Values of the options. The table of commands explains each of them.
@@ -22,7 +22,7 @@ struct CommandLine {
   std::string output, run, table, to;
   std::string form = "increment";
   std::string effort = "normal";
-  double wheel_separation_m = 0.0, wheel_radius_m = 0.0;  ///< 0: not given
+  double wheel_separation_m = 0.0, wheel_radius_m = 0.0;  ///< 0 if the option is not given
 };
 
 /// Returns the word, quoted for a shell.

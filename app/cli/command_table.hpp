@@ -14,7 +14,7 @@ using OptionTarget = std::variant<bool CommandLine::*, std::string CommandLine::
 
 /// An option of a command that is not a configuration key.
 struct CommandOption {
-  std::string name;      ///< without dashes; "output,o" has a short form as well
+  std::string name;      ///< name without dashes; "output,o" also has the short form -o
   std::string argument;  ///< name of the value, or its choices ("increment | full"); empty for an option without a
                          ///< value
   std::string help;
@@ -22,13 +22,13 @@ struct CommandOption {
   std::vector<std::string> words = {};  ///< choices, if `argument` is a placeholder such as "FORM"
 
   std::string long_name() const { return name.substr(0, name.find(',')); }
-  std::string typed() const;                 ///< "-o FILE, --output FILE"
+  std::string typed() const;                 ///< the option as in `help`, such as "-o FILE, --output FILE"
   std::vector<std::string> choices() const;  ///< allowed values; empty if any text is allowed
 };
 
 /// The files or words that follow a command's name.
 struct Arguments {
-  std::string text;   ///< as shown by `help`
+  std::string text;   ///< the arguments as `help` shows them
   std::string needs;  ///< error message for a wrong number of arguments, for example "needs one archive"
   std::size_t fewest, most;
 };

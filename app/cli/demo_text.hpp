@@ -22,7 +22,7 @@ struct FoundNumber {
 struct FoundGround {
   std::string ground;  ///< empty if no ground has more than half of the samples
   Index mode = 0;
-  std::vector<FoundNumber> numbers;  ///< time constant, gains, noise
+  std::vector<FoundNumber> numbers;  ///< the mode's time constant, gains and noise
 };
 
 /// The most used mode is first. Only a mode with a ground has numbers.

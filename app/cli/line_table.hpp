@@ -48,7 +48,7 @@ class LineTable {
  private:
   DataOptions data_;
   enum class Format { unknown, csv, objects };
-  Format format_ = Format::unknown;   ///< format of the first line
+  Format format_ = Format::unknown;   ///< format of the stream, from its first line
   std::string head_;                  ///< for CSV: the lines before the first row, with their line breaks
   std::vector<std::string> columns_;  ///< for CSV all columns; for NDJSON only the members that the program reads
   std::optional<FilePlan> plan_;
@@ -57,7 +57,7 @@ class LineTable {
   double first_s_ = 0.0;
   std::optional<double> corrected_first_s_;
   bool unit_known_ = false, after_header_ = false;
-  std::vector<Expression::Memory> memory_;  ///< per derived channel
+  std::vector<Expression::Memory> memory_;  ///< one per derived channel
   std::optional<std::int64_t> origin_ns_;
   DayCount days_;  ///< counts days of times of day, over all rows so far
   std::vector<std::string> notes_;

@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     const std::string what = error.path1().string() + ": " + error.code().message();
     return fail_as_asked(argc, argv, run_failure, what.c_str());
-  } catch (const std::system_error& error) {  // fmt's exception has no file name
+  } catch (const std::system_error& error) {  // the exception of fmt does not contain a file name
     return std::ferror(stdout) ? fail_to_print(error.code().message())
                                : fail_as_asked(argc, argv, run_failure, error.what());
   } catch (const std::exception& error) {

@@ -24,7 +24,7 @@ class ValidityJudge {
   ValidityJudge(InputRange trained, Eigen::Index lags, double dt_s)
       : trained_(std::move(trained)), lags_(lags), dt_s_(dt_s) {}
 
-  /// To be called when the filter starts anew.
+  /// Call this when the filter starts anew.
   void restart() { samples_ = 0; }
   /// Continues after `samples` samples; `time_s` is the time of the last one.
   void go_on(Eigen::Index samples, double time_s) {
@@ -38,7 +38,7 @@ class ValidityJudge {
   InputRange trained_;
   Eigen::Index lags_;
   double dt_s_;
-  Eigen::Index samples_ = 0;  ///< since the filter's restart
+  Eigen::Index samples_ = 0;  ///< number of samples since the filter's restart
   double last_s_ = 0.0;
 
   bool is_beyond_training(const Eigen::VectorXd& input) const;

@@ -28,7 +28,7 @@ struct TrackConfig {
 
 /// The [report] section, which limits the size of a page.
 struct ReportConfig {
-  double size_mb = 64.0;  ///< largest page [1e6 bytes]
+  double size_mb = 64.0;  ///< largest size of a page [1e6 bytes]
   Index runs = 10;        ///< number of a study's runs that get pages of their own
 };
 
@@ -73,7 +73,8 @@ inline bool is_automatic(LagChoice choice, bool by_model) {
 struct StructureConfig {
   bool automatic_model = true;  ///< window.model = auto: the choice by_model then means automatic
   LagChoice state = LagChoice::by_model, input = LagChoice::by_model, delay = LagChoice::by_model;
-  LagChoice length = LagChoice::by_model, step = LagChoice::by_model;  ///< length and step of windows
+  LagChoice length = LagChoice::by_model, step = LagChoice::by_model;  ///< how the length and the step of windows are
+                                                                       ///< set
 };
 
 /// Options of every stage from one configuration file. The option table lists their keys.

@@ -179,7 +179,7 @@ class FileLines {
   const std::filesystem::path& path_;
   Config& config_;
   Origins& origins_;
-  std::map<std::string, int> seen_;  ///< line that sets each key
+  std::map<std::string, int> seen_;  ///< number of the line that sets a key
 };
 
 }  // namespace

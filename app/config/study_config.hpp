@@ -18,7 +18,7 @@ enum class OnFailure { record, stop };
 struct StudyConfig {
   std::vector<std::string> vary;      ///< "KEY = v1 | v2" for each varied key
   std::vector<std::string> together;  ///< "KEY, KEY": keys whose values change together
-  std::vector<std::string> when;      ///< "KEY if OTHER = v1 | v2"
+  std::vector<std::string> when;      ///< "KEY if OTHER = v1 | v2": KEY is varied only if OTHER has one of these values
   std::int64_t sample = 0;            ///< number of sampled points; 0: the full grid
   std::int64_t repeats = 1;
   std::string output;  ///< folder of the study; empty: the configuration file's name with .study, in the current folder

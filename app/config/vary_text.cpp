@@ -56,7 +56,7 @@ double number_in(const std::string& text, const std::string& braces) {
 /// A range in braces: low..high, and how it is divided.
 struct Span {
   double low = 0.0, high = 0.0, argument = 0.0;
-  std::string kind;  ///< step, lin, log; or empty
+  std::string kind;  ///< how the span is divided: "step", "lin", "log" or empty
   bool has_argument = false;
 };
 

@@ -31,9 +31,9 @@ struct ExportedBank {
   std::string finding;  ///< the finding on modes of motion; may be empty
   Bank bank;
   std::vector<Channel> measurements;     ///< n_y
-  std::vector<Channel> states;           ///< n, with lagged states
-  std::vector<Channel> inputs;           ///< m, with lagged inputs
-  std::vector<Channel> recorded_inputs;  ///< inputs as recorded
+  std::vector<Channel> states;           ///< n states of the model, with lagged states
+  std::vector<Channel> inputs;           ///< m inputs of the model, with lagged inputs
+  std::vector<Channel> recorded_inputs;  ///< the inputs as recorded, without lags
   double input_lag_s = 0.0;              ///< time by which the bank uses its inputs earlier than recorded
   std::vector<std::string> mode_names;   ///< K
   std::vector<double> use;               ///< K, mean probability of each mode on judged runs; empty for competitors

@@ -14,7 +14,7 @@ struct Decay {
   double time_constant_s =
       0.0;  ///< -dt / log |lambda|; infinite for an integrator, negative for growth, 0 if it decays at once
   double frequency_hz = 0.0;           ///< |arg lambda| / (2 pi dt); for a negative real lambda half the sample rate
-  double time_constant_error_s = 0.0;  ///< standard error; NaN if unknown
+  double time_constant_error_s = 0.0;  ///< standard error of time_constant_s; NaN if unknown
 };
 
 /// How the state of a mode responds to a step of its inputs.

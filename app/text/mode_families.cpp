@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double near_errors = 2.0;  // in standard errors of the difference
+constexpr double near_errors = 2.0;  // largest distance of near modes, in standard errors of the difference
 
 /// Numbers by which families differ: a mode's slowest time constant, then the gains that the data determine.
 struct ModeNumbers {

@@ -48,7 +48,7 @@ struct ModeFamily {
 /// Decays and gains that the training runs leave unidentifiable (mode_words.hpp).
 struct OpenNumbers {
   bool decays = false;
-  std::vector<bool> gains;  ///< states x inputs, row by row
+  std::vector<bool> gains;  ///< for each gain (states x inputs, row by row)
 };
 std::vector<ModeFamily> mode_families(const Bank& bank, const std::vector<std::string>& names,
                                       const std::vector<UsedMode>& modes, const OpenNumbers& open);

@@ -100,7 +100,7 @@ const Reached* best_of(const std::vector<Reached>& all) {
   return best_single(all, is_single);
 }
 
-constexpr double worth_a_name = 0.02;  // relative to an error
+constexpr double worth_a_name = 0.02;  // smallest saved fraction of the error for which a filter is named
 
 /// Names the filter with the smallest error, if its error is smaller than the chosen filter's error by this fraction.
 void name_point(const std::vector<Reached>& all, const Reached& chosen, NamedForecast& forecast) {
@@ -216,8 +216,8 @@ std::string steps_words(Index steps) { return fmt::format("{} step{} ahead", ste
 
 /// Text such as "; least error 10 steps ahead: `baseline` (4 % less)".
 std::string least_errors(const std::vector<NamedForecast>& forecasts) {
-  constexpr double worth_a_line = 0.05;  // relative to an error; on the screen, the line takes the place of a mode's
-                                         // line
+  constexpr double worth_a_line = 0.05;  // smallest saved fraction of an error that is worth a line; on the screen,
+                                         // this line takes the place of a mode's line
   std::string text;
   for (const NamedForecast& forecast : forecasts)
     if (forecast.point_gain > worth_a_line)

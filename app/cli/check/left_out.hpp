@@ -22,7 +22,7 @@ struct LeftOutPlan {
 LeftOutPlan plan_left_out(const DataCheck& check);
 
 struct LeftOut {
-  std::vector<LeftOutRun> runs;  ///< in the order of the plan
+  std::vector<LeftOutRun> runs;  ///< the predicted runs, in the order of the plan
   double period_s = 0.0;         ///< median time between samples
   std::string problem;           ///< reason why no bank was learned; empty if one was
 };

@@ -31,7 +31,7 @@ class LogConfiguration {
  private:
   Proposal proposal_;
   std::string command_;
-  std::vector<KeyEdit> edits_;  ///< keys of other sections
+  std::vector<KeyEdit> edits_;  ///< keys of sections other than [data]
 };
 
 }  // namespace modebank::app

@@ -42,7 +42,7 @@ class TrialStore {
   /// Trials that have archives, records of failure or claims. The folder is listed, because only a listing makes a
   /// network file system show new files of other machines at once.
   struct Listing {
-    std::set<std::string> archives, failures, claims;  ///< keys of trials
+    std::set<std::string> archives, failures, claims;  ///< keys of the trials that have such a file
   };
   Listing list() const;
   /// Lists the folders of the study, so that a network file system shows new files.

@@ -215,7 +215,7 @@ TEST(ExportedRos2, AFamilyIsOneFileOfMeansByUse) {
   EXPECT_NEAR(drive.at("left_wheel_radius_multiplier"), Robot().left, 1e-9);
   const json noise = read_yaml(text).at("ekf_filter_node").at("ros__parameters").at("process_noise_covariance");
   EXPECT_NEAR(noise[11 * 15 + 11].get<double>() * Robot().dt_s, (0.7 * 4e-4 + 0.2 * 8e-4) / 0.9, 1e-12);
-  EXPECT_THAT(text, HasSubstr(", its modes 0.008 to 0.016"));  // each is Q / dt_s
+  EXPECT_THAT(text, HasSubstr(", its modes 0.008 to 0.016"));  // each value is Q / dt_s
 }
 
 /// Both modes have precise widths, so the standard error comes only from their difference. For 1 / width it is (1 /

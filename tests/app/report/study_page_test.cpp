@@ -58,7 +58,7 @@ TEST(StudyPage, TheTableComesBackFromItsColumns) {
 
 TEST(StudyPage, ATableThatIsNoStudysSaysWhatIsMissing) {
   StudyFile file = file_of(example_table());
-  file.columns.erase(file.columns.begin() + 4);  // removes the status
+  file.columns.erase(file.columns.begin() + 4);  // removes the column of the status
   try {
     app::report::study_table_of(file);
     FAIL() << "no error";
