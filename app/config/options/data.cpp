@@ -42,7 +42,7 @@ Option skip_rows_option() {
   return result;
 }
 
-/// data.quantum: one number per state, or a word.
+/// data.quantum: numbers, or a word.
 Option quantum_option() {
   Option result =
       numeric("data.quantum", each(above(0)), "state unit",

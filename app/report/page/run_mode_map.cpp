@@ -131,7 +131,7 @@ Eigen::VectorXd axis_values(const Eigen::VectorXd& seen, Index points) {
 
 json numbers(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
 
-/// The share of each mode along one feature.
+/// The share of time in each mode, along one feature.
 json lines(const Bank& bank, Index feature, const Eigen::VectorXd& along) {
   Eigen::MatrixXd shares(bank.mode_count(), along.size());
   Eigen::VectorXd z = bank.transition_logit.reference;

@@ -5,7 +5,7 @@
 namespace modebank::app {
 namespace {
 
-/// A column with `value_of` each element.
+/// A column with the result of `value_of` for each element.
 template <class T, class F>
 NamedColumn column_from(const std::string& name, const std::vector<T>& elements, F value_of) {
   using Value = std::decay_t<decltype(value_of(elements.front()))>;

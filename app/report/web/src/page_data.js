@@ -9,7 +9,7 @@ const types = {
   share: [Uint16Array, 2],
 };
 const nobody = 65535;  // code for an unknown share
-const whole = 65534;   // code for the share 1
+const whole = 65534;   // code for a share of 1
 const unpacked = new Map();
 
 function bytesOf(base64) {
