@@ -101,7 +101,7 @@ class Chain {
   const Listener& listener_;
   const MemoryTables* memory_;
   Archive archive_;
-  ImportedData data_;  ///< files and hash of the recording
+  ImportedData data_;  ///< files and hash of the recording, as imported
   ChainInputs inputs_;
   StageKeys wanted_, held_;
   std::array<double, stage_count> seconds_{};

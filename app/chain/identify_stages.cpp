@@ -12,7 +12,8 @@
 namespace modebank {
 
 bool streams_windows(const Recording& recording, const WindowInputs& inputs) {
-  constexpr Index in_memory = 1000000;  // about 150 MB for a model with three parameters
+  constexpr Index in_memory = 1000000;  // largest number of windows in memory: about 150 MB for a model with three
+                                        // parameters
   return count_windows(recording, inputs.window) > in_memory;
 }
 

@@ -20,7 +20,7 @@
 namespace modebank {
 namespace {
 
-/// A filter, and the filter to score: `bank` itself, or a bank of the same sizes.
+/// A filter to score: `bank` itself, or another bank with the same sizes.
 struct Scored {
   const std::string& name;
   const Bank& bank;
@@ -128,8 +128,8 @@ FilterScores score_runs(const Scored& scored, std::vector<FreeRun> free_runs, Ev
 }  // namespace
 
 bool streams_evaluations(const Recording& recording) {
-  constexpr Index most_in_memory = 500000;  // samples; the evaluations of all filters and the image of the file then
-                                            // need about 0.8 GB
+  constexpr Index most_in_memory = 500000;  // largest number of samples; all filters' evaluations and the file's image
+                                            // then need about 0.8 GB
   return recording.transitions(Role::train) + recording.transitions(Role::test) > most_in_memory;
 }
 

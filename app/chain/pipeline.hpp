@@ -26,8 +26,8 @@ void check_request(const std::string& command, const Config& config, const std::
                    const MemoryTables* memory = nullptr);
 
 /// Runs the chain's stages up to `last`, writes the result to `output` and returns the archive. If `banks` is not
-/// empty, scores the banks of that archive instead. Evaluations that do not fit into memory are written at once; the
-/// returned archive then lacks them.
+/// empty, scores the banks of that archive instead. Evaluations that do not fit into memory are written at once, and
+/// the returned archive does not contain them.
 const Archive& run_and_write(Chain& chain, const ChainOptions& options, Stage last, const std::string& banks,
                              const Execution& execution, const std::filesystem::path& output);
 

@@ -124,7 +124,7 @@ void Tracker::step(const TimedSample& sample) {
 void Tracker::write(const TimedSample& sample, const FilterEstimate& estimate, const ValidityFlags& flags) {
   if (!config_.track.forecast)
     return writer_->line(run_, sample.time_s, estimate, judge_.judge(estimate), flags, nullptr, out_);
-  made_ = estimate;  // keep a copy, from which the filter forecasts
+  made_ = estimate;  // a copy, because the forecast below overwrites `estimate`
   const double now_s = std::max(sample.time_s, samples_.newest_s());
   const bool ahead = now_s > sample.time_s && filter_.started();
   const Forecast forecast{now_s, forecast_judge_.judge(ahead ? filter_.forecast(now_s, sample.input) : made_)};

@@ -52,7 +52,7 @@ class Tracker {
   AnyFilter& filter_ = *opened_.filter;
   LiveJudge judge_, forecast_judge_;
   ValidityJudge validity_;
-  FilterEstimate made_;  ///< the last estimate, from which forecasts are made
+  FilterEstimate made_;  ///< copy of the last estimate, because a forecast overwrites the filter's own estimate
   SampleReader reader_;
   std::optional<EstimateWriter> writer_;
   std::string identity_, run_, place_;

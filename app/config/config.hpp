@@ -64,7 +64,8 @@ struct SimulateConfig {
 /// How the number of lags, the delay or the length of windows is set.
 enum class LagChoice { by_model, automatic, number };
 
-/// Whether the number is searched for. `by_model`: what the model decides if the configuration does not state the key.
+/// Whether the number is searched for. `by_model`: the answer if the configuration does not state the key, so that the
+/// model decides.
 inline bool is_automatic(LagChoice choice, bool by_model) {
   return choice == LagChoice::automatic || (choice == LagChoice::by_model && by_model);
 }

@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double least_resolved = 0.25;  // in sample periods; the data cannot resolve a shorter time constant
+constexpr double least_resolved = 0.25;  // smallest time constant that the data resolve, in sample periods
 
 /// Intermediate results that several parts of the report use.
 struct Material {
