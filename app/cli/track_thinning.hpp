@@ -22,7 +22,7 @@ class SampleThinning {
                                     // sample
     spacing_s_ += weight * (std::min(since_s_, 2.0 * period_s_) - spacing_s_);  // the limit makes the effect of a gap
                                                                                 // on the rate small
-    if (!thins()) return begin(time_s, spacing_s_);  // only jitter
+    if (!thins()) return begin(time_s, spacing_s_);                             // only jitter
     const double late_s = time_s - due_s_;
     if (late_s < -0.5 * spacing_s_) return false;
     constexpr double follows = 0.1;  // the steps follow the stamps by this fraction, so that 10.1 Hz is accepted for 10
