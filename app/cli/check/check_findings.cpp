@@ -214,7 +214,7 @@ std::string rate_reason(const Advice& advice) {
 }
 
 std::string length_reason(const Advice& advice) {
-  if (advice.length.length == 0) return "no run is long enough for any length";
+  if (advice.length.length == 0) return "every run is too short for even the shortest window";
   if (advice.length.enough)
     return fmt::format("the shortest with at most a fifth of the windows rank deficient ({:.0f} %)",
                        percent * advice.length.deficient);
