@@ -31,7 +31,8 @@ const turns = [
 ];
 
 /**
- * The colour of a mode that has `turn` more used ones of its family before it; `hue`: the family's place in the palette.
+ * The colour of a mode that has `turn` more used ones of its family before it; `hue`: the family's place in the
+ * palette.
  */
 export function hueColour(palette, hue, turn) {
   const base = usedColour(palette, hue), [towards, share] = turns[turn % turns.length];

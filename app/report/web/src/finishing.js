@@ -19,7 +19,8 @@ export async function finishWhenIdle(tasks) {
   for (const {finish, place} of tasks) {
     await whenIdle();
     if (place && !place.offsetParent) continue;
-    await Promise.resolve(finish()).catch(() => null);  // errors are ignored here: the drawing code has already reported them
+    await Promise.resolve(finish()).catch(
+        () => null);  // errors are ignored here: the drawing code has already reported them
   }
   document.documentElement.dataset.finished = 'true';
 }

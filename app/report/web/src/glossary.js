@@ -16,7 +16,8 @@ export class Glossary {
   constructor(terms) {
     const named = terms.flatMap(({term, also, means}) => [term, ...also].map((name) => [name, means]));
     const lower = named.map(([name, means]) => [name.toLowerCase(), means]);
-    this.meanings = new Map([...lower, ...named]);  // exact spellings overwrite lower case, because Q and q are two terms
+    this.meanings =
+        new Map([...lower, ...named]);  // exact spellings overwrite lower case, because Q and q are two terms
     this.anyTerm = anyOf(lower.map(([name]) => name));
   }
 

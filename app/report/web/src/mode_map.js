@@ -67,5 +67,6 @@ export function modeMapFigure(bank) {
   const keys = groupsOf(bank).map(({name, colour}) => [colour, name]);
   return figure(
       'Which states and inputs belong to which mode',
-      () => ({panels: [modeMap.one ? lines(bank) : map(bank)], height: 340, legend: keys}), `${means}${rest} ${points}`);
+      () => ({panels: [modeMap.one ? lines(bank) : map(bank)], height: 340, legend: keys}),
+      `${means}${rest} ${points}`);
 }

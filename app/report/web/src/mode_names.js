@@ -7,8 +7,8 @@ let toldCount = Infinity;
 let groups = [];
 
 /**
- * `list`: the name of each mode, '' where it has none; `order`: all modes, those of the most used family first, of which
- * `told` stand one by one; `families`: {title, modes}, the most used first.
+ * `list`: the name of each mode, '' where it has none; `order`: all modes, those of the most used family first, of
+ * which `told` stand one by one; `families`: {title, modes}, the most used first.
  */
 export function nameModes(list, order = [], told = Infinity, families = order.map((mode) => ({modes: [mode]}))) {
   names = list;

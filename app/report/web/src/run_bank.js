@@ -58,7 +58,8 @@ function familyTable(bank) {
     {name: 'Time constant', of: (row) => row.decays},
     ...gains(bank),
   ];
-  const means = 'means over the modes, weighted by use; ± includes the errors of the modes and the differences between them';
+  const means =
+      'means over the modes, weighted by use; ± includes the errors of the modes and the differences between them';
   return table(columns, rows, {caption: `Families of modes, most used first (${means})`, sortable: true});
 }
 

@@ -2,8 +2,8 @@
 import {details, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {transitionGraph} from './graph.js';
-import {modeMapFigure} from './mode_map.js';
 import {modeColour, palette} from './look.js';
+import {modeMapFigure} from './mode_map.js';
 import {modeCell, modeTitle} from './mode_names.js';
 import {familiesOf, othersName} from './modes.js';
 import {table} from './table.js';
@@ -66,7 +66,9 @@ export function switching(bank) {
   return [
     switchMap(bank),
     h('h3', {}, 'How modes follow each other'),
-    folded ? h('p', {class: 'caption'}, 'Modes of one family are one node, and so are all that are hardly used; the matrix has each mode.') : null,
+    folded ? h('p', {class: 'caption'},
+               'Modes of one family are one node, and so are all that are hardly used; the matrix has each mode.') :
+             null,
     bank.switch_weights ? movedSwitches() : null,
     h('div', {class: 'pair'}, h('div', {}, transitionGraph(bank.folded, nodes)),
       stays ? h('div', {}, h('h3', {}, 'How long they last'), stayTable(bank)) : null),

@@ -34,11 +34,11 @@ function modesTable(modes) {
   const families = modes.families < modes.count ? ` in ${modes.families} ${noun}` : '';
   const title = `${modes.count} mode${modes.count === 1 ? '' : 's'}${families}${unit}`;
   const columns = modes.headings.map((name, i) => ({
-                             name,
-                             text: i === 0,
-                             of: (row) => breakable(row.cells[i]),
-                             swatch: i === 0 ? (row) => modeColour(row.modes[0]) : null,
-                           }));
+                                       name,
+                                       text: i === 0,
+                                       of: (row) => breakable(row.cells[i]),
+                                       swatch: i === 0 ? (row) => modeColour(row.modes[0]) : null,
+                                     }));
   const head = h('tr', {}, columns.map((column) => headingOf(column, {}, column.name)));
   const body = modes.rows.map((row) => h('tr', {}, columns.map((column) => cellOf(column, row))));
   const caption = h('caption', {}, title);

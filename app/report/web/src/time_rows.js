@@ -37,7 +37,8 @@ async function toldBand(filter, i, k, entry) {
 
 async function predictionTraces(layer, filter, i, {clock, shown}) {
   const edges = {
-    center: (filter.center || filter.prediction)[i],  // the band of a free run need not be symmetric about the prediction
+    center:
+        (filter.center || filter.prediction)[i],  // the band of a free run need not be symmetric about the prediction
     half: filter.half_width[i],
     lowest: filter.lower[i],
     highest: filter.upper[i],

@@ -1,8 +1,9 @@
 // State that all time plots of a page share.
 import {clock} from './signals.js';
 
-const fewest_samples = 4;    // smallest number of visible samples
-const around_samples = 200;  // after a jump from the view of the whole run, the view shows this number of samples on each side
+const fewest_samples = 4;  // smallest number of visible samples
+const around_samples =
+    200;  // after a jump from the view of the whole run, the view shows this number of samples on each side
 
 /**
  * @typedef {{refresh: () => Promise<unknown>, point?: () => void}} View a plot, a field or the link, which shows the\n

@@ -61,8 +61,8 @@ test('the coarsest stored level that is fine enough is read', async () => {
   const n = 64000, even = await evenClock(n), of = (length, v) => new Float32Array(length).fill(v);
   const levels =
       [[16, 1], [64, 2], [256, 3]].map(([bucket, v]) => ({bucket, low: of(n / bucket, v), high: of(n / bucket, v)}));
-  const drawn =
-      await line({raw: of(n, 0), levels}, even, view(even, [0, (n - 1) * period], 1000));  // here a bucket has 64 samples
+  const drawn = await line(
+      {raw: of(n, 0), levels}, even, view(even, [0, (n - 1) * period], 1000));  // here a bucket has 64 samples
   assert.equal(drawn.y[0], 2);
   assert.equal(drawn.per, 64);
 });
