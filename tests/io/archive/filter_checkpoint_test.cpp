@@ -32,7 +32,7 @@ TEST(FilterCheckpoint, D16ACheckpointThatWasChangedIsRefused) {
   text.replace(text.find("-0.0164"), 2, "-9");
   write_file(checkpoint, text);
   EXPECT_THAT([&] { load_checkpoint(checkpoint, "one"); },
-              ThrowsMessage<DataError>(HasSubstr("its SHA-256 is another")));
+              ThrowsMessage<DataError>(HasSubstr("its SHA-256 does not match")));
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ TEST(Csv, TheFirstErrorOfTheFileIsReported) {
 
 TEST(Csv, EmptyFile) {
   for (const char* content : {"", "\n", " \n\t\n", "\r\n\r\n", "\xEF\xBB\xBF", "\xEF\xBB\xBF\n"})
-    EXPECT_EQ(message_of<ConfigurationError>([&] { parse(content); }), "f.csv is empty: no header");
+    EXPECT_EQ(message_of<ConfigurationError>([&] { parse(content); }), "f.csv is empty, so it has no header");
 }
 
 TEST(Csv, MissingAndRepeatedColumns) {

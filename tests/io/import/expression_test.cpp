@@ -132,25 +132,25 @@ TEST(Expression, SaysWhereItIsNone) {
   EXPECT_THAT(error("v *"), HasSubstr("ends too early"));
   EXPECT_THAT(error("v * * 2"), HasSubstr("at character 5 (\"* 2\")"));
   EXPECT_THAT(error("long_name + (2"), HasSubstr("a parenthesis is not closed"));
-  EXPECT_THAT(error("a + 2)"), HasSubstr("at character 6 (\")\"): closes"));
+  EXPECT_THAT(error("a + 2)"), HasSubstr("at character 6 (\")\"): this closes"));
   EXPECT_THAT(error("a b"), HasSubstr("at character 3 (\"b\"): an operator is missing"));
   EXPECT_THAT(error("tan(a, b)"), HasSubstr("too many arguments"));
   EXPECT_THAT(error("atan2(a)"), HasSubstr("too few arguments"));
   EXPECT_THAT(error("sine(a)"), HasSubstr("at character 1 (\"sine(a)\"): no function sine, did you mean"));
   EXPECT_THAT(error("a = 2"), HasSubstr("a comparison is =="));
   EXPECT_THAT(error("a ? 1"), HasSubstr("needs its : B"));
-  EXPECT_THAT(error("'a"), HasSubstr("does not end"));
+  EXPECT_THAT(error("'a"), HasSubstr("no closing quote"));
   EXPECT_THAT(error("2v"), HasSubstr("at character 1 (\"2v\"): a number and a name need an operator"));
   EXPECT_THAT(error("diff()"), HasSubstr("diff needs an argument"));
   EXPECT_THAT(error("1 + diff(a, b)"), HasSubstr("at character 11 (\", b)\"): a comma"));
   EXPECT_THAT(error("1e999"), HasSubstr("fit a double"));
-  EXPECT_THAT(error("\"text\""), HasSubstr("neither number"));
-  EXPECT_THAT(error("a; system(1)"), HasSubstr("neither number"));
+  EXPECT_THAT(error("\"text\""), HasSubstr("neither a number"));
+  EXPECT_THAT(error("a; system(1)"), HasSubstr("neither a number"));
 }
 
 TEST(Expression, BoundsWhatIsHostile) {
   EXPECT_THAT(error(std::string(3000, '-') + "1"), HasSubstr("at most 2000"));
-  EXPECT_THAT(error(std::string(60, '(') + "1" + std::string(60, ')')), HasSubstr("more than 50 parentheses"));
+  EXPECT_THAT(error(std::string(60, '(') + "1" + std::string(60, ')')), HasSubstr("more than 50 deep"));
   std::string deep = "x";
   for (int i = 0; i < 60; ++i) deep = "diff(" + deep + ")";
   EXPECT_THAT(error(deep), HasSubstr("more than 50"));

@@ -134,7 +134,7 @@ TEST_F(ImportDerived, NamesWhatIsWrongBeforeAnySampleIsRead) {
   EXPECT_THAT(said({"x = y"}), HasSubstr("imu_0.csv already has a column of that name"));
   EXPECT_THAT(said({"a"}), HasSubstr("there is no = after the name; expected NAME [unit] = EXPRESSION"));
   EXPECT_THAT(said({"a [m = x"}), HasSubstr("bracket of the unit is not closed"));
-  EXPECT_THAT(said({"1a = x"}), HasSubstr("no name"));
+  EXPECT_THAT(said({"1a = x"}), HasSubstr("the name is missing"));
   EXPECT_THAT(said({"a = 2"}), HasSubstr("no channel is named"));
   EXPECT_THAT(said({}, "x > xx"), HasSubstr("data.where: no column \"xx\""));
   EXPECT_THAT(said({}, "x = 2"), HasSubstr("data.where: at character 3"));

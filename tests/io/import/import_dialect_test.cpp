@@ -437,7 +437,7 @@ TEST_F(ImportDialect, DisorderIsExplained) {
   EXPECT_THAT(error<DataError>(), HasSubstr("data.time = stamp.secs, stamp.nsecs"));
   write("log.csv", table("time,x,u\n", [&](int k) { return fmt::format("{},{},{}", 0.1 * (k % 20), 1, 2); }));
   options.time = {"time"};
-  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:22:"), HasSubstr("data.run = ")));
+  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:22:"), HasSubstr("data.run")));
 }
 
 TEST_F(ImportDialect, BytesOfNoFormatAndAWrongSeparatorAreNamed) {
@@ -472,7 +472,7 @@ TEST_F(ImportDialect, FormatsThatAreKnownButNotRead) {
                                     {"version https://git-lfs.github.com/spec/v1\noid sha256:9b", "Git LFS pointer"},
                                     {"/annex/objects/SHA256E-s100--9b.csv\n", "git annex get"}}) {
     write("log.csv", magic);
-    EXPECT_THAT(error<ConfigurationError>(), AllOf(HasSubstr(name), HasSubstr("not read here; ")));
+    EXPECT_THAT(error<ConfigurationError>(), AllOf(HasSubstr(name), HasSubstr("which modebank does not read; ")));
   }
 }
 

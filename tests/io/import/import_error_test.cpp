@@ -44,7 +44,7 @@ TEST_F(ImportError, RepeatedColumn) {
 TEST_F(ImportError, EmptyFile) {
   for (const char* content : {"", "\n \n"}) {
     write("imu_1.csv", content);
-    EXPECT_EQ(error<ConfigurationError>(), path("imu_1.csv") + " is empty: no header");
+    EXPECT_EQ(error<ConfigurationError>(), path("imu_1.csv") + " is empty, so it has no header");
   }
 }
 

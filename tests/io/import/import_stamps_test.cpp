@@ -121,7 +121,7 @@ TEST_F(ImportStamps, OneUnitForAllFilesOfAPattern) {
     EXPECT_NEAR(runs[1].time_s(1) - runs[1].time_s(0), (late > 10'000 ? 1e-6 : 1e-3) * late, 1e-9);
   }
   write("px4_late.csv", table("timestamp", [](int k) { return fmt::to_string(1'700'000'000 + k); }));
-  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("px4_early.csv:2"), HasSubstr("counts milliseconds"),
+  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("px4_early.csv:2"), HasSubstr("look like milliseconds"),
                                         HasSubstr("px4_late.csv:2"), HasSubstr("data.time_unit = UNIT")));
 }
 
@@ -252,7 +252,7 @@ TEST_F(ImportStamps, RowsFromBeforeTheClockWasSetAreLeftOut) {
     const ImportedData data = import();
     ASSERT_EQ(data.recording.runs.at(0).samples(), stamped_rows - 5);
     EXPECT_EQ(data.recording.runs[0].time_origin_ns, 1'700'000'000'500'000'000);
-    EXPECT_THAT(data.notes, Contains(AllOf(HasSubstr("5 rows are stamped before the clock was set"),
+    EXPECT_THAT(data.notes, Contains(AllOf(HasSubstr("5 rows are left out, stamped before the clock was set"),
                                            HasSubstr("log.csv:6: 0"), HasSubstr("then 1700000000.5 s"))));
   }
   write("log.csv", table("time", [](int k) { return fmt::format("{:.1f}", k < 200 ? 0.1 * k : 1.7e9 + 0.1 * k); }));

@@ -84,12 +84,12 @@ TEST_F(ImportLabel, OfEveryRowAnotherIsNone) {
   write("imu_a.csv", imu);
   write("pro_a.csv", pro);
   options.train = options.test = {};
-  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("data.label = ground holds 100 distinct values in 100 samples"));
+  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("data.label = ground has 100 distinct values in 100 samples"));
   for (int k = 100; k < 400; ++k) few += fmt::format("{0},{0},{1}\n", k, k % 40);
   for (int k = 100; k < 400; ++k) imu += fmt::format("{0},{0}\n", k);
   write("imu_a.csv", imu);
   write("pro_a.csv", few);
-  EXPECT_THAT(import().notes, ::testing::Contains(HasSubstr("40 distinct values in 400 samples: is it a label")));
+  EXPECT_THAT(import().notes, ::testing::Contains(HasSubstr("40 distinct values in 400 samples; check that it is a label")));
 }
 
 TEST_F(ImportLabel, TheLastOneHoldsThroughGapsAndRates) {

@@ -182,7 +182,7 @@ TEST_F(SimulationWriter, ReplacesSimulatedRunsAlone) {
   write_simulation({make_run(4, 0)}, layout);
   std::filesystem::remove(layout.folder / "pro_00.csv");
   EXPECT_THAT(test::message_of<ConfigurationError>([&] { write_simulation({make_run(9, 1)}, layout); }),
-              HasSubstr("imu_00.csv is there"))
+              HasSubstr("imu_00.csv exists"))
       << "nothing shows that it is simulated";
 }
 
@@ -198,7 +198,7 @@ TEST_F(SimulationWriter, LayoutThatDoesNotFit) {
   EXPECT_THAT(error(wrong), HasSubstr("\"mode\" of column"));
   wrong = layout;
   wrong.state_rate_hz = 0;
-  EXPECT_THAT(error(wrong), HasSubstr("rate 0 Hz"));
+  EXPECT_THAT(error(wrong), HasSubstr("is 0 Hz"));
   EXPECT_FALSE(std::filesystem::exists(layout.folder)) << "nothing is made for a layout that does not fit";
 }
 
