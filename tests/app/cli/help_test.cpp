@@ -157,10 +157,10 @@ TEST_F(Help, ErrorsAreColouredOnATerminalAlone) {
     return run_program({"script", "-qc", variables + " TERM=xterm " + MODEBANK_PROGRAM + " run no.ini", "/dev/null"})
         .out;
   };
-  const std::string coloured = "\x1b[1;31mmodebank:\x1b[0m no.ini: ";
+  const std::string coloured = "\x1b[1;31mmodebank:\x1b[0m cannot read the configuration no.ini";
   EXPECT_NE(on_terminal("").find(coloured), std::string::npos) << on_terminal("");
   EXPECT_EQ(on_terminal("NO_COLOR=1").find("\x1b[1"), std::string::npos) << on_terminal("NO_COLOR=1");
-  EXPECT_EQ(modebank({"run", "no.ini"}).err.find("modebank: no.ini: "), 0u);
+  EXPECT_EQ(modebank({"run", "no.ini"}).err.find("modebank: cannot read the configuration no.ini"), 0u);
 }
 
 TEST_F(Help, ConfigSaysWhereEachValueComesFromAndIsAConfiguration) {

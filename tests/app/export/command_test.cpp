@@ -119,9 +119,9 @@ TEST_F(Export, ModesHaveTheirFamily) {
   write_archive(archive(), stored);
   const json page = json::parse(exported("json").out), regimes = json::parse(exported("regimes").out);
   const json& families = page.at("families");
-  ASSERT_EQ(families.size(), 2u);
+  ASSERT_EQ(families.size(), stored.bank->mode_count() > 1 ? 2u : 1u);
   EXPECT_EQ(regimes.at("families"), families);
-  EXPECT_GE(families.at(0).at("used"), families.at(1).at("used"));
+  EXPECT_GE(families.front().at("used"), families.back().at("used"));
   double used = 0.0;
   for (const json& family : families) {
     used += family.at("used").get<double>();
@@ -149,7 +149,7 @@ TEST_F(Export, CsvIsAnyTableAsItStands) {
   EXPECT_EQ(exported("csv").status, 2);
   const ProgramResult group = exported("csv", {"--table", "/evaluation"});
   EXPECT_EQ(group.status, 2);
-  EXPECT_THAT(group.err, HasSubstr("it holds: bank"));
+  EXPECT_THAT(group.err, HasSubstr("its members are: bank"));
 }
 
 TEST_F(Export, CsvOfARunHasARowPerSample) {

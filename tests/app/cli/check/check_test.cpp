@@ -18,7 +18,7 @@ TEST_F(Check, PrintsAPageAndTheSameNumbersAsJson) {
   const ProgramResult page = modebank({"check", config(), "--data.root", file(".").string()});
   ASSERT_EQ(page.status, 0) << page.err;
   for (const char* part :
-       {"data check: 2 runs", "channel", "findings", "suggested, by stretches of 1 training run left out"})
+       {"data check: 2 runs", "channel", "findings", "suggested, by parts of 1 training run left out"})
     EXPECT_THAT(page.out, HasSubstr(part));
   const json check = check_json(config(), {"--data.root", file(".").string()});
   EXPECT_TRUE(check.at("usable").get<bool>());
