@@ -37,7 +37,7 @@ class StructureOfRuns : public CliTest {
 TEST_F(StructureOfRuns, IsInTheArchiveWithItsScoresAndInWhatIsPrinted) {
   const ProgramResult result = run_automatic();
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("\nstructure "), HasSubstr("left out")));
+  EXPECT_THAT(result.out, AllOf(HasSubstr("\nstructure "), HasSubstr("left-out")));
   const Archive made = read_archive(archive());
   ASSERT_TRUE(made.structure.has_value());
   const FoundStructure& found = *made.structure;

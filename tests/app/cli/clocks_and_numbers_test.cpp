@@ -199,7 +199,7 @@ TEST_F(ClocksAndNumbers, Finding_D16_AFewOutliersAndThoseHeldOutAreNamed) {
   EXPECT_THAT(result.err, HasSubstr("run_00.csv:40: run \"00\": wz = -150000 and 2 more hold 100 % of the variance"));
   EXPECT_THAT(result.err,
               HasSubstr("run_01.csv:42: run \"01\": wz = 1e+06 holds 100 % of the variance of wz in the held-out "
-                        "runs: so it dominates scores and errors"));
+                        "runs, so it dominates scores and errors"));
 }
 
 TEST_F(ClocksAndNumbers, AColumnWithoutAValueIsNamed) {

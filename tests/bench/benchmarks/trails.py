@@ -18,7 +18,7 @@ def follow(program, config, archive):
     while True:
         summary, more = run(program, config, archive, *options)
         seconds += more
-        proposed = re.search(r"repeat with (--[a-z_.]+) ('[^']*'|[\w.+-]+)", summary["next"])
+        proposed = re.search(r"run CONFIG (--[a-z_.]+) ('[^']*'|[\w.+-]+)", summary["next"])
         if not proposed or len(options) >= 2 * MOST_STEPS:
             return options, summary, seconds
         options += [proposed.group(1), proposed.group(2).strip("'")]
