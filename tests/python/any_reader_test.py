@@ -136,7 +136,7 @@ class AnyReader(unittest.TestCase):
                                 encoding="protobuf", definition_form="protobuf")
         done = subprocess.run([os.environ["MODEBANK_PROGRAM"], "init", "drive.mcap"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("/motion (robot.Motion) cannot be read: its messages are written in \"protobuf\"", done.stderr)
+        self.assertIn("/motion (robot.Motion) cannot be read: its messages have the format \"protobuf\"", done.stderr)
         for line in BLOCKS["mcap"].splitlines():
             self.assertIn(re.sub(r"\s+# .*", "", line).replace("drive.mcap", str(pathlib.Path("drive.mcap").resolve())), done.stderr.splitlines())
 
