@@ -116,7 +116,8 @@ TEST_F(Inspect, OfARunThereAreItsRows) {
   EXPECT_EQ(inspect(path, "/residual_tests/lags", run.run)["value"].size(), 8u);  // 4 lags for each of 2 models
   EXPECT_THAT([&] { inspect(path, "/bank/A", run.run); },
               ThrowsMessage<ConfigurationError>(HasSubstr("/bank/A has nothing by run")));
-  EXPECT_THAT([&] { inspect(path, "/bank", run.run); }, ThrowsMessage<ConfigurationError>(HasSubstr("/bank has nothing by run")));
+  EXPECT_THAT([&] { inspect(path, "/bank", run.run); },
+              ThrowsMessage<ConfigurationError>(HasSubstr("/bank has nothing by run")));
   EXPECT_THAT([&] { inspect(path, "/data/state", "run 3"); },
               ThrowsMessage<ConfigurationError>(AllOf(HasSubstr("no run 'run 3'"), HasSubstr("did you mean run 2"))));
 }

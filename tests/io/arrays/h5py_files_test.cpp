@@ -71,8 +71,9 @@ TEST_F(H5pyFiles, MayHaveADatasetBesideThatWasNeverWritten) {
 
 TEST_F(H5pyFiles, RepeatTheFillValueWhereTheyWereNeverWritten) {
   options.inputs = "zeros.h5";
-  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("zeros.h5:21: column time: time goes backwards or repeats: 0 after 4.75"),
-                                        HasSubstr("rows 21 to 40 were never written")));
+  EXPECT_THAT(error<DataError>(),
+              AllOf(HasSubstr("zeros.h5:21: column time: time goes backwards or repeats: 0 after 4.75"),
+                    HasSubstr("rows 21 to 40 were never written")));
   options.disorder = Disorder::sort;
   EXPECT_THAT(expect_samples("zeros.h5").notes,
               Contains(HasSubstr("rows 21 to 40 of wz, a, time were never written, so they read as the file's fill")));

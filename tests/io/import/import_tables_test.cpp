@@ -89,7 +89,8 @@ TEST_F(ImportLabel, OfEveryRowAnotherIsNone) {
   for (int k = 100; k < 400; ++k) imu += fmt::format("{0},{0}\n", k);
   write("imu_a.csv", imu);
   write("pro_a.csv", few);
-  EXPECT_THAT(import().notes, ::testing::Contains(HasSubstr("40 distinct values in 400 samples; check that it is a label")));
+  EXPECT_THAT(import().notes,
+              ::testing::Contains(HasSubstr("40 distinct values in 400 samples; check that it is a label")));
 }
 
 TEST_F(ImportLabel, TheLastOneHoldsThroughGapsAndRates) {
