@@ -26,12 +26,12 @@ struct ModeNumbers {
 
 /// Whether some state has no gain that exceeds its standard error. The data then do not determine the response of this
 /// state.
-bool has_vague_response(const ModeDynamics& dynamics, const OpenNumbers& open) {
+bool has_vague_response(const ModeDynamics& dynamics, const UnidentifiableNumbers& unidentifiable) {
   const Index states = dynamics.gain.rows(), inputs = dynamics.gain.cols();
   for (Index i = 0; i < states; ++i) {
     bool any = false, told = false;
     for (Index j = 0; j < inputs; ++j) {
-      if (open.gains[static_cast<std::size_t>(i * inputs + j)]) continue;
+      if (unidentifiable.gains[static_cast<std::size_t>(i * inputs + j)]) continue;
       any = true;
       told = told || std::abs(dynamics.gain(i, j)) > dynamics.gain_error(i, j);
     }
@@ -40,11 +40,11 @@ bool has_vague_response(const ModeDynamics& dynamics, const OpenNumbers& open) {
   return false;
 }
 
-ModeNumbers numbers_of_mode(const Bank& bank, Index mode, const OpenNumbers& open) {
+ModeNumbers numbers_of_mode(const Bank& bank, Index mode, const UnidentifiableNumbers& unidentifiable) {
   ModeNumbers numbers{mode_dynamics(bank, mode), {}, {}, false, false};
   const ModeDynamics& dynamics = numbers.dynamics;
   std::vector<double> values, errors;
-  if (!open.decays && !dynamics.decays.empty()) {
+  if (!unidentifiable.decays && !dynamics.decays.empty()) {
     const Decay& slowest = dynamics.decays.front();
     values.push_back(slowest.time_constant_s);
     errors.push_back(slowest.time_constant_error_s);
@@ -54,14 +54,14 @@ ModeNumbers numbers_of_mode(const Bank& bank, Index mode, const OpenNumbers& ope
   }
   for (Index i = 0; i < dynamics.gain.rows(); ++i)
     for (Index j = 0; j < dynamics.gain.cols(); ++j) {
-      if (open.gains[static_cast<std::size_t>(i * dynamics.gain.cols() + j)]) continue;
+      if (unidentifiable.gains[static_cast<std::size_t>(i * dynamics.gain.cols() + j)]) continue;
       values.push_back(dynamics.gain(i, j));
       errors.push_back(dynamics.gain_error(i, j));
     }
   numbers.values = Eigen::Map<const VectorXd>(values.data(), std::ssize(values));
   numbers.errors = Eigen::Map<const VectorXd>(errors.data(), std::ssize(errors));
   numbers.vague = numbers.vague || values.empty() || !numbers.values.allFinite() || !numbers.errors.allFinite() ||
-                  has_vague_response(dynamics, open);
+                  has_vague_response(dynamics, unidentifiable);
   return numbers;
 }
 
@@ -183,11 +183,14 @@ void set_numbers(const std::vector<ModeNumbers>& numbers, ModeFamily& family) {
 
 }  // namespace
 
-PooledNumber pooled_number(const VectorXd& values, const VectorXd& errors, const VectorXd& weights) {
+VectorXd shares_of(const VectorXd& weights) {
   const double sum = weights.sum();
-  const VectorXd w = sum > 0.0
-                         ? VectorXd(weights / sum)
-                         : VectorXd(VectorXd::Constant(weights.size(), 1.0 / static_cast<double>(weights.size())));
+  const auto count = static_cast<double>(weights.size());
+  return sum > 0.0 ? VectorXd(weights / sum) : VectorXd(VectorXd::Constant(weights.size(), 1.0 / count));
+}
+
+PooledNumber pooled_number(const VectorXd& values, const VectorXd& errors, const VectorXd& weights) {
+  const VectorXd w = shares_of(weights);
   const double mean = w.dot(values);
   const double variance = w.dot(errors.cwiseAbs2()) + w.dot((values.array() - mean).square().matrix());
   return {mean, std::sqrt(variance)};
@@ -205,9 +208,9 @@ std::string ModeFamily::numbers(std::size_t most) const {
 }
 
 std::vector<ModeFamily> mode_families(const Bank& bank, const std::vector<std::string>& names,
-                                      const std::vector<UsedMode>& modes, const OpenNumbers& open) {
+                                      const std::vector<UsedMode>& modes, const UnidentifiableNumbers& unidentifiable) {
   std::vector<ModeNumbers> numbers;
-  for (Index k = 0; k < bank.mode_count(); ++k) numbers.push_back(numbers_of_mode(bank, k, open));
+  for (Index k = 0; k < bank.mode_count(); ++k) numbers.push_back(numbers_of_mode(bank, k, unidentifiable));
   std::vector<ModeFamily> families;
   for (const std::vector<Index>& group : groups_of(names, numbers)) {
     ModeFamily family;

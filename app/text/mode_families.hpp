@@ -24,7 +24,9 @@ namespace modebank::app {
 struct PooledNumber {
   double value = 0.0, error = 0.0;  ///< NaN if unknown
 };
-/// `weights` need not sum to one. If they sum to zero, all values count equally.
+/// Weights that sum to one. If the given ones sum to zero, all are equal.
+Eigen::VectorXd shares_of(const Eigen::VectorXd& weights);
+/// `weights` as in shares_of.
 PooledNumber pooled_number(const Eigen::VectorXd& values, const Eigen::VectorXd& errors,
                            const Eigen::VectorXd& weights);
 
@@ -46,12 +48,12 @@ struct ModeFamily {
 };
 
 /// Decays and gains that the training runs leave unidentifiable (mode_words.hpp).
-struct OpenNumbers {
+struct UnidentifiableNumbers {
   bool decays = false;
   std::vector<bool> gains;  ///< for each gain (states x inputs, row by row)
 };
 std::vector<ModeFamily> mode_families(const Bank& bank, const std::vector<std::string>& names,
-                                      const std::vector<UsedMode>& modes, const OpenNumbers& open);
+                                      const std::vector<UsedMode>& modes, const UnidentifiableNumbers& unidentifiable);
 /// Families of the modes of the archive's bank, by their use on the judged runs.
 std::vector<ModeFamily> mode_families(const Archive& archive);
 

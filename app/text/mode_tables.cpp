@@ -18,13 +18,13 @@ namespace {
 constexpr std::size_t most_members = 4;  // largest number of a family's modes in one cell of a table
 
 std::vector<std::string> gain_cells(const Eigen::MatrixXd& gain, const Eigen::MatrixXd& error,
-                                    const std::vector<bool>& open) {
+                                    const std::vector<bool>& unidentifiable) {
   std::vector<std::string> cells;
   const Eigen::VectorXd gains = gain.transpose().reshaped(), errors = error.transpose().reshaped();
   for (Index i = 0; i < gains.size(); ++i)
-    cells.push_back(open[static_cast<std::size_t>(i)] ? not_identifiable
-                    : std::isnan(gains(i))            ? "never settles"
-                                                      : estimate_text(gains(i), errors(i)));
+    cells.push_back(unidentifiable[static_cast<std::size_t>(i)] ? not_identifiable
+                    : std::isnan(gains(i))                      ? "never settles"
+                                                                : estimate_text(gains(i), errors(i)));
   return cells;
 }
 
@@ -76,7 +76,7 @@ std::vector<std::string> family_headings(const GainNames& gains, bool several, b
 
 std::vector<ModeTable::Row> family_rows(const Archive& archive, const std::vector<ModeFamily>& families, bool several,
                                         const std::vector<std::string>& tracks) {
-  const std::vector<bool> open = unidentifiable_gains(archive, archive.bank->structure);
+  const std::vector<bool> unidentifiable = unidentifiable_gains(archive, archive.bank->structure);
   const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
   std::vector<ModeTable::Row> rows;
   for (const ModeFamily& family : families) {
@@ -86,7 +86,7 @@ std::vector<ModeTable::Row> family_rows(const Archive& archive, const std::vecto
                        {family_cell(family, several), fmt::format("{:.1f} %", 100 * family.use), stay_words(stay),
                         no_decays ? not_identifiable : time_words(family)}};
     if (!tracks.empty()) row.cells.push_back(tracks[rows.size()]);
-    const std::vector<std::string> gains = gain_cells(family.gain, family.gain_error, open);
+    const std::vector<std::string> gains = gain_cells(family.gain, family.gain_error, unidentifiable);
     row.cells.insert(row.cells.end(), gains.begin(), gains.end());
     rows.push_back(std::move(row));
   }
@@ -117,7 +117,7 @@ int widest_line(const std::string& text) {
 
 /// A table of all modes with all of their decays.
 std::string all_modes(const Archive& archive, const GainNames& gains, int width) {
-  const std::vector<bool> open = unidentifiable_gains(archive, archive.bank->structure);
+  const std::vector<bool> unidentifiable = unidentifiable_gains(archive, archive.bank->structure);
   const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
   std::vector<std::string> headings{"mode", "used", "stay", "decay/sample", "time constant"};
   headings.insert(headings.end(), gains.names.begin(), gains.names.end());
@@ -131,7 +131,7 @@ std::string all_modes(const Archive& archive, const GainNames& gains, int width)
                        {shortened(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
                         stay_words(used), no_decays ? "-" : per_sample_words(dynamics.decays),
                         no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
-    const std::vector<std::string> cells = gain_cells(dynamics.gain, dynamics.gain_error, open);
+    const std::vector<std::string> cells = gain_cells(dynamics.gain, dynamics.gain_error, unidentifiable);
     row.cells.insert(row.cells.end(), cells.begin(), cells.end());
     rows.push_back(std::move(row));
   }

@@ -55,12 +55,6 @@ Estimate mean_separation(std::vector<Estimate> separations, const ModeFamily& fa
   return inverse(mean_of(separations, family));
 }
 
-VectorXd shares_of(const VectorXd& weights) {
-  const double sum = weights.sum();
-  const auto count = static_cast<double>(weights.size());
-  return sum > 0.0 ? VectorXd(weights / sum) : VectorXd(VectorXd::Constant(weights.size(), 1.0 / count));
-}
-
 /// The variance over the whole time is the mean of the modes' variances. The error is the error of this mean.
 /// Differences between the modes do not add to it.
 Estimate mean_variance(const std::vector<Estimate>& estimates, const ModeFamily& family) {

@@ -47,7 +47,18 @@ std::vector<Path> listed_files(const Path& folder, const Path& list) {
   return files;
 }
 
+bool has_ending_of_recordings(const Path& file) {
+  const Path ending = file.extension();
+  return ending == ".bag" || ending == ".mcap" || ending == ".db3";
+}
+
 }  // namespace
+
+bool is_recording_folder(const Path& folder) {
+  if (std::filesystem::exists(folder / "metadata.yaml")) return true;
+  return std::any_of(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator(),
+                     [](const auto& entry) { return has_ending_of_recordings(entry.path()); });
+}
 
 std::vector<Path> recording_files(const Path& path) {
   std::error_code error;
@@ -58,7 +69,7 @@ std::vector<Path> recording_files(const Path& path) {
   std::string ending;
   for (const auto& entry : std::filesystem::directory_iterator(path)) {
     const std::string own = entry.path().extension().string();
-    if (own != ".bag" && own != ".mcap" && own != ".db3") continue;
+    if (!has_ending_of_recordings(entry.path())) continue;
     if (!ending.empty() && own != ending)
       throw ConfigurationError(
           fmt::format("{}: the folder has both {} and {} files, and no metadata.yaml that lists one recording",

@@ -11,5 +11,7 @@ namespace modebank {
 /// Throws ConfigurationError if the folder has no such files, if they have several extensions, or if metadata.yaml
 /// lists a file outside the folder.
 std::vector<std::filesystem::path> recording_files(const std::filesystem::path& path);
+/// Whether recording_files finds a recording in the folder: metadata.yaml, or a file with one of these extensions.
+bool is_recording_folder(const std::filesystem::path& folder);
 
 }  // namespace modebank

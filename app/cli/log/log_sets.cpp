@@ -8,6 +8,7 @@
 #include "app/config/config_file.hpp"
 #include "ident/base/natural_order.hpp"
 #include "ident/base/printable.hpp"
+#include "io/recording/split_recording.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -15,15 +16,6 @@ namespace modebank::app {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Whether a folder is a single recording: a ROS 2 recording, or a recording in several parts.
-bool is_recording(const fs::path& folder) {
-  if (fs::exists(folder / "metadata.yaml")) return true;
-  return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const fs::directory_entry& entry) {
-    const fs::path ending = entry.path().extension();
-    return ending == ".bag" || ending == ".mcap" || ending == ".db3";
-  });
-}
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
@@ -34,7 +26,7 @@ std::vector<std::string> logs_in(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path& path = entry.path();
     if (is_hidden(path)) continue;
-    if (entry.is_directory() ? is_recording(path) : has_ending_of_logs(path)) logs.push_back(path.string());
+    if (entry.is_directory() ? is_recording_folder(path) : has_ending_of_logs(path)) logs.push_back(path.string());
     if (entry.is_regular_file() && path.extension() == ".txt") texts.push_back(path.string());
   }
   if (logs.empty()) logs = std::move(texts);
@@ -51,7 +43,7 @@ std::vector<std::string> logs_in(const fs::path& folder) {
 std::vector<std::string> without_folders(const std::vector<std::string>& logs) {
   std::vector<std::string> files;
   for (const std::string& log : logs)
-    if (fs::is_directory(log) && !is_recording(log))
+    if (fs::is_directory(log) && !is_recording_folder(log))
       for (std::string& file : logs_in(log)) files.push_back(std::move(file));
     else
       files.push_back(log);

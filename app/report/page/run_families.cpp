@@ -15,21 +15,22 @@ namespace {
 using nlohmann::json;
 
 /// A mean over several modes is shown with its standard error. A single mode is shown as in its own row.
-json time_cell(const ModeFamily& family, bool open) {
+json time_cell(const ModeFamily& family, bool unidentifiable) {
   const Decay& slowest = family.slowest;
-  if (open) return number(NAN, not_identifiable);
+  if (unidentifiable) return number(NAN, not_identifiable);
   if (family.counted.size() > 1 && std::isfinite(slowest.time_constant_s))
     return number(slowest.time_constant_s,
                   estimate_text(slowest.time_constant_s, slowest.time_constant_error_s) + " s");
   return number(slowest.time_constant_s, decay_words(slowest, "±"));
 }
 
-json gains_cells(const ModeFamily& family, const std::vector<bool>& open) {
+json gains_cells(const ModeFamily& family, const std::vector<bool>& unidentifiable) {
   json cells = json::array();
   for (Index i = 0; i < family.gain.rows(); ++i)
     for (Index j = 0; j < family.gain.cols(); ++j) {
-      const bool is_open = open[static_cast<std::size_t>(i * family.gain.cols() + j)];
-      cells.push_back(is_open ? number(NAN, not_identifiable) : estimate(family.gain(i, j), family.gain_error(i, j)));
+      const bool is_unidentifiable = unidentifiable[static_cast<std::size_t>(i * family.gain.cols() + j)];
+      cells.push_back(is_unidentifiable ? number(NAN, not_identifiable)
+                                        : estimate(family.gain(i, j), family.gain_error(i, j)));
     }
   return cells;
 }
@@ -44,7 +45,7 @@ std::vector<std::vector<Index>> told_groups(const std::vector<ModeFamily>& famil
 
 json families_of(const Archive& archive, const std::vector<ModeFamily>& families) {
   const LinearStructure& structure = archive.bank->structure;
-  const std::vector<bool> open = unidentifiable_gains(archive, structure);
+  const std::vector<bool> unidentifiable = unidentifiable_gains(archive, structure);
   json list = json::array();
   for (const ModeFamily& family : families) {
     const UsedMode stay{family.modes.front(), family.use, family.stay_s, family.at_least};
@@ -54,7 +55,7 @@ json families_of(const Archive& archive, const std::vector<ModeFamily>& families
                     {"use", number(family.use, fmt::format("{:.1f} %", 100 * family.use))},
                     {"stay", number(family.stay_s, stay_words(stay))},
                     {"decays", time_cell(family, unidentifiable_decays(archive, structure))},
-                    {"gains", gains_cells(family, open)}});
+                    {"gains", gains_cells(family, unidentifiable)}});
   }
   return list;
 }

@@ -141,7 +141,7 @@ std::string file_differences(const std::vector<InputFile>& before, const std::ve
           fmt::format("\n  {} has SHA-256 {}, had {}", file.path, file.sha256.substr(0, 16), old->second.substr(0, 16));
     if (old != hashes.end()) hashes.erase(old);
   }
-  for (const auto& [path, hash] : hashes) text += fmt::format("\n  {} is no longer read", path);
+  for (const auto& [path, hash] : hashes) text += fmt::format("\n  {} is not among the files now", path);
   return text;
 }
 
