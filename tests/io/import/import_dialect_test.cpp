@@ -437,7 +437,7 @@ TEST_F(ImportDialect, DisorderIsExplained) {
   EXPECT_THAT(error<DataError>(), HasSubstr("data.time = stamp.secs, stamp.nsecs"));
   write("log.csv", table("time,x,u\n", [&](int k) { return fmt::format("{},{},{}", 0.1 * (k % 20), 1, 2); }));
   options.time = {"time"};
-  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:22:"), HasSubstr("data.run")));
+  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:22:"), HasSubstr("name their column in data.run")));
 }
 
 TEST_F(ImportDialect, BytesOfNoFormatAndAWrongSeparatorAreNamed) {

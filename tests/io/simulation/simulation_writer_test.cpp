@@ -198,7 +198,7 @@ TEST_F(SimulationWriter, LayoutThatDoesNotFit) {
   EXPECT_THAT(error(wrong), HasSubstr("\"mode\" of column"));
   wrong = layout;
   wrong.state_rate_hz = 0;
-  EXPECT_THAT(error(wrong), HasSubstr("is 0 Hz"));
+  EXPECT_THAT(error(wrong), HasSubstr("the rate of the simulated states is 0 Hz"));
   EXPECT_FALSE(std::filesystem::exists(layout.folder)) << "nothing is made for a layout that does not fit";
 }
 
