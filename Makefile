@@ -4,7 +4,7 @@
 JOBS := $(shell awk -v cores=$$(nproc) '/^MemAvailable/ { most = int($$2 / 2500000); print most < 1 ? 1 : most < cores ? most : cores }' /proc/meminfo)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test dist dist-test pip-test test bench-programs bench benchmarks guards uncertainty recovery evidence gyro-lost rule systems quantised scale cost features track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
+.PHONY: all api build demo packages package-test dist dist-test pip-test test test-long bench-programs bench benchmarks guards uncertainty recovery evidence gyro-lost rule systems quantised scale cost features track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
 
 all: build
 
@@ -59,11 +59,12 @@ dist-test: dist packages-root
 pip-test: packages-root
 	packaging/test_pip.sh build/empty_root
 
-test: packages-build packages-test build/build.ninja
+# test: tests of at most 20 s each. test-long: the others, part of `make check`. The last lines name what was skipped.
+test test-long: packages-build packages-test build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
-	@status=0; ctest --preset release -j $(JOBS) --output-junit $(CURDIR)/build/tests.xml || status=$$?; \
-	/usr/bin/python3 tests/skipped.py build/tests.xml; exit $$status
+	@status=0; ctest --preset $(if $(findstring long,$@),long,release) -j $(JOBS) --output-junit $(CURDIR)/build/$@.xml || status=$$?; \
+	/usr/bin/python3 tests/skipped.py build/$@.xml || status=1; exit $$status
 
 bench-programs: packages-build packages-bench build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_BENCHMARKS=ON >/dev/null
@@ -162,7 +163,7 @@ shared-fs: packages-build packages-test packages-nightly build/build.ninja
 	CI=true MODEBANK_SHARED_FS_ROUNDS=40 build/test_shared_fs
 
 # Everything that CI runs beside `make test`; .ci/run times each of these.
-CHECKS := format lint shellcheck docs tidy-changed sanitize-short
+CHECKS := test-long format lint shellcheck docs tidy-changed sanitize-short
 .PHONY: list-checks
 check: $(CHECKS)
 list-checks:
@@ -171,20 +172,18 @@ list-checks:
 # All other tests, and `make` and `make test` on Debian 13; hours. Continues after a failure. The table is
 # build/nightly/table.md. STEPS="slurm arm64" runs only these steps and keeps the results of the others.
 .PHONY: nightly debian
-nightly: packages-build packages-test packages-nightly
+nightly: packages-build packages-test packages-check packages-nightly
 	tests/nightly $(STEPS)
 
 # Tests with the label nightly_KIND: browser, slurm, shared_fs, faults, tutorials.
-nightly-%: packages-nightly strict
+nightly-%: packages-check packages-nightly strict
 	ctest --test-dir build -L '^nightly_$*$$' --no-tests=error --output-on-failure -j $(JOBS)
 
-# README's two commands in an empty Debian. SUITE is trixie (Debian 13) or bookworm (Debian 12). After a failure
+# README's two commands in bare roots of Debian 12 and 13, or of one: SUITE=bookworm, SUITE=trixie; after a failure
 # build/SUITE is kept.
-SUITE := trixie
+SUITE := bookworm trixie
 debian: packages-root
-	@mkdir -p build
-	git bundle create -q build/source.bundle HEAD
-	packaging/with_root.sh $(SUITE) build/$(SUITE) tests/in_empty_debian.sh build/source.bundle
+	tests/in_empty_debian.sh $(SUITE)
 
 format: packages-check
 	git ls-files '*.hpp' '*.cpp' '*.js' | xargs clang-format --dry-run --Werror

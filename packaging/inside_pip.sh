@@ -1,6 +1,6 @@
 #!/bin/sh
-# test_pip.sh runs this script in the empty root. As an ordinary user, pip builds and installs the module; then README's Python
-# block runs.
+# test_pip.sh runs this script in the empty root. As an ordinary user, pip builds and installs the module; then the example of
+# docs/howto/python.md runs.
 set -eu
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
 as_user() { su --login robot -c "$1"; }
@@ -15,5 +15,5 @@ unshare --net su --login robot -c "python3 -m venv --system-site-packages env &&
 tail -n 1 /tmp/pip.log
 echo "pip install took $(($(date +%s) - begin)) s"
 as_user "env/bin/pip show --files modebank | grep modebank/ && du -h env/lib/python3*/site-packages/modebank/*.so"
-awk "/^\`\`\`/ { block = /python/; next } block" /home/robot/source/README.md >/tmp/readme.py
+awk "/^## / { here = /Try it/ } /^\`\`\`/ { block = here && /python/; next } block" /home/robot/source/docs/howto/python.md >/tmp/readme.py
 as_user 'env/bin/python3 /tmp/readme.py >readme.txt && grep "^finding .*Switching between .* linear models predicts" readme.txt'

@@ -46,17 +46,10 @@ void write_file(const std::filesystem::path& path, const std::string& content) {
   std::ofstream(path, std::ios::binary) << content;
 }
 
-namespace {
-
-bool is_set_to(const char* variable, const std::string& value) {
-  const char* const found = std::getenv(variable);
-  return found && found == value;
+bool is_ci() {
+  const char* const value = std::getenv("CI");
+  return value && std::string(value) == "true";
 }
-
-}  // namespace
-
-bool is_ci() { return is_set_to("CI", "true"); }
-bool is_nightly() { return is_set_to("MODEBANK_NIGHTLY", "1"); }
 
 bool has_program(const std::string& name) {
   return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;

@@ -28,10 +28,8 @@ class TemporaryFolder {
 
 void write_file(const std::filesystem::path& path, const std::string& content);
 
-/// CI=true: continuous integration.
+/// CI=true: continuous integration, where data and every tool that a test can use are present.
 bool is_ci();
-/// MODEBANK_NIGHTLY=1: every tool that a test can use is installed.
-bool is_nightly();
 
 /// Whether the shell finds a program of this name.
 bool has_program(const std::string& name);
@@ -40,19 +38,14 @@ bool has_python_modules(const std::string& names);
 
 }  // namespace modebank::test
 
-/// Skips the test, with a reason, if something that is not part of the project is missing. Fails instead if `required`.
-#define MODEBANK_NEEDS_UNLESS(present, absence, required)            \
-  if (!(present)) {                                                  \
-    ASSERT_FALSE(required) << (absence) << " (it is required here)"; \
-    GTEST_SKIP() << (absence);                                       \
+/// Skips the test, with a reason, if data or a tool such as Octave is missing. Fails instead in continuous integration.
+#define MODEBANK_NEEDS(present, absence)                                                \
+  if (!(present)) {                                                                     \
+    ASSERT_FALSE(::modebank::test::is_ci()) << (absence) << " (required with CI=true)"; \
+    GTEST_SKIP() << (absence);                                                          \
   }
 
-/// For a test that needs a tool such as Octave. The tool is required in the nightly run (MODEBANK_NIGHTLY=1).
-#define MODEBANK_NEEDS(present, absence) MODEBANK_NEEDS_UNLESS(present, absence, ::modebank::test::is_nightly())
-
-/// For a test that needs real data. They are required in continuous integration (CI=true) and in the nightly run.
-#define MODEBANK_NEEDS_DATA(present)                                                                            \
-  MODEBANK_NEEDS_UNLESS(present, "real data are absent: set MODEBANK_DATA to a folder that holds borealtc/ICE", \
-                        ::modebank::test::is_ci() || ::modebank::test::is_nightly())
+#define MODEBANK_NEEDS_DATA(present) \
+  MODEBANK_NEEDS(present, "real data are absent: set MODEBANK_DATA to a folder that holds borealtc/ICE")
 
 #define MODEBANK_NEEDS_SHARED_DATA() MODEBANK_NEEDS_DATA(!::modebank::test::shared_data_dir().empty())

@@ -4,8 +4,6 @@ import sqlite3
 import struct
 import zlib
 
-import genpy
-
 FORMATS = {"bool": "?", "int8": "b", "uint8": "B", "byte": "B", "char": "B", "int16": "h", "uint16": "H", "int32": "i",
            "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d"}
 
@@ -43,7 +41,7 @@ class Cdr:
         elif kind == "time":
             self.put("int32", value.secs)
             self.put("uint32", value.nsecs)
-        elif isinstance(value, genpy.Message):
+        elif hasattr(value, "_slot_types"):  # a message within a message
             self.put_message(value)
         else:
             self.put(kind, value)
