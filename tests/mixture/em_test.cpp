@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "tests/mixture/golden_mixture.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
-#include "tests/support/matrix_compare.hpp"
 
 namespace modebank::test {
 namespace {
@@ -32,6 +32,30 @@ GaussianMixture permuted_features(const GaussianMixture& mixture) {
   result.means = mixture.means.colwise().reverse();
   for (Eigen::MatrixXd& covariance : result.covariances) covariance = covariance.reverse().eval();
   return result;
+}
+
+/// Exactly the stated iterations from the same start. golden_test.cpp compares the optima alone.
+TEST(Em, IterationsFromAStartAreThoseOfIndependentPrograms) {
+  for (const auto& [name, unit] : golden_mixtures) {
+    const nlohmann::json file = read_golden(name);
+    const auto entry = [&](const char* key) { return file.contains(key) ? file[key] : nlohmann::json::array(); };
+    const Eigen::MatrixXd points = golden_columns(file["points"]), errors = golden_columns(entry("errors"));
+    const Eigen::VectorXd importance = golden_columns(entry("importance")).reshaped();
+    GaussianMixture start{golden_rows(file["start"]["weights"]), golden_columns(file["start"]["means"]), {}, {}, {}};
+    for (const auto& covariance : file["start"]["covariances"]) start.covariances.push_back(golden_rows(covariance));
+    ASSERT_EQ(file["fits"].size(), 6u);
+    for (const auto& expected : file["fits"]) {
+      SCOPED_TRACE(name + expected["covariance"].dump() + expected["iterations"].dump());
+      const auto type = expected["covariance"] == "full" ? CovarianceType::full : CovarianceType::diagonal;
+      EmOptions options = fixed_iterations(expected["iterations"].get<int>(), type);
+      options.covariance_floor = 1e-10;
+      const EmResult fit = fit_em(PointSet(points, importance, errors), start, options);
+      EXPECT_FALSE(fit.floor_active);
+      EXPECT_EQ(fit.iterations, options.max_iterations);
+      expect_golden_fit(expected, fit.log_likelihood, fit.mixture.weights, fit.mixture.means, fit.mixture.covariances,
+                        unit);
+    }
+  }
 }
 
 TEST(Em, LogLikelihoodNeverFalls) {

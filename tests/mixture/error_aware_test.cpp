@@ -2,19 +2,15 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <nlohmann/json.hpp>
-
 #include "ident/fit/fit_windows.hpp"
 #include "mixture/select.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
-#include "tests/support/golden.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank::test {
 namespace {
 
 using Eigen::Index;
-using nlohmann::json;
 
 EmOptions unfloored(int iterations, CovarianceType type = CovarianceType::full) {
   EmOptions options = fixed_iterations(iterations, type);
@@ -66,36 +62,6 @@ double difference(const EmResult& a, const EmResult& b) {
   for (std::size_t k = 0; k < a.mixture.covariances.size(); ++k)
     worst = std::max(worst, (a.mixture.covariances[k] - b.mixture.covariances[k]).cwiseAbs().maxCoeff());
   return worst;
-}
-
-TEST(ErrorAware, AgreesWithAnIndependentExtremeDeconvolution) {
-  const json file = read_golden("extreme_deconvolution");
-  const Eigen::MatrixXd points = golden_columns(file["points"]), errors = golden_columns(file["errors"]);
-  const Eigen::VectorXd importance = golden_rows(file["importance"]);
-  ASSERT_EQ(file["fits"].size(), 6u);
-  const auto mixture = [](const json& values) {
-    GaussianMixture result;
-    result.weights = golden_rows(values["weights"]);
-    result.means = golden_columns(values["means"]);
-    for (const json& covariance : values["covariances"]) result.covariances.push_back(golden_rows(covariance));
-    return result;
-  };
-  for (const json& expected : file["fits"]) {
-    SCOPED_TRACE(expected["covariance"].get<std::string>() + " " + expected["iterations"].dump());
-    const auto type = expected["covariance"] == "full" ? CovarianceType::full : CovarianceType::diagonal;
-    const EmResult fit = fit_em(PointSet(points, importance, errors), mixture(file["start"]),
-                                unfloored(expected["iterations"].get<int>(), type));
-    const GaussianMixture reference = mixture(expected);
-    EXPECT_FALSE(fit.floor_active);
-    EXPECT_NEAR(fit.log_likelihood, expected["log_likelihood"].get<double>(), 1e-8);
-    EXPECT_TRUE(near(fit.mixture.weights, reference.weights, 1e-8));
-    const Eigen::Array3d unit(0.02, 1.0, 10.0);
-    EXPECT_TRUE(near(fit.mixture.means.array().colwise() / unit, reference.means.array().colwise() / unit, 1e-8));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Eigen::ArrayXXd off = (fit.mixture.covariances[k] - reference.covariances[k]).array();
-      EXPECT_TRUE(near((off.colwise() / unit).rowwise() / unit.transpose(), Eigen::Matrix3d::Zero(), 1e-8)) << k;
-    }
-  }
 }
 
 TEST(ErrorAware, ZeroErrorsGiveThePlainFit) {

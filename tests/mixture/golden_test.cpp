@@ -1,74 +1,127 @@
-// Comparison with scikit-learn (fits) and mpmath (densities); tests/golden/generate/mixture.py generated the golden
-// file.
-#include "tests/support/golden.hpp"
+// Comparison with scikit-learn, R's mclust and an independent extreme deconvolution (fits), and with mpmath
+// (densities); tests/golden/generate/{mixture.py,mclust.R,extreme_deconvolution.py} generated the golden files.
+#include <algorithm>
+#include <numeric>
 
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
-#include "mixture/em.hpp"
-#include "tests/support/matrix_compare.hpp"
+#include "modebank/base/eigen.hpp"
+#include "modebank/mixture/mixture.hpp"
+#include "tests/mixture/golden_mixture.hpp"
 
 namespace modebank::test {
 namespace {
 
+using Eigen::Index;
 using nlohmann::json;
 
-/// Allows sums of about a thousand terms in another order. The test compares algorithms, not rounding.
-constexpr double parameter_tolerance = 1e-8;
-constexpr double log_likelihood_tolerance = 1e-8;
 /// Allows a few units in the last place of the log density, which reaches -1e12 at the outermost probe.
 constexpr double relative_density_tolerance = 2e-15;
 /// A responsibility other than 0 or 1 is the exponential of a difference of log densities, up to a few hundred.
 constexpr double responsibility_tolerance = 1e-13;
+constexpr double mclust_tolerance = 1e-5;  // relative
 
-GaussianMixture mixture(const json& values) {
-  GaussianMixture result;
-  result.weights = golden_rows(values["weights"]);
-  result.means = golden_columns(values["means"]);
-  for (const json& covariance : values["covariances"]) result.covariances.push_back(golden_rows(covariance));
+CovarianceType type_of(const std::string& name) {
+  return name == "full" || name == "VVV" ? CovarianceType::full : CovarianceType::diagonal;
+}
+
+mixture::Mixture mixture_of(const json& golden) {
+  mixture::Mixture result{
+      to_vector(golden_rows(golden["weights"])), to_matrix(golden_columns(golden["means"])), {}, 0.0, {}, {}};
+  for (const json& covariance : golden["covariances"]) result.covariances.push_back(to_matrix(golden_rows(covariance)));
   return result;
 }
 
-TEST(MixtureGolden, FitsAgreeWithScikitLearnFromTheSameStart) {
-  const json file = read_golden("mixture");
-  const Eigen::MatrixXd points = golden_columns(file["points"]);
-  ASSERT_EQ(file["fits"].size(), 6u);
-  for (const json& expected : file["fits"]) {
-    SCOPED_TRACE(expected["covariance"].get<std::string>() + " " + expected["iterations"].dump());
-    EmOptions options;
-    options.covariance = expected["covariance"] == "full" ? CovarianceType::full : CovarianceType::diagonal;
-    options.tolerance = -1.0;  // does not converge, so the number of iterations is fixed
-    options.max_iterations = expected["iterations"].get<int>();
-    options.covariance_floor = 1e-10;
-    const EmResult fit = fit_em(points, Eigen::VectorXd(), mixture(file["start"]), options);
-    EXPECT_FALSE(fit.floor_active);
-    EXPECT_EQ(fit.iterations, options.max_iterations);
-    EXPECT_NEAR(fit.log_likelihood, expected["log_likelihood"].get<double>(), log_likelihood_tolerance);
-    const GaussianMixture reference = mixture(expected);
-    EXPECT_TRUE(near(fit.mixture.weights, reference.weights, parameter_tolerance));
-    // In units of each feature's standard deviation, because the standard deviations differ by a factor of 500.
-    const Eigen::ArrayXd unit = reference.covariances[0].diagonal().array().sqrt();
-    EXPECT_TRUE(near(fit.mixture.means.array().colwise() / unit, reference.means.array().colwise() / unit,
-                     parameter_tolerance));
-    for (Eigen::Index k = 0; k < reference.components(); ++k) {
-      const Eigen::ArrayXXd difference = (fit.mixture.covariances[k] - reference.covariances[k]).array();
-      const Eigen::ArrayXXd scaled = (difference.colwise() / unit).rowwise() / unit.transpose();
-      EXPECT_TRUE(near(scaled, Eigen::Matrix3d::Zero(), parameter_tolerance)) << "component " << k;
+/// A fit with its components in our order, by decreasing weight.
+json by_weight(const json& golden) {
+  std::vector<std::size_t> order(golden["weights"].size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, std::greater<>(), [&](std::size_t k) { return golden["weights"][k].get<double>(); });
+  json result = golden;
+  for (const char* key : {"weights", "means", "covariances"})
+    for (std::size_t k = 0; k < order.size(); ++k) result[key][k] = golden[key][order[k]];
+  return result;
+}
+
+/// The best fit of K components.
+mixture::Clusters fit(const mixture::Points& points, Index components, EmOptions em) {
+  return mixture::select(points, {{components}, Criterion::bic, em});
+}
+
+/// Fits after fewer iterations: em_test.cpp.
+TEST(MixtureGolden, OptimaAreThoseOfIndependentPrograms) {
+  for (const auto& [name, unit] : golden_mixtures) {
+    const json file = read_golden(name);
+    mixture::Points points{to_matrix(golden_columns(file["points"])), {}, {}, {}};
+    if (file.contains("errors")) {
+      points.weights = to_vector(golden_rows(file["importance"]));
+      points.errors = to_matrix(golden_columns(file["errors"]));
+    }
+    for (const json& expected : file["fits"]) {
+      if (expected["iterations"] < 300) continue;
+      SCOPED_TRACE(name + expected["covariance"].get<std::string>());
+      const EmOptions em{.covariance = type_of(expected["covariance"]),
+                         .restarts = 2,
+                         .split_merge = 0,
+                         .tolerance = -1.0,
+                         .covariance_floor = 1e-10};
+      const mixture::Clusters found = fit(points, 3, em);
+      std::vector<Eigen::MatrixXd> covariances;
+      for (const Matrix& covariance : found.mixture.covariances) covariances.emplace_back(view(covariance));
+      EXPECT_FALSE(found.candidates.at(0).floor_active);
+      expect_golden_fit(by_weight(expected), found.candidates.at(0).log_likelihood, view(found.mixture.weights),
+                        view(found.mixture.means), covariances, unit);
     }
   }
 }
 
 TEST(MixtureGolden, DensitiesAndResponsibilitiesAgreeWithExtendedPrecision) {
   const json expected = read_golden("mixture")["density"];
-  const GaussianMixture reference = mixture(expected);
-  const Eigen::MatrixXd probes = golden_columns(expected["probes"]);
+  const mixture::Mixture reference = mixture_of(expected);
+  const Matrix probes = to_matrix(golden_columns(expected["probes"]));
   const Eigen::VectorXd log_densities = golden_rows(expected["log_density"]);
   const Eigen::VectorXd relative =
-      log_density(reference, probes).cwiseQuotient(log_densities) - Eigen::VectorXd::Ones(probes.cols());
-  EXPECT_TRUE(near(relative, Eigen::VectorXd::Zero(probes.cols()), relative_density_tolerance));
-  EXPECT_TRUE(near(responsibilities(reference, probes), golden_columns(expected["responsibilities"]),
+      view(mixture::log_density(reference, probes)).cwiseQuotient(log_densities) - Eigen::VectorXd::Ones(probes.cols);
+  EXPECT_TRUE(near(relative, Eigen::VectorXd::Zero(probes.cols), relative_density_tolerance));
+  EXPECT_TRUE(near(view(mixture::responsibilities(reference, probes)), golden_columns(expected["responsibilities"]),
                    responsibility_tolerance));
+}
+
+/// mclust's fits, which are local maxima of the likelihood and in half of the cases its largest one.
+TEST(Mclust, MaximaAreStationaryHereAndNotHigher) {
+  const json file = read_golden("mclust");
+  int same_maxima = 0;
+  for (const json& fitted : file["fits"]) {
+    const json expected = by_weight(fitted);
+    SCOPED_TRACE(expected["data"].get<std::string>() + " " + expected["model"].get<std::string>() + " " +
+                 expected["components"].dump());
+    const Eigen::MatrixXd points = golden_columns(file["data"][expected["data"].get<std::string>()]);
+    const Eigen::VectorXd weights = golden_rows(expected["weights"]);
+    const Eigen::MatrixXd means = golden_columns(expected["means"]);
+    const auto near_golden = [&](double ours, const char* name, double sign) {
+      const double value = sign * expected[name].get<double>();
+      EXPECT_NEAR(ours, value, mclust_tolerance * std::abs(value)) << name;
+    };
+    const mixture::Mixture reference = mixture_of(expected);
+    const Matrix responsibilities = mixture::responsibilities(reference, to_matrix(points));
+    const Eigen::VectorXd members = view(responsibilities).rowwise().sum();
+    near_golden(view(mixture::log_density(reference, to_matrix(points))).sum(), "log_likelihood", 1.0);
+    EXPECT_TRUE(near(members / static_cast<double>(points.cols()), weights, 1e-4));
+    EXPECT_TRUE(near(points * view(responsibilities).transpose() * members.cwiseInverse().asDiagonal(), means, 1e-2));
+
+    const EmOptions em{.covariance = type_of(expected["model"]), .tolerance = 1e-13, .max_iterations = 20000};
+    const mixture::Clusters found = fit({to_matrix(points), {}, {}, {}}, weights.size(), em);
+    const Candidate& row = found.candidates.at(0);
+    const double slack = mclust_tolerance * std::abs(row.log_likelihood);
+    EXPECT_EQ(row.parameters, expected["parameters"].get<Index>());
+    EXPECT_GE(row.log_likelihood, expected["log_likelihood"].get<double>() - slack);
+    if (row.log_likelihood > expected["log_likelihood"].get<double>() + slack) continue;
+    ++same_maxima;
+    EXPECT_TRUE(row.converged);
+    near_golden(row.bic, "bic", -1.0);
+    near_golden(row.icl, "icl", -1.0);
+    EXPECT_TRUE(near(view(found.mixture.weights), weights, 1e-4));
+    EXPECT_TRUE(near(view(found.mixture.means), means, 1e-2));
+  }
+  EXPECT_EQ(same_maxima, 4);
 }
 
 }  // namespace
