@@ -20,6 +20,45 @@ using Eigen::VectorXd;
 
 constexpr int any = Eigen::Dynamic;
 
+/// Products for lagged samples skip factors that are zero or one.
+TEST(SmallProducts, OfShiftsAndOfPartsThatAreSeenHaveThePlainOnesBits) {
+  const Index n = 7, full = 2;
+  MatrixXd F = MatrixXd::Zero(n, n), gain = MatrixXd::Random(n, full), P(n, n);
+  F.topRows(full) = MatrixXd::Random(full, n);
+  for (Index i = full; i < n; ++i) F(i, i - full) = 1.0;
+  const MatrixXd root = MatrixXd::Random(n, n);
+  P = root * root.transpose();
+  MatrixXd closed = MatrixXd::Identity(n, n);
+  closed.leftCols(full) -= gain;
+  MatrixXd plain(n, n), quick(n, n), plain_sum = P, quick_sum = P;
+  small::multiply(plain, F, P);
+  small::multiply_shifting(quick, F, P, full, P.rows());
+  EXPECT_EQ(plain, quick);
+  small::add_symmetric_product(plain_sum, plain, F);
+  small::add_symmetric_product_shifting(quick_sum, quick, F, full, P.rows());
+  EXPECT_EQ(plain_sum, quick_sum);
+  small::multiply(plain, closed, P);
+  small::multiply_seeing(quick, closed, P, full);
+  EXPECT_EQ(plain, quick);
+  small::add_symmetric_product(plain_sum, plain, closed);
+  small::add_symmetric_product_seeing(quick_sum, quick, closed, full);
+  EXPECT_EQ(plain_sum, quick_sum);
+}
+
+/// If only the newest samples are uncertain, the other entries of a product are zero.
+TEST(SmallProducts, OfAPartThatIsUncertainAreThoseOfTheWhole) {
+  const Index n = 7, full = 2, uncertain = 3;
+  MatrixXd F = MatrixXd::Zero(n, n), P = MatrixXd::Zero(n, n);
+  F.topRows(full) = MatrixXd::Random(full, n);
+  for (Index i = full; i < n; ++i) F(i, i - full) = 1.0;
+  const MatrixXd root = MatrixXd::Random(uncertain, uncertain);
+  P.topLeftCorner(uncertain, uncertain) = root * root.transpose();
+  MatrixXd product = MatrixXd::Constant(n, n, 7.0), sum = MatrixXd::Zero(n, n);
+  small::multiply_shifting(product, F, P, full, uncertain);
+  small::add_symmetric_product_shifting(sum, product, F, full, uncertain);
+  EXPECT_TRUE(test::near(sum, MatrixXd(F * P * F.transpose()), 1e-12));
+}
+
 /// Steps both filters through the run and compares all results, relative to the size of each number.
 void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptions& options, double relative) {
   ASSERT_TRUE(VectorImm::can_step(bank, options));
