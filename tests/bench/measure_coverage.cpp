@@ -5,7 +5,7 @@
 /// Prints the README's coverage table: the share of windows whose 95 % region holds the true parameters.
 int main() {
   using namespace modebank;
-  constexpr Index windows = 20'000;  // the standard error of a share is then 0.15 %
+  constexpr std::ptrdiff_t windows = 20'000;  // the standard error of a share is then 0.15 %
   fmt::print(
       "| case | trivial, `model` | trivial, `sandwich` | Huber, `model` | Huber, `sandwich` "
       "|\n|---|---|---|---|---|\n");

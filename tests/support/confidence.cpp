@@ -1,39 +1,32 @@
 #include "tests/support/confidence.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
-#include "ident/base/distributions.hpp"
-#include "ident/base/linalg.hpp"
-#include "ident/base/not_a_number.hpp"
+namespace modebank::test {
 
-namespace modebank {
+using boost::math::quantile, Eigen::Index;
 
 namespace {
 
 /// A smaller share of information counts as zero; the region is then that of the prior.
 constexpr double least_share = 1e-6;
 
-void check_level(double level) {
-  if (!(level > 0.0 && level < 1.0))
-    throw std::invalid_argument("confidence level " + std::to_string(level) + " is not between 0 and 1");
-}
-
 double region_limit(double parameters, double nu, double level) {
-  return std::isinf(nu) ? chi_square_quantile(level, parameters) : parameters * fisher_quantile(level, parameters, nu);
+  if (std::isinf(nu)) return quantile(boost::math::chi_squared(parameters), level);
+  return parameters * quantile(boost::math::fisher_f(parameters, nu), level);
 }
 
 }  // namespace
 
-Eigen::VectorXd standard_error(const LocalModel& fit) { return fit.covariance.diagonal().cwiseSqrt(); }
-
-Eigen::VectorXd t_value(const LocalModel& fit) { return fit.theta.cwiseQuotient(standard_error(fit)); }
-
-double region_degrees_of_freedom(const LocalModel& fit) {
-  const Index p = fit.theta.size(), q = p / std::max<Index>(fit.noise_variance.size(), 1);
+double region_degrees_of_freedom(const FittedTheta& fit) {
+  const Index p = fit.theta.size(), q = p / fit.states;
   if (fit.transitions <= q) return std::numeric_limits<double>::infinity();
   const double parameters = static_cast<double>(p);
   const double nu = std::max(1.0, static_cast<double>(fit.transitions - p));
@@ -47,27 +40,17 @@ bool ConfidenceRegion::contains(const Eigen::VectorXd& theta) const {
   const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd error = (theta - center).cwiseQuotient(sd);
   const Eigen::MatrixXd correlation = sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
-  return error.dot(solve_semidefinite(correlation, error)) <= limit;
+  return error.dot(correlation.ldlt().solve(error)) <= limit;
 }
 
-Eigen::MatrixXd ConfidenceRegion::semi_axes() const {
-  const SymmetricEigen axes = symmetric_eigen(covariance);
-  const Eigen::VectorXd lengths = (limit * axes.values.cwiseMax(0.0)).cwiseSqrt();
-  return (axes.vectors * lengths.asDiagonal()).rowwise().reverse();
-}
-
-ConfidenceRegion confidence_region(const LocalModel& fit, double level) {
-  check_level(level);
+ConfidenceRegion confidence_region(const FittedTheta& fit, double level) {
+  if (!(level > 0.0 && level < 1.0))
+    throw std::invalid_argument("confidence level " + std::to_string(level) + " is not between 0 and 1");
   const bool defined = fit.covariance.allFinite() && fit.covariance.size() > 0;
   const double limit = defined
                            ? region_limit(static_cast<double>(fit.theta.size()), region_degrees_of_freedom(fit), level)
-                           : not_a_number;
+                           : std::numeric_limits<double>::quiet_NaN();
   return {fit.theta, fit.covariance, limit};
 }
 
-Eigen::VectorXd interval_half_width(const LocalModel& fit, double level) {
-  check_level(level);
-  return standard_error(fit) * student_quantile(0.5 * (1.0 + level), region_degrees_of_freedom(fit));
-}
-
-}  // namespace modebank
+}  // namespace modebank::test

@@ -2,22 +2,23 @@
 
 #include <Eigen/Core>
 
-#include "ident/model/local_model.hpp"
+namespace modebank::test {
 
-namespace modebank {
-
-/// p standard errors of theta: square roots of the covariance's diagonal; NaN for an entry that is NaN.
-Eigen::VectorXd standard_error(const LocalModel& fit);
-
-/// theta / standard error: distance from zero.
-Eigen::VectorXd t_value(const LocalModel& fit);
+/// What a window's fit says about its p parameters.
+struct FittedTheta {
+  Eigen::VectorXd theta;
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd information;   ///< p, share of each parameter that the data determine; NaN without a prior
+  Eigen::Index states = 1;       ///< n; each state has p / n of the parameters
+  Eigen::Index transitions = 0;  ///< L
+};
 
 /// Degrees of freedom nu of the noise variance in the covariance. Regions are (theta - truth)' covariance^-1 (theta -
 /// truth) <= p F_level(p, nu). Without a prior nu = L - p, at least 1. With a prior, only f = sum of `information` of
 /// the p directions depend on the estimated noise variance. The other directions depend on the prior's variance, which
 /// is known. Then nu = 2 + (L - p - 2) p / f. The statistic then has the right mean if the truth is drawn from the
 /// prior. For L <= q, nu is infinite: the noise is known, and regions are chi-square.
-double region_degrees_of_freedom(const LocalModel& fit);
+double region_degrees_of_freedom(const FittedTheta& fit);
 
 /// The ellipsoid that contains the true theta with probability `level`. With a sandwich covariance of several states,
 /// it is too small unless L is large compared with p (docs/explanation/uncertainty.md). In that case use the parameters
@@ -30,15 +31,9 @@ struct ConfidenceRegion {
 
   /// Returns false if the region is undefined.
   bool contains(const Eigen::VectorXd& theta) const;
-  /// p x p, one semi-axis per column, the longest first.
-  Eigen::MatrixXd semi_axes() const;
 };
 
 /// Throws std::invalid_argument unless 0 < level < 1.
-ConfidenceRegion confidence_region(const LocalModel& fit, double level = 0.95);
+ConfidenceRegion confidence_region(const FittedTheta& fit, double level = 0.95);
 
-/// Half width of each parameter's own interval: its standard error times the quantile of Student's t, with
-/// region_degrees_of_freedom.
-Eigen::VectorXd interval_half_width(const LocalModel& fit, double level = 0.95);
-
-}  // namespace modebank
+}  // namespace modebank::test

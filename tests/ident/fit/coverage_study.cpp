@@ -1,42 +1,35 @@
 #include "tests/ident/fit/coverage_study.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <Eigen/Core>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cmath>
-#include <functional>
 #include <random>
 
-#include "ident/base/seed.hpp"
-#include "ident/fit/fit_window.hpp"
-#include "ident/fit/scale.hpp"
-#include "ident/model/transitions.hpp"
+#include "modebank/ident/windows.hpp"
+#include "tests/ident/public_run.hpp"
 #include "tests/support/confidence.hpp"
 
 namespace modebank::test {
 namespace {
 
+using Eigen::Index;
+
 constexpr Index length = 25;
 constexpr Index warm_up = 20;
-const LinearStructure structure{1, 2, false};
 const Eigen::Vector3d mean_theta(-0.5, -0.4, 0.5);
 const Eigen::Vector3d prior_sd(0.12, 0.3, 0.3);  // 1 + A is inside the unit circle up to 4 standard deviations
 
 /// One independent window and its true theta.
 struct Draw {
   Eigen::Vector3d theta = mean_theta;
-  Trajectory run;
+  RecordedRun run;
 };
 
 class Source {
  public:
   Source(CoverageCase which, Index window)
-      : which_(which),
-        window_(window),
-        generator_(make_generator(31, "coverage", static_cast<std::uint64_t>(window))) {}
+      : which_(which), window_(window), generator_(static_cast<std::uint64_t>(window)) {}
 
   Draw draw() {
     Draw draw;
@@ -47,8 +40,7 @@ class Source {
     Eigen::RowVectorXd x = Eigen::RowVectorXd::Zero(samples);
     for (Index k = 0; k + 1 < samples; ++k)
       x(k + 1) = x(k) + draw.theta(0) * x(k) + draw.theta.tail<2>().dot(u.col(k)) + noise(x(k));
-    draw.run.state = x.rightCols(length + 1);
-    draw.run.input = u.rightCols(length + 1);
+    draw.run = public_run(x.rightCols(length + 1), u.rightCols(length + 1));
     return draw;
   }
 
@@ -77,30 +69,36 @@ class Source {
   boost::random::uniform_real_distribution<double> level_{-1.0, 1.0}, share_{0.0, 1.0};
 };
 
-bool holds_the_truth(CoverageCase which, const FitOptions& options, Index window) {
-  const Draw draw = Source(which, window).draw();
-  const Transitions transitions = stack_transitions(draw.run, 0, length, structure);
-  const Eigen::VectorXd sigma = robust_scale(transitions, decompose(transitions.regressors, excitation_tolerance));
-  const ParameterPrior prior{mean_theta, prior_sd};
-  const LocalModel fit =
-      fit_window(draw.run, 0, structure, options, sigma, which == CoverageCase::poor ? &prior : nullptr);
-  return confidence_region(fit, 0.95).contains(draw.theta);
-}
-
 }  // namespace
 
-double measure_coverage(CoverageCase which, Loss loss, CovarianceKind kind, Index windows) {
+double measure_coverage(CoverageCase which, Loss loss, CovarianceKind kind, std::ptrdiff_t windows) {
   FitOptions options;
   options.length = length;
   options.loss = loss;
   options.covariance = kind;
-  const Index inside = tbb::parallel_reduce(
-      tbb::blocked_range<Index>(0, windows), Index{0},
-      [&](const tbb::blocked_range<Index>& range, Index sum) {
-        for (Index i = range.begin(); i < range.end(); ++i) sum += holds_the_truth(which, options, i) ? 1 : 0;
-        return sum;
-      },
-      std::plus<>());
+  options.prior = Prior::none;
+  options.solver = WindowSolver::ceres;
+  std::vector<Eigen::Vector3d> truth;
+  RecordedRuns runs;
+  for (Index i = 0; i < windows; ++i) {
+    Draw draw = Source(which, i).draw();
+    truth.push_back(draw.theta);
+    runs.runs.push_back(std::move(draw.run));
+  }
+  if (which == CoverageCase::poor) {
+    options.prior = Prior::global;
+    options.prior_sd = to_vector(prior_sd);
+    runs.runs.push_back(run_that_decides(mean_theta));
+  }
+  const ident::Windows fits = ident::fit_windows(runs, options);
+  Index inside = 0;
+  for (Index i = 0; i < windows; ++i) {
+    FittedTheta fit{view(fits.theta).col(i), view(fits.covariance).col(i).reshaped(3, 3), {}, 1, length};
+    fit.information.setConstant(3, std::nan(""));
+    if (!fits.prior_sd.empty())
+      fit.information = 1.0 - fit.covariance.diagonal().array() / view(fits.prior_sd).array().square();
+    inside += confidence_region(fit, 0.95).contains(truth[static_cast<std::size_t>(i)]) ? 1 : 0;
+  }
   return static_cast<double>(inside) / static_cast<double>(windows);
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 
-#include "ident/model/local_model.hpp"
 #include "modebank/base/names.hpp"
+#include "modebank/ident/options.hpp"
 
 namespace modebank {
 
@@ -25,7 +25,7 @@ struct EnumNames<CoverageCase> {
 namespace test {
 
 /// Share of windows whose 95 % region (confidence_region) contains the true theta. sigma is estimated from each window.
-double measure_coverage(CoverageCase which, Loss loss, CovarianceKind kind, Index windows);
+double measure_coverage(CoverageCase which, Loss loss, CovarianceKind kind, std::ptrdiff_t windows);
 
 }  // namespace test
 }  // namespace modebank

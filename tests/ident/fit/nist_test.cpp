@@ -1,12 +1,13 @@
-#include <algorithm>
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string>
 
-#include "ident/fit/motion_fit.hpp"
 #include "modebank/ident/auto_diff_motion_model.hpp"
-#include "tests/ident/ident_test_support.hpp"
+#include "modebank/ident/windows.hpp"
+#include "tests/ident/public_run.hpp"
 #include "tests/support/paths.hpp"
 
 // Nonlinear regression sets of NIST's StRD through the public API: a response y of one predictor u. y is passed as a
@@ -82,7 +83,7 @@ struct Rat43 {
 struct NistSet {
   Eigen::MatrixXd starts;  ///< p x 2, the harder of the two starts first
   Eigen::VectorXd certified, standard_deviation;
-  Trajectory run;
+  RecordedRun run;
 };
 
 std::vector<double> numbers_of(const std::string& text) {
@@ -104,6 +105,7 @@ NistSet read_nist(const std::string& name) {
       data.push_back(row);
     }
   }
+  using Eigen::Index;
   const auto p = static_cast<Index>(parameters.size()), N = static_cast<Index>(data.size());
   set.starts.resize(p, 2);
   set.certified.resize(p);
@@ -118,7 +120,7 @@ NistSet read_nist(const std::string& name) {
     state(0, k + 1) = data[k][0];
     input(0, k) = data[k][1];
   }
-  set.run = test::make_run(state, input);
+  set.run = test::public_run(state, input);
   return set;
 }
 
@@ -132,22 +134,23 @@ void expect_certified(const std::string& name, int start = 0) {
   const NistSet set = read_nist(name);
   ASSERT_EQ(set.certified.size(), P) << name;
   std::vector<ModelParameter> b(P);
-  for (int j = 0; j < P; ++j) b[j].name = "b" + std::to_string(j + 1);
+  for (int j = 0; j < P; ++j) {
+    b[j].name = "b" + std::to_string(j + 1);
+    b[j].start = set.starts(j, start);
+  }
   const auto model = make_auto_diff_model<1, 1, P>(Regression<Function>(), "regression", b);
-  const ModelResiduals residuals(*model, {{&set.run, 0, set.run.transitions()}});
   FitOptions options;
   options.loss = Loss::trivial;
+  options.prior = Prior::none;
+  options.length = std::ssize(set.run.time_s) - 1;
   options.max_iterations = 10'000;
-  const Eigen::RowVectorXd y = set.run.state.row(0).tail(set.run.transitions());
-  const double spread = std::sqrt((y.array() - y.mean()).square().mean());
-  const LocalModel fit =
-      fit_model(residuals, make_model_estimator(*model, options), Eigen::VectorXd::Constant(1, spread),
-                Eigen::VectorXd::Zero(1), nullptr, set.starts.col(start));
-  EXPECT_EQ(fit.status, FitStatus::converged) << name;
-  const double parameter_digits = digits(fit.theta, set.certified);
-  const double sd_digits = digits(fit.covariance.diagonal().cwiseSqrt(), set.standard_deviation);
-  EXPECT_GE(parameter_digits, 6.0) << name << ": " << fit.theta.transpose();
-  EXPECT_GE(sd_digits, 5.0) << name << ": " << fit.covariance.diagonal().cwiseSqrt().transpose();
+  const ident::Windows fit = ident::fit_windows({{set.run}, {}, {}}, options, *model);
+  const Eigen::VectorXd theta = view(fit.theta), sd = view(fit.covariance).reshaped(P, P).diagonal().cwiseSqrt();
+  EXPECT_EQ(fit.status.at(0), FitStatus::converged) << name;
+  const double parameter_digits = digits(theta, set.certified);
+  const double sd_digits = digits(sd, set.standard_deviation);
+  EXPECT_GE(parameter_digits, 6.0) << name << ": " << theta.transpose();
+  EXPECT_GE(sd_digits, 5.0) << name << ": " << sd.transpose();
   ::testing::Test::RecordProperty(name, std::to_string(parameter_digits) + " / " + std::to_string(sd_digits));
 }
 
