@@ -10,7 +10,7 @@ import pandas
 from numpy.lib.recfunctions import repack_fields
 
 import modebank
-from simulated import COLUMNS, QUICK, folder, frames
+from simulated import COLUMNS, QUICK, SOURCE, folder, frames
 
 
 def content(archive):
@@ -188,6 +188,19 @@ class Logs(unittest.TestCase):
                 file.write("time,v\n0,1\n1,2,3\n")
             with self.assertRaisesRegex(modebank.DataError, "broken.csv:3"):
                 modebank.read(path)
+
+    def test_mcap_of_the_reference_implementation(self):
+        """Messages as tests/golden/generate/mcap_core.mjs wrote them."""
+        k = np.arange(40)
+        for form in ("none", "lz4", "zstd", "unchunked", "bare"):
+            tables = modebank.read(SOURCE / f"tests/golden/data/mcap_core_{form}.mcap")
+            self.assertEqual(list(tables), ["/golden"])
+            found = tables["/golden"].rename(columns=lambda name: name.removeprefix("/golden."))
+            for name, first_s in (("stamp", 1_700_000_000), ("receive_time", 1_700_000_001)):
+                np.testing.assert_array_equal(found[name].astype("int64"), first_s * 10**9 + 25_000_000 * k)
+            self.assertEqual(found["s"].tolist(), [f"m{i}" for i in k])
+            for name, values in (("x", k / 4), ("n", -k), ("pair[0]", k), ("pair[1]", k + 0.5)):
+                np.testing.assert_array_equal(found[name], values, name)
 
     def test_what_is_no_log_is_an_error(self):
         with self.assertRaises(modebank.ConfigurationError):

@@ -130,22 +130,6 @@ TEST(Baseline, NoGridPointIsMoreLikely) {
   }
 }
 
-TEST(Baseline, AgreesWithNelderMead) {
-  const nlohmann::json golden = test::read_golden("learn_baseline");
-  for (const char* name : {"scalar", "vector"}) {
-    const nlohmann::json& expected = golden.at(name);
-    const Recording recording = test::golden_recording(expected.at("runs"));
-    const GlobalModel global = fit_global(recording, test::structure_of(recording));
-    EXPECT_TRUE(near(global.theta, test::golden_rows(expected.at("theta")), 1e-10)) << name;
-    const Baseline fit = learn(recording, global);
-    EXPECT_TRUE(fit.converged) << name;
-    // The simplex search stops at 1e-11 in the likelihood. In the flattest direction that is about 1e-5.
-    EXPECT_NEAR(fit.log_likelihood, expected.at("log_likelihood").get<double>(), 1e-7) << name;
-    EXPECT_TRUE(near(fit.bank.modes[0].Q, test::golden_rows(expected.at("Q")), 1e-5)) << name;
-    EXPECT_TRUE(near(fit.bank.R, test::golden_rows(expected.at("R")), 1e-5)) << name;
-  }
-}
-
 TEST(Baseline, WithoutMeasurementNoiseStopsAtTheBound) {
   const Bank truth = single_filter(-0.3, 0.04, 1e-30);
   const Recording recording = simulated(truth, 3, 400);

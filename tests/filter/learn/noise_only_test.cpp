@@ -2,10 +2,6 @@
 // (tests/golden/generate/learn_reference.py).
 #include <gtest/gtest.h>
 
-#include <array>
-
-#include "filter/learn/likelihood/training_likelihood.hpp"
-#include "ident/fit/robust_regression.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -24,35 +20,12 @@ class NoiseOnly : public testing::TestWithParam<const char*> {
   LinearStructure structure = test::structure_of(recording);
 };
 
-TEST_P(NoiseOnly, ThetaIsHubersRegression) {
-  const RobustRegression fit = huber_regression(stack_training(recording, structure));
-  EXPECT_TRUE(fit.converged);
-  EXPECT_TRUE(near(fit.coefficients.reshaped(), test::golden_rows(golden.at("theta")), noise_exact));
-  EXPECT_TRUE(near(fit.scale, test::golden_rows(golden.at("scale")), noise_exact));
-  EXPECT_TRUE(near(fit.standard_error.reshaped(), test::golden_rows(golden.at("standard_error")), noise_exact));
-}
-
-TEST_P(NoiseOnly, ScalesLieBetweenTheQuantiles) {
-  const Bank bank = learn_noise_only(recording, structure, test::golden_rows(golden.at("R")));
-  const Eigen::MatrixXd variances = test::golden_rows(golden.at("variances"));
-  ASSERT_EQ(bank.mode_count(), 8);
-  for (Index j = 0; j < 8; ++j) {
-    EXPECT_TRUE(near(bank.modes[j].Q, variances.col(j).asDiagonal().toDenseMatrix(), noise_exact)) << "mode " << j;
-    EXPECT_TRUE(near(bank.theta(j), test::golden_rows(golden.at("theta")), noise_exact)) << "mode " << j;
-    EXPECT_NEAR(bank.modes[j].weight, 0.125, noise_exact);
-  }
-  EXPECT_NO_THROW(check_sizes(bank));
-}
-
+/// Its theta, standard errors and noise levels: tests/program/golden_test.py.
 TEST_P(NoiseOnly, StayIsTheMostLikelyOne) {
-  Bank bank = learn_noise_only(recording, structure, test::golden_rows(golden.at("R")));
+  const Bank bank = learn_noise_only(recording, structure, test::golden_rows(golden.at("R")));
   EXPECT_NEAR(bank.transition.matrix()(0, 0), golden.at("stay").get<double>(), noise_exact);
   EXPECT_TRUE(near(bank.R, test::golden_rows(golden.at("R")), 0.0));
-  for (std::size_t i = 0; i < golden.at("stays").size(); ++i) {
-    bank.transition = TransitionMatrix::sticky(8, golden.at("stays")[i].get<double>());
-    // tolerance for a sum over a hundred samples; each density agrees to 1e-10
-    EXPECT_NEAR(training_log_likelihood(bank, recording, {}), golden.at("log_likelihood")[i].get<double>(), 1e-8);
-  }
+  EXPECT_NO_THROW(check_sizes(bank));
 }
 
 TEST_P(NoiseOnly, TestRunsDoNotMatter) {

@@ -14,7 +14,6 @@ import pathlib
 
 import numpy as np
 from scipy.stats import chi2, multivariate_normal, norm
-from statsmodels.stats.diagnostic import acorr_ljungbox
 
 FLOOR = 1e-12  # mode probabilities, then renormalised
 FOLDER = pathlib.Path(__file__).parent.parent / "data"
@@ -174,15 +173,7 @@ def case(name, seed, n, m, n_y, K, variant, N=40, C=None, missing=()):
 
 
 def scores():
-    rng = np.random.default_rng(7)
-    white = rng.normal(size=130)
-    correlated = np.zeros(64)
-    for k in range(1, 64):
-        correlated[k] = 0.4 * correlated[k - 1] + rng.normal()
-    p = lambda z: float(acorr_ljungbox(z, lags=[min(20, len(z) // 5)])['lb_pvalue'].iloc[0])
     write('scores.json', dict(
-        series=[white, correlated, white[:23]], ljung_box_p=[p(white), p(correlated), p(white[:23])],
-        fisher=float(chi2.sf(-2 * np.log([0.03, 0.4, 0.81]).sum(), 6)),
         chi_square=[dict(p=q, dof=d, value=float(chi2.ppf(q, d))) for d in (1, 2, 3, 7) for q in (0.025, 0.975)],
         normal_score=[dict(pit=q, z=float(norm.ppf(q))) for q in (1e-15, 1e-6, 0.025, 0.5, 0.9, 0.999999)]))
 

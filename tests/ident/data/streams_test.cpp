@@ -2,11 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "io/csv/csv.hpp"
-#include "io/files/read_file.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/support/matrix_compare.hpp"
-#include "tests/support/paths.hpp"
 
 namespace modebank {
 namespace {
@@ -14,17 +11,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Formula and arithmetic are the same as in numpy. The tolerance allows a few roundings of values of size ten.
-constexpr double interpolation_tolerance = 1e-14;
 constexpr double time_tolerance_s = 1e-12;  // allows rounding in sums and products of a few times
-
-Stream golden_stream(const char* name) {
-  const std::string path = (test::golden_dir() / name).string();
-  const Table table = parse_csv(path, read_file(path), {0, {"time", "value"}});
-  const auto rows = static_cast<Eigen::Index>(table.rows());
-  return {Eigen::Map<const VectorXd>(table.numbers[0].data(), rows),
-          Eigen::Map<const VectorXd>(table.numbers[1].data(), rows).transpose()};
-}
 
 Stream counting(const VectorXd& time_s) {
   return {time_s, VectorXd::LinSpaced(time_s.size(), 0, static_cast<double>(time_s.size() - 1)).transpose()};
@@ -32,13 +19,6 @@ Stream counting(const VectorXd& time_s) {
 
 VectorXd vector(std::initializer_list<double> values) {
   return Eigen::Map<const VectorXd>(values.begin(), static_cast<Eigen::Index>(values.size()));
-}
-
-TEST(Interpolate, AgreesWithNumpy) {
-  const Stream knots = golden_stream("interpolation_knots.csv");
-  const Stream expected = golden_stream("interpolation_expected.csv");
-  ASSERT_EQ(expected.time_s.size(), 149);
-  EXPECT_TRUE(test::near(interpolate(knots, expected.time_s), expected.values, interpolation_tolerance));
 }
 
 TEST(Interpolate, IsExactOnKnotsAndTakesAllChannels) {

@@ -26,24 +26,6 @@ MatrixXd autoregressive(MatrixXd series, double phi) {
   return series;
 }
 
-TEST(ResidualTests, AgreeWithStatsmodels) {
-  const auto golden = test::read_golden("ident_inference").at("residual_tests");
-  const MatrixXd residual = test::golden_rows(golden.at("residual")), input = test::golden_rows(golden.at("input"));
-  const ResidualTests tests = test_residuals(residual, input, {golden.at("lags").get<Index>(), 0.99});
-  constexpr double rounding = 1e-12;
-  EXPECT_TRUE(near(tests.autocorrelation.transpose(), test::golden_rows(golden.at("autocorrelation")), rounding));
-  EXPECT_TRUE(near(tests.cross_correlation, test::golden_rows(golden.at("cross_correlation")), rounding));
-  EXPECT_NEAR(tests.autocorrelation_band, 2.5758293 / 20.0, 1e-8);
-  // statsmodels computes 12 lags for 60 samples. modebank's limit, a fifth of the samples, is also 12.
-  EXPECT_NEAR(test_residuals(residual.leftCols(60), input.leftCols(60)).ljung_box_p(0),
-              golden.at("ljung_box_p").get<double>(), rounding);
-  // The input acts three samples later.
-  Index lag = 0, row = 0;
-  tests.cross_correlation.cwiseAbs().maxCoeff(&row, &lag);
-  EXPECT_EQ(row, 1);
-  EXPECT_EQ(lag, 3);
-}
-
 /// Shares of lags outside the bands over many series. They are compared with the binomial's 1e-4 quantiles, because the
 /// lags of one series are nearly independent.
 TEST(ResidualTests, OfWhiteNoiseStayInsideTheirBands) {
