@@ -57,6 +57,7 @@ MAY_INCLUDE = {
 # Folders of the installed headers <modebank/NAME/...>.
 PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge/run",
           "learn": "filter/learn", "archive": "io/archive/bank"}
+INCLUDE = r'^\s*#\s*include "([^"]+)"'
 # The only detail shared by all kernels: use of the lanes of vector registers.
 SHARED_DETAIL = "ident/base/detail"
 
@@ -98,12 +99,29 @@ def rooms_without_cmake_file(root):
     return [f"{room} has no CMakeLists.txt" for room in MAY_INCLUDE if room.startswith("app/") and not (root / room / "CMakeLists.txt").exists()]
 
 
+def inside_knowledge(root):
+    """Private headers that a test of goldens, NIST, laws or coverage includes, if only by files of tests/."""
+    bad = []
+    for test in sorted((root / "tests").rglob("*_test.cpp")):
+        if not re.search(r"(golden|nist|laws|coverage)_test\.cpp$", test.name):
+            continue
+        seen, left = set(), [test]
+        while left:
+            found = set(re.findall(INCLUDE, left.pop().read_text(), re.MULTILINE)) - seen
+            seen |= found
+            files = [root / header for header in found if header.startswith("tests/")]
+            left += files + [file.with_suffix(".cpp") for file in files if file.with_suffix(".cpp").exists()]
+        private = sorted(header for header in seen if not header.startswith(("modebank/", "tests/")))
+        bad += [f"{test.relative_to(root)} -> {header}: is not a public header" for header in private]
+    return bad
+
+
 def main(root):
-    bad = left_out_of_the_whole(root) + upward() + rooms_without_cmake_file(root)
+    bad = left_out_of_the_whole(root) + upward() + rooms_without_cmake_file(root) + inside_knowledge(root)
     for folder in sorted({f.split("/")[0] for f in MAY_INCLUDE}):
         for source in sorted((root / folder).rglob("*.[hc]pp")):
             name = source.relative_to(root).as_posix()
-            for header in re.findall(r'^\s*#\s*include "([^"]+)"', source.read_text(), re.MULTILINE):
+            for header in re.findall(INCLUDE, source.read_text(), re.MULTILINE):
                 if reason := offence(name, header):
                     bad.append(f"{name} -> {header}: {reason}")
     print("\n".join(bad))
