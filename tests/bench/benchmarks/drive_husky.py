@@ -5,6 +5,9 @@ from halves import both_halves
 
 PROTOCOL = """DATA/drive_husky/husky_samples.csv, configs/drive_husky.ini, both halves of the 201 blocks train in turn; held-out log score [nats/sample] / one-step RMSE [rad/s], samples too
 far and too close [%]. The data's authors publish steady-state models of slip, no one-step predictions."""
+# The settings for prediction alone that configs/drive_husky.ini names.
+MORE = [("mixture as configs/husky_ice.ini has it",
+         {"mixture.components": "12", "mixture.restarts": "20", "mixture.split_merge": "20"})]
 
 
 def main():
