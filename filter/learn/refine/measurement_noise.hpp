@@ -26,6 +26,9 @@ struct MeasurementNoise {
 MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, const Bank& bank,
                                             const RefineTuning& tuning);
 
+/// Whether at least half of the banks have an R of at least a tenth of this one (traces).
+bool mostly_have(const std::vector<Bank>& banks, const Eigen::MatrixXd& R);
+
 /// The prior for unknown states. It equals the prior of the fit with exactly measured states, except for Q. Q has one
 /// additional transition, with the harmonic mean covariance of the modes in `start`. (The global residual covariance
 /// would include the differences between modes and outweigh the data of very different modes.) A harmonic mean is at
@@ -34,7 +37,7 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 
 /// Continues the fit with unknown states if R is not negligible.
 /// - R is given, or estimated in the bank's filter (estimate_measurement_noise). An estimate is accepted unless
-///   left-out runs lose more than least_gain.
+///   left-out runs lose more than least_gain, and only if the splits mostly_have it.
 /// - theta, Q, R and T then maximise the filter's likelihood together. The result is kept if it gains on left-out
 ///   runs. Each run is scored by a fit whose R, prior and other parameters come from the other runs.
 /// - Rounded states are unknown for any R. Their fit always continues in this way, and R is searched afterwards,

@@ -51,36 +51,22 @@ std::vector<RefineStart> all_starts(const RefineInput& in, const std::vector<Ban
   return starts;
 }
 
-/// The best start, with weaker and stronger priors on Q.
-std::vector<RefineStart> other_priors(const RefineStart& best, const RefineTuning& tuning) {
-  std::vector<RefineStart> starts;
-  for (const double transitions : tuning.other_Q_transitions) {
-    starts.push_back(best);
-    starts.back().noise_transitions = transitions;
-  }
-  return starts;
-}
-
-/// The best start, with increasingly strong priors towards one motion.
-std::vector<RefineStart> towards_one_motion(const RefineStart& best, const RefineTuning& tuning) {
-  std::vector<RefineStart> starts;
-  for (const double transitions : tuning.theta_transitions) {
-    starts.push_back(best);
-    starts.back().theta_transitions = transitions;
-  }
-  return starts;
-}
-
 /// Chooses the start and the number of iterations first, then the strength of the prior on Q.
 CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& banks) {
   CrossValidation validation(in);
   const RefineTuning& tuning = refine_tuning;
   validation.consider(
       all_starts(in, banks, validation.possible() ? tuning.Q_transitions : tuning.Q_transitions_unvalidated));
-  if (validation.possible()) validation.consider(other_priors(validation.chosen().start, tuning));
+  // The best start with other weights of one prior.
+  const auto vary = [&](double RefineStart::*prior, const auto& transitions) {
+    std::vector<RefineStart> starts(transitions.size(), validation.chosen().start);
+    for (std::size_t i = 0; i < starts.size(); ++i) starts[i].*prior = transitions[i];
+    validation.consider(starts);
+  };
+  if (validation.possible()) vary(&RefineStart::noise_transitions, tuning.other_Q_transitions);
   if (validation.possible() && in.options.densities_ahead() > 1 && !in.options.one_theta &&
       validation.chosen().start.model.modes() > 1)
-    validation.consider(towards_one_motion(validation.chosen().start, tuning));
+    vary(&RefineStart::theta_transitions, tuning.theta_transitions);
   return validation;
 }
 

@@ -238,6 +238,21 @@ TEST(RefineMeasured, FindsRThatThetaHides) {
   EXPECT_NEAR(measured.bank.theta(0)(0), truth.theta(0, 0), 0.05);
 }
 
+/// If the splits find no R, scores of left-out runs do not change and cannot test the R of all training runs. On ICE
+/// six splits with R of at most a thousandth of it once confirmed an R by which held-out runs lost 0.19 nats.
+TEST(MostlyHave, NeedsHalfOfTheSplitsToHaveAnROfItsSize) {
+  const auto with = [](double R) {
+    Bank bank;
+    bank.R.setConstant(1, 1, R);
+    return bank;
+  };
+  const Eigen::MatrixXd R = Eigen::MatrixXd::Constant(1, 1, 1e-4);
+  EXPECT_TRUE(mostly_have({with(1e-4), with(2e-5), with(9e-4), with(0.0)}, R));
+  EXPECT_TRUE(mostly_have({with(1e-4), with(2e-5), with(1e-6), with(0.0)}, R));
+  EXPECT_FALSE(mostly_have({with(1e-4), with(1e-6), with(1e-6), with(0.0)}, R));
+  EXPECT_FALSE(mostly_have({with(6e-11), with(0.0), with(8e-8), with(2e-8), with(1e-9), with(0.0)}, R));
+}
+
 /// No part of a fit, including R, may use the runs that are scored with it. Here the last run has ten times the
 /// measurement noise.
 TEST(RefineMeasured, ScoresAreOfFitsThatLeaveTheRunOut) {
