@@ -31,12 +31,11 @@ inline filter::BankDescription example_description(Eigen::Index n, Eigen::Index 
     const double d = static_cast<double>(j);
     Eigen::MatrixXd B = Eigen::MatrixXd::Constant(n, m, 0.1 + 0.05 * d);
     if (m > 1) B.col(0) *= -1.0;
-    bank.modes.push_back(
-        {to_matrix(-(0.2 + 0.1 * d) * I + Eigen::MatrixXd::Constant(n, n, 0.03)), to_matrix(B),
-         to_vector(Eigen::VectorXd::Constant(n, 0.01 * d)),
-         to_matrix(std::pow(10.0, -4.0 + d) * (I + Eigen::MatrixXd::Constant(n, n, 0.3))),
-         to_matrix(1e-3 * (Eigen::MatrixXd::Identity(p, p) + Eigen::MatrixXd::Constant(p, p, 0.1))),
-         1.0 / static_cast<double>(K)});
+    bank.modes.push_back({to_matrix(-(0.2 + 0.1 * d) * I + Eigen::MatrixXd::Constant(n, n, 0.03)), to_matrix(B),
+                          to_vector(Eigen::VectorXd::Constant(n, 0.01 * d)),
+                          to_matrix(std::pow(10.0, -4.0 + d) * (I + Eigen::MatrixXd::Constant(n, n, 0.3))),
+                          to_matrix(1e-3 * (Eigen::MatrixXd::Identity(p, p) + Eigen::MatrixXd::Constant(p, p, 0.1))),
+                          1.0 / static_cast<double>(K)});
   }
   bank.C = to_matrix(I);
   bank.R = to_matrix(r * I);

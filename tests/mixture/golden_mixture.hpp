@@ -25,8 +25,8 @@ inline void expect_golden_fit(const nlohmann::json& golden, double log_likelihoo
   ASSERT_EQ(covariances.size(), golden["covariances"].size());
   for (std::size_t k = 0; k < covariances.size(); ++k) {
     const Eigen::ArrayXXd difference = (covariances[k] - golden_rows(golden["covariances"][k])).array();
-    EXPECT_TRUE(near((difference.colwise() / unit).rowwise() / unit.transpose(), 0.0 * covariances[k],
-                     mixture_tolerance))
+    EXPECT_TRUE(near((difference.colwise() / unit).rowwise() / unit.transpose(),
+                     Eigen::MatrixXd::Zero(unit.size(), unit.size()), mixture_tolerance))
         << "component " << k;
   }
 }

@@ -1,5 +1,4 @@
-// The competitor `noise_only` compared with statsmodels, numpy and the textbook filter
-// (tests/golden/generate/learn_reference.py).
+// The competitor `noise_only`. Its theta, standard errors and noise levels: tests/program/golden_test.py.
 #include <gtest/gtest.h>
 
 #include "tests/filter/learn/learn_test_support.hpp"
@@ -20,7 +19,6 @@ class NoiseOnly : public testing::TestWithParam<const char*> {
   LinearStructure structure = test::structure_of(recording);
 };
 
-/// Its theta, standard errors and noise levels: tests/program/golden_test.py.
 TEST_P(NoiseOnly, StayIsTheMostLikelyOne) {
   const Bank bank = learn_noise_only(recording, structure, test::golden_rows(golden.at("R")));
   EXPECT_NEAR(bank.transition.matrix()(0, 0), golden.at("stay").get<double>(), noise_exact);

@@ -8,7 +8,6 @@
 #include <boost/random/normal_distribution.hpp>
 #include <random>
 
-#include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

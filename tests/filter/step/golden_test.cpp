@@ -22,15 +22,19 @@ constexpr double tolerance = 1e-10;
 /// The first covariances of the unobserved state are about ten. Their relative accuracy is the same.
 constexpr double relative_tolerance = 1e-10;
 
+Matrix golden_matrix(const json& rows) { return to_matrix(golden_rows(rows)); }
+
 filter::Bank read_bank(const json& source) {
   filter::BankDescription bank;
-  bank.C = to_matrix(golden_rows(source.at("C")));
-  bank.R = to_matrix(golden_rows(source.at("R")));
-  bank.transition = to_matrix(golden_rows(source.at("T")));
+  bank.C = golden_matrix(source.at("C"));
+  bank.R = golden_matrix(source.at("R"));
+  bank.transition = golden_matrix(source.at("T"));
   bank.initial_probability = source.at("pi").get<std::vector<double>>();
-  for (const json& mode : source.at("modes"))
-    bank.modes.push_back({to_matrix(golden_rows(mode.at("A"))), to_matrix(golden_rows(mode.at("B"))),
-                          mode.at("c").get<std::vector<double>>(), to_matrix(golden_rows(mode.at("Q"))), {}, 1.0});
+  for (const json& mode : source.at("modes")) {
+    const auto c = mode.at("c").get<std::vector<double>>();
+    bank.modes.push_back(
+        {golden_matrix(mode.at("A")), golden_matrix(mode.at("B")), c, golden_matrix(mode.at("Q")), {}, 1.0});
+  }
   bank.inputs = bank.modes[0].B.cols;
   bank.intercept = true;
   return filter::Bank(bank);
@@ -89,9 +93,9 @@ TEST(GoldenLikelihood, OfModesThatShareTheta) {
     filter::BankDescription bank;
     bank.inputs = q - n;
     bank.R = to_matrix(R);
+    const Matrix A = to_matrix(theta.leftCols(n)), B = to_matrix(theta.rightCols(q - n));
     for (const auto& variance : variances.colwise())
-      bank.modes.push_back({to_matrix(theta.leftCols(n)), to_matrix(theta.rightCols(q - n)), {},
-                            to_matrix(variance.asDiagonal().toDenseMatrix()), {}, 1.0});
+      bank.modes.push_back({A, B, {}, to_matrix(variance.asDiagonal().toDenseMatrix()), {}, 1.0});
     for (std::size_t i = 0; i < of.at("stays").size(); ++i) {
       bank.transition = test::sticky_transition(variances.cols(), of.at("stays")[i].get<double>());
       double sum = 0.0;

@@ -92,7 +92,8 @@ TEST(Imm, ProbabilitiesSumToOne) {
 TEST(Imm, ThatNeverSwitchesIsBayesRuleOverSeparateFilters) {
   BankDescription bank = example_description(2, 1, 3);
   for (std::size_t j = 0; j < 3; ++j) bank.modes[j] = bank.modes[0];
-  for (std::size_t j = 1; j < 3; ++j) for (double& q : bank.modes[j].Q.values) q *= 1.0 + 0.3 * static_cast<double>(j);
+  for (std::size_t j = 1; j < 3; ++j)
+    for (double& q : bank.modes[j].Q.values) q *= 1.0 + 0.3 * static_cast<double>(j);
   const RecordedRun run = simulate(bank, 40, 5);
   Eigen::MatrixXd log_weight(3, 40);
   for (std::size_t j = 0; j < 3; ++j) {

@@ -1,4 +1,4 @@
-"""Regressions of the DRIVE data (data/drive_husky) that tests/io/import/drive_husky_test.cpp expects, by numpy alone.
+"""Regressions of the DRIVE data (data/drive_husky) that tests/program/golden_test.py expects, by numpy alone.
 usage: drive_husky.py HUSKY_SAMPLES_CSV"""
 import sys
 

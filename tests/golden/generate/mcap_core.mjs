@@ -1,6 +1,6 @@
 // tests/golden/data/mcap_core_*.mcap: forty messages, written by npm's @mcap/core (2.2.2), lz4js (0.2.0) and zstd-codec
 // (0.1.5). Usage, in a folder where `npm install @mcap/core lz4js zstd-codec` was run: node mcap_core.mjs FOLDER
-// tests/io/recording/mcap_core_test.cpp has the same numbers in closed form.
+// tests/python/frames_test.py has the same numbers in closed form.
 import { createRequire } from "node:module";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";

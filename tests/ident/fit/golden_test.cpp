@@ -1,4 +1,6 @@
 // Windows compared with statsmodels, scipy and numpy (tests/golden/generate/ident_fits.py).
+#include "tests/support/golden.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 #include "modebank/base/eigen.hpp"
 #include "modebank/ident/windows.hpp"
 #include "tests/ident/public_run.hpp"
-#include "tests/support/golden.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {

@@ -167,8 +167,8 @@ test::FittedTheta model_of(Index n, Index q, Index transitions) {
 }
 
 TEST(ConfidenceRegion, HasTheQuantilesOfTheTables) {
-  EXPECT_NEAR(confidence_region(model_of(1, 3, 25)).limit, 3 * 3.0491, 3e-4);  // F(3, 22)
-  EXPECT_NEAR(confidence_region(model_of(1, 3, 3)).limit, 7.8147, 1e-4);       // for L <= q: chi-square(3)
+  EXPECT_NEAR(confidence_region(model_of(1, 3, 25)).limit, 3 * 3.0491, 3e-4);        // F(3, 22)
+  EXPECT_NEAR(confidence_region(model_of(1, 3, 3)).limit, 7.8147, 1e-4);             // for L <= q: chi-square(3)
   EXPECT_NEAR(confidence_region(model_of(2, 4, 25), 0.99).limit, 8 * 3.7910, 1e-2);  // F(8, 17)
 }
 
