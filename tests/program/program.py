@@ -1,0 +1,96 @@
+"""The program as its users type it, and its archives as h5py reads them: what the whole-program tests share.
+
+MODEBANK_PROGRAM is the program, MODEBANK_SOURCE the source tree. MODEBANK_DEMO is the folder of `modebank demo`, which
+CTest makes once (`program.py FOLDER`); without it each test program makes its own. Tests do not write into that folder.
+"""
+import atexit
+import collections
+import functools
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import h5py
+    import numpy as np
+except ImportError as missing:
+    print(f"SKIPPED: Python has no module {missing.name} (Debian: python3-h5py, python3-numpy)")
+    sys.exit(77)
+
+PROGRAM = os.environ["MODEBANK_PROGRAM"]
+SOURCE = pathlib.Path(os.environ.get("MODEBANK_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
+TIMEOUT_S = 200
+Done = collections.namedtuple("Done", "out err status")
+
+
+def modebank(*words, cwd=None, input=None, status=0, env=None):
+    """What the program prints for these words, and its exit status, which must be `status` (None: any)."""
+    done = subprocess.run([PROGRAM, *map(str, words)], cwd=cwd, input=input, env=dict(os.environ, **env or {}),
+                          capture_output=True, text=True, timeout=TIMEOUT_S)
+    if status is not None and done.returncode != status:
+        raise AssertionError(f"{words}: exit status {done.returncode}, not {status}\n{done.stdout}{done.stderr}")
+    return Done(done.stdout, done.stderr, done.returncode)
+
+
+def facts(*words, **options):
+    """The JSON object that the command prints with --json."""
+    return json.loads(modebank(*words, "--json", **options).out)
+
+
+def make_demo(parent):
+    """The folder `demo` in `parent`, and beside it what the command printed, demo.json."""
+    pathlib.Path(parent, "demo.json").write_text(modebank("demo", "-o", pathlib.Path(parent, "demo"), "--json").out)
+    return pathlib.Path(parent, "demo")
+
+
+@functools.lru_cache
+def demo():
+    """The folder of the demo: demo.h5, demo.ini, simulate_demo.ini and data/."""
+    if "MODEBANK_DEMO" in os.environ:
+        return pathlib.Path(os.environ["MODEBANK_DEMO"])
+    parent = tempfile.mkdtemp(prefix="modebank-program-test-")
+    atexit.register(shutil.rmtree, parent)
+    return make_demo(parent)
+
+
+def arrays(archive, path="/"):
+    """Every dataset below the path as {name: array}. Tables are structured arrays."""
+    found = {}
+    with h5py.File(archive, "r") as file:
+        file[path].visititems(lambda name, item: found.update({name: item[()]} if hasattr(item, "dtype") else {}))
+    return found
+
+
+def attributes(archive, path="/"):
+    """Attributes of an object as {name: value}, with text as str."""
+    with h5py.File(archive, "r") as file:
+        return {name: value.decode() if isinstance(value, bytes) else value for name, value in file[path].attrs.items()}
+
+
+def rows(table, **values):
+    """Rows of a table whose columns have these values: rows(summary, filter="bank", run="*")."""
+    keep = np.ones(len(table), bool)
+    for column, value in values.items():
+        keep &= table[column] == (value.encode() if isinstance(value, str) else value)
+    return table[keep]
+
+
+class ProgramTest(unittest.TestCase):
+    """A test with a folder of its own, `self.folder`, which goes afterwards."""
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="modebank-program-test-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+
+def main():
+    unittest.main(verbosity=2)  # prints the reasons of skipped tests
+
+
+if __name__ == "__main__":
+    os.makedirs(sys.argv[1], exist_ok=True)
+    make_demo(sys.argv[1])
