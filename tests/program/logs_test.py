@@ -1,0 +1,137 @@
+"""Logs: one drive in every format gives one answer by one command; units of time and delays of topics are found."""
+import pathlib
+import struct
+import sys
+
+import h5py
+import numpy as np
+
+import program
+from program import SOURCE, ProgramTest, arrays, attributes, facts, modebank
+
+sys.path.insert(0, str(SOURCE / "tests/io/recording"))
+import topics  # noqa: E402, writers of bags, MCAP and db3
+
+QUICK = ("--effort=quick", "--window.model=linear", "--mixture.components=1..2", "--bank.refine=none")
+BEGIN_NS = 1_714_557_600_000_000_000
+
+
+def drive(samples=600):
+    """Times [ns from the beginning], held commands [m/s], and a speed that follows them, in two modes of 60 samples."""
+    draw = np.random.default_rng(5)
+    command = np.repeat(draw.uniform(-1, 1, samples // 6), 6)
+    speed = np.zeros(samples)
+    for k in range(samples - 1):
+        speed[k + 1] = speed[k] + (0.5, 0.15)[k // 60 % 2] * (command[k] - speed[k]) + draw.normal(0, 0.01)
+    return 100_000_000 * np.arange(samples), command, speed
+
+
+def write_csv(path, header, *columns, separator=",", decimal="."):
+    lines = [separator.join(str(value).replace(".", decimal) for value in row) for row in zip(*columns)]
+    path.write_text("\n".join([header, *lines]) + "\n")
+
+
+def write_mat5(path, columns):
+    """A MAT file of version 5, uncompressed: of each column vector its flags, shape, name and values."""
+    def element(kind, data):
+        return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
+
+    content = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4D49)
+    for name, values in columns.items():
+        content += element(14, element(6, struct.pack("<II", 6, 0)) + element(5, struct.pack("<ii", len(values), 1))
+                           + element(1, name.encode()) + element(9, np.asarray(values, "<f8").tobytes()))
+    path.write_bytes(content)
+
+
+def write_mat73(path, columns):
+    """A MAT file of version 7.3: HDF5 with MATLAB's words in its user block; a column is a row of HDF5."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for name, values in columns.items():
+            file[name] = np.asarray(values, "f8")[None, :]
+            file[name].attrs["MATLAB_class"] = np.bytes_("double")
+    with open(path, "r+b") as file:
+        file.write(b"MATLAB 7.3 MAT-file".ljust(124) + struct.pack("<HH", 0x0200, 0x4D49))
+
+
+class Logs(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.stamps, self.command, self.speed = drive()
+        self.columns = {"time": self.stamps / 1e9, "cmd": self.command, "speed": self.speed}
+
+    def messages(self, late_ns=0):
+        both = [(0, self.command, 0), (1, self.speed, late_ns)]
+        all_messages = [(c, BEGIN_NS + int(t) + late, float(v)) for c, values, late in both
+                        for t, v in zip(self.stamps, values)]
+        return sorted(all_messages, key=lambda message: message[1])
+
+    def answer(self, *words):
+        """The facts of `run LOG` and the arrays of its archive."""
+        found = facts("run", *words, *QUICK, cwd=self.folder)
+        return found, arrays(self.folder / next(name for name in found["written"] if name.endswith(".h5")))
+
+    def test_every_format_gives_one_answer(self):
+        write_csv(self.folder / "text.csv", "time,cmd,speed", *self.columns.values())
+        topics.write_bag(self.folder / "ros1.bag", ["/cmd", "/speed"], self.messages(), compression="bz2", chunks=5)
+        topics.write_mcap(self.folder / "ros2.mcap", [({0: "/cmd", 1: "/speed"}, self.messages())])
+        topics.write_db3(self.folder / "sqlite.db3", {0: "/cmd", 1: "/speed"}, self.messages())
+        with h5py.File(self.folder / "hdf.hdf5", "w") as file:
+            for name, values in self.columns.items():
+                file[name] = values
+        write_mat5(self.folder / "five.mat", self.columns)
+        write_mat73(self.folder / "seven.mat", self.columns)
+        reference = None
+        for log in ("text.csv", "ros1.bag", "ros2.mcap", "sqlite.db3", "hdf.hdf5", "five.mat", "seven.mat"):
+            with self.subTest(log=log):
+                found, archive = self.answer(log)
+                reference = reference or (found, archive)
+                self.assertEqual(found["summary"]["answer"], reference[0]["summary"]["answer"])
+                for name in ("data/time", "data/state", "data/input", "bank/A", "bank/B", "bank/Q"):
+                    np.testing.assert_allclose(archive[name], reference[1][name], rtol=0, atol=1e-12, err_msg=name)
+                for column in ("samples", "log_score", "coverage_95"):
+                    np.testing.assert_allclose(archive["evaluation/summary"][column],
+                                               reference[1]["evaluation/summary"][column], rtol=1e-9, err_msg=column)
+        for run in reference[1]["data/runs"]:
+            part = slice(run["first"], run["first"] + run["samples"])
+            at = np.rint(10 * reference[1]["data/time"][part]).astype(int)
+            np.testing.assert_array_equal(reference[1]["data/state"][part, 0], self.speed[at])
+            np.testing.assert_array_equal(reference[1]["data/input"][part, 0], self.command[at])
+
+    def test_the_configuration_of_a_log_gives_the_same_bits(self):
+        write_csv(self.folder / "text.csv", "time,cmd,speed", *self.columns.values())
+        found, archive = self.answer("text.csv")
+        self.assertEqual({pathlib.Path(name).suffix for name in found["written"]}, {".h5", ".html", ".ini"})
+        modebank("run", "text.ini", "--archive.output", "again.h5", cwd=self.folder)
+        again = arrays(self.folder / "again.h5")
+        self.assertEqual(archive.keys(), again.keys())
+        for name in archive:
+            if name != "config" and not name.startswith("provenance"):
+                self.assertEqual(np.asarray(archive[name]).tobytes(), np.asarray(again[name]).tobytes(), name)
+
+    def test_a_spreadsheets_export_with_stamps_in_nanoseconds_and_milliseconds(self):
+        ground = [("grip", "ice")[k // 60 % 2] for k in range(len(self.stamps))]
+        for unit, stamps, origin in (("ns", BEGIN_NS + self.stamps, BEGIN_NS), ("ms", self.stamps // 1_000_000, 0)):
+            with self.subTest(unit=unit):
+                write_csv(self.folder / f"{unit}.csv", f"stamp;cmd;speed;ground\n[{unit}];m/s;m/s;", stamps,
+                          self.command, self.speed, ground, separator=";", decimal=",")
+                _, archive = self.answer(f"{unit}.csv", "--data.split=blocks 4", "--data.label=ground")
+                runs = archive["data/runs"]
+                self.assertEqual(runs["role"].tolist(), [b"train", b"test"] * 2)
+                names = attributes(self.folder / f"{unit}.h5", "data")["label_names"]
+                self.assertEqual(names.tolist(), [b"grip", b"ice"])
+                for run in runs:
+                    part = slice(run["first"], run["first"] + run["samples"])
+                    at = np.rint(10 * archive["data/time"][part]).astype(int)
+                    np.testing.assert_allclose(archive["data/time"][part], self.columns["time"][at], rtol=0, atol=1e-9)
+                    np.testing.assert_array_equal(archive["data/state"][part, 0], self.speed[at])
+                    np.testing.assert_array_equal(archive["data/label"][part], at // 60 % 2)
+                    self.assertEqual(run["time_origin_ns"], origin)
+
+    def test_the_delay_between_two_topics_is_found(self):
+        topics.write_bag(self.folder / "late.bag", ["/cmd", "/speed"], self.messages(late_ns=300_000_000))
+        self.answer("late.bag")
+        self.assertAlmostEqual(attributes(self.folder / "late.h5", "lag")["lag_s"], 0.3, delta=0.1)  # a period
+
+
+if __name__ == "__main__":
+    program.main()
