@@ -63,7 +63,7 @@ class Mistakes(ProgramTest):
 
     def refused(self, status, datum, words):
         before = self.content()
-        done = modebank(*words, cwd=self.folder, status=status, env={"MODEBANK_DATA": str(self.folder)})
+        done = modebank(*words, cwd=self.folder, status=status)
         *progress, line = done.err.splitlines()
         self.assertTrue(line.startswith("modebank: ") and not any("modebank: " in said for said in progress), done.err)
         self.assertTrue(datum in done.err and "\x1b" not in done.err and (status == 1 or not progress), done.err)

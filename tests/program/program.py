@@ -1,6 +1,6 @@
 """The program as its users type it, and its archives as h5py reads them: what the whole-program tests share.
 
-MODEBANK_PROGRAM is the program, MODEBANK_SOURCE the source tree. MODEBANK_DEMO is the folder of `modebank demo`, which
+MODEBANK_PROGRAM is the program, MODEBANK_SOURCE the source tree, MODEBANK_DATA real data. MODEBANK_DEMO is the folder of `modebank demo`, which
 CTest makes once (`program.py FOLDER`); without it each test program makes its own. Tests do not write into that folder.
 """
 import atexit
@@ -24,6 +24,7 @@ except ImportError as missing:
 
 PROGRAM = os.environ["MODEBANK_PROGRAM"]
 SOURCE = pathlib.Path(os.environ.get("MODEBANK_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
+DATA = pathlib.Path(os.environ.pop("MODEBANK_DATA", SOURCE.parent / "shared/data"))  # the program is told by data.root
 TIMEOUT_S = 200
 Done = collections.namedtuple("Done", "out err status")
 
@@ -70,6 +71,22 @@ def attributes(archive, path="/"):
     """Attributes of an object as {name: value}, with text as str."""
     with h5py.File(archive, "r") as file:
         return {name: value.decode() if isinstance(value, bytes) else value for name, value in file[path].attrs.items()}
+
+
+def write_runs(folder, samples=120, states=("wz",)):
+    """Two runs of a small vehicle that slips at times, run_00.csv and (held out) run_01.csv, and their configuration test.ini."""
+    for run in (0, 1):
+        draw = np.random.default_rng(run + 1)
+        u, x = draw.uniform(-0.5, 0.5, (samples, 2)), np.zeros((samples, len(states)))
+        for k in range(samples - 1):
+            grip = 0.2 if k // 20 % 2 else 0.6
+            x[k + 1] = 0.6 * x[k] + grip * (u[k, 1] - u[k, 0]) + draw.uniform(-0.005, 0.005, len(states))
+        lines = [",".join(map(repr, (k / 10, *x[k].tolist(), *u[k].tolist()))) for k in range(samples)]
+        header = ",".join(("time", *states, "left", "right"))
+        pathlib.Path(folder, f"run_{run:02}.csv").write_text("\n".join([header, *lines, ""]))
+    pathlib.Path(folder, "test.ini").write_text(
+        f"[data]\ninputs = run_*.csv\nstate = {', '.join(states)}\ninput = left, right\n"
+        "[window]\nmodel = linear\n[mixture]\ncomponents = 1..2\n")
 
 
 def rows(table, **values):
