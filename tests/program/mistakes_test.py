@@ -34,6 +34,7 @@ MISTAKES = [
     (2, "run_01.csv", RUN, ("run_01.csv", 0, "")),
     (2, "none/out.h5", (*RUN[:-1], "none/out.h5"), None),
     (2, "/proc", (*RUN[:-1], "/proc/out.h5"), None),
+    (2, "init run_00.csv", ("check", "run_00.csv"), None),
     (2, "none.h5", ("show", "none.h5"), None),
     (2, "none.h5", ("evaluate", "test.ini", "--archive.bank", "none.h5"), None),
     (1, "run_01.csv", RUN, ("run_01.csv", 0, "time,wz,left,right\n")),
@@ -72,19 +73,20 @@ class Mistakes(ProgramTest):
     def test_each_is_refused_by_one_line_and_leaves_no_file(self):
         for status, datum, words, damage in MISTAKES:
             with self.subTest(datum=datum, words=words):
-                write_runs(self.folder)
+                write_runs(self.folder, 80)
                 if damage:
                     self.damage(*damage)
                 self.refused(status, datum, words)
 
     def test_commands_on_an_archive_replace_neither_what_they_read_nor_files_of_another_form(self):
-        write_runs(self.folder)
+        write_runs(self.folder, 80)
         modebank("run", "test.ini", "--archive.output", "a.h5", cwd=self.folder)
         shutil.copy(self.folder / "run_01.csv", self.folder / "log.csv")
         predict = ("predict", "a.h5", "--data.inputs", "log.csv", "--samples", "5", "-o")
         for words, outputs in ((predict, ("log.csv", "a.h5", "test.ini")),
                                (("report", "a.h5", "-o"), ("a.h5", "test.ini")),
                                (("init", "log.csv", "--yes", "--force", "-o"), ("log.csv", "a.h5")),
+                               (("init", "log.csv", "--yes", "-o"), ("test.ini",)),
                                (("export", "a.h5", "--force", "--to", "json", "-o"), ("a.h5", "log.csv")),
                                (("check", "test.ini", "--apply", "--force", "-o"), ("test.ini", "run_00.csv")),
                                (("run", "test.ini", "--force", "--archive.output"),

@@ -1,7 +1,8 @@
 """The program as its users type it, and its archives as h5py reads them: what the whole-program tests share.
 
-MODEBANK_PROGRAM is the program, MODEBANK_SOURCE the source tree, MODEBANK_DATA real data. MODEBANK_DEMO is the folder of `modebank demo`, which
-CTest makes once (`program.py FOLDER`); without it each test program makes its own. Tests do not write into that folder.
+MODEBANK_PROGRAM is the program, MODEBANK_SOURCE the source tree, MODEBANK_DATA real data. MODEBANK_DEMO is the folder
+of `modebank demo`, which CTest makes once (`program.py FOLDER`); without it each test program makes its own. Tests do not
+write into that folder.
 """
 import atexit
 import collections
@@ -74,7 +75,7 @@ def attributes(archive, path="/"):
 
 
 def write_runs(folder, samples=120, states=("wz",)):
-    """Two runs of a small vehicle that slips at times, run_00.csv and (held out) run_01.csv, and their configuration test.ini."""
+    """Two runs of a vehicle that slips at times, run_00.csv and (held out) run_01.csv, and their test.ini."""
     for run in (0, 1):
         draw = np.random.default_rng(run + 1)
         u, x = draw.uniform(-0.5, 0.5, (samples, 2)), np.zeros((samples, len(states)))
@@ -87,6 +88,13 @@ def write_runs(folder, samples=120, states=("wz",)):
     pathlib.Path(folder, "test.ini").write_text(
         f"[data]\ninputs = run_*.csv\nstate = {', '.join(states)}\ninput = left, right\n"
         "[window]\nmodel = linear\n[mixture]\ncomponents = 1..2\n")
+
+
+def differing(first, second):
+    """Names of the arrays of two archives that differ in any bit, but for the configuration and the list of files."""
+    a, b = arrays(first), arrays(second)
+    return [name for name in sorted((a.keys() | b.keys()) - {"config", "provenance/inputs"})
+            if np.asarray(a.get(name)).tobytes() != np.asarray(b.get(name)).tobytes()]
 
 
 def rows(table, **values):
