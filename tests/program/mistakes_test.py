@@ -1,4 +1,5 @@
 """Wrong inputs: exit status (2: before any sample is read, 1: content), one line with the culprit, and no file."""
+import json
 import shutil
 
 import program
@@ -43,6 +44,7 @@ MISTAKES = [
     (1, "run_01.csv:5: column wz", RUN, ("run_01.csv", 5, "0.3,,0,0")),
     (1, "run_01.csv:6", RUN, ("run_01.csv", 6, "0.1,0,0,0")),
     (1, "run_01.csv:42: column wz", RUN, ("run_01.csv", 42, "4.0,1e30,0,0")),
+    (1, "run_00.csv:7: column left", RUN, ("run_00.csv", 7, "0.5,0,1e40,0")),
     (1, "wz", RUN, ("run_00.csv", 0, STILL)),
     (1, "run_00.csv:81", ("check", "test.ini"), ("run_00.csv", 81, "1e9,0,0,0")),
     (1, "25", RUN, ("run_00.csv", 26, None)),
@@ -68,6 +70,8 @@ class Mistakes(ProgramTest):
         *progress, line = done.err.splitlines()
         self.assertTrue(line.startswith("modebank: ") and not any("modebank: " in said for said in progress), done.err)
         self.assertTrue(datum in done.err and "\x1b" not in done.err and (status == 1 or not progress), done.err)
+        said = json.loads(modebank(*words, "--json", cwd=self.folder, status=status).out)
+        self.assertTrue(datum in said["error"] and said["status"] == status, said)
         self.assertEqual((done.out, before), ("", self.content()))
 
     def test_each_is_refused_by_one_line_and_leaves_no_file(self):
@@ -96,7 +100,7 @@ class Mistakes(ProgramTest):
                     self.refused(2, output, (*words, output))
         for status, datum, words in ((2, "--samples", ()), (2, "filter.simulate", ("--samples", "-1")),
                                      (2, "track.filter", ("--samples", "5", "--filter", "other")),
-                                     (1, "80", ("--samples", "80"))):
+                                     (1, "sample", ("--samples", "80"))):
             self.refused(status, datum, ("predict", "a.h5", *words))
         write_runs(self.folder, 90)  # an archive of other data
         self.refused(1, "a.h5", (*RUN[:-1], "a.h5"))
