@@ -10,7 +10,7 @@ from math import erf, sqrt
 import numpy as np
 
 import program
-from program import DATA, SOURCE, ProgramTest, arrays, attributes, demo, differing, facts, modebank, rows
+from program import DATA, REQUIRED, SOURCE, ProgramTest, arrays, attributes, demo, differing, facts, modebank, rows
 
 QUICK = ("--window.loss=trivial", "--window.prior=none", "--mixture.components=1..3", "--mixture.noise_component=false",
          "--mixture.restarts=2", "--filter.simulate=5")
@@ -208,7 +208,7 @@ class Known(ProgramTest):
         self.assertGreater(share, 0.97)
         self.assertAlmostEqual(share, found["agreement"], 9)
 
-    @unittest.skipUnless((DATA / "borealtc/ICE").is_dir(), "no borealtc/ICE in MODEBANK_DATA")
+    @unittest.skipUnless(REQUIRED or (DATA / "borealtc/ICE").is_dir(), "no borealtc/ICE in MODEBANK_DATA")
     def test_the_published_recipe_on_ice(self):
         modebank("run", SOURCE / "configs/salvi2025.ini", "--data.root", DATA, "--archive.output", self.folder / "s.h5")
         summary = arrays(self.folder / "s.h5", "evaluation")["summary"]
