@@ -1,8 +1,8 @@
 """The program as its users type it, and its archives as h5py reads them: what the whole-program tests share.
 
 MODEBANK_PROGRAM is the program, MODEBANK_SOURCE the source tree, MODEBANK_DATA real data. MODEBANK_DEMO is the folder
-of `modebank demo`, which CTest makes once (`program.py FOLDER`); without it each test program makes its own. Tests do not
-write into that folder.
+of `modebank demo`, which CTest makes once (`program.py FOLDER`); without it each test program makes its own. Tests do
+not write into that folder.
 """
 import atexit
 import collections
