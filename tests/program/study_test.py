@@ -1,0 +1,129 @@
+"""A study: its trials are single runs to the bit, whatever stops, shares, damages or submits it."""
+import csv
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+
+import program
+from program import PROGRAM, ProgramTest, arrays, modebank, rows, write_runs
+
+KEYS = ("mixture.components", "filter.variant")
+QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+VARIED = ("--study.vary", KEYS[0] + " = 1 | 2", "--study.vary", KEYS[1] + " = imm | salvi2025")
+
+
+def lines(file):
+    return list(csv.reader(file.read_text().splitlines()))
+
+
+def trials(study):
+    return sorted((study / "trials").glob("*.h5"))
+
+
+def identities(study):
+    """Of its archives. One that is made again has another."""
+    return {path: (path.stat().st_ino, path.stat().st_mtime_ns) for path in trials(study)}
+
+
+def contents(archive):
+    """Its datasets as exact text. /config has the names of files, which may differ."""
+    return {name: str(array.tolist()) for name, array in arrays(archive).items() if name != "config"}
+
+
+class Study(ProgramTest):
+    """Something disturbs the study `other` in each test. Its table and archives must be those of `whole`."""
+    @classmethod
+    def setUpClass(cls):
+        cls.data = pathlib.Path(tempfile.mkdtemp(prefix="modebank-program-test-"))
+        cls.addClassCleanup(shutil.rmtree, cls.data)
+        write_runs(cls.data)
+        cls.whole = cls.data / "whole"
+        modebank(*cls.words(cls.whole))
+
+    def setUp(self):
+        super().setUp()
+        self.other = self.folder / "other"
+
+    @classmethod
+    def words(cls, study, *options):
+        return ("study", cls.data / "test.ini", *VARIED, "--study.output", study, "--bank.refine", "none", *options)
+
+    def study(self, *options, **more):
+        modebank(*self.words(self.other, *options), **more)
+
+    def start(self, *options):
+        return subprocess.Popen([PROGRAM, *self.words(self.other, *options)], start_new_session=True, **QUIET)
+
+    def check(self):
+        self.assertEqual(lines(self.other / "study.csv"), lines(self.whole / "study.csv"))
+        for one, other in zip(trials(self.other), trials(self.whole), strict=True):
+            self.assertTrue(contents(one) == contents(other), one)
+        modebank("verify", self.other)
+
+    def test_trials_are_single_runs(self):
+        run, (header, *table) = self.folder / "run.h5", lines(self.whole / "study.csv")
+        for trial in (dict(zip(header, line)) for line in table):
+            keys = [word for key in KEYS for word in ("--" + key, trial[key])]
+            modebank("run", self.data / "test.ini", "--bank.refine", "none", *keys, "--archive.output", run, "--force")
+            self.assertTrue(contents(run) == contents(self.whole / "trials" / (trial["key"] + ".h5")), trial)
+            for row in rows(arrays(run, "/evaluation")["summary"], run="*"):
+                name = f"{row['filter'].decode()}_{row['role'].decode()}_log_score"
+                self.assertEqual(float(trial[name]), row["log_score"], name)
+        modebank("run", self.whole / "study.best.ini", "--archive.output", run, "--force")
+        score = rows(arrays(run, "/evaluation")["summary"], filter="bank", role="test", run="*")["log_score"]
+        self.assertEqual(score, max(float(line[header.index("bank_test_log_score")]) for line in table))
+
+    def test_goes_on_after_a_kill_and_makes_nothing_twice(self):
+        killed = self.start("--study.jobs", "1")
+        while not trials(self.other):
+            self.assertIsNone(killed.poll(), "the study ended without a trial")
+            time.sleep(0.001)
+        os.killpg(killed.pid, signal.SIGKILL)
+        killed.wait()
+        for _ in "after the kill", "when all is done":
+            before = identities(self.other)
+            self.study()
+            self.assertLessEqual(before.items(), identities(self.other).items())
+        self.check()
+
+    def test_processes_share_the_work(self):
+        self.assertEqual([process.wait() for process in [self.start("--job.threads", "2") for _ in range(3)]], [0, 0, 0])
+        made = [line[3] for line in lines(self.other / "log.csv") if line[4] == "done"]
+        self.assertEqual(sorted(made), [path.stem for path in trials(self.whole)])
+        self.check()
+
+    def test_a_damaged_trial_is_made_again(self):
+        self.study()
+        before, damaged = identities(self.other), trials(self.other)[1]
+        content = bytearray(damaged.read_bytes())
+        content[5000] ^= 16
+        damaged.write_bytes(content)
+        self.assertIn(damaged.stem, modebank("verify", self.other, status=1).out)
+        self.study()
+        self.assertEqual({path for path, _ in before.items() - identities(self.other).items()}, {damaged})
+        self.check()
+
+    def test_slurm_gets_an_array_and_a_merge(self):
+        sbatch = self.folder / "sbatch"
+        submit = ("--study.stage", "submit", "--study.slurm_tasks", "2", "--study.slurm_options", "--time=60")
+        self.study(*submit, env={"PATH": str(self.folder)}, status=2)  # no sbatch
+        sbatch.write_text('#!/bin/sh\necho "$*" >> "$0.words"\necho 41\n')
+        sbatch.chmod(0o700)
+        self.study(*submit, env={"PATH": f"{self.folder}:{os.environ['PATH']}"})
+        array, merge = (self.folder / "sbatch.words").read_text().splitlines()
+        self.assertIn("--array=0-1 --time=60 ", array)
+        self.assertIn("--dependency=afterany:41 --time=60 ", merge)
+        self.study("--study.stage", "merge", status=1)
+        self.assertEqual(trials(self.other), [])  # nothing is made here
+        for script, task in ((array, "1"), (array, "0"), (merge, "")):
+            task = dict(os.environ, SLURM_ARRAY_TASK_ID=task)
+            subprocess.run(["bash", script.split()[-1]], env=task, check=True, **QUIET)
+        self.check()
+
+
+if __name__ == "__main__":
+    program.main()
