@@ -6,13 +6,64 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "io/archive/inspect.hpp"
 
 namespace modebank::test {
+namespace {
+
+/// Between two looks at a state that a test waits for.
+void look_again_soon() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+
+struct ProcessNow {
+  char state = 'X';  ///< as in /proc: T (stopped), Z (ended, not reaped), X (gone), and others
+  long ticks = 0;    ///< processor time that it has used
+};
+
+ProcessNow now_of(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string text, skipped;
+  ProcessNow now;
+  if (!std::getline(file, text)) return now;
+  std::istringstream fields(text.substr(text.rfind(')') + 1));
+  fields >> now.state;
+  constexpr int before_the_times = 10;
+  for (int i = 0; i < before_the_times; ++i) fields >> skipped;
+  long in_user = 0, in_system = 0;
+  fields >> in_user >> in_system;
+  now.ticks = in_user + in_system;
+  return now;
+}
+
+/// The process that a claim names; 0 without a claim.
+pid_t holder_of(const std::filesystem::path& claim) {
+  std::ifstream stream(claim);
+  const auto text = nlohmann::json::parse(stream, nullptr, false);  // the claim may end while the file is read
+  return text.is_object() ? text.at("process").get<pid_t>() : 0;
+}
+
+/// Kills the process that a claim names, if it has used the processor for so long since now, and still makes this trial.
+bool kill_holder(const std::filesystem::path& claim, long busy_ticks) {
+  const pid_t process = holder_of(claim);
+  if (process == 0) return false;
+  const long first = now_of(process).ticks;
+  while (now_of(process).ticks < first + busy_ticks && holder_of(claim) == process) look_again_soon();
+  if (kill(process, SIGSTOP) != 0) return false;
+  char state = now_of(process).state;
+  for (; state != 'T' && state != 'Z' && state != 'X'; state = now_of(process).state) look_again_soon();
+  const bool at_work = state == 'T' && holder_of(claim) == process &&
+                       !std::filesystem::exists(std::filesystem::path(claim).replace_extension(".h5"));
+  kill(process, at_work ? SIGKILL : SIGCONT);
+  return at_work;
+}
+
+}  // namespace
 
 StudyTest::StudyTest() {
   write("study.ini", std::string(config_text()) +
@@ -43,26 +94,37 @@ std::string StudyTest::numbers(const std::string& folder) const {
          inspect(path, "/answers/best").dump();
 }
 
-std::vector<std::filesystem::path> StudyTest::archives(const std::string& folder) const {
-  std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(file(folder) / "trials"))
-    if (entry.path().extension() == ".h5") paths.push_back(entry.path());
-  std::sort(paths.begin(), paths.end());
+std::set<std::filesystem::path> StudyTest::files(const std::string& folder) const {
+  std::set<std::filesystem::path> paths;
+  for (const auto& part : {file(folder), file(folder) / "trials", file(folder) / "cache"}) {
+    std::error_code absent;
+    for (std::filesystem::directory_iterator at(part, absent), end; !absent && at != end; at.increment(absent))
+      paths.insert(at->path());
+  }
   return paths;
 }
 
-bool StudyTest::kill_a_worker(const std::string& folder, std::mt19937_64& generator) const {
-  std::vector<std::filesystem::path> claims;
-  std::error_code absent;
-  for (const auto& entry : std::filesystem::directory_iterator(file(folder) / "trials", absent))
-    if (entry.path().extension() == ".claim") claims.push_back(entry.path());
-  std::shuffle(claims.begin(), claims.end(), generator);
-  for (const auto& claim : claims) {
-    std::ifstream stream(claim);
-    const auto holder = nlohmann::json::parse(stream, nullptr, false);  // the claim may end while the file is read
-    if (holder.is_object() && kill(holder.at("process").get<pid_t>(), SIGKILL) == 0) return true;
+std::vector<std::filesystem::path> StudyTest::trial_files(const std::string& folder, const char* extension) const {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& path : files(folder))
+    if (path.extension() == extension && path.parent_path().filename() == "trials") paths.push_back(path);
+  return paths;
+}
+
+void StudyTest::wait_for_changes(const std::string& folder, unsigned changes, const Process& process) const {
+  std::set<std::filesystem::path> before = files(folder);
+  while (changes > 0 && process.running()) {
+    std::set<std::filesystem::path> now = files(folder);
+    if (now != before) --changes;
+    before = std::move(now);
+    look_again_soon();
   }
-  return false;
+}
+
+bool StudyTest::kill_a_worker(const std::string& folder, std::mt19937_64& generator, long busy_ticks) const {
+  std::vector<std::filesystem::path> claims = trial_files(folder, ".claim");
+  std::shuffle(claims.begin(), claims.end(), generator);
+  return std::any_of(claims.begin(), claims.end(), [&](const auto& claim) { return kill_holder(claim, busy_ticks); });
 }
 
 void StudyTest::run_undisturbed() const {
@@ -98,6 +160,12 @@ void Process::kill_alone() const {
 }
 
 void Process::kill_with_children() const { killpg(child_, SIGKILL); }
+
+bool Process::running() const {
+  siginfo_t ended{};
+  return !ended_ && waitid(P_PID, static_cast<id_t>(child_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         ended.si_pid == 0;
+}
 
 int Process::wait() {
   int status = 0;

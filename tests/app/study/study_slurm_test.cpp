@@ -41,15 +41,17 @@ std::vector<Task> tasks_of(const SlurmCluster& cluster) {
 
 class StudySlurm : public StudyTest {
  protected:
+  static bool over(const SlurmCluster& cluster) {
+    const std::vector<Task> tasks = tasks_of(cluster);
+    return !tasks.empty() && std::all_of(tasks.begin(), tasks.end(), [](const Task& task) {
+      return task.state == "COMPLETED" || task.state == "FAILED" || task.state == "CANCELLED";
+    });
+  }
   /// Waits until every job has ended. Returns false after half an hour.
   static bool settled(const SlurmCluster& cluster) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(30);
     while (std::chrono::steady_clock::now() < end) {
-      const std::vector<Task> tasks = tasks_of(cluster);
-      const bool over = !tasks.empty() && std::all_of(tasks.begin(), tasks.end(), [](const Task& task) {
-        return task.state == "COMPLETED" || task.state == "FAILED" || task.state == "CANCELLED";
-      });
-      if (over) return true;
+      if (over(cluster)) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
     return false;
@@ -91,13 +93,8 @@ TEST_F(StudySlurm, KilledWorkersChangeNoNumber) {
   options.insert(options.end(), many.begin(), many.end());
   ASSERT_EQ(study("slurm", options).status, 0);
   std::mt19937_64 generator(20261127);
-  auto last = std::chrono::steady_clock::now();
-  for (int kills = 0; kills < 20 && std::chrono::steady_clock::now() - last < std::chrono::seconds(30);) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(generator() % 500));
-    if (!kill_a_worker("slurm", generator)) continue;
-    ++kills;
-    last = std::chrono::steady_clock::now();
-  }
+  for (int kills = 0; kills < 20 && !over(cluster); std::this_thread::sleep_for(std::chrono::milliseconds(50)))
+    kills += kill_a_worker("slurm", generator);
   ASSERT_TRUE(settled(cluster)) << cluster.queue();
   const ProgramResult status = study("slurm", {"--study.stage", "status"});
   EXPECT_NE(status.out.find(" failed"), std::string::npos) << "none was killed: " << status.out;
