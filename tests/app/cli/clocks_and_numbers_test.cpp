@@ -8,10 +8,6 @@
 #include "app/text/mode_dynamics.hpp"
 #include "app/text/mode_tables.hpp"
 #include "filter/step/equations/bounds.hpp"
-#include "ident/data/streams.hpp"
-#include "ident/fit/global_model.hpp"
-#include "ident/fit/unidentifiable_regressors.hpp"
-#include "ident/lag/track.hpp"
 #include "io/archive/archive.hpp"
 #include "io/import/value_check.hpp"
 #include "tests/app/cli_fixture.hpp"
@@ -48,16 +44,6 @@ class ClocksAndNumbers : public CliTest {
   ProgramResult check() const { return modebank({"check", config(), "--data.root", file(".").string()}); }
 };
 
-TEST_F(ClocksAndNumbers, Finding_D4_AStampFarFromItsNeighboursIsNamed) {
-  for (const char* stamp : {"1e9", "1e12", "1e308"}) {
-    change("run_00.csv", [&](int line, Row& row) { row[0] = line == 81 ? stamp : row[0]; });
-    for (const ProgramResult& result : {check(), run({"--data.lag_s", "auto"}), run({"--data.rate_hz", "100"})}) {
-      EXPECT_EQ(result.status, 1) << stamp;
-      EXPECT_THAT(result.err, HasSubstr("run_00.csv:81")) << stamp;
-    }
-  }
-}
-
 TEST_F(ClocksAndNumbers, Finding_D4_APauseOfADayCostsNoGrid) {
   change("run_00.csv", [](int line, Row& row) {
     if (line > 41) row[0] = std::to_string(86400.0 + std::stod(row[0]));
@@ -71,22 +57,6 @@ TEST_F(ClocksAndNumbers, Finding_D4_APauseOfADayCostsNoGrid) {
   EXPECT_EQ(run({"--data.lag_s", "auto"}).status, 0);
 }
 
-TEST_F(ClocksAndNumbers, Finding_D7_AValueThatNoScoreWouldCountIsRefusedWithItsPlace) {
-  for (const char* value : {"1e30", "-1e50", "1e155", "1e300"})
-    for (const char* name : {"run_00.csv", "run_01.csv"}) {  // training run and held-out run
-      change("run_00.csv", [](int, Row&) {});
-      change(name, [&](int line, Row& row) { row[1] = line == 42 ? value : row[1]; });
-      for (const ProgramResult& result : {run(), check()}) {
-        EXPECT_EQ(result.status, 1) << value;
-        EXPECT_THAT(result.err, HasSubstr(std::string(name) + ":42: column wz: ")) << value;
-        EXPECT_THAT(result.err, HasSubstr("its magnitude reaches 1e+30")) << value;
-      }
-      change(name, [](int, Row&) {});
-    }
-  change("run_00.csv", [](int line, Row& row) { row[2] = line == 7 ? "1e40" : row[2]; });
-  EXPECT_THAT(run().err, HasSubstr("run_00.csv:7: column left: 1e+40"));
-}
-
 /// Filters accept every number that the import accepts.
 static_assert(largest_value == largest_measurement);
 
@@ -98,18 +68,6 @@ TEST_F(ClocksAndNumbers, Finding_D7_AValueBelowTheLimitIsScored) {
       EXPECT_EQ(row.samples, 79);
       EXPECT_LT(row.log_score, -1e3) << row.filter;
     }
-}
-
-TEST_F(ClocksAndNumbers, Finding_D8_AConstantStateIsRefused) {
-  change_both([](int, Row& row) { row[1] = "0.3"; });
-  const ProgramResult result = run();
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("the state wz is constant: 0.3 in every sample of the training runs 00"));
-  EXPECT_THAT(result.out + result.err, Not(HasSubstr("evidence")));
-  const ProgramResult checked = check();
-  EXPECT_EQ(checked.status, 1);
-  EXPECT_THAT(checked.out, HasSubstr("wz is constant: 0.3 in every sample"));
-  EXPECT_THAT(checked.out + checked.err, Not(HasSubstr("nan")));
 }
 
 TEST_F(ClocksAndNumbers, Finding_D8_AConstantHeldOutStateIsJudged) {
@@ -182,14 +140,6 @@ TEST_F(ClocksAndNumbers, AFasterRateThanAnyIsNotTried) {
   EXPECT_EQ(result.status, 0) << result.err;
 }
 
-TEST_F(ClocksAndNumbers, ConstantInTrainingIsFoundByCheckWhateverIsHeldOut) {
-  change("run_00.csv", [](int, Row& row) { row[1] = "0.3"; });
-  change("run_01.csv", [](int, Row&) {});
-  const ProgramResult checked = check();
-  EXPECT_EQ(checked.status, 1);
-  EXPECT_THAT(checked.err, HasSubstr("the state wz is constant: 0.3 in every sample of the training runs 00"));
-}
-
 TEST_F(ClocksAndNumbers, Finding_D16_AFewOutliersAndThoseHeldOutAreNamed) {
   change("run_00.csv", [](int line, Row& row) {
     if (line % 20 == 0 && line < 80) row[1] = line == 40 ? "-1.5e5" : "1e5";
@@ -251,28 +201,6 @@ TEST_F(ClocksAndNumbers, Finding_D16_OneOutlierThatOwnsTheGlobalModelIsNamed) {
   change("run_00.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e5" : row[1]; });
   EXPECT_THAT(run({"--data.where", "abs(wz) < 1000", "--window.length", "15"}).err,
               Not(HasSubstr("% of the variance of")));
-}
-
-TEST_F(ClocksAndNumbers, Finding_D15_NoControlCharacterReachesTheTerminal) {
-  const std::string escape = "w\x1b[31mRED\x07";
-  for (const char* name : {"run_00.csv", "run_01.csv"}) {
-    std::string text = csv_run(80, 1);
-    write(name, "time," + escape + text.substr(std::string("time,wz").size()));
-  }
-  const auto expect_shown = [&](const ProgramResult& result) {
-    EXPECT_NE(result.status, 0);
-    EXPECT_THAT(result.err, HasSubstr("w\\x1b[31mRED\\x07"));
-    EXPECT_THAT(result.out + result.err, Not(HasSubstr("\x1b")));
-  };
-  expect_shown(run());  // part of the list of existing columns
-  expect_shown(run({"--data.state", escape}));
-  expect_shown(modebank({"check", config(), "--data.root", file(".").string(), "--data.state", escape}));
-  for (const char* name : {"run_00.csv", "run_01.csv"}) change(name, [](int, Row&) {});
-  write("run_\x1b[31mRED\x07.csv", csv_run(80, 3));
-  const ProgramResult named = run();
-  EXPECT_EQ(named.status, 1);
-  EXPECT_THAT(named.err, HasSubstr("\"\\x1b[31mRED\\x07\" cannot name a run"));
-  EXPECT_THAT(named.out + named.err, Not(HasSubstr("\x1b")));
 }
 
 }  // namespace

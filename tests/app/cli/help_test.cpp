@@ -117,41 +117,6 @@ TEST_F(Help, WordsAfterACommandAreCounted) {
   }
 }
 
-/// An option that a command does not read is a user error, whatever its value.
-TEST_F(Help, OptionsThatACommandDoesNotReadAreRefused) {
-  const std::vector<std::vector<std::string>> lines{{"show", archive(), "-o", "x"},
-                                                    {"run", config(), "-o", "x"},
-                                                    {"run", config(), "--repair"},
-                                                    {"run", config(), "--study.vary", "window.length = 3"},
-                                                    {"verify", archive(), "--window.length", "30"},
-                                                    {"identify", config(), "--track.filter", "kf"},
-                                                    {"simulate", config(), "--samples", "3"}};
-  for (const std::vector<std::string>& line : lines) {
-    const ProgramResult result = modebank(line);
-    EXPECT_EQ(result.status, 2) << line[0] << ' ' << line[2];
-    EXPECT_NE(result.err.find(line[0] + " does not read --"), std::string::npos) << result.err;
-  }
-  EXPECT_TRUE(left_behind().empty());
-}
-
-TEST_F(Help, AllUnknownAndUnreadOptionsAreNamedAtOnce) {
-  const ProgramResult unknown = modebank({"run", config(), "--window.lenght", "30", "--forse"});
-  EXPECT_EQ(unknown.status, 2);
-  EXPECT_NE(unknown.err.find("unknown option --window.lenght, did you mean window.length?"), std::string::npos)
-      << unknown.err;
-  EXPECT_NE(unknown.err.find("unknown option --forse"), std::string::npos) << unknown.err;
-  const ProgramResult unread = modebank({"run", config(), "--repair", "--study.shard", "1 of 2"});
-  EXPECT_EQ(unread.status, 2);
-  EXPECT_NE(unread.err.find("run does not read --repair, --study.shard; "), std::string::npos) << unread.err;
-}
-
-TEST_F(Help, WithoutACommandThreeLinesSayHowToStart) {
-  const ProgramResult result = modebank({});
-  EXPECT_EQ(result.status, 2);
-  for (const char* start : {"modebank demo", "modebank init LOG", "modebank help"})
-    EXPECT_NE(result.err.find(start), std::string::npos) << result.err;
-}
-
 TEST_F(Help, ErrorsAreColouredOnATerminalAlone) {
   const auto on_terminal = [](const std::string& variables) {
     return run_program({"script", "-qc", variables + " TERM=xterm " + MODEBANK_PROGRAM + " run no.ini", "/dev/null"})

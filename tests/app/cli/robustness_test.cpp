@@ -116,22 +116,6 @@ TEST_F(Robustness, D14TheStoredConfigurationRunsAgainWhateverThePath) {
   }
 }
 
-TEST_F(Robustness, D15ControlCharactersDoNotReachTheTerminal) {
-  const std::string evil = "w\x1b[31mRED\x1b[2J\x1b]0;title\x07";
-  for (const char* run : {"run_00.csv", "run_01.csv"}) {
-    std::string text = read_file(file(run));
-    write(run, text.replace(text.find("wz"), 2, evil));
-  }
-  for (const std::string command : {"run", "check", "identify"}) {
-    const ProgramResult chosen = modebank({command, config(), "--data.state", evil});
-    EXPECT_EQ(chosen.status, 2) << command;
-    EXPECT_THAT(chosen.out + chosen.err, AllOf(HasSubstr("\\x1b[31mRED"), Not(HasSubstr("\x1b")))) << command;
-    const ProgramResult listed = modebank({command, config()});  // existing columns
-    EXPECT_EQ(listed.status, 2) << command;
-    EXPECT_THAT(listed.out + listed.err, AllOf(HasSubstr("RED"), Not(HasSubstr("\x1b")))) << command;
-  }
-}
-
 TEST_F(Robustness, D15BytesThatAreNoUtf8AreShownAsNumbers) {
   EXPECT_EQ(printable("gr\xf6\xdf"
                       "e"),
@@ -204,86 +188,6 @@ TEST_F(Robustness, D16TablesHoldNoFormulas) {
   EXPECT_EQ(quoted_field("-x"), "-x") << "read back by its name";
 }
 
-TEST_F(Robustness, P8AnArchiveOfOtherDataIsNotReplaced) {
-  const auto go = [&](std::vector<std::string> options) { return identify(config(), std::move(options)); };
-  ASSERT_EQ(go({}).status, 0);
-  ASSERT_EQ(go({"--window.length", "12"}).status, 0) << "other settings, the same data";
-  const std::string before = read_file(archive()), hash = load_data_hash(archive());
-  write("run_01.csv", csv_run(80, 9));
-  const ProgramResult refused = go({});
-  EXPECT_EQ(refused.status, 1);
-  EXPECT_THAT(refused.err, AllOf(HasSubstr(archive()), HasSubstr(hash), HasSubstr("--force")));
-  EXPECT_THAT(refused.err, Not(HasSubstr("fitted")));
-  EXPECT_EQ(read_file(archive()), before);
-  EXPECT_EQ(go({"--force"}).status, 0);
-  EXPECT_NE(load_data_hash(archive()), hash);
-  write("out.h5", "a text of mine");
-  for (const std::vector<std::string>& options : {std::vector<std::string>(), {"--force"}}) {
-    EXPECT_THAT(go(options).err, HasSubstr("exists and is not replaced, because it is not an archive"));
-    EXPECT_EQ(read_file(archive()), "a text of mine");
-  }
-  write("out.h5", before.substr(0, before.size() / 2));
-  EXPECT_EQ(go({"--force"}).status, 0) << "a damaged archive is one";
-}
-
-/// For each command: an output that is also an input, and an output that is an existing file of another form.
-TEST_F(Robustness, P8NoOutputTakesThePlaceOfWhatIsReadOrOfAnotherForm) {
-  ASSERT_EQ(run({"--mixture.components", "1"}).status, 0);
-  fs::create_directories(file("pages"));
-  for (const char* name : {"log.csv", "pages/log.csv"}) fs::copy_file(file("run_01.csv"), file(name));
-  const std::string log = file("log.csv").string(), other = file("pages/log.csv").string(),
-                    page = file("page.html").string();
-  ASSERT_EQ(modebank({"report", archive(), "-o", page}).status, 0);
-  const auto refuses = [&](std::vector<std::string> words, const std::string& output, const char* why) {
-    const std::string before = read_file(output);
-    words.push_back(output);
-    const ProgramResult result = modebank(words);
-    EXPECT_EQ(result.status, 2) << words.front() << " " << output << result.err;
-    EXPECT_THAT(result.err, AllOf(HasSubstr(output), HasSubstr(why), HasSubstr("name another file"))) << words.front();
-    EXPECT_EQ(read_file(output), before) << words.front();
-  };
-  const char *const read = "is read by this command", *const form = "exists and is not replaced, because it is not";
-  const std::vector<std::string> predict{"predict", archive(), "--data.inputs", log, "--samples", "5", "-o"};
-  refuses(predict, log, read);
-  refuses(predict, archive(), read);
-  for (const std::string& mine : {other, config(), page}) refuses(predict, mine, form);
-  const std::vector<std::string> track{"track", archive(), "--track.checkpoint"};
-  refuses(track, archive(), read);
-  for (const std::string& mine : {log, config(), page}) refuses(track, mine, form);
-  const std::vector<std::string> init{"init", log, "--yes", "--force", "-o"};
-  refuses(init, log, read);
-  for (const std::string& mine : {other, archive(), page}) refuses(init, mine, form);
-  const std::vector<std::string> check{"check", config(), "--apply", "--force", "-o"};
-  for (const std::string& mine : {config(), file("run_00.csv").string()}) refuses(check, mine, read);
-  for (const std::string& mine : {log, archive(), page}) refuses(check, mine, form);
-  refuses({"report", archive(), "-o"}, archive(), read);
-  for (const std::string& mine : {log, config()}) refuses({"report", archive(), "-o"}, mine, form);
-  for (const char* to : {"json", "regimes", "casadi", "mat"}) {
-    refuses({"export", archive(), "--force", "--to", to, "-o"}, archive(), read);
-    for (const std::string& mine : {log, config(), page})
-      refuses({"export", archive(), "--force", "--to", to, "-o"}, mine, form);
-  }
-  const std::vector<std::string> table{"export", archive(), "--to", "csv", "--table", "/evaluation/summary", "-o"};
-  for (const std::string& mine : {log, config(), page}) refuses(table, mine, form);
-  for (const char* command : {"run", "identify"}) {
-    refuses({command, config(), "--force", "--archive.output"}, file("run_01.csv").string(), read);
-    refuses({command, config(), "--force", "--archive.output"}, config(), read);
-    for (const std::string& mine : {log, page}) refuses({command, config(), "--force", "--archive.output"}, mine, form);
-  }
-  fs::create_directories(file("drives"));
-  for (const char* name : {"pro_00.csv", "imu_00.csv"}) {
-    const fs::path mine = file("drives") / name;
-    fs::copy_file(log, mine);
-    const std::string before = read_file(mine);
-    const ProgramResult result = modebank({"simulate", (project_dir() / "configs/simulate_ice.ini").string(),
-                                           "--simulate.output", file("drives").string(), "--simulate.runs=1"});
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_THAT(result.err, AllOf(HasSubstr(mine.string()), HasSubstr(form)));
-    EXPECT_EQ(read_file(mine), before);
-    fs::remove(mine);
-  }
-}
-
 TEST_F(Robustness, P8AnOutputIsReplacedByItsLike) {
   ASSERT_EQ(run({"--mixture.components", "1"}).status, 0);
   fs::copy_file(file("run_01.csv"), file("log.csv"));
@@ -331,60 +235,6 @@ TEST_F(Robustness, P8ALinkedArchiveIsWrittenThrough) {
   ASSERT_EQ(identify(config()).status, 0);
   EXPECT_TRUE(fs::is_symlink(archive()));
   EXPECT_EQ(modebank({"verify", file("far/target.h5").string()}).status, 0);
-}
-
-TEST_F(Robustness, P8WhatACommandDoesNotReadIsRefused) {
-  const auto refuses = [&](const std::vector<std::string>& words, const std::string& option, const std::string& known) {
-    const ProgramResult result = modebank(words);
-    EXPECT_EQ(result.status, 2) << option;
-    EXPECT_THAT(result.err, AllOf(HasSubstr(words.front() + " does not read " + option + ";"), HasSubstr(known)));
-  };
-  refuses({"identify", config(), "--bank.stay", "0.9"}, "--bank.stay", "--data.*, --window.*, --archive.*, --job.*");
-  refuses({"simulate", config(), "--window.length", "9"}, "--window.length", "--simulate.*");
-  refuses({"show", "none.h5", "--filter.variant", "imm"}, "--filter.variant", "--json, --run, --form");
-  refuses({"verify", "none.h5", "--track.filter", "bank"}, "--track.filter", "--repair");
-  refuses({"run", config(), "-o", "x.h5"}, "--output", "--force");
-  refuses({"run", config(), "--repair"}, "--repair", "--force");
-  refuses({"track", "none.h5", "--dry-run"}, "--dry-run", "--track.*");
-  refuses({"report", "none.h5", "--to", "c"}, "--to", "--output");
-  // This includes keys of a section that have no effect on the command.
-  refuses({"track", "none.h5", "--data.label", "x"}, "--data.label", "but for --data.truth, --data.weight");
-  refuses({"track", "none.h5", "--filter.horizon", "9"}, "--filter.horizon", "--filter.variant");
-  refuses({"track", "none.h5", "--job.threads", "1"}, "--job.threads", "--track.*");
-  refuses({"predict", "none.h5", "--data.label", "x"}, "--data.label", "but for --data.truth, --data.weight");
-  refuses({"simulate", config(), "--data.inputs", "x.csv"}, "--data.inputs", "--data.state");
-  refuses({"study", config(), "--archive.bank", "none.h5"}, "--archive.bank", "--study.*");
-}
-
-TEST_F(Robustness, P8WhereToWriteIsSaidWhereThereIsNoShortOption) {
-  EXPECT_THAT(modebank({"run", config(), "-o", "x.h5"}).err, HasSubstr("--archive.output PATH says where it writes"));
-  EXPECT_THAT(modebank({"study", config(), "-o", "x"}).err, HasSubstr("--study.output PATH says where it writes"));
-  EXPECT_THAT(modebank({"simulate", config(), "-o", "x"}).err, HasSubstr("--simulate.output PATH says where"));
-  EXPECT_THAT(modebank({"track", "none.h5", "-o", "x"}).err, HasSubstr("--output; it reads --json, --data.*"));
-}
-
-TEST_F(Robustness, P8WhatOneFormOfACommandDoesNotReadIsRefused) {
-  ASSERT_EQ(identify(config()).status, 0);
-  const auto refuses = [&](std::vector<std::string> words, const std::string& why) {
-    const ProgramResult result = modebank(words);
-    EXPECT_EQ(result.status, 2) << why;
-    EXPECT_THAT(result.err, HasSubstr(why));
-  };
-  refuses({"verify", archive(), "--repair"}, "--repair works only with folders of studies");
-  refuses({"export", archive(), "--to", "c", "--float"},
-          "--float, which was removed; instead: export --to c writes double");
-  refuses({"export", archive(), "--to", "c", "--table", "/bank"}, "--table belongs to export --to csv");
-  refuses({"export", archive(), "--to", "mat", "--wheel_radius_m", "1"},
-          "--wheel_radius_m belongs to export --to ros2");
-  refuses({"view", "results", "--open", "--port", "8000"},
-          "view was removed; instead: `modebank report FOLDER -o SITE`");
-  refuses({"help", "view"}, "view was removed; instead: `modebank report FOLDER -o SITE`");
-  refuses({"evaluate", config(), "--archive.bank", archive(), "--archive.output", file("o.h5").string(),
-           "--bank.refine", "none"},
-          "--bank.refine: with archive.bank nothing is learned");
-  refuses({"version", "x"}, "version takes no name");
-  refuses({"show", archive(), "bank/A", "--form", "half"}, "--form half: allowed are increment and full");
-  refuses({"help", "run", "--markdown"}, "takes no name");
 }
 
 TEST_F(Robustness, P8WordsBehindTwoDashesAreFiles) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -153,55 +152,6 @@ TEST_F(ConfigFile, AllFaultsAreReportedAtOnce) {
         "\n  " + place + "7: window.loss is already set in line 6", std::string("\n  --bank.stay: bank.stay = '2' ")})
     EXPECT_NE(all.find(part), std::string::npos) << part << " not in: " << all;
   EXPECT_EQ(faults("[window]\nlength = long\n", {}).find(place + "2: window.length"), 0u) << "a single one as it is";
-}
-
-TEST_F(ConfigFile, KeyOutsideAnySectionIsExplained) {
-  try {
-    load("length = 3\n");
-    FAIL() << "accepted";
-  } catch (const ConfigurationError& error) {
-    EXPECT_NE(std::string(error.what()).find("c.ini:1"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("section"), std::string::npos) << error.what();
-  }
-}
-
-/// Words of earlier versions that are not accepted any more.
-TEST_F(ConfigFile, WordsThatAreGoneAreAnsweredWithThoseThatAreLeft) {
-  using Case = std::array<std::string, 3>;
-  for (const auto& [key, gone, left] :
-       {Case{"windows", "trim", "automatic | full_rank | all"}, Case{"covariance", "spherical", "full | diagonal"}})
-    try {
-      load("[mixture]\n" + key + " = " + gone + "\n");
-      ADD_FAILURE() << key << " = " << gone << " is accepted";
-    } catch (const ConfigurationError& error) {
-      EXPECT_NE(std::string(error.what()).find(left), std::string::npos) << error.what();
-    }
-}
-
-/// Keys and values of earlier versions are refused. The message names the replacement.
-TEST_F(ConfigFile, KeysThatWentAreAnsweredWithWhatTakesTheirPlace) {
-  using Case = std::array<std::string, 2>;
-  for (const auto& [text, instead] :
-       {Case{"[window]\nresidual = simulation\n", "help bank.measurement_variance"},
-        Case{"[mixture]\nstart = kmeans++\n", "instead: mixture.restarts"},
-        Case{"[window]\nprior_sd = 0.5\n", "instead: the numbers as window.prior"},
-        Case{"[window]\nscale = fixed\n", "instead: run"}, Case{"[bank]\nrestarts = 6\n", "ten of mixture.restarts"},
-        Case{"[bank]\nlook_ahead_score = error\n", "bank.look_ahead = 10 error"},
-        Case{"[bank]\nscreen = false\n", "bank.theta = mean"}, Case{"[study]\nretry = false\n", "tried again"},
-        Case{"[track]\nlevel = 0.9\n", "intervals hold 95 %"},
-        Case{"[simulate]\nfriction = 0.1\n", "the system file, whose path is in simulate.system"},
-        Case{"[mixture]\nstart_runs = 2\n", "mixture.restarts"}, Case{"[mixture]\ncriterion = aic\n", "instead: bic"},
-        Case{"[mixture]\nheldout = never\n", "mixture.criterion = heldout"},
-        Case{"[mixture]\nbootstrap = 200\n", "standard errors of their coefficients"},
-        Case{"[report]\nfigures = folder\n", "python3 -m modebank.figures ARCHIVE -o FOLDER"},
-        Case{"[report]\npng = true\n", "-o FOLDER --png"}, Case{"[report]\nrun = 01\n", "-o FOLDER --run NAME"},
-        Case{"[report]\nsources = true\n", "copy modebank/figures.py"}})
-    try {
-      load(text);
-      ADD_FAILURE() << text << " is accepted";
-    } catch (const ConfigurationError& error) {
-      EXPECT_NE(std::string(error.what()).find(instead), std::string::npos) << error.what();
-    }
 }
 
 }  // namespace
