@@ -11,7 +11,6 @@
 #include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
 #include "tests/app/labels_of.hpp"
-#include "tests/support/archive_text.hpp"
 
 namespace modebank::test {
 namespace {
@@ -49,22 +48,6 @@ class RunLog : public CliTest {
     return modebank(words);
   }
 };
-
-TEST_F(RunLog, EndsInThreeFilesWhoseConfigurationGivesTheSameBits) {
-  write("log.csv", csv_run(400, 3));
-  const ProgramResult result = run_log({file("log.csv").string(), "--effort", "quick"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  for (const char* const said : {"log       log.csv", "time      time (10 Hz", "state     wz", "inputs    left, right",
-                                 "finding", "files", "drive.html opens in a browser"})
-    EXPECT_THAT(result.out, HasSubstr(said));
-  EXPECT_THAT(read_file(html()), HasSubstr("<!DOCTYPE html>"));
-  const std::string made = read_file(ini());
-  EXPECT_THAT(made, HasSubstr("state lag"));  // the structure is the reason for window.model
-  const std::string again = file("again.h5").string();
-  ASSERT_EQ(modebank({"run", ini(), "--archive.output", again}).status, 0);
-  EXPECT_EQ(all_stages(again), all_stages(h5()));
-  EXPECT_EQ(read_archive(again).provenance.config_hash, read_archive(h5()).provenance.config_hash);
-}
 
 TEST_F(RunLog, RefusesFilesThatExistBeforeAnythingIsComputed) {
   write("log.csv", "time,wz,left\n");  // would also be refused, because it has no rows

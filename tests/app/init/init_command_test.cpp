@@ -10,22 +10,6 @@ using ::testing::HasSubstr;
 
 class InitCommand : public CliTest {};
 
-TEST_F(InitCommand, WritesAConfigurationThatRuns) {
-  write("one.csv", csv_run(300, 1));
-  const std::string log = file("one.csv").string(), ini = file("one.ini").string(), archive = file("one.h5").string();
-  const ProgramResult made = modebank({"init", log, "-o", ini, "--yes"});
-  ASSERT_EQ(made.status, 0) << made.err;
-  EXPECT_THAT(made.out, HasSubstr("next: " MODEBANK_PROGRAM " run " + ini));
-  EXPECT_THAT(made.out, HasSubstr("wz"));
-  const ProgramResult again = modebank({"init", log, "-o", ini});
-  EXPECT_EQ(again.status, 2);
-  EXPECT_THAT(again.err, HasSubstr("exists: name another file (-o FILE), or overwrite it with --force"));
-  EXPECT_EQ(modebank({"init", log, "-o", ini, "--force"}).status, 0);
-  const ProgramResult ran = modebank({"run", ini, "--archive.output", archive});
-  EXPECT_EQ(ran.status, 0) << ran.err;
-  EXPECT_TRUE(std::filesystem::exists(archive));
-}
-
 /// On a terminal `init` asks questions. With --yes it does not ask.
 TEST_F(InitCommand, AsksOnATerminal) {
   write("one.csv", csv_run(300, 1));
@@ -80,17 +64,6 @@ TEST_F(InitCommand, AFolderStandsForTheLogsInIt) {
   const ProgramResult empty = init("empty");
   EXPECT_EQ(empty.status, 2);
   EXPECT_THAT(empty.err, HasSubstr("empty: a folder without logs; expected files that end in .csv"));
-}
-
-TEST_F(InitCommand, IsWhatOtherCommandsAskForWhenGivenALog) {
-  write("one.csv", csv_run(50, 1));
-  const std::string log = file("one.csv").string();
-  for (const char* command : {"identify", "check"}) {
-    const ProgramResult result = modebank({command, log});
-    EXPECT_EQ(result.status, 2);
-    EXPECT_THAT(result.err, HasSubstr("modebank init " + log));
-  }
-  EXPECT_EQ(modebank({"init"}).status, 2);
 }
 
 /// A name must not add lines to the configuration, and no words to the proposed commands.

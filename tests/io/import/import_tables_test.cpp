@@ -203,5 +203,11 @@ TEST_F(ImportSplit, BlocksShorterThanTheGapAreAnError) {
   EXPECT_THAT(error<DataError>(), HasSubstr("dropped at its end"));
 }
 
+TEST(ProposedSplit, HasBlocksWhereEachHoldsWindows) {
+  EXPECT_EQ(proposed_split(399, 26), "last 30 %");
+  EXPECT_EQ(proposed_split(420, 26), "blocks 4");
+  EXPECT_EQ(proposed_split(4000, 26), "blocks 10");
+}
+
 }  // namespace
 }  // namespace modebank

@@ -3,7 +3,6 @@
 
 Usage: recordings.py reference BAG OUT.json       every column of every topic, as python3-rosbag reads them
        recordings.py convert BAG BEGIN END FOLDER   these seconds of the bag as bag, MCAP and db3, each compression
-       recordings.py compare A.h5 B.h5 ...        whether archives hold the same from /data to /evaluation
 """
 import io
 import json
@@ -94,26 +93,5 @@ def convert(bag_path, begin, end, folder):
     (split / "metadata.yaml").write_text(f"rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n{listing}  duration:\n    nanoseconds: 1\n")
 
 
-def compare(first, *others):
-    import h5py
-    stages = ("data", "windows", "modes", "mixture", "bank", "evaluation")
-
-    def contents(path):
-        found = {}
-        with h5py.File(path) as archive:
-            for stage in (name for name in archive if name in stages):
-                archive[stage].visititems(lambda name, item: found.__setitem__(f"{stage}/{name}", item[()].tobytes() if item.dtype.kind != "O" else repr(item[()].tolist()))
-                                          if isinstance(item, h5py.Dataset) else None)
-            found["data/runs"] = archive["data/runs"][()][["name", "role", "first", "samples"]].tolist()  # except for the file name
-        return found
-
-    reference = contents(first)
-    assert {"data", "bank", "evaluation"} <= {name.split("/")[0] for name in reference}, sorted(reference)[:20]
-    for other in others:
-        own = contents(other)
-        differing = sorted(name for name in reference.keys() | own.keys() if reference.get(name) != own.get(name))
-        assert not differing, f"{other}: {differing[:20]}"
-
-
 if __name__ == "__main__":
-    {"reference": reference, "convert": convert, "compare": compare}[sys.argv[1]](*sys.argv[2:])
+    {"reference": reference, "convert": convert}[sys.argv[1]](*sys.argv[2:])
