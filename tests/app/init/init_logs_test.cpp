@@ -28,7 +28,6 @@ using test::TemporaryFolder;
 using test::write_file;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 using Names = std::vector<std::string>;
 
 struct Written {
@@ -220,56 +219,6 @@ TEST_F(InitLogs, ATextThatChangesAtGapsNamesRuns) {
   EXPECT_EQ(written.state, Names{"gyro_z"});
 }
 
-TEST_F(InitLogs, ListsWhatMovesAndWasNotTaken) {
-  const Written written =
-      init({write("more.csv", log_of("time,wz,cmd_left,cmd_right,icp_x,pressure\n", 400, [](const Drive& d) {
-                    return fmt::format("{:.3f},{:.5f},{},{},{},{}", d.t, d.rate, d.left, d.right, std::sin(d.t),
-                                       std::cos(d.t));
-                  }))});
-  EXPECT_THAT(written.text,
-              HasSubstr("# not taken, the name indicates a time, counter, pose, place or label: icp_x\n"));
-  EXPECT_THAT(written.text,
-              HasSubstr("# not taken, measured beside the state, or without a hint of its role: pressure\n"));
-}
-
-/// Users expect that columns of text become channels, so `init` gives the reason why they do not.
-TEST_F(InitLogs, SaysWhyTextIsNotTaken) {
-  int k = 0;
-  const auto cell = [&k](double value, const char* word) {
-    return ++k % 37 == 0 ? std::string(word) : fmt::format("{:.5f}", value);
-  };
-  for (const char* const word : {"#N/A", "---", "?"}) {
-    const Written written =
-        init({write("words.csv", log_of("time,wz,cmd,pressure\n", 400, [&](const Drive& d) {
-                      return fmt::format("{:.3f},{:.5f},{},{}", d.t, d.rate, d.left, cell(d.right, word));
-                    }))});
-    EXPECT_THAT(written.text,
-                HasSubstr(fmt::format("# not taken, text (\"{}\" is not a number, although other values are (data.na "
-                                      "lists words for missing values)): pressure\n",
-                                      word)));
-  }
-  const Written brake = init({write("switch.csv", log_of("time,wz,brake,note,ground\n", 400, [](const Drive& d) {
-                                      return fmt::format("{:.3f},{:.5f},{},dry,{}", d.t, d.rate,
-                                                         d.left > 0 ? "on" : "off", d.right > 0 ? "ice" : "grip");
-                                    }))});
-  EXPECT_THAT(brake.text, HasSubstr("# not taken, text (\"off\" is not a number): brake\n")) << "labels are text";
-  EXPECT_EQ(brake.text.find("note"), std::string::npos) << "it does not change";
-  const std::string minus =
-      write("minus.csv", log_of("time,wz\n", 400, [](const Drive& d) {
-              return fmt::format("{:.3f},{}{:.5f}", d.t, d.rate < 0 ? "\u2212" : "", std::abs(d.rate));
-            }));
-  EXPECT_THAT([&] { init({minus}); },
-              ThrowsMessage<DataError>(HasSubstr("no column has numbers that change; column wz: \"\u2212")));
-}
-
-TEST_F(InitLogs, NamesChannelsThatAConfigurationCannotName) {
-  const auto row = [](const Drive& d) { return fmt::format("{:.3f},{:.5f},{},{}", d.t, d.rate, d.left, d.right); };
-  EXPECT_THAT(init({write("nameless.csv", log_of("time,wz,cmd,\n", 400, row))}).text,
-              HasSubstr("# not taken, without a name: column 4\n"));
-  EXPECT_THAT(init({write("lines.csv", log_of("time,wz,cmd,\"u\nV\"\n", 400, row))}).text,
-              HasSubstr("# not taken, the name contains a line end or another control character: u\\x0aV\n"));
-}
-
 /// Random names of all kinds. Either the configuration has these names and its data can be imported, or the message
 /// names the column to rename.
 TEST_F(InitLogs, NamesOfAnyLetters) {
@@ -346,16 +295,6 @@ TEST_F(InitLogs, DatesOfSeveralFiles) {
     EXPECT_THAT(init({dated("run_1.csv", first), dated("run_2.csv", second)}).text,
                 AllOf(HasSubstr("can be read in two ways: %d/%m/%Y"), HasSubstr("time_format = %d/%m/%Y")))
         << first;
-}
-
-/// Notes of the table's reader become doubts, even if the name of the time column contains the unit.
-TEST_F(InitLogs, NotesOfTheTableAreDoubts) {
-  std::string text = "Rig 3\n" + log_of("Time [ms];wz;cmd\n", 400, [](const Drive& d) {
-                       return fmt::format("{:.0f};{:.5f};{}", 1e3 * d.t, d.rate, d.left);
-                     });
-  const Written written = init({write("title.csv", text)});
-  EXPECT_THAT(written.text, HasSubstr("# ! 1 line above the table is skipped (data.skip_rows)\n"));
-  EXPECT_THAT(written.text, HasSubstr("# column Time [ms] counts milliseconds (data.time_unit = ms)\n"));
 }
 
 /// Values with few levels repeat. A lower rate would not help.

@@ -3,11 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "app/cli/help_text.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/warnings.hpp"
 #include "tests/app/text/screen_archive.hpp"
@@ -39,44 +37,11 @@ void expect_fits(const Archive& archive, const std::string& what) {
   EXPECT_EQ(screen.find('\t'), std::string::npos) << what;
 }
 
-TEST(FirstScreen, NextNamesTheProgramAsItWasCalled) {
-  const Archive archive = screen_archive(1, 2, 3);
-  EXPECT_THAT(first_screen(archive, defaults, "demo.h5", 0, "build/modebank"),
-              HasSubstr("ready: `build/modebank track demo.h5`"));
-}
-
 std::string as_one_line(std::string text) {
   std::string line;
   for (const std::string& part : app::lines_of(text)) line += (line.empty() ? "" : " ") + part;
   for (std::size_t at; (at = line.find("  ")) != std::string::npos;) line.erase(at, 1);
   return line;
-}
-
-/// A command can be typed as it is. It has the configuration that made the archive, and the options of that run.
-TEST(FirstScreen, NextNamesTheConfiguration) {
-  Archive archive = screen_archive(1, 2, 3);
-  archive.diagnostics.front().verdict = Calibration::overconfident;
-  const auto next = [&](const std::string& command) {
-    archive.provenance.command_line = command;
-    return as_one_line(screen_of(archive));
-  };
-  EXPECT_THAT(next("modebank run my.ini --window.length 30"),
-              HasSubstr("`modebank run my.ini --window.length 30 --filter.noise adaptive`"));
-  EXPECT_THAT(next("modebank run my.ini " + std::string(80, 'x')),
-              HasSubstr("`modebank run my.ini --filter.noise adaptive`"));
-  EXPECT_THAT(next("modebank run husky.bag"), HasSubstr("`modebank run demo.ini --filter.noise adaptive`"));
-  EXPECT_THAT(next(""), HasSubstr("`modebank run CONFIG --filter.noise adaptive`"));
-}
-
-TEST(FirstScreen, SaysWhichStampsAreLate) {
-  const Archive archive = screen_archive(1, 2, 3);
-  app::Settings settings = defaults;
-  settings["data.lag_s"] = "0.25";
-  EXPECT_THAT(as_one_line(first_screen(archive, settings, "demo.h5")),
-              AllOf(HasSubstr("inputs act 0.250 s after their stamps"), Not(HasSubstr("delay wz"))));
-  settings["data.lag_s"] = "-0.25";
-  EXPECT_THAT(as_one_line(first_screen(archive, settings, "demo.h5")),
-              HasSubstr("the stamps of the inputs are 0.250 s late, so when filtering live delay wz by 0.250 s"));
 }
 
 /// Adds the longest finding and the longest warning to an archive.
@@ -297,33 +262,6 @@ TEST(FirstScreen, ItsModesAreAtMostEightAndTheOthersAddUp) {
   EXPECT_NEAR(screen.modes.others_use, 0.5 * (std::pow(0.6, 8) - std::pow(0.6, 20)) / 0.4, 1e-12);
 }
 
-TEST(FirstScreen, FoldsModesThatAreHardlyUsed) {
-  EXPECT_THAT(screen_of(screen_archive(1, 1, 20)), HasSubstr("and 12 others, used 2.1 %"));
-  EXPECT_THAT(screen_of(screen_archive(1, 1, 3)), Not(HasSubstr("other")));
-  Archive archive = screen_archive(1, 1, 3);
-  for (DiagnosticsRow& row : archive.diagnostics)
-    if (row.mode == 1) row.usage = 0.004;
-  EXPECT_THAT(screen_of(archive), HasSubstr("and 1 other, used 0.4 %"));
-}
-
-TEST(FirstScreen, WarningsAreCountedAndTheFirstIsTold) {
-  const std::string screen = screen_of(talkative(screen_archive(1, 2, 3)));
-  EXPECT_THAT(screen, AllOf(HasSubstr("warning "), HasSubstr(" warnings ("), HasSubstr("the first: "),
-                            HasSubstr("0 of 5 restarts")));
-}
-
-/// Terms that the glossary of `help` and of the pages must contain.
-TEST(FirstScreen, ItsTermsHaveAMeaning) {
-  for (const char* term :
-       {"evidence",      "mode",        "bank",         "drifting",      "competitor",    "nats",        "held-out",
-        "step",          "used",        "stay",         "family",        "time constant", "period",      "steady gain",
-        "band",          "95 % band",   "calibrated",   "overconfident", "RMSE",          "FIT",         "+-",
-        "lag",           "train",       "training run", "held-out run",  "single model",  "steps ahead", "optimum",
-        "process noise", "whiteness",   "horizon",      "varx",          "cannot tell",   "no evidence", "not yet",
-        "dead time",     "track width", "FIT"})
-    EXPECT_FALSE(app::help_on(term).empty()) << term;
-}
-
 struct NextStep : testing::Test {
   Archive archive = screen_archive(1, 2, 3);
   app::Settings settings = defaults;
@@ -344,93 +282,6 @@ TEST_F(NextStep, CanBeTyped) {
       }
 }
 
-TEST_F(NextStep, NothingIsLeft) { EXPECT_THAT(advice(), HasSubstr("ready: `modebank track")); }
-
-TEST_F(NextStep, WhatIsNotScoredHasNone) {
-  archive.finding.reset();
-  EXPECT_EQ(advice(), "");
-}
-
-TEST_F(NextStep, LostWindowsComeFirst) {
-  archive.windows.emplace();
-  archive.windows->status = Eigen::VectorXi::Constant(1, static_cast<int>(FitStatus::failed));
-  archive.finding->answer = Answer::not_comparable;
-  EXPECT_THAT(advice(), HasSubstr("no finite fit"));
-}
-
-TEST_F(NextStep, AnswersHaveTheirs) {
-  archive.finding->answer = Answer::not_yet;
-  EXPECT_THAT(advice(), HasSubstr("log at even steps"));
-  archive.finding->answer = Answer::not_comparable;
-  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), HasSubstr("data.rate_hz")));
-  archive.finding->answer = Answer::cannot_tell;
-  EXPECT_THAT(advice(), AllOf(HasSubstr("record longer runs, and more than 1 run"), HasSubstr("--data.test")));
-  archive.finding->role = Role::train;
-  EXPECT_THAT(advice(), HasSubstr("--data.train ''"));
-  archive.recording.emplace().runs.resize(1);
-  archive.recording->runs.front().state = Eigen::MatrixXd::Zero(1, 4000);
-  EXPECT_THAT(advice(), HasSubstr("--data.split 'blocks 10'")) << "one run alone";
-  archive.finding->role = Role::test;
-  archive.finding->answer = Answer::no_evidence;
-  archive.finding->better_description = "one_motion";
-  archive.finding->best_competitor = "one_motion";
-  EXPECT_THAT(advice(),
-              HasSubstr("use the simpler one_motion (one linear model with changing noise): `modebank track"));
-  archive.finding->best_competitor = "drifting";
-  EXPECT_THAT(advice(),
-              HasSubstr("(one linear model with changing noise), which is about as good as drifting: `modebank"));
-}
-
-TEST_F(NextStep, APatternInErrorsAsksForMemory) {
-  archive.finding->answer = Answer::not_yet;
-  archive.finding->pattern = {0.12, 0.015};
-  EXPECT_THAT(advice(), AllOf(HasSubstr("--window.model auto"), Not(HasSubstr("even"))));
-  settings["window.model"] = "auto";
-  EXPECT_THAT(advice(), AllOf(HasSubstr("--data.lag_s auto"), Not(HasSubstr("window.model"))));
-  settings["data.lag_s"] = "auto";
-  EXPECT_THAT(advice(), testing::StartsWith("ready")) << "what was tried is not advised again";
-  settings.erase("window.model");
-  archive.finding->answer = Answer::one_mode;
-  EXPECT_THAT(advice(), HasSubstr("--window.model auto")) << "one linear model lacks lags, too";
-}
-
-/// Lags are not the cause if lags were searched for, or if only the errors on held-out runs are coloured.
-TEST_F(NextStep, ColouredErrorsWithoutAPatternAskForACheck) {
-  row().whiteness_p = 1e-6;
-  row().autocorrelation = -0.92;
-  EXPECT_THAT(advice(), AllOf(HasSubstr("modebank check"), Not(HasSubstr("window.model"))));
-  archive.finding->answer = Answer::no_evidence;
-  archive.finding->better_description = "one_motion";
-  EXPECT_THAT(advice(), HasSubstr("use the simpler one_motion"));
-}
-
-TEST_F(NextStep, AFalseBandAsksForAdaptiveNoiseOnce) {
-  for (const Calibration verdict : {Calibration::overconfident, Calibration::underconfident}) {
-    row().verdict = verdict;
-    settings["filter.noise"] = "gaussian";
-    EXPECT_THAT(advice(), HasSubstr("--filter.noise adaptive"));
-    settings["filter.noise"] = "adaptive";
-    EXPECT_THAT(advice(), AllOf(HasSubstr("--data.train"), Not(HasSubstr("adaptive"))));
-  }
-  row().verdict = Calibration::undecided;
-  row().coverage_95_lower = 0.9, row().coverage_95_upper = 0.99;
-  EXPECT_THAT(advice(), HasSubstr("record more held-out samples"));
-}
-
-/// The numbers in a row decide, not its texts.
-TEST_F(NextStep, GoesByNumbersAndNotByWords) {
-  row().flags = "innovations not white: autocorrelation 0.45 at lag 1";
-  EXPECT_THAT(advice(), HasSubstr("ready: `modebank track"));
-}
-
-TEST_F(NextStep, UnknownErrorsAskForThem) {
-  archive.finding->answer = Answer::cannot_tell;
-  archive.finding->gains = {{"drifting", 700, 0.3, 0.1, 5.0, 0.2, false}};
-  EXPECT_THAT(advice(), HasSubstr("inputs that hardly vary"));
-  settings["bank.look_ahead"] = "10";
-  EXPECT_THAT(advice(), HasSubstr("--bank.look_ahead 1"));
-}
-
 /// The gain is half of the required gain, so four times the runs are needed: margins decrease as 1 / sqrt(runs).
 TEST_F(NextStep, ADoubtfulGainAsksForSoManyRuns) {
   archive.finding->answer = Answer::cannot_tell;
@@ -446,19 +297,6 @@ TEST_F(NextStep, ADoubtfulGainAsksForSoManyRuns) {
   archive.finding->stay = 2.0;
   archive.finding->stay_asked = 5.0;
   EXPECT_THAT(advice(), HasSubstr("the data cannot tell modes this short"));
-}
-
-TEST_F(NextStep, RoundedValuesAreNotAskedForTwice) {
-  archive.finding->answer = Answer::not_comparable;
-  EXPECT_THAT(advice(), HasSubstr("--data.quantum auto"));
-  settings["data.quantum"] = "auto";
-  EXPECT_THAT(advice(), Not(HasSubstr("--data.quantum")));
-}
-
-TEST_F(NextStep, DataWithoutNoiseLeaveNothingToFilter) {
-  archive.finding->answer = Answer::one_mode;
-  archive.finding->without_noise = true;
-  EXPECT_THAT(advice(), HasSubstr("modebank export ARCHIVE --to json"));
 }
 
 TEST_F(NextStep, ABankWithoutAStableModeWarns) {
