@@ -2,11 +2,6 @@
 // folder.
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <regex>
 #include <utility>
 
 #include "io/files/read_file.hpp"
@@ -16,7 +11,6 @@ namespace modebank::test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 class Demo : public CliTest {
  protected:
@@ -45,46 +39,6 @@ class Demo : public CliTest {
     EXPECT_THAT(result.err, HasSubstr("--force"));
   }
 };
-
-/// The found value, error and true value of each line such as "time constant 0.1507 +- 0.0006 s true 0.150".
-std::vector<std::array<double, 3>> compared_numbers(const std::string& text) {
-  const std::regex line(R"((-?[\d.]+) \+- ([\d.]+) \S+ +true +(-?[\d.]+)\n)");
-  std::vector<std::array<double, 3>> numbers;
-  for (std::sregex_iterator it(text.begin(), text.end(), line), none; it != none; ++it)
-    numbers.push_back({std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3])});
-  return numbers;
-}
-
-/// The true values are in configs/systems/two_grounds.ini: 0.15 s, 0.95 and 0.6 s, 0.5 (rad/s)/(m/s), 0.005 rad/s.
-TEST_F(Demo, FindsTheGroundsThatItSimulates) {
-  const ProgramResult shown = modebank({"demo", "-o", folder()});
-  ASSERT_EQ(shown.status, 0) << shown.err;
-  const std::string all = shown.out + shown.err;
-  EXPECT_LE(std::count(all.begin(), all.end(), '\n'), 25) << all;
-  EXPECT_THAT(all, Not(HasSubstr("warning")));
-  EXPECT_EQ(shown.err, "") << "progress is not for first readers";
-
-  const auto numbers = compared_numbers(shown.out);
-  ASSERT_EQ(numbers.size(), 8) << shown.out;
-  std::vector<double> truths;
-  for (const auto& [found, error, truth] : numbers) {
-    EXPECT_NEAR(found, truth, 3 * error);
-    EXPECT_LT(error, 0.03 * std::abs(truth)) << "and it says something";
-    truths.push_back(truth);
-  }
-  EXPECT_THAT(truths, ::testing::UnorderedElementsAre(0.15, -0.95, 0.95, 0.005, 0.6, -0.5, 0.5, 0.005));
-  std::smatch share;
-  ASSERT_TRUE(std::regex_search(shown.out, share, std::regex(R"(([\d.]+) % of the held-out samples are assigned)")));
-  EXPECT_GT(std::stod(share[1]), 95.0);
-}
-
-TEST_F(Demo, GivesTheTruthAsJson) {
-  const ProgramResult shown = small_demo({"--json"});
-  ASSERT_EQ(shown.status, 0) << shown.err;
-  const nlohmann::json truth = nlohmann::json::parse(shown.out).at("truth");
-  EXPECT_GT(truth.at("agreement"), 0.0);
-  EXPECT_FALSE(truth.at("modes").empty());
-}
 
 TEST_F(Demo, IsTheCommandsThatItNames) {
   const ProgramResult shown = tyres();

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -90,36 +88,6 @@ TEST_F(Json, CommandsGiveTheMembersThatAreDocumented) {
       {"verify", file("s").string()},
   };
   for (const std::vector<std::string>& command : commands) expect_documented(object(command));
-}
-
-TEST_F(Json, NumbersAreThoseOfTheArchive) {
-  const json summary = object({"run", config(), "--archive.output", archive()}).at("summary");
-  const json rows = json::parse(modebank({"show", archive(), "/evaluation/summary", "--json"}).out).at("value");
-  for (const json& row : rows)
-    if (row.at("filter") == "bank" && row.at("run") == "*" && row.at("role") == summary.at("role")) {
-      EXPECT_EQ(summary.at("errors").at(0).at("bank"), row.at("rmse"));
-    }
-  const json predicted = object({"predict", archive(), "--samples", "5"});
-  const ProgramResult csv = modebank({"predict", archive(), "--samples", "5"});
-  std::size_t samples = 0;
-  for (const json& run : predicted.at("runs")) {
-    EXPECT_EQ(run.at("time_s").size(), run.at("states").at("wz").at("predicted").size());
-    samples += run.at("time_s").size();
-  }
-  EXPECT_EQ(samples + 1, static_cast<std::size_t>(std::count(csv.out.begin(), csv.out.end(), '\n')));
-  const json keys = object({"config", config(), "--window.length", "30"}).at("keys");
-  EXPECT_EQ(keys.at("window.length"), (json{{"value", "30"}, {"origin", "--window.length"}}));
-  EXPECT_EQ(keys.at("window.step").at("origin"), "default");
-}
-
-TEST_F(Json, ErrorsAreSaidInIt) {
-  EXPECT_NE(object({"run", file("no.ini").string()}, 2).at("error").get<std::string>().find("no.ini"),
-            std::string::npos);
-  EXPECT_NE(object({"run", config(), "--window.lenght", "3"}, 2).at("error").get<std::string>().find("window.length"),
-            std::string::npos);
-  write("broken.h5", "no archive");
-  EXPECT_FALSE(object({"verify", file("broken.h5").string()}, 1).at("files").at(0).at("problems").empty());
-  EXPECT_FALSE(object({"show", file("broken.h5").string()}, 1).at("error").get<std::string>().empty());
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 #include <gmock/gmock.h>
 
-#include <cstdlib>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/text/number_text.hpp"
@@ -14,18 +12,6 @@
 
 namespace modebank::test {
 namespace {
-
-/// Sets an environment variable during one test.
-class WithVariable {
- public:
-  WithVariable(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
-  ~WithVariable() { unsetenv(name_); }
-  WithVariable(const WithVariable&) = delete;
-  WithVariable& operator=(const WithVariable&) = delete;
-
- private:
-  const char* name_;
-};
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -83,19 +69,6 @@ TEST(TextTable, GoesOnBelowWithItsKeyRepeated) {
 
 class Show : public CliTest {};
 
-TEST_F(Show, DrawsModeProbabilitiesOfHeldOutRunsAtTheWidthOfTheTerminal) {
-  ASSERT_EQ(run().status, 0);
-  const WithVariable locale("LC_ALL", "C.UTF-8"), columns("COLUMNS", "72");
-  const ProgramResult shown = modebank({"show", archive()});
-  ASSERT_EQ(shown.status, 0) << shown.err;
-  for (const char* part : {"mode probabilities on held-out runs", "candidates", "<- selected", "modes\n"})
-    EXPECT_NE(shown.out.find(part), std::string::npos) << part;
-  for (const std::string& line : lines_of(shown.out)) {
-    const bool one_long_word = line.find(archive()) != std::string::npos || line.rfind(' ') < 10;
-    EXPECT_TRUE(one_long_word || app::columns_of(line) <= 72) << line;
-  }
-}
-
 /// At every position the heights of all modes sum to one, because they are probabilities.
 TEST_F(Show, SparklineIsTheArchivesProbabilities) {
   ASSERT_EQ(run({"--mixture.components", "2", "--bank.refine", "none"}).status, 0);
@@ -111,43 +84,6 @@ TEST_F(Show, SparklineIsTheArchivesProbabilities) {
   EXPECT_EQ(lines[1], "run  01");
   EXPECT_EQ(lines[2].substr(0, 5 + 10 * 3 + 10), "   0 ██████████          ");
   EXPECT_EQ(lines[3].substr(0, 5 + 10 + 10 * 3), "   1           ██████████");
-}
-
-TEST_F(Show, OfARunItShowsItsRows) {
-  ASSERT_EQ(run().status, 0);
-  const Trajectory stored = read_archive(archive()).recording->runs.at(1);
-  const auto shown = [&](const std::vector<std::string>& words) {
-    std::vector<std::string> all{"show", archive(), "--run", stored.run};
-    all.insert(all.end(), words.begin(), words.end());
-    const ProgramResult result = modebank(all);
-    EXPECT_EQ(result.status, 0) << result.err;
-    return nlohmann::json::parse(result.out);
-  };
-  const nlohmann::json all = shown({});
-  EXPECT_EQ(all.at("run").at("role"), "test");
-  EXPECT_EQ(all.at("members").at("/evaluation/bank").at("nis").at("shape"), nlohmann::json({stored.samples()}));
-  const nlohmann::json times = shown({"/data/time"}).at("value");
-  ASSERT_EQ(std::ssize(times), stored.samples());
-  EXPECT_EQ(times.back().get<double>(), stored.time_s(stored.samples() - 1));
-  EXPECT_EQ(modebank({"show", archive(), "--run", "none"}).status, 2);
-  EXPECT_EQ(modebank({"show", archive(), "/windows", "--run", stored.run}).status, 2);
-}
-
-TEST_F(Show, IsPlainWithoutUtf8) {
-  ASSERT_EQ(run().status, 0);
-  const WithVariable locale("LC_ALL", "C");
-  const ProgramResult shown = modebank({"show", archive()});
-  ASSERT_EQ(shown.status, 0) << shown.err;
-  for (const char c : shown.out) ASSERT_LT(static_cast<unsigned char>(c), 128);
-}
-
-TEST_F(Show, ArchiveWithoutABankHasNoStrip) {
-  ASSERT_EQ(modebank({"identify", config(), "--archive.output", archive(), "--data.root", file("").string()}).status,
-            0);
-  const ProgramResult shown = modebank({"show", archive()});
-  ASSERT_EQ(shown.status, 0) << shown.err;
-  EXPECT_EQ(shown.out.find("mode probabilities"), std::string::npos);
-  EXPECT_NE(shown.out.find("windows"), std::string::npos);
 }
 
 }  // namespace

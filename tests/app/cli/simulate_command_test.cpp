@@ -11,22 +11,6 @@ namespace {
 
 class SimulateCommand : public CliTest {};
 
-TEST_F(SimulateCommand, SimulateWritesRunsThatRunReads) {
-  write("two.ini", "[system]\nkind = linear\nmodes = -0.6, -0.7, 0.7 | -0.2, -0.1, 0.1\nprocess_sd = 0.01\n");
-  write("sim.ini",
-        "[data]\nstate = wz\ninput = left, right\n[simulate]\nsystem = two.ini\nruns = 4\nsamples = 120\noutput = " +
-            file("sim").string() + "\n");
-  const ProgramResult simulated = modebank({"simulate", file("sim.ini").string()});
-  ASSERT_EQ(simulated.status, 0) << simulated.err;
-  const ProgramResult result = run({"--data.root", file("sim").string(), "--data.inputs", "pro_*.csv", "--data.states",
-                                    "imu_*.csv", "--data.truth", "true_wz"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const Archive content = read_archive(archive());
-  EXPECT_EQ(content.recording->runs.size(), 4u);
-  EXPECT_EQ(content.recording->runs[0].samples(), 120);
-  EXPECT_EQ(content.recording->runs[0].truth.cols(), 120);
-}
-
 /// The configuration of a simulation also works for `run` on the simulated runs.
 TEST_F(SimulateCommand, ShippedSimulationsAreReadByTheirOwnConfiguration) {
   for (const char* name : {"simulate_ice.ini", "simulate_linear.ini"}) {
