@@ -1,4 +1,5 @@
 """Windows, filters, free runs and mixtures on numpy arrays, compared with closed forms in numpy."""
+import itertools
 import os
 import signal
 import subprocess
@@ -109,41 +110,39 @@ print((after - before) * 1024 / (states.nbytes + inputs.nbytes))
         self.assertLess(share, 0.5, "peak memory grew by this share of the arrays")
 
 
-    def test_other_threads_go_on_meanwhile(self):
-        states, inputs = linear_run(60_000, 0.1)
-        done, turns = threading.Event(), []
-
-        def fit():
-            modebank.identify(states, inputs, 0.1, length=30, step=1)
-            done.set()
-
-        worker = threading.Thread(target=fit)
-        worker.start()
-        while not done.is_set():  # with the interpreter lock held, there would be one or two turns
-            turns.append(len(turns))
-            time.sleep(1e-4)
-        worker.join()
-        self.assertGreater(len(turns), 20)
-
-
 class CtrlC(unittest.TestCase):
-    """Jobs of minutes that a signal ends."""
+    """Jobs of minutes that a signal ends. Another thread sends it, so other threads go on meanwhile."""
 
     def setUp(self):
         signal.signal(signal.SIGINT, signal.default_int_handler)  # background processes of a shell ignore it
 
     def interrupted(self, job):
-        timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
-        timer.start()
-        try:
-            with self.assertRaises(KeyboardInterrupt):
+        begin_s, ended = time.process_time(), threading.Event()
+
+        def interrupt():  # once the job is at work, and this thread had its turns beside it
+            for turn in itertools.count():
+                if ended.is_set():
+                    return
+                if turn > 20 and time.process_time() - begin_s > 0.2:
+                    os.kill(os.getpid(), signal.SIGINT)
+                    return
+                time.sleep(1e-3)
+
+        other = threading.Thread(target=interrupt)
+        with self.assertRaises(KeyboardInterrupt):
+            other.start()
+            try:
                 job()
-        finally:
-            timer.cancel()
+            finally:
+                ended.set()
+        other.join()
 
     def test_ends_identify(self):
-        states, inputs = linear_run(19_000, 0.1)  # up to 20,000 windows Ceres solves them
-        self.interrupted(lambda: modebank.identify(states, inputs, 0.1, length=200, step=1))
+        run = linear_run(19_000, 0.1)
+        for samples in (19_000, 1_000_000):  # up to 20,000 windows Ceres solves them
+            with self.subTest(samples=samples):
+                states, inputs = (np.resize(signals, (samples, 2)) for signals in run)
+                self.interrupted(lambda: modebank.identify(states, inputs, 0.1, length=200, step=1))
 
     def test_ends_fit_mixture(self):
         points = np.random.default_rng(1).normal(size=(50_000, 4))
