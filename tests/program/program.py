@@ -34,7 +34,7 @@ Done = collections.namedtuple("Done", "out err status")
 
 
 def modebank(*words, cwd=None, input=None, status=0, env=None):
-    """What the program prints for these words, and its exit status, which must be `status` (None: any)."""
+    """Runs the program: its output, its messages and its exit status, which must be `status` (None: any)."""
     done = subprocess.run([PROGRAM, *map(str, words)], cwd=cwd, input=input, env=dict(os.environ, **env or {}),
                           capture_output=True, text=True, timeout=TIMEOUT_S)
     if status is not None and done.returncode != status:
