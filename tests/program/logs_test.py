@@ -108,7 +108,7 @@ class Logs(ProgramTest):
         modebank("run", "text.ini", "--archive.output", "again.h5", cwd=self.folder)
         self.assertEqual(differing(self.folder / "text.h5", self.folder / "again.h5"), [])
 
-    def test_a_spreadsheets_export_whose_stamps_count_ns_or_ms(self):
+    def test_a_table_with_semicolons_whose_stamps_count_ns_or_ms(self):
         ground = [("grip", "ice")[k // 60 % 2] for k in range(len(self.stamps))]
         for unit, stamps, origin in (("ns", BEGIN_NS + self.stamps, BEGIN_NS), ("ms", self.stamps // 1_000_000, 0)):
             with self.subTest(unit=unit):
