@@ -111,11 +111,14 @@ class Track(ProgramTest):
     def test_bad_lines(self):
         """Each is skipped and told by its number. Without any sample the status is 1, with a wrong column 2."""
         archive, lines = self.learn()
-        bad = ["0.6,abc,0,0", "0.6,0.1", "0.1,0.1,0,0", ",0.1,0,0", '{"time": 3}', "x" * 2_000_000]
+        bad = ["0.6,abc,0,0", "0.6,0.1", "0.1,0.1,0,0", ",0.1,0,0", '{"time": 3}', "1e308,0,0,0", "x" * 2_000_000]
         done = self.track(archive, lines[:7] + bad + lines[7:])
         self.assertEqual(done.out, self.track(archive, lines).out)
-        for number in range(8, 14):
+        for number in range(8, 15):
             self.assertIn(f"line {number}:", done.err)
+        start = "\n".join(lines[:3])
+        for wild, same in (("\n0.2,1e50,0,0", "\n0.2,,0,0"), ("\n0.2,0,1e200,0", "\n0.2,0,,0"), ("\n0.2,0.1", "")):
+            self.assertEqual(*(modebank("track", archive, input=start + end).out for end in (wild, same)))
         self.track(archive, lines[:1] + bad[:2], status=1)
         for header in ("time,yaw,left,right", "time,wz,wz,left,right"):
             self.assertEqual(self.track(archive, [header, *lines[1:]], status=2).out, "")

@@ -85,33 +85,6 @@ TEST_F(TrackCheckpoint, RefusesCheckpointsThatNoFilterWrote) {
   resume("/format", "something else");
 }
 
-TEST_F(TrackCheckpoint, GoesOnFromACheckpointAsIfItHadNeverStopped) {
-  std::vector<std::string> whole, parts;
-  feed({}, 1, 40, 0, whole);
-  feed({"--track.checkpoint", checkpoint()}, 1, 20, SIGINT, parts);
-  feed({"--track.resume", checkpoint(), "--track.checkpoint", checkpoint()}, 20, 30, 0, parts);
-  feed({"--track.resume", checkpoint()}, 30, 40, 0, parts);
-  EXPECT_EQ(parts, whole);
-
-  const ProgramResult other =
-      modebank({"track", archive(), "--track.resume", checkpoint(), "--track.filter", "baseline"});
-  EXPECT_EQ(other.status, 1);
-  EXPECT_THAT(other.err, HasSubstr("the checkpoint was made with another bank or other filter settings"));
-  write("half.json", "{\"format\": \"modebank checkpoint 2\"");
-  EXPECT_EQ(modebank({"track", archive(), "--track.resume", file("half.json").string()}).status, 1);
-  EXPECT_EQ(modebank({"track", archive(), "--track.resume", file("none.json").string()}).status, 2);
-  EXPECT_EQ(modebank({"track", archive(), "--track.checkpoint", "/nowhere/state.json"}).status, 2);
-}
-
-TEST_F(TrackCheckpoint, GoesOnWithCoefficientsThatWander) {
-  const std::string option = "--track.filter", filter = "drifting";
-  std::vector<std::string> whole, parts;
-  feed({option, filter}, 1, 40, 0, whole);
-  feed({option, filter, "--track.checkpoint", checkpoint()}, 1, 20, 0, parts);
-  feed({option, filter, "--track.resume", checkpoint()}, 20, 40, 0, parts);
-  EXPECT_EQ(parts, whole);
-}
-
 /// The process is killed right after a checkpoint was due. The next process must continue with identical results.
 TEST_F(TrackCheckpoint, GoesOnAfterItWasKilledWhereSwitchesSeeStateAndInput) {
   const std::string option = "--track.filter", filter = "noise_only";
@@ -126,16 +99,6 @@ TEST_F(TrackCheckpoint, GoesOnAfterItWasKilledWhereSwitchesSeeStateAndInput) {
   parts.resize(10);
   feed({option, filter, "--track.resume", checkpoint()}, 11, 40, 0, parts);
   EXPECT_EQ(parts, whole);
-}
-
-TEST_F(TrackCheckpoint, KeepsCheckpointsOnTheWay) {
-  PipedProgram program(command({"--track.checkpoint", checkpoint(), "--track.checkpoint_interval", "5"}));
-  const std::vector<std::string> samples = lines("run_01.csv");
-  for (std::size_t k = 0; k <= 6; ++k) {
-    program.write(samples[k] + "\n");
-    program.read_line();
-  }
-  EXPECT_TRUE(std::filesystem::exists(checkpoint()));
 }
 
 }  // namespace

@@ -222,18 +222,6 @@ TEST_F(TrackLogs, AveragesWhatWasAveragedForTheArchive) {
   EXPECT_THAT(read.err, HasSubstr("wz, left are the mean over the step"));
 }
 
-TEST_F(TrackLogs, HoldsBackTheStreamThatIsEarly) {
-  for (const double lag_s : {0.25, -0.25, -0.5}) {
-    ASSERT_EQ(run({"--data.lag_s", fmt::format("{}", lag_s)}).status, 0);
-    const ProgramResult result = track("run_01.csv");
-    expect_evaluated(result);
-    EXPECT_THAT(result.err, HasSubstr(fmt::format("inputs come {} s {} the states", std::abs(lag_s),
-                                                  lag_s > 0 ? "before" : "after")));
-    EXPECT_EQ(track("", "--data.inputs run_01.csv").out, result.out);
-    EXPECT_EQ(table(track("run_01.csv", "--data.lag_s 0").out).size(), 80u);
-  }
-}
-
 /// The last estimate is 0.5 s old. The forecast has five filter steps without a measurement and with held inputs.
 TEST_F(TrackLogs, ForecastsToTheNewestSample) {
   ASSERT_EQ(run({"--data.lag_s", "-0.5"}).status, 0);
@@ -288,30 +276,6 @@ TEST_F(TrackLogs, PassesEveryMidnight) {
     program.write(samples[k + 1] + "\n");
     EXPECT_EQ(numbers(program.read_line().value())[0], times_s[k]) << k;
   }
-}
-
-TEST_F(TrackLogs, FailsWhereNoSampleCouldBeUsed) {
-  write("junk.csv", "time,wz,left,right\n" + std::string("soon,0,0,0\n") + "later,0,0,0\n" + "last,0,0,0\n");
-  const ProgramResult result = track("junk.csv");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("line 2: column time: \"soon\""));
-  EXPECT_THAT(result.err, Not(HasSubstr("\"later\"")));
-  EXPECT_THAT(result.err, HasSubstr("line 2: this message was repeated 2 times, last at line 4"));
-  EXPECT_THAT(result.err, HasSubstr("no sample could be used: 3 of 3 were left out"));
-}
-
-TEST_F(TrackLogs, TellsOfALineWithoutItsEnd) {
-  const std::vector<std::string> samples = lines("run_01.csv");
-  const std::string start = samples[0] + "\n" + samples[1] + "\n";
-  write("whole.csv", start + samples[2]);
-  write("cut.csv", start + "0.1,0.2");
-  const ProgramResult whole = track("whole.csv"), cut = track("cut.csv");
-  EXPECT_EQ(table(whole.out).size(), 2u);
-  EXPECT_THAT(whole.err, HasSubstr("line 3: the last line has no line break at its end: it has all its fields"));
-  EXPECT_EQ(table(cut.out).size(), 1u);
-  EXPECT_THAT(cut.err, HasSubstr("line 3: the last line has no line break at its end: fields are missing"));
-  write("cut.json", "{\"time\":0,\"wz\":0,\"left\":0,\"right\":0}\n{\"time\":0.1,\"wz\":0.1,\"left\":0,\"ri");
-  EXPECT_THAT(track("cut.json").err, HasSubstr("fields are missing"));
 }
 
 /// One whole number does not determine the unit of times, but two do.

@@ -100,33 +100,8 @@ TEST_F(TrackRobot, Finding_D6_EstimatesLeaveBeforeAFailure) {
   EXPECT_THAT(program.errors(), HasSubstr("cannot write " + file("sub/state.json").string()));
 }
 
-TEST_F(TrackRobot, Finding_D7_TellsOfAMeasurementThatCountsAsMissing) {
-  const ProgramResult result = shell("sed '5s/^\\([^,]*\\),[^,]*/\\1,1e50/' run_01.csv | $M track out.h5");
-  EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(result.err, "modebank: line 5: wz = 1e+50 is beyond 1e+30, and counts as missing\n");
-}
-
 /// Each kill is at another distance from the last checkpoint, and some inputs are missing. Each output is cut at the
-/// sample from which the next process continues. Together the outputs must equal the output of a single process. A
-/// missing input repeats the last finite value.
-TEST_F(TrackRobot, TellsOfAnInputThatIsNoNumberToReckonWith) {
-  const char* const header = "time,wz,left,right\\n0,0.1,0.1,0.2\\n0.1,0.2,0.1,0.2\\n";
-  const std::string before = header;
-  const ProgramResult held = shell("printf '" + before + "0.2,0.2,0.1,0.2\\n' | $M track out.h5");
-  const ProgramResult wild = shell("printf '" + before + "0.2,0.2,1e200,0.2\\n' | $M track out.h5");
-  EXPECT_EQ(wild.out, held.out);
-  EXPECT_THAT(wild.err, HasSubstr("line 4: left = 1e+200 is beyond 1e+30, and the last known value is used"));
-}
-
-TEST_F(TrackRobot, AStampBeyondAllOthersIsNone) {
-  const ProgramResult result = shell(
-      "printf 'time,wz,left,right\\n0,0.1,0.1,0.2\\n0.1,0.2,0.1,0.2\\n1e308,0.2,0.1,0.2\\n0.2,0.2,0.1,0.2\\n' | $M "
-      "track "
-      "out.h5");
-  EXPECT_THAT(result.out, HasSubstr("\n0.2,1,"));
-  EXPECT_THAT(result.err, HasSubstr("line 4: column time: \"1e308\" is too large for a double; skipped"));
-}
-
+/// sample from which the next process continues. Together the outputs must equal the output of a single process.
 TEST_F(TrackRobot, WritesTheSameBitsThroughKillsAsWithoutThem) {
   std::vector<std::string> samples = lines("run_01.csv");
   for (std::size_t k = 3; k < samples.size(); k += 7)  // removes the last field, which is an input
@@ -165,17 +140,6 @@ TEST_F(TrackRobot, WritesTheSameBitsThroughKillsAsWithoutThem) {
   EXPECT_EQ(parts, whole);
 }
 
-TEST_F(TrackRobot, SaysWhereItGoesOn) {
-  const ProgramResult first = shell("head -11 run_01.csv | $M track out.h5 --track.checkpoint state.json");
-  ASSERT_EQ(first.status, 0);
-  const std::string last = lines("run_01.csv")[10];
-  const ProgramResult second =
-      shell("(head -1 run_01.csv; sed '1,11d' run_01.csv) | $M track out.h5 --track.resume state.json");
-  EXPECT_EQ(second.status, 0);
-  EXPECT_THAT(second.err, HasSubstr("goes on after the sample at " + std::to_string(std::stod(last)).substr(0, 3)));
-  EXPECT_EQ(lines_of(second.out), 1 + 70);
-}
-
 TEST_F(TrackRobot, WatchdogSpeaksWhetherSamplesComeOrNot) {
   PipedProgram program(command({"--track.watchdog_s", "0.05"}));
   const std::vector<std::string> samples = lines("run_01.csv");
@@ -183,11 +147,12 @@ TEST_F(TrackRobot, WatchdogSpeaksWhetherSamplesComeOrNot) {
     program.write(samples[k] + "\n");
     ASSERT_TRUE(program.read_line());
   }
-  while (program.errors().find("no input for") == std::string::npos) usleep(10'000);
+  // Messages may also come before and between the samples.
+  while (program.errors().find(" s; 5 samples in all, the last at 0.4 s; mode probabilities") == std::string::npos)
+    usleep(10'000);
+  EXPECT_THAT(program.errors(), HasSubstr("no input for"));
   program.close_input();
   EXPECT_EQ(program.wait(), 0);
-  EXPECT_THAT(program.errors(), HasSubstr("no input for"));
-  EXPECT_THAT(program.errors(), HasSubstr("5 samples in all, the last at 0.4 s; mode probabilities"));
   EXPECT_EQ(modebank({"track", archive(), "--track.watchdog_s", "-1"}).status, 2);
 }
 
