@@ -91,7 +91,8 @@ class Study(ProgramTest):
         self.check()
 
     def test_processes_share_the_work(self):
-        self.assertEqual([process.wait() for process in [self.start("--job.threads", "2") for _ in range(3)]], [0, 0, 0])
+        processes = [self.start("--job.threads", "2") for _ in range(3)]
+        self.assertEqual([process.wait() for process in processes], [0, 0, 0])
         made = [line[3] for line in lines(self.other / "log.csv") if line[4] == "done"]
         self.assertEqual(sorted(made), [path.stem for path in trials(self.whole)])
         self.check()
@@ -109,14 +110,14 @@ class Study(ProgramTest):
 
     def test_slurm_gets_an_array_and_a_merge(self):
         sbatch = self.folder / "sbatch"
-        submit = ("--study.stage", "submit", "--study.slurm_tasks", "2", "--study.slurm_options", "--time=60")
+        submit = "--study.stage=submit", "--study.slurm_tasks=2", "--study.slurm_options=--time=60 --comment=a=b"
         self.study(*submit, env={"PATH": str(self.folder)}, status=2)  # no sbatch
         sbatch.write_text('#!/bin/sh\necho "$*" >> "$0.words"\necho 41\n')
         sbatch.chmod(0o700)
         self.study(*submit, env={"PATH": f"{self.folder}:{os.environ['PATH']}"})
         array, merge = (self.folder / "sbatch.words").read_text().splitlines()
-        self.assertIn("--array=0-1 --time=60 ", array)
-        self.assertIn("--dependency=afterany:41 --time=60 ", merge)
+        self.assertIn("--array=0-1 --time=60 --comment=a=b ", array)
+        self.assertIn("--dependency=afterany:41 --time=60 --comment=a=b ", merge)
         self.study("--study.stage", "merge", status=1)
         self.assertEqual(trials(self.other), [])  # nothing is made here
         for script, task in ((array, "1"), (array, "0"), (merge, "")):

@@ -172,22 +172,5 @@ TEST(StudyAnswers, ManyNumbersAreGroupedIntoRanges) {
   EXPECT_EQ(value_groups(table, 0).size(), 100U);
 }
 
-TEST(StudyAnswers, TextNamesKeysValuesAndTrials) {
-  const StudyTable table = grid();
-  const std::string text = answers_text(table, answer(table));
-  for (const char* part : {"mixture.components (share 99 %)", "26.0500", "components = 3, covariance = full", "Pareto",
-                           "Spread over repeats", "nearest 0.025"})
-    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
-}
-
-TEST(StudyAnswers, KeysVariedInStepAreShownOnce) {
-  StudyTable table = grid();
-  table.varied_keys.emplace_back("window.length");
-  for (TrialRow& row : table.rows) row.varied.push_back(row.varied[0] == "2" ? "20" : "30");
-  const std::string text = answers_text(table, answer(table));
-  EXPECT_NE(text.find("mixture.components with window.length (share 99 %)"), std::string::npos) << text;
-  EXPECT_EQ(text.find("\nwindow.length"), std::string::npos) << text;
-}
-
 }  // namespace
 }  // namespace modebank::app

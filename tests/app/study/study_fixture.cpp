@@ -48,7 +48,7 @@ pid_t holder_of(const std::filesystem::path& claim) {
   return text.is_object() ? text.at("process").get<pid_t>() : 0;
 }
 
-/// Kills the process that a claim names, if it has used the processor for so long since now, and still makes this trial.
+/// Kills the process that a claim names once it has used the processor for so long, if it still makes this trial.
 bool kill_holder(const std::filesystem::path& claim, long busy_ticks) {
   const pid_t process = holder_of(claim);
   if (process == 0) return false;

@@ -159,8 +159,8 @@ int rounds() {
   return asked ? std::atoi(asked) : 1;
 }
 
-/// A machine is lost at a random change of the folder. The test sets its claims as if they had not been renewed for ten minutes.
-/// Other machines then take them over. The lost machine's unfinished files stay.
+/// A machine is lost at a random change of the folder. The test sets its claims as if they had not been renewed for ten
+/// minutes. Other machines then take them over. The lost machine's unfinished files stay.
 TEST_F(SharedFileSystem, AMachineThatIsLostChangesNoNumber) {
   const std::string numbers_expected = expected();
   std::mt19937_64 generator(20261123);

@@ -23,21 +23,6 @@ SlurmRequest request() {
           {"--time=60"}};
 }
 
-TEST(StudySlurmScript, TasksRunOneShardEach) {
-  const std::string script = run_script(request());
-  EXPECT_NE(script.find("#!/bin/bash\n"), std::string::npos);
-  for (const char* line : {"#SBATCH --requeue\n", "#SBATCH --open-mode=append\n"})
-    EXPECT_NE(script.find(line), std::string::npos) << script;
-  EXPECT_NE(script.find("cd " + shell_word(std::filesystem::current_path().string()) + " || exit\n"), std::string::npos)
-      << script;
-  EXPECT_NE(script.find("exec /opt/modebank study '/home/me/my study.ini' --study.vary 'bank.stay = 0.9 | 0.95' "
-                        "--data.root /data --study.output /scratch/ice.study --study.stage run "
-                        "--study.jobs \"${SLURM_CPUS_PER_TASK:-1}\" --study.shard \"$SLURM_ARRAY_TASK_ID/7\"\n"),
-            std::string::npos)
-      << script;
-  EXPECT_EQ(script.find("submit "), std::string::npos) << script;
-}
-
 TEST(StudySlurmScript, JobsThatWereGivenStay) {
   SlurmRequest with_jobs = request();
   with_jobs.overrides.emplace_back("study.jobs", "4");
@@ -53,22 +38,6 @@ TEST(StudySlurmScript, ArrayListsNameRanges) {
 TEST(StudySlurmScript, ShellWordsComeBackAsTheyWere) {
   for (const std::string word : {"plain", "two words", "it's", "$HOME", "a\"b", "back\\slash", "", "{1..3} | *"})
     EXPECT_EQ(run_shell("printf %s " + shell_word(word)).out, word);
-}
-
-TEST(StudySlurmScript, AbsentSbatchIsSaid) {
-  const test::TemporaryFolder folder;
-  const std::string path = std::getenv("PATH");
-  setenv("PATH", folder.path().c_str(), 1);
-  SlurmRequest wanted = request();
-  wanted.folder = folder.path();
-  try {
-    submit_to_slurm(wanted);
-    ADD_FAILURE() << "submitted without sbatch";
-  } catch (const ConfigurationError& error) {
-    EXPECT_NE(std::string(error.what()).find("PATH has no sbatch"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("--study.shard"), std::string::npos) << error.what();
-  }
-  setenv("PATH", path.c_str(), 1);
 }
 
 /// Fakes of sbatch, squeue and sacct that print given texts.
@@ -92,15 +61,6 @@ class FakeSlurm : public ::testing::Test {
  private:
   std::string before_;
 };
-
-TEST_F(FakeSlurm, ArrayThenMergeWhateverBecomesOfIt) {
-  program("sbatch", "case \"$*\" in *afterany:41*) echo 42;; *--array=0-2*) echo '41;cluster';; esac");
-  const SlurmSubmission submission = submit();
-  EXPECT_EQ(submission.array_job, "41");
-  EXPECT_EQ(submission.merge_job, "42");
-  ASSERT_EQ(submission.commands.size(), 2U);
-  EXPECT_NE(submission.commands[0].find("--time=60"), std::string::npos);
-}
 
 /// D10 of the review: a path was read as lines of the script, as a pattern, or as several words.
 TEST_F(FakeSlurm, NoPathStandsWhereSlurmReadsIt) {

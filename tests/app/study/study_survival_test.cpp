@@ -5,10 +5,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <random>
 
-#include "io/archive/inspect.hpp"
 #include "io/files/read_file.hpp"
 #include "tests/app/study/study_fixture.hpp"
 
@@ -23,8 +21,8 @@ class StudySurvivalPart : public StudySurvival, public ::testing::WithParamInter
 constexpr unsigned parts = 5;
 INSTANTIATE_TEST_SUITE_P(Of5, StudySurvivalPart, ::testing::Range(0U, parts));
 
-/// All parts together run ten studies. Each is killed three times, at random changes of its folder, alternately with and
-/// without its children. Children that survive work beside the next process.
+/// All parts together run ten studies. Each is killed three times, at random changes of its folder, alternately with
+/// and without its children. Children that survive work beside the next process.
 TEST_P(StudySurvivalPart, ThirtyKillsChangeNoNumber) {
   run_undisturbed();
   const std::string expected = numbers(undisturbed);
@@ -54,8 +52,9 @@ std::string repeats() {
   return asked ? asked : "4";
 }
 
-/// Twenty workers of a running study are killed, each while it makes a trial. Each of these trials is recorded as failed
-/// or is done by another worker. The next study completes them. After ten kills, the study moves to another folder.
+/// Twenty workers of a running study are killed, each while it makes a trial. Each of these trials is recorded as
+/// failed or is done by another worker. The next study completes them. After ten kills, the study moves to another
+/// folder.
 TEST_F(StudySurvival, TwentyKilledWorkersAndAMoveChangeNoNumber) {
   const std::vector<std::string> many{"--study.repeats", repeats(), "--study.jobs", "2"};
   ASSERT_EQ(study(undisturbed, many).status, 0);
