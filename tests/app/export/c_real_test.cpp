@@ -1,4 +1,4 @@
-// The exported C code on all held-out samples of the demos and of real robots, with unchanged configurations.
+// The exported C code on all held-out samples of a demo and of real robots, with unchanged configurations.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -48,12 +48,6 @@ class ExportedCOfRobots : public CliTest {
                worst.compared, worst.mean, worst.probability);
   }
 };
-
-TEST_F(ExportedCOfRobots, Demo) {
-  simulate("simulate_demo.ini");
-  learn("demo.ini", {"--data.root", file("data").string()});
-  expect_same();
-}
 
 TEST_F(ExportedCOfRobots, Tyres) {
   simulate("simulate_ice.ini");

@@ -37,34 +37,6 @@ class Export : public CliTest {
   }
 };
 
-TEST_F(Export, JsonIsTheArchivesBank) {
-  judge(Calibration::calibrated);
-  const ProgramResult result = exported("json");
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json page = json::parse(result.out);
-  const Archive stored = read_archive(archive());
-  EXPECT_EQ(page.at("format"), "modebank export");
-  EXPECT_EQ(page.at("schema_version"), "2.1");
-  EXPECT_EQ(page.at("verdict").at("answer"), "calibrated");
-  EXPECT_LT(result.out.find("\"verdict\""), result.out.find("\"modes\""));
-  EXPECT_EQ(page.at("dt_s"), stored.bank->dt_s);
-  ASSERT_EQ(std::ssize(page.at("modes")), stored.bank->mode_count());
-  for (std::size_t k = 0; k < stored.bank->modes.size(); ++k) {
-    const Mode& mode = stored.bank->modes[k];
-    const json& said = page.at("modes").at(k);
-    EXPECT_EQ(said.at("A").at("value").at(0).at(0), 1.0 + mode.model.A(0, 0));
-    EXPECT_EQ(said.at("B").at("value").at(0).at(1), mode.model.B(0, 1));
-    EXPECT_EQ(said.at("B").at("unit").at(0).at(1), "(rad/s)/(m/s)");
-    EXPECT_EQ(said.at("B").at("standard_error").at(0).at(1), mode.standard_error(2));
-    EXPECT_EQ(said.at("Q").at("value").at(0).at(0), mode.Q(0, 0));
-    EXPECT_EQ(said.at("Q").at("unit").at(0).at(0), "(rad/s)^2");
-    for (Index j = 0; j < stored.bank->mode_count(); ++j)
-      EXPECT_EQ(page.at("transition").at("T").at(k).at(static_cast<std::size_t>(j)),
-                stored.bank->transition.matrix()(static_cast<Index>(k), j));
-  }
-  EXPECT_EQ(page.at("filter").at("noise"), "gaussian");
-}
-
 /// No export contains these numbers without a remark: a value below its standard error, an unidentifiable parameter, an
 /// R at its bound.
 TEST_F(Export, DoubtfulNumbersAreRemarkedInEveryForm) {
