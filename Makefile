@@ -298,5 +298,10 @@ picture: build
 reference-ini: build
 	/usr/bin/python3 docs/reference_ini.py > configs/reference.ini
 
+# tests/house.csv: lines, files and tokens of each room, which the test Structure checks.
+.PHONY: house
+house:
+	/usr/bin/python3 tests/house.py
+
 clean:
 	rm -rf build

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Checks which folder includes which: never upward, never another folder's detail/.
+"""Checks which folder includes which: never upward, never another folder's detail/; and that no room grows (house.py).
 
 Usage: structure_test.py SOURCE_FOLDER. Prints one line per offence; exit status 1 if there is any.
 """
 import pathlib
 import re
 import sys
+
+import house
 
 # A folder with the folders that it may include, lowest first. Subfolders without an entry belong to their parent.
 IDENT = ["ident/base", "ident/data", "ident/model"]
@@ -117,7 +119,8 @@ def inside_knowledge(root):
 
 
 def main(root):
-    bad = left_out_of_the_whole(root) + upward() + rooms_without_cmake_file(root) + inside_knowledge(root)
+    bad = (left_out_of_the_whole(root) + upward() + rooms_without_cmake_file(root) + inside_knowledge(root) +
+           house.offences(root))
     for folder in sorted({f.split("/")[0] for f in MAY_INCLUDE}):
         for source in sorted((root / folder).rglob("*.[hc]pp")):
             name = source.relative_to(root).as_posix()
