@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/chain/expected_time.hpp"
 #include "app/chain/model_rows.hpp"
 #include "app/config/section.hpp"
 #include "app/text/mode_names.hpp"
@@ -124,34 +123,18 @@ void Chain::provide_learned(Stage stage, const std::function<void()>& compute) {
     case Stage::windows:
       return provide_windows(compute);
     case Stage::mixture:
-      return provide<MixturePart>(stage, [&] {
-        tell_if_long(listener_, "mixture", expected_mixture_s(*archive_.windows, inputs_.mixture.mixture),
-                     "--mixture.components 4 tries one number of components");
-        compute();
-      });
+      return provide<MixturePart>(stage, compute);
     case Stage::competitors:
       return provide<CompetitorsPart>(stage, compute);
     default:
-      return provide<BankPart>(Stage::bank, [&] {
-        const BankInputs& inputs = inputs_.bank;
-        if (inputs.bank.refine == Refine::em && !inputs.one_model)
-          tell_if_long(listener_, inputs.one_motion ? "bank and one_motion" : "bank",
-                       (inputs.one_motion ? 2.0 : 1.0) *
-                           expected_learning_s(*archive_.recording, archive_.windows->structure, inputs.bank.em),
-                       "--bank.refine none shortens this");
-        compute();
-      });
+      return provide<BankPart>(Stage::bank, compute);
   }
 }
 
 void Chain::provide_windows(const std::function<void()>& compute) {
   constexpr double written_per_s = 1e5;  // windows that a slow disk writes per second, with their samples
   const WindowInputs& inputs = inputs_.windows;
-  const auto in_time = [&] {
-    tell_if_long(listener_, "windows", expected_windows_s(*archive_.recording, inputs.window),
-                 "--window.step 10 fits every tenth window");
-    in_section("window", compute);
-  };
+  const auto in_its_section = [&] { in_section("window", compute); };
   const auto give = [&] {
     Archive part = part_out_of<WindowsPart>(archive_);
     part.recording = std::exchange(archive_.recording, {});
@@ -163,7 +146,7 @@ void Chain::provide_windows(const std::function<void()>& compute) {
   };
   const double windows =
       static_cast<double>(archive_.recording->transitions(Role::train)) / static_cast<double>(inputs.window.step);
-  provide(Stage::windows, {in_time, give, take, windows / written_per_s});
+  provide(Stage::windows, {in_its_section, give, take, windows / written_per_s});
 }
 
 void Chain::describe(const Execution& execution, const std::vector<InputFile>& more_files) {

@@ -9,7 +9,6 @@
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
 #include "app/text/mode_tables.hpp"
-#include "app/text/sparkline.hpp"
 #include "app/text/summary_tables.hpp"
 #include "app/text/summary_text.hpp"
 #include "app/text/terminal.hpp"
@@ -25,14 +24,12 @@ using nlohmann::json;
 void print_overview(const CommandLine& line) {
   const OpenArchive file(line.files[0]);
   const bool full_form = line.form == "full";
-  const Terminal terminal = standard_output();
-  const int width = terminal.width;
+  const int width = standard_output().width;
   const Archive archive = read_archive(file, Evaluations::in_file);
   if (has_first_screen(archive))
     fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), line.files[0], width, line.program));
   fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
   fmt::print("{}", wrapped(free_run_text(archive, width), width));
-  if (const std::string strip = mode_strip_text(archive, terminal); !strip.empty()) fmt::print("\n{}", strip);
   if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(archive, width));
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));
   if (archive.bank) fmt::print("\nmodes\n{}", modes_text(archive, full_form, width));

@@ -23,15 +23,6 @@ int terminal_width() {
   return isatty(STDOUT_FILENO) && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
-bool locale_is_utf8() {
-  for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-    const char* value = std::getenv(name);
-    if (!value || !*value) continue;
-    return boost::icontains(value, "utf-8") || boost::icontains(value, "utf8");
-  }
-  return false;
-}
-
 /// Indentation of continuation lines. It is the width of the label ("windows ", or a word and two or more spaces).
 /// Without a label, it is the indentation of the line itself.
 std::string indentation_of(const std::string& line, int width) {
@@ -74,7 +65,7 @@ std::string wrapped_line(const std::string& line, int width) {
 
 Terminal standard_output() {
   const int stated = stated_width();
-  return {stated > 0 ? stated : terminal_width(), locale_is_utf8()};
+  return {stated > 0 ? stated : terminal_width()};
 }
 
 int columns_of(std::string_view text) {

@@ -9,10 +9,9 @@ namespace modebank::app {
 /// Properties of standard output.
 struct Terminal {
   int width = 0;      ///< number of columns; 0 means no limit, for a file or a pipe without COLUMNS
-  bool utf8 = false;  ///< whether the locale uses UTF-8
 };
 
-/// COLUMNS overrides the terminal's own width. LC_ALL overrides LC_CTYPE, which overrides LANG.
+/// COLUMNS overrides the terminal's own width.
 Terminal standard_output();
 
 /// Number of UTF-8 characters in a text. Each character counts as one column.

@@ -4,11 +4,8 @@
 #include <sstream>
 
 #include "app/text/number_text.hpp"
-#include "app/text/sparkline.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/text_table.hpp"
-#include "io/archive/archive.hpp"
-#include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
 namespace {
@@ -18,13 +15,6 @@ std::vector<std::string> lines_of(const std::string& text) {
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
-}
-
-TEST(Sparkline, HeightsAreEighthsOrAMarkEach) {
-  Eigen::VectorXd values(6);
-  values << 0, 0.125, 0.5, 1, 7, std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(app::sparkline(values, true), " ▁▄██?");
-  EXPECT_EQ(app::sparkline(values, false), " .+@@?");
 }
 
 TEST(NumberText, IsFixedWhereThatFits) {
@@ -65,25 +55,6 @@ TEST(TextTable, GoesOnBelowWithItsKeyRepeated) {
             "   K      BIC      AIC      ICL\n   1     10.5     20.5     30.5\n   2      1.5      2.5      3.5 <-\n");
   EXPECT_EQ(table.text(15), "K  BIC  AIC\n1 10.5 20.5\n2  1.5  2.5 <-\nK  ICL\n1 30.5\n2  3.5 <-\n");
   for (const std::string& line : lines_of(table.text(15))) EXPECT_LE(app::columns_of(line), 15) << line;
-}
-
-class Show : public CliTest {};
-
-/// At every position the heights of all modes sum to one, because they are probabilities.
-TEST_F(Show, SparklineIsTheArchivesProbabilities) {
-  ASSERT_EQ(run({"--mixture.components", "2", "--bank.refine", "none"}).status, 0);
-  Archive archived = read_archive(archive());
-  ASSERT_EQ(archived.bank->mode_count(), 2);
-  auto& probability = archived.evaluations.at(0).runs.at(1).mode_probability;
-  ASSERT_EQ(archived.evaluations.at(0).filter, "bank");
-  probability.row(0).setZero();
-  probability.row(0).head(40).setOnes();
-  probability.row(1) = 1.0 - probability.row(0).array();
-  const std::vector<std::string> lines = lines_of(app::mode_strip_text(archived, {31, true}));
-  ASSERT_EQ(lines.size(), 4u);
-  EXPECT_EQ(lines[1], "run  01");
-  EXPECT_EQ(lines[2].substr(0, 5 + 10 * 3 + 10), "   0 ██████████          ");
-  EXPECT_EQ(lines[3].substr(0, 5 + 10 + 10 * 3), "   1           ██████████");
 }
 
 }  // namespace
