@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "app/study/launch/shell.hpp"
 #include "app/study/launch/slurm_jobs.hpp"
@@ -87,10 +88,16 @@ std::string sbatch(const SlurmRequest& request, const std::string& command) {
   const std::string reason = fs::exists(errors) ? boost::trim_copy(read_file(errors)) : "";
   std::error_code ignored;
   fs::remove(errors, ignored);
-  const std::string id = boost::trim_copy(result.out.substr(0, result.out.find(';')));  // id[;cluster]
+  // Sites print banners before the number, or words around it. Its form is id[;cluster].
+  static const std::regex number(R"((^|\s)(\d+)(;\S*)?(?=\s|$))");
+  std::string id;
+  for (std::sregex_iterator at(result.out.begin(), result.out.end(), number), end; at != end; ++at) id = (*at)[2];
   if (result.status != 0 || id.empty())
     throw DataError(fmt::format("Slurm refused the job (exit status {}): {}\n  {}", result.status,
-                                reason.empty() ? "no reason given" : reason, command));
+                                !reason.empty()      ? reason
+                                : result.status != 0 ? "no reason given"
+                                                     : "sbatch printed no number of a job: " + result.out,
+                                command));
   return id;
 }
 
@@ -123,6 +130,12 @@ void check_request(const SlurmRequest& request) {
     throw ConfigurationError(
         "study.stage = submit needs Slurm, but PATH has no sbatch; with another scheduler run --study.stage run "
         "--study.shard i/n for i = 0..n-1, then --study.stage merge");
+  for (const std::string& option : request.options)
+    if (option.starts_with("--array") || option.starts_with("-a") || option.find_first_of("'\"") != std::string::npos)
+      throw ConfigurationError(
+          fmt::format("study.slurm_options: {} is not taken: modebank sets --array (study.slurm_tasks is the number of "
+                      "tasks), and options are cut at blanks, whatever quotes they hold",
+                      option));
   for (const fs::path& path :
        {request.program, request.config, request.folder, request.data_root, fs::current_path()}) {
     const std::string text = path.string();

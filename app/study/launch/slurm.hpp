@@ -47,6 +47,7 @@ struct SlurmJobView {
   std::string job;                                  ///< id
   std::string role;                                 ///< "run" or "merge"
   std::string source;                               ///< "squeue" or "sacct"; empty if neither lists the job
+  bool answered = true;                             ///< whether squeue answered at all
   std::vector<std::pair<std::string, int>> states;  ///< number of tasks in each state: RUNNING 3, PENDING 4, ...
   std::vector<std::string> notes;                   ///< tasks that need the user's attention: held, failed, out of time
 };

@@ -28,8 +28,10 @@ std::vector<std::string> fields_of(const std::string& line) {
 
 /// Parses lines of "task|state|reason", which squeue and sacct both print. Of a state such as "CANCELLED by 0", only
 /// the first word is used.
-TaskStates task_states(const std::string& command) {
-  const ShellResult result = run_shell(command + " 2>/dev/null");
+TaskStates task_states(const std::string& command, bool& answered) {
+  const ShellResult result = run_shell(command + " 2>&1");
+  // Of a job that ended long ago, squeue prints an error.
+  answered = answered || result.status == 0 || result.out.find("Invalid job id") != std::string::npos;
   TaskStates states;
   if (result.status != 0) return states;
   std::istringstream lines(result.out);
@@ -54,11 +56,13 @@ std::string note_on(const std::string& task, const TaskState& state) {
 }
 
 SlurmJobView view_of(const SlurmJob& job) {
-  SlurmJobView view{job.id, job.role, "", {}, {}};
+  SlurmJobView view{job.id, job.role, "", false, {}, {}};
   // For jobs that squeue lists, its states are used. sacct, if installed, also lists jobs that have ended.
-  TaskStates states = task_states(fmt::format("sacct -X -n -P -j {} -o JobID,State", shell_word(job.id)));
+  bool installed = false;  // sacct is not everywhere
+  TaskStates states = task_states(fmt::format("sacct -X -n -P -j {} -o JobID,State", shell_word(job.id)), installed);
   if (!states.empty()) view.source = "sacct";
-  const TaskStates queued = task_states(fmt::format("squeue -h -r -t all -j {} -o '%i|%T|%r'", shell_word(job.id)));
+  const TaskStates queued =
+      task_states(fmt::format("squeue -h -r -t all -j {} -o '%i|%T|%r'", shell_word(job.id)), view.answered);
   if (!queued.empty()) view.source = view.source.empty() ? "squeue" : "squeue and sacct";
   for (const auto& [task, state] : queued) states[task] = state;
   std::map<std::string, int> counts;
@@ -103,7 +107,7 @@ std::string slurm_text(const std::vector<SlurmJobView>& jobs) {
   std::string text;
   for (const SlurmJobView& job : jobs) {
     text += fmt::format("slurm     {} job {}:", job.role, job.job);
-    if (job.states.empty()) text += " no longer listed by Slurm";
+    if (job.states.empty()) text += job.answered ? " no longer listed by Slurm" : " Slurm does not answer";
     for (const auto& [state, count] : job.states) text += fmt::format(" {} {}", count, boost::to_lower_copy(state));
     text += job.source.empty() ? "\n" : fmt::format(" ({})\n", job.source);
     for (std::size_t i = 0; i < std::min(job.notes.size(), notes_shown); ++i)
