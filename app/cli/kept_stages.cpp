@@ -9,6 +9,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstring>
+#include <exception>
 
 #include "ident/base/printable.hpp"
 
@@ -70,7 +71,13 @@ bool KeptStages::folder_is_link() const {
 
 KeptStages::~KeptStages() {
   for (std::size_t i = 0; i < signals.size(); ++i) std::signal(signals[i], before_[i]);
-  if (!folder_is_link()) store_.clear();
+  std::error_code error;
+  if (folder_is_link()) return;
+  if (std::uncaught_exceptions() == 0)
+    store_.clear();
+  else if (fs::exists(folder_, error))
+    spdlog::warn("finished stages that took long are kept in {}; the same command continues from there",
+                 folder_.string());
 }
 
 }  // namespace modebank::app

@@ -14,7 +14,7 @@ class KeptStages : public StageSource {
  public:
   /// Installs a signal handler. On Ctrl-C, it prints the path of the folder with the stored stages.
   explicit KeptStages(const std::filesystem::path& output);
-  /// Removes the folder at the end of the run, even after an error, and restores the signal handlers.
+  /// Restores the signal handlers. Removes the folder, unless an error ended the run: then the stages stay.
   ~KeptStages() override;
   KeptStages(const KeptStages&) = delete;
   KeptStages& operator=(const KeptStages&) = delete;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "app/chain/chain.hpp"
 #include "app/chain/pipeline.hpp"
@@ -25,6 +26,7 @@
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
+#include "io/archive/inspect.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -61,14 +63,19 @@ StoredStages earlier_stages(const Config& config, const std::string& command) {
   return source;
 }
 
-/// Throws if the output would replace an archive of other data. This is checked before any fit, as soon as the hash of
-/// the data is known.
-void check_replaces_same_data(const std::string& output, const std::string& data_hash) {
+/// Throws if the output would replace another result: that of other data, of a bank from another file, or of more
+/// stages. This is checked before any fit, as soon as the hash of the data is known.
+void check_replaces_same_result(const std::string& output, const std::string& data_hash, const std::string& bank,
+                                bool makes_bank) {
   std::error_code error;
   if (!std::filesystem::exists(output, error)) return;
-  std::string other;
+  std::string other, other_bank;
+  bool has_bank = false;
   try {
-    other = load_data_hash(output);
+    const OpenArchive opened(output);
+    other = load_data_hash(opened);
+    other_bank = resolved_values(load_configuration(opened))["archive.bank"];
+    has_bank = inspect(opened, "/")["members"].contains("bank");
   } catch (const std::exception& reason) {
     throw DataError(
         fmt::format("archive.output: {} exists and is not replaced, because it cannot be read: {}; name another file, "
@@ -80,16 +87,23 @@ void check_replaces_same_data(const std::string& output, const std::string& data
         fmt::format("archive.output: {} was made from other data (data_hash {}, this run's is {}) and is not replaced; "
                     "name another file, or add --force",
                     output, other, data_hash));
+  if (other_bank != bank || (has_bank && !makes_bank))
+    throw DataError(
+        fmt::format("archive.output: {} holds another result ({}) and is not replaced; name another file, or add "
+                    "--force",
+                    output, other_bank.empty() ? "a learned bank" : "the bank of " + other_bank));
 }
 
 /// Prints a chain's messages to the log.
 class Log : public Adviser {
  public:
   /// `output` is checked as soon as the data are read. If `output` is empty, any file may be replaced.
-  explicit Log(std::string output) : output_(std::move(output)) {}
+  Log(std::string output, std::string bank, bool makes_bank)
+      : output_(std::move(output)), bank_(std::move(bank)), makes_bank_(makes_bank) {}
 
   void done(Stage stage, const Archive& archive) const override {
-    if (stage == Stage::data && !output_.empty()) check_replaces_same_data(output_, archive.provenance.data_hash);
+    if (stage == Stage::data && !output_.empty())
+      check_replaces_same_result(output_, archive.provenance.data_hash, bank_, makes_bank_);
     Adviser::done(stage, archive);
   }
   void progress(const std::string& line) const override { spdlog::info("{}", line); }
@@ -97,7 +111,8 @@ class Log : public Adviser {
   void warning(const std::string& line) const override { spdlog::warn("{}", line); }
 
  private:
-  std::string output_;
+  std::string output_, bank_;
+  bool makes_bank_;
 };
 
 std::string archive_line(const Config& config) { return fmt::format("\narchive   {}\n", config.archive.output); }
@@ -133,7 +148,8 @@ Stage last_stage(const std::string& command) {
 
 /// Runs the command's stages and writes the archive.
 Result execute(const CommandLine& line, const Config& config, StageSource& source) {
-  const Log log(line.force ? "" : config.archive.output);
+  const Log log(line.force ? "" : config.archive.output, config.archive.bank,
+                last_stage(line.command) == Stage::bank_scores);
   Chain chain(source, log);
   const ChainOptions options = chain_options(config);
   const Execution execution{resolved_text(config), make_provenance(config_hash(config), line.typed)};

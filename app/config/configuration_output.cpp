@@ -15,11 +15,12 @@ namespace modebank::app {
 bool is_configuration(const std::filesystem::path& path) {
   constexpr std::uintmax_t largest = 1 << 22;
   if (std::filesystem::file_size(path) > largest) return false;
+  const std::string text = read_file(path);
   try {
-    const std::map<std::string, std::string> values = resolved_values(read_file(path));
+    const std::map<std::string, std::string> values = resolved_values(text);
     return std::any_of(values.begin(), values.end(), [](const auto& value) { return find_option(value.first); });
   } catch (const ConfigurationError&) {
-    return false;
+    return ("\n" + text).find("\n[data]") != std::string::npos;  // broken, but no log
   }
 }
 

@@ -96,6 +96,10 @@ void validate(const Config& config) {
   require(config.bank.refine != Refine::em || is_linear(config.window),
           fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
                       config.window.model));
+  require(config.bank.refine != Refine::em || config.bank.noise == NoiseSource::per_mode,
+          fmt::format("bank.noise = {} does not work with bank.refine = em, which learns Q per mode; set bank.refine = "
+                      "none, or bank.noise = per-mode",
+                      name_of(config.bank.noise)));
   check_logit(config);
   check_drift(config);
 }
