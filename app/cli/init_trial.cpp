@@ -96,7 +96,7 @@ void make_it_run(Proposal& proposal, const fs::path& target) {
   if (first.empty()) return;
   const auto take_if_it_runs = [&](Proposal changed, const std::string& words) {
     if (!refusal(changed, target).empty()) return false;
-    changed.doubts.push_back(fmt::format("{}, because run would end in: {}", words, first));
+    changed.doubt(fmt::format("{}, because run would end in: {}", words, first));
     proposal = std::move(changed);
     return true;
   };

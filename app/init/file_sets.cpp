@@ -70,6 +70,11 @@ bool is_of_a_kind(const std::vector<std::string>& a, const std::vector<std::stri
 
 }  // namespace
 
+std::string typed_path(const Path& path) {
+  const Path below = path.lexically_relative(std::filesystem::current_path());
+  return (below.empty() || *below.begin() == ".." ? path : below).string();
+}
+
 std::string common_pattern(const std::vector<std::string>& names) {
   std::vector<std::string> backwards = names;
   for (std::string& name : backwards) std::reverse(name.begin(), name.end());

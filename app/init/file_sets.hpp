@@ -18,6 +18,9 @@ struct FileSet {
 /// in the order of `files`. Throws ConfigurationError if a file cannot be read.
 std::vector<FileSet> file_sets(const std::vector<std::string>& files);
 
+/// A path for messages: from the current folder if it lies below that, as people type it.
+std::string typed_path(const std::filesystem::path& path);
+
 /// The pattern of file names in one folder, made of their common beginning and end, each cut at a word boundary.
 /// Example: pro_00 and pro_01 give pro_*, not pro_0*. Empty if the names have no common part.
 std::string common_pattern(const std::vector<std::string>& names);

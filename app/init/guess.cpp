@@ -17,6 +17,7 @@ namespace modebank::app {
 namespace {
 
 constexpr std::size_t most_states = 2, most_inputs = 4;
+constexpr int least_of_command = 5;  // points of a name that tells of a command; measured motions have less
 
 struct Candidate {
   ChannelPlace place;
@@ -26,9 +27,18 @@ struct Candidate {
   NameScore named;  ///< score from the name alone
 
   bool is_held() const { return channel->check.repeated > most_repeated; }
+  bool is_set_point() const { return !words_of_measured(channel->name).empty(); }
+  /// Whether the hints name what acts, and not a motion or a supply that is only measured.
+  bool is_actuator() const {
+    return !is_set_point() && score.input >= least_of_command && channel->name.find("batt") == std::string::npos;
+  }
 };
 
 bool same_table(const ChannelPlace& a, const ChannelPlace& b) { return a.file == b.file && a.table == b.table; }
+
+bool is_in(const std::vector<ChannelPlace>& places, const ChannelPlace& place) {
+  return std::find(places.begin(), places.end(), place) != places.end();
+}
 
 /// Adds the hints that do not come from names. A channel whose value is held while other channels of its table move is
 /// probably a command. Units such as rad/s indicate measurements, and units such as V indicate inputs.
@@ -49,6 +59,21 @@ void add_hints(std::vector<Candidate>& all) {
   }
 }
 
+/// Whether all values are 0 but the last one, which is 1: it marks the end of a run.
+bool marks_the_end(const SurveyedChannel& channel) {
+  return channel.check.levels == 2 && channel.values.sum() == 1.0 && channel.values.tail(1)(0) == 1.0;
+}
+
+/// What a set point names is the state, if it is measured: level_cm beside level_setpoint_cm.
+void prefer_what_set_points_name(std::vector<Candidate>& all) {
+  constexpr int named = 8;
+  for (Candidate& c : all)
+    if (std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
+          return !c.is_set_point() && words_of_measured(other.channel->name) == words_of_name(c.channel->name);
+        }))
+      c.score.state += named;
+}
+
 std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
   std::vector<Candidate> all;
   for (std::size_t f = 0; f < files.size(); ++f)
@@ -60,11 +85,16 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
         const SurveyedChannel& channel = table.channels[c];
         if (!channel.moves() || channel.counts || channel.name == table.run || !can_be_stated(channel.name)) continue;
         if (std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end()) continue;
+        if (marks_the_end(channel)) continue;
         NameScore score = score_name(channel.name, from + table.type);
         if (!score.ignored) all.push_back({{f, t, c}, &table, &channel, score, score});
       }
     }
   add_hints(all);
+  prefer_what_set_points_name(all);
+  // A channel that rests in every run cannot explain what happens within one.
+  if (std::count_if(all.begin(), all.end(), [](const Candidate& c) { return !c.channel->rests; }) > 1)
+    std::erase_if(all, [](const Candidate& c) { return c.channel->rests; });
   return all;
 }
 
@@ -85,11 +115,9 @@ std::vector<const Candidate*> best_of(const std::vector<Candidate>& all, int Nam
 }
 
 /// Whether a channel is one axis of a vector that an instrument measures.
-bool is_of_axes(const Candidate& c) {
+bool is_of_axes(const std::string& name) {
   for (const Axis axis : {Axis::x, Axis::y, Axis::z})
-    if (names_angular_rate(c.channel->name, axis) || names_acceleration(c.channel->name, axis) ||
-        names_position(c.channel->name, axis))
-      return true;
+    if (names_angular_rate(name, axis) || names_acceleration(name, axis) || names_position(name, axis)) return true;
   return false;
 }
 
@@ -102,23 +130,31 @@ void guess_state_by_place(const std::vector<Candidate>& all, Guess& guess) {
 }
 
 /// Guesses the inputs if no name indicates one. Takes channels in the state's table that were not measured together
-/// with the state. They must be held, or the table must have few channels.
+/// with the state. They must be held, or the table must have few channels. Without any, takes the held channels of
+/// another file.
 void guess_inputs_by_place(const std::vector<Candidate>& all, bool by_place, Guess& guess) {
   constexpr std::ptrdiff_t few = 4;
   const auto beside = std::count_if(all.begin(), all.end(),
                                     [&](const Candidate& c) { return same_table(c.place, guess.states.front()); });
   std::vector<std::string> names;
-  for (const Candidate& c : all) {
-    const bool is_state = std::find(guess.states.begin(), guess.states.end(), c.place) != guess.states.end();
-    if (is_state || !same_table(c.place, guess.states.front()) || c.score.state > 0 || is_of_axes(c)) continue;
-    if ((!by_place && beside > few && !c.is_held()) || guess.inputs.size() == most_inputs) continue;
-    guess.inputs.push_back(c.place);
-    names.push_back(c.channel->name);
+  const std::size_t named = guess.inputs.size();
+  for (const bool here : {true, false}) {
+    if (!here && named + names.size() > 0) break;
+    for (const Candidate& c : all) {
+      if (is_in(guess.states, c.place) || is_in(guess.inputs, c.place) || guess.inputs.size() == most_inputs) continue;
+      if (here != same_table(c.place, guess.states.front()) || c.score.state > 0 || is_of_axes(c.channel->name))
+        continue;
+      const bool few_here = here && (by_place || beside <= few);
+      if (!few_here && (!c.is_held() || (!here && c.place.file == guess.states.front().file))) continue;
+      guess.inputs.push_back(c.place);
+      names.push_back(c.channel->name);
+    }
   }
   if (!names.empty())
-    guess.reasons.push_back(
-        fmt::format("no name indicates an input; {} {} taken, because no other channel is beside the state",
-                    fmt::join(names, ", "), names.size() == 1 ? "is" : "are"));
+    guess.reasons.push_back({fmt::format("no name indicates {}; {} {} taken, because nothing else may be one",
+                                         named > 0 ? "an actuator beside the set point" : "an input",
+                                         fmt::join(names, ", "), names.size() == 1 ? "is" : "are"),
+                             "input"});
 }
 
 void guess_states(std::vector<Candidate>& all, Guess& guess) {
@@ -129,16 +165,47 @@ void guess_states(std::vector<Candidate>& all, Guess& guess) {
     guess.states.push_back(state->place);
 }
 
-void guess_inputs(const std::vector<Candidate>& all, Guess& guess) {
+void guess_inputs(const std::vector<SurveyedFile>& files, const std::vector<Candidate>& all, bool by_place,
+                  Guess& guess) {
   std::vector<Candidate> acting;
   for (const Candidate& c : all) {
-    const bool is_state = std::find(guess.states.begin(), guess.states.end(), c.place) != guess.states.end();
     // A channel that the state's instrument measures is not an input.
     const bool beside = same_table(c.place, guess.states.front()) && c.score.input < c.score.state;
-    if (!is_state && !beside && c.score.input > 0) acting.push_back(c);
+    if (!is_in(guess.states, c.place) && !beside && c.score.input > 0) acting.push_back(c);
   }
-  for (const Candidate* input : best_of(acting, &NameScore::input, 1, most_inputs))
-    guess.inputs.push_back(input->place);
+  // A set point acts through a controller, so what the controller moves is the input.
+  const bool loop = std::any_of(all.begin(), all.end(), [&](const Candidate& c) {
+    return words_of_measured(c.channel->name) == words_of_name(channel_at(files, guess.states.front()).name);
+  });
+  if (loop && std::any_of(acting.begin(), acting.end(), [](const Candidate& c) { return c.is_actuator(); }))
+    std::erase_if(acting, [](const Candidate& c) { return c.is_set_point(); });
+  const std::vector<const Candidate*> best = best_of(acting, &NameScore::input, 1, most_inputs);
+  for (const Candidate* input : best) guess.inputs.push_back(input->place);
+  if (std::all_of(best.begin(), best.end(), [](const Candidate* c) { return c->is_set_point(); }))
+    guess_inputs_by_place(all, by_place, guess);
+}
+
+/// A gyro's or accelerometer's axis that hardly moves is no state: the axis beside it that moves most is.
+void leave_resting_axis(const std::vector<SurveyedFile>& files, Guess& guess) {
+  constexpr double hardly = 0.02;
+  const auto axes_of = [](const SurveyedChannel& c) {
+    for (const Axis axis : {Axis::x, Axis::y, Axis::z})
+      if (names_angular_rate(c.name, axis) || names_acceleration(c.name, axis))
+        return c.name.substr(0, c.name.size() - 1);
+    return std::string();
+  };
+  for (ChannelPlace& state : guess.states) {
+    const std::vector<SurveyedChannel>& channels = files[state.file].tables[state.table].channels;
+    const std::string axes = axes_of(channels[state.channel]), rests = channels[state.channel].name;
+    const double moved = channels[state.channel].check.sd;
+    for (std::size_t c = 0; c < channels.size() && !axes.empty(); ++c)
+      if (axes_of(channels[c]) == axes && channels[c].is_number() && moved < hardly * channels[c].check.sd &&
+          channels[c].check.sd > channels[state.channel].check.sd)
+        state.channel = c;
+    if (channels[state.channel].name != rests)
+      guess.reasons.push_back(
+          {fmt::format("{} hardly moves beside {}, which is taken", rests, channels[state.channel].name), "state"});
+  }
 }
 
 /// If the gyro lies on its side, replaces the rate about z by the rate about the axis that points up.
@@ -156,7 +223,6 @@ void turn_upright(const std::vector<SurveyedFile>& files, Guess& guess) {
 
 /// Whether the name is that of a measured speed or rate, and not of a command.
 bool is_measured_motion(const std::vector<SurveyedFile>& files, const ChannelPlace& place) {
-  constexpr int least_of_command = 5;
   const int points = score_name(channel_at(files, place).name).input;
   return points > 0 && points < least_of_command;
 }
@@ -201,26 +267,26 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
   guess_states(all, guess);
   const bool by_place = guess.states.empty();
   if (by_place) {
-    guess.reasons.emplace_back("no name indicates the state; the last channel without a hint of an input is taken");
+    guess.reasons.push_back(
+        {"no name indicates the state; the last channel without a hint of an input is taken", "state"});
     guess_state_by_place(all, guess);
   }
-  guess_inputs(all, guess);
-  if (guess.inputs.empty()) guess_inputs_by_place(all, by_place, guess);
+  guess_inputs(files, all, by_place, guess);
   if (guess.inputs.empty())
-    guess.reasons.emplace_back(
-        "no channel looks like a command; without inputs modes differ only in the motion of the state itself");
+    guess.reasons.push_back(
+        {"no channel looks like a command; without inputs modes differ only in the motion of the state itself",
+         "input"});
   else if (!by_place && is_measured_motion(files, guess.inputs.front()))
-    guess.reasons.emplace_back(
-        "no command is recorded: measured motion is used instead, so the model describes how one follows the other");
+    guess.reasons.push_back(
+        {"no command is recorded: measured motion is used instead, so the model describes how one follows the other",
+         "input"});
   replace_unreachable_commands(files, guess);
   turn_upright(files, guess);
+  if (!guess.mounting) leave_resting_axis(files, guess);
   return guess;
 }
 
 std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, const Guess& guess) {
-  const auto has = [](const std::vector<ChannelPlace>& places, const ChannelPlace& place) {
-    return std::find(places.begin(), places.end(), place) != places.end();
-  };
   std::vector<ChannelLeft> left;
   for (std::size_t f = 0; f < files.size(); ++f)
     for (std::size_t t = 0; t < files[f].tables.size(); ++t)
@@ -230,7 +296,7 @@ std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, c
         const SurveyedChannel& channel = channel_at(files, place);
         const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
         const bool is_run = !channel.name.empty() && channel.name == table.run;
-        if (is_time || is_run || has(guess.states, place) || has(guess.inputs, place)) continue;
+        if (is_time || is_run || is_in(guess.states, place) || is_in(guess.inputs, place)) continue;
         const NameScore score = score_name(channel.name);
         if (!channel.is_number() && !channel.why_text.empty() && !score.ignored)
           left.push_back({channel.name, fmt::format("text ({})", channel.why_text)});
@@ -241,14 +307,21 @@ std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, c
           left.push_back({fmt::format("column {}", c + 1), "without a name"});
           continue;
         }
-        left.push_back(
-            {channel.name, score.ignored                  ? "the name indicates a time, counter, pose, place or label"
-                           : !can_be_stated(channel.name) ? "the name contains a line end or another control character"
-                           : channel.counts               ? "counts up evenly, as times and counters do"
-                           : score.input > score.state && with_inputs
-                               ? fmt::format("other channels are likelier inputs; at most {} are taken", most_inputs)
-                           : beside || with_inputs ? "measured beside the state, or without a hint of its role"
-                                                   : "in another table than the state and the inputs"});
+        const bool is_signal = !score.ignored && can_be_stated(channel.name) && !channel.counts && !channel.rests;
+        const int points = !is_signal ? 0 : is_of_axes(channel.name) ? 1 : 2 + score.input;
+        const SurveyedChannel& state = channel_at(files, guess.states.front());
+        const bool repeats = beside && channel.is_number() && channel.values == state.values;
+        left.push_back({channel.name,
+                        score.ignored                  ? "the name indicates a time, counter, pose, place or label"
+                        : !can_be_stated(channel.name) ? "the name contains a line end or another control character"
+                        : channel.counts               ? "counts up evenly, as times and counters do"
+                        : channel.rests                ? "constant in every run"
+                        : repeats                      ? fmt::format("repeats {} in every row", state.name)
+                        : score.input > score.state && with_inputs
+                            ? fmt::format("other channels are likelier inputs; at most {} are taken", most_inputs)
+                        : beside || with_inputs ? "measured beside the state, or without a hint of its role"
+                                                : "in another table than the state and the inputs",
+                        points});
       }
   return left;
 }

@@ -31,12 +31,20 @@ struct Mounting {
 /// A channel that moves but is neither a state nor an input.
 struct ChannelLeft {
   std::string name, reason;
+  int points = 0;  ///< hints that it acts or is measured; 0 for clocks, counters, labels and text
+};
+
+/// A sentence for people to check. Whoever states one of the [data] keys in `keys` ("state", "time rate_hz") settles
+/// it.
+struct Doubt {
+  std::string text, keys;
+  bool operator==(const Doubt&) const = default;
 };
 
 struct Guess {
   std::vector<ChannelPlace> states, inputs;
   std::optional<Mounting> mounting;
-  std::vector<std::string> reasons;  ///< sentences for the configuration's comments
+  std::vector<Doubt> reasons;  ///< sentences for the configuration's comments
 };
 
 /// Guesses states and inputs from names, units, movement and position. Each hint has a weight. Throws DataError if no

@@ -14,6 +14,7 @@
 #include "ident/base/characters.hpp"
 #include "ident/base/natural_order.hpp"
 #include "ident/base/printable.hpp"
+#include "ident/check/stream_check.hpp"
 #include "io/import/expression.hpp"
 #include "io/import/split.hpp"
 #include "modebank/base/error.hpp"
@@ -40,6 +41,31 @@ std::string short_name(const std::string& name) {
   return result.empty() || is_digit(result.front()) ? "channel_" + result : result;
 }
 
+/// The period of values that wrap: 360, 2 pi or a power of two. They fill it, jump by nearly all of it now and then,
+/// and move little otherwise. 0 for other values.
+double wrap_period(const SurveyedChannel& channel) {
+  constexpr double jump = 0.8, step = 0.2;
+  std::vector<double> periods{360.0, 2.0 * EIGEN_PI};
+  for (const int bits : {8, 10, 12, 14, 15, 16, 24, 32}) periods.push_back(std::ldexp(1.0, bits));
+  const Eigen::Index rest = channel.values.size() - 1;
+  const Eigen::ArrayXd steps = (channel.values.tail(rest) - channel.values.head(rest)).array().abs();
+  const double range = channel.check.largest - channel.check.least;
+  for (const double period : periods)
+    if (range > 0.9 * period && range < 1.001 * period && (steps > jump * period).any() &&
+        ((steps > jump * period) || (steps < step * period) || !steps.isFinite()).all())
+      return period;
+  return 0.0;
+}
+
+/// Share of the samples at an end of the range at which a limiter acts, and that end.
+std::pair<double, double> share_at_limit(const SurveyedChannel& channel) {
+  const SaturationLimits limits = saturation_limits({channel.values});
+  const auto share = [&](const auto& at) { return static_cast<double>(at.count()) / static_cast<double>(at.size()); };
+  const double low = share(channel.values.array() <= limits.low), high = share(channel.values.array() >= limits.high);
+  if (limits.soft) return {};
+  return high >= low ? std::pair{high, channel.check.largest} : std::pair{low, channel.check.least};
+}
+
 /// Builds the proposed configuration from the survey.
 class Proposer {
  public:
@@ -53,7 +79,7 @@ class Proposer {
     propose_times(table(state()), table(input()), proposal_);
     sampling();
     runs();
-    proposal_.left = channels_left(surveyed_, guess_);
+    not_taken();
     return std::move(proposal_);
   }
 
@@ -74,7 +100,32 @@ class Proposer {
   void add(std::string key, std::string value, std::string why = {}) {
     proposal_.add(std::move(key), std::move(value), std::move(why));
   }
-  void doubt(const std::string& text) { proposal_.doubt(text); }
+  void doubt(const std::string& text, const std::string& keys = {}) { proposal_.doubt(text, keys); }
+
+  /// Names the channels that move and are not taken, those first that may act.
+  void not_taken() {
+    constexpr std::size_t named = 6;
+    proposal_.left = channels_left(surveyed_, guess_);
+    std::vector<ChannelLeft> moving = proposal_.left;
+    std::erase_if(moving, [](const ChannelLeft& channel) { return channel.points == 0; });
+    if (moving.empty()) return;
+    std::stable_sort(moving.begin(), moving.end(), [](const auto& a, const auto& b) { return a.points > b.points; });
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < std::min(named, moving.size()); ++i) names.push_back(moving[i].name);
+    const std::size_t more = moving.size() - names.size();
+    doubt(fmt::format("not taken although moving: {}{} (data.input and data.state take others)", fmt::join(names, ", "),
+                      more > 0 ? fmt::format(" and {} more", more) : ""),
+          "input");
+  }
+
+  void limits() {
+    constexpr double often = 0.05;
+    for (const ChannelPlace& place : guess_.inputs)
+      if (const auto [share, end] = share_at_limit(channel(place)); share > often)
+        doubt(fmt::format("{} stands at its limit, {:g}, in {:.0f} % of the samples", channel(place).name, end,
+                          100.0 * share),
+              "input");
+  }
 
   std::string runs_text(const FileSet& set, bool listed) const {
     if (set.files.size() == 1) return "one file";
@@ -114,12 +165,12 @@ class Proposer {
     for (const FileSet* set : {&inputs, &states})
       for (const Path& file : set->files)
         if (listed && file.string().find(',') != std::string::npos)
-          doubt(fmt::format("{} is left out: a list of files cannot contain a name with a comma", file.string()));
+          doubt(fmt::format("{} is left out: a list of files cannot contain a name with a comma", typed_path(file)));
     for (const FileSet& set : sets_)
       if (&set != &inputs && &set != &states)
         doubt(fmt::format("{} file{} with other columns left out: {}{}", set.files.size(),
                           set.files.size() == 1 ? " is" : "s are", set.files.front().filename().string(),
-                          set.files.size() > 1 ? ", ..." : ""));
+                          set.files.size() > 1 ? fmt::format(" and {} more", set.files.size() - 1) : ""));
     if (two && (inputs.files.size() != states.files.size() || (!listed && inputs.runs != states.runs)) &&
         inputs.files.size() + states.files.size() > 2)
       doubt(fmt::format("{} and {} have different runs; every inputs file needs a states file", within(inputs),
@@ -146,7 +197,7 @@ class Proposer {
         m.reversed ? "-" : "+", letter, std::abs(m.gravity), sign, m.up_rate, m.z_rate);
     if (m.z_correlation)
       text += fmt::format(" (correlation with {}: {:.2f} and {:.2f})", m.other, *m.up_correlation, *m.z_correlation);
-    doubt(text);
+    doubt(text, "state");
     std::vector<std::string> parts;
     for (const SurveyedChannel& c : table(state()).channels)
       for (const Axis axis : {Axis::x, Axis::y, Axis::z})
@@ -174,10 +225,12 @@ class Proposer {
     constexpr std::size_t longest = 24;
     for (const ChannelPlace& place : places) {
       const std::string& name = channel(place).name;
-      if ((name.size() <= longest && !needs_quotes(name)) || short_names_.count(name) > 0 ||
+      const bool is_state = std::count(guess_.states.begin(), guess_.states.end(), place) > 0;
+      const double period = is_state ? wrap_period(channel(place)) : 0.0;
+      if ((name.size() <= longest && !needs_quotes(name) && period == 0.0) || short_names_.count(name) > 0 ||
           (is_yaw_rate(place) && !turned_.empty()))
         continue;
-      std::string alias = is_yaw_rate(place) ? "yaw_rate" : short_name(name);
+      std::string alias = is_yaw_rate(place) ? "yaw_rate" : short_name(name) + (period > 0.0 ? "_unwrapped" : "");
       const auto is_taken = [&](const std::string& candidate) {
         return table(place).find(candidate) != nullptr ||
                std::any_of(short_names_.begin(), short_names_.end(),
@@ -187,8 +240,12 @@ class Proposer {
       const std::string& own = channel(place).unit;
       std::string unit = own.empty() ? usual_unit(name) : own;
       if (unit.find(']') != std::string::npos) unit.clear();  // a ] in a unit would end the bracket around the unit
-      add("derive", fmt::format("{}{} = {}", alias, unit.empty() ? "" : " [" + unit + "]", quoted_channel_name(name)),
-          "");
+      std::string formula = quoted_channel_name(name);
+      if (period > 0.0) {
+        formula = fmt::format("unwrap({} * 2 * pi / {:.12g}) * {:.12g} / (2 * pi)", formula, period, period);
+        doubt(fmt::format("{} jumps by {:.12g} and is taken without these jumps, as {}", name, period, alias), "state");
+      }
+      add("derive", fmt::format("{}{} = {}", alias, unit.empty() ? "" : " [" + unit + "]", formula), "");
       short_names_[name] = alias;
     }
   }
@@ -222,7 +279,8 @@ class Proposer {
   }
 
   void channels() {
-    for (const std::string& reason : guess_.reasons) doubt(reason);
+    for (const Doubt& reason : guess_.reasons) doubt(reason.text, reason.keys);
+    limits();
     shorten(guess_.states);
     shorten(guess_.inputs);
     add("state", names(guess_.states), "measured; the model predicts it");
@@ -300,8 +358,18 @@ void Proposal::add(std::string key, std::string value, std::string why) {
   keys.push_back({std::move(key), std::move(value), std::move(why)});
 }
 
-void Proposal::doubt(const std::string& text) {
-  if (std::count(doubts.begin(), doubts.end(), text) == 0) doubts.push_back(text);
+void Proposal::doubt(const std::string& text, const std::string& settled_by) {
+  if (const Doubt said{text, settled_by}; std::count(doubts.begin(), doubts.end(), said) == 0) doubts.push_back(said);
+}
+
+void Proposal::state(const std::string& key, const std::string& value) {
+  std::erase_if(doubts, [&](const Doubt& doubt) {
+    return fmt::format(" {} ", doubt.keys).find(fmt::format(" {} ", key)) != std::string::npos;
+  });
+  const std::string why = "from the command line";
+  if (key == "derive") return add(key, value, why);  // each line makes another channel
+  drop(key + "_unit");
+  set(key, value, why);
 }
 
 void Proposal::drop(const std::string& key) {

@@ -35,7 +35,7 @@ class TableSurvey {
       SurveyedChannel& channel = table.channels.back();
       if (channel.is_number()) {
         channel.check = check_channel(channel.values);
-        channel.counts = rises_evenly(channel.values);
+        channel.counts = counts_up(channel.values, names_clock(channel.name));
       } else {
         channel.type = "text";
         if (const auto* texts = std::get_if<std::vector<std::string>>(&columns_[i]))
@@ -46,6 +46,7 @@ class TableSurvey {
     find_time(table);
     leave_out_unset(table);
     find_run(table);
+    for (SurveyedChannel& channel : table.channels) channel.rests = rests_in_runs(channel.values, table);
     table.sampling = check_sampling(one_run(table));
     return table;
   }
@@ -98,9 +99,12 @@ class TableSurvey {
     for (std::size_t i = 0; i < table.channels.size(); ++i) {
       const SurveyedChannel& channel = table.channels[i];
       if (channel.type == "time" && !channel.name.ends_with("receive_time")) typed.push_back({channel.name});
-      if (!names_time(channel.name)) continue;
-      if (i + 1 < table.channels.size() && names_nanoseconds(table.channels[i + 1].name))
-        named.insert(named.begin(), {channel.name, table.channels[i + 1].name});
+      const SurveyedChannel* const next = i + 1 < table.channels.size() ? &table.channels[i + 1] : nullptr;
+      const bool named_time = names_time(channel.name);
+      const bool pair = !named_time && next != nullptr && is_since_1970(channel.values) && is_below_a_second(*next);
+      if (!named_time && !pair) continue;
+      if (pair || (next != nullptr && names_nanoseconds(next->name)))
+        named.insert(named.begin(), {channel.name, next->name});
       else if (const std::string date = date_beside(table, i); !date.empty())
         named.insert(named.begin(), {date, channel.name});
       else
@@ -172,6 +176,47 @@ class TableSurvey {
     table.origin_ns = 0;
     const Eigen::Index rows = row_count(table);
     table.time_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(std::max<Eigen::Index>(rows - 1, 0)));
+  }
+
+  /// Two functions: whole seconds since 1970 that never fall, and whole nanoseconds below a second.
+  static bool is_since_1970(const Eigen::VectorXd& v) {
+    return v.size() > 1 && v.minCoeff() > 9e8 && v.maxCoeff() < 4.3e9 && v == v.array().round().matrix() &&
+           (v.tail(v.size() - 1).array() >= v.head(v.size() - 1).array()).all();
+  }
+  static bool is_below_a_second(const SurveyedChannel& c) {
+    return c.is_number() && c.check.least >= 0.0 && c.check.largest > 5e8 && c.check.largest < 1e9 &&
+           c.values == c.values.array().round().matrix();
+  }
+
+  /// Whether values are a clock or a counter: they increase evenly, also where some are missing or whole numbers are
+  /// held, or they never fall and are named so or are seconds since 1970.
+  static bool counts_up(const Eigen::VectorXd& all, bool named) {
+    std::vector<double> v, rises;
+    for (const double value : all)
+      if (std::isfinite(value)) v.push_back(value);
+    if (v.size() < 2) return false;
+    const auto known = Eigen::VectorXd::Map(v.data(), std::ssize(v));
+    if (rises_evenly(known) || is_since_1970(known)) return true;
+    bool by_one = true;
+    for (std::size_t k = 1; k < v.size(); ++k) {
+      if (v[k] < v[k - 1] && v[k] != v[0]) return false;  // a run may start again
+      by_one = by_one && (v[k] <= v[k - 1] || v[k] == v[k - 1] + 1.0);
+      if (v[k] > v[k - 1]) rises.push_back(static_cast<double>(k));
+    }
+    return named || (by_one && rises_evenly(Eigen::VectorXd::Map(rises.data(), std::ssize(rises))));
+  }
+
+  /// Whether the value changes only where the column that separates runs changes.
+  static bool rests_in_runs(const Eigen::VectorXd& values, const SurveyedTable& table) {
+    const SurveyedChannel* const run = table.run.empty() ? nullptr : table.find(table.run);
+    const bool numbered = run != nullptr && run->values.size() == values.size();
+    for (Eigen::Index k = 1, last = 0; k < values.size(); ++k) {
+      if (!std::isfinite(values(k))) continue;
+      const bool same_run = !numbered || run->values(k) == run->values(last);
+      if (same_run && std::isfinite(values(last)) && values(k) != values(last)) return false;
+      last = k;
+    }
+    return true;
   }
 
   /// Times increase in even steps of any size; row counters increase in whole numbers.

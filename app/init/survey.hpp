@@ -18,7 +18,8 @@ struct SurveyedChannel {
   ChannelCheck check = {};
   Eigen::VectorXd values = {};  ///< one per row, NaN if missing; empty for a text column
   std::string why_text = {};    ///< for a text column that changes: the first value that is not a number
-  bool counts = false;          ///< whether the values increase in even steps, as times and counters do
+  bool counts = false;          ///< whether the values increase as clocks and counters do
+  bool rests = false;           ///< whether the value is constant in every run
 
   bool is_number() const { return values.size() > 0; }
   bool moves() const { return is_number() && check.largest > check.least; }

@@ -47,9 +47,10 @@ void merge(SurveyedTable& table, const SurveyedTable& other, Names& partial) {
                                    [&](const SurveyedChannel& c) { return c.name == theirs.name; });
     if (ours == table.channels.end())
       add_once(partial, theirs.name);
-    else if (ours->is_number() && theirs.is_number())
+    else if (ours->is_number() && theirs.is_number()) {
       widen(ours->check, theirs.check);
-    else
+      ours->rests = ours->rests && theirs.rests;
+    } else
       be_text(*ours, theirs);
   }
 }

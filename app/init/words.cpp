@@ -39,6 +39,7 @@ constexpr std::array state_words{
     Word{" pressure ", 4},    Word{" flow ", 3},     Word{" gz ", 5},
     Word{" heading ", 3},     Word{" yaw ", 2},      Word{" roll rate ", 5},
     Word{" pitch rate ", 5},  Word{" altitude ", 1}, Word{" alt ", 1},
+    Word{" ewe ", 5},
 };
 
 constexpr std::array input_words{
@@ -65,13 +66,16 @@ constexpr std::array acting_tables{
     Word{" odometry ", 2}, Word{" joint ", 2},   Word{" wheel ", 4},    Word{" encoder ", 4}, Word{" encoders ", 4}};
 
 constexpr std::array ignored_words{
-    " covariance ", " seq ",       " frame id ",     " status ", " stamp ", " secs ",    " nsecs ",    " sec ",
-    " nanosec ",    " timestamp ", " receive time ", " row ",    " index ", " id ",      " latitude ", " longitude ",
-    " checksum ",   " lat ",       " lon ",          " crc ",    " label ", " mode ",    " qx ",       " qy ",
-    " qz ",         " qw ",        " orientation ",  " step ",   " count ", " counter ", " steady ",   " window ",
-    " friction ",   " ground ",    " true ",         " truth ",  " gt ",    " vicon ",   " mocap ",    " optitrack ",
-    " icp ",        " flag ",      " jump ",         " header ",
+    " covariance ", " seq ",       " frame id ",  " status ",       " stamp ",     " secs ",        " nsecs ",
+    " sec ",        " nanosec ",   " timestamp ", " receive time ", " row ",       " index ",       " done ",
+    " latitude ",   " longitude ", " checksum ",  " lat ",          " lon ",       " crc ",         " label ",
+    " mode ",       " qx ",        " qy ",        " qz ",           " qw ",        " orientation ", " step ",
+    " count ",      " counter ",   " steady ",    " window ",       " friction ",  " ground ",      " true ",
+    " truth ",      " gt ",        " vicon ",     " mocap ",        " optitrack ", " icp ",         " flag ",
+    " jump ",       " header ",    " terminals ", " terminated ",   " truncated ", " timeout ",     " timeouts ",
 };
+/// An id that is not the last word belongs to the name of a matrix: resultID[0].
+constexpr std::array ignored_endings{" id ", " terminal "};
 
 constexpr std::array time_names{" time ",      " t ",       " stamp ",   " timestamp ",     " tout ",
                                 " secs ",      " seconds ", " sec ",     " sampling time ", " zeit ",
@@ -79,6 +83,9 @@ constexpr std::array time_names{" time ",      " t ",       " stamp ",   " times
                                 " time ms ",   " time us ", " t block ", " stamp ns ",      " header stamp secs ",
                                 " time min ",  " time h ",  " hours ",   " minutes ",       " datetime ",
                                 " date time ", " date ",    " elapsed ", " uptime "};
+constexpr std::array clock_words{" time ", " stamp ", " timestamp "};
+constexpr std::array set_point_words{" setpoint ", " set point ", " sp ", " desired ",
+                                     " target ",   " reference ", " ref "};
 constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ",   " episode ", " experiment ",
                                " segment ", " sequence ", " file ",  " session ", " lap "};
 
@@ -96,6 +103,11 @@ bool ends_with_any(const std::array<const char*, size>& list, std::string_view w
   return false;
 }
 
+template <std::size_t size>
+bool is_one_of(const std::array<std::string_view, size>& units, std::string_view unit) {
+  return std::find(units.begin(), units.end(), unit) != units.end();
+}
+
 /// Whether the last letter of a name is the letter of this axis.
 bool has_axis(std::string_view words, Axis axis, std::string_view before) {
   constexpr std::array letters{"x", "y", "z"};
@@ -107,6 +119,9 @@ bool has_axis(std::string_view words, Axis axis, std::string_view before) {
 
 std::string words_of_name(std::string_view name) {
   name = split_unit(name).name;  // words in a unit give no points
+  constexpr std::array<std::string_view, 10> behind_slash{"V", "mV", "A", "mA", "mA.h", "Ah", "%", "C", "s", "h"};
+  if (const std::size_t slash = name.rfind('/'); slash != std::string_view::npos && slash > 0)
+    if (is_one_of(behind_slash, name.substr(slash + 1))) name = name.substr(0, slash);
   std::string words = " ";
   for (std::size_t i = 0; i < name.size(); ++i) {
     const char c = name[i], before = i > 0 ? name[i - 1] : '\0';
@@ -123,9 +138,10 @@ std::string words_of_name(std::string_view name) {
 NameScore score_name(std::string_view name, std::string_view type) {
   const std::string words = words_of_name(name), kind = words_of_name(type);
   NameScore score;
-  score.ignored = any_of(ignored_words, words) || names_time(name);
+  score.ignored = any_of(ignored_words, words) || ends_with_any(ignored_endings, words) || names_time(name) ||
+                  names_nanoseconds(name);
   score.state = best(state_words, words);
-  score.input = best(input_words, words);
+  score.input = name == "U" ? 0 : words == " i " ? 4 : best(input_words, words);  // U is often a constant speed
   if (score.state > 0) score.state += std::max(best(measuring_tables, words), best(measuring_tables, kind));
   if (score.input > 0) score.input += std::max(best(acting_tables, words), best(acting_tables, kind));
   if (score.input >= 10) score.state = 0;  // a command, even if the quantity is usually measured
@@ -133,8 +149,17 @@ NameScore score_name(std::string_view name, std::string_view type) {
 }
 
 bool names_time(std::string_view name) { return ends_with_any(time_names, words_of_name(name)); }
+bool names_clock(std::string_view name) { return any_of(clock_words, words_of_name(name)); }
 bool names_date(std::string_view name) { return words_of_name(name).ends_with(" date "); }
 bool names_run(std::string_view name) { return ends_with_any(run_names, words_of_name(name)); }
+
+std::string words_of_measured(std::string_view name) {
+  std::string words = words_of_name(name);
+  for (const std::string_view set_point : set_point_words)
+    if (const std::size_t at = words.find(set_point); at != std::string::npos)
+      return words.replace(at, set_point.size(), " ");
+  return {};
+}
 
 bool names_nanoseconds(std::string_view name) {
   constexpr std::array names{" nsecs ", " nsec ", " nanosec ", " nanosecs ", " nanoseconds ", " ns "};
@@ -173,15 +198,6 @@ bool names_position(std::string_view name, Axis axis) {
     if (has_axis(words, axis, before)) return true;
   return words == std::array{" x ", " y ", " z "}[static_cast<std::size_t>(axis)];
 }
-
-namespace {
-
-template <std::size_t size>
-bool is_one_of(const std::array<std::string_view, size>& units, std::string_view unit) {
-  return std::find(units.begin(), units.end(), unit) != units.end();
-}
-
-}  // namespace
 
 bool unit_of_measured(std::string_view unit) {
   constexpr std::array<std::string_view, 12> units{"rad/s",

@@ -23,9 +23,14 @@ std::string words_of_name(std::string_view name);
 /// Whether the name is that of times, or of the run to which a row belongs.
 bool names_time(std::string_view name);
 bool names_date(std::string_view name);
+/// Whether the name speaks of a time or stamp, if it may be that of something else: time_throttle.
+bool names_clock(std::string_view name);
 bool names_run(std::string_view name);
 /// Whether the name is that of nanoseconds beside a column of seconds.
 bool names_nanoseconds(std::string_view name);
+
+/// For the name of a set point, the words of the quantity: " level cm " for level_setpoint_cm. Empty for other names.
+std::string words_of_measured(std::string_view name);
 
 /// The usual SI unit for a name: rad/s for wz. Empty if there is none.
 std::string usual_unit(std::string_view name);

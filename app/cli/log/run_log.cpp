@@ -54,9 +54,8 @@ void refuse_keys(const KeyValues& overrides) {
 void take_data_keys(const KeyValues& overrides, Proposal& proposal) {
   for (const auto& [key, value] : overrides) {
     if (!key.starts_with("data.")) continue;
-    const std::string name = key.substr(5), stated = boost::trim_copy(value);
-    proposal.drop(name + "_unit");
-    proposal.set(name, stated.empty() ? " " : stated, "from the command line");
+    const std::string stated = boost::trim_copy(value);
+    proposal.state(key.substr(5), stated.empty() ? " " : stated);
   }
 }
 

@@ -13,7 +13,7 @@
 namespace modebank::app {
 namespace {
 
-std::string name_of_first(const FileSet& set) { return printable_name(set.files.front().string()); }
+std::string name_of_first(const FileSet& set) { return printable_name(typed_path(set.files.front())); }
 
 /// Time span that two tables have in common, and the duration of each table [s].
 struct Overlap {

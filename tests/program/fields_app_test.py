@@ -1,0 +1,169 @@
+"""Logs and mistakes of the field: which columns `init` takes and names, which files stay, what sbatch may print."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import numpy as np
+except ImportError:
+    if os.environ.get("CI") == "true" or os.environ.get("MODEBANK_NIGHTLY") == "1":
+        raise
+    print("SKIPPED: Python has no module numpy (Debian: python3-numpy)")
+    sys.exit(77)
+
+PROGRAM = os.environ["MODEBANK_PROGRAM"]
+
+
+def plant(samples=600, seed=1):
+    """Times, an input that is held for ten samples, and the state that follows it."""
+    draw = np.random.default_rng(seed)
+    u, x = np.repeat(draw.uniform(-1, 1, samples // 10), 10), np.zeros(samples)
+    for k in range(samples - 1):
+        x[k + 1] = 0.9 * x[k] + 0.1 * u[k] + 0.01 * draw.standard_normal()
+    return 0.05 * np.arange(samples), u, x
+
+
+class FieldTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="modebank-program-test-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def run_program(self, *words, status=0, env=None):
+        done = subprocess.run([PROGRAM, *map(str, words)], cwd=self.folder, env=dict(os.environ, **env or {}),
+                              capture_output=True, text=True, timeout=200, check=False)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def write(self, name, header="", **columns):
+        rows = np.column_stack(list(columns.values()))
+        np.savetxt(self.folder / name, rows, "%.12g", ",", header=header or ",".join(columns), comments="")
+
+    def init(self, *files):
+        """The proposed keys and the doubts."""
+        told = json.loads(self.run_program("init", *files, "-o", "x.ini", "--force", "--json"))
+        return {entry["key"]: entry["value"] for entry in told["keys"]}, "\n".join(told["doubts"])
+
+
+class Columns(FieldTest):
+    def expect(self, state, inputs, *files):
+        keys, doubts = self.init(*files or ["log.csv"])
+        self.assertEqual((keys["data.state"], keys.get("data.input", "")), (state, inputs))
+        return keys, doubts
+
+    def test_movement_outweighs_words(self):
+        for run in range(3):
+            t, u, x = plant(seed=run)
+            self.write(f"ship_{run}.csv", U=np.full(len(t), 4 + run), delta=u, r=x)
+        self.expect("r", "delta", "ship_0.csv", "ship_1.csv", "ship_2.csv")
+        t, u, x = plant()
+        noise = 0.001 * np.random.default_rng(7).standard_normal(len(t))
+        self.write("log.csv", time=t, gyro_x=x, gyro_y=noise[::-1], gyro_z=noise, cmd=u)
+        self.assertIn("gyro_z", self.expect("gyro_x", "cmd")[1])
+        self.write("log.csv", "Ewe/V,time/s,I/mA,Efficiency/%,Q/mA.h", a=x, b=t, c=u, d=100 * (t > 9), e=np.cumsum(u))
+        self.expect("Ewe/V", "I/mA")
+
+    def test_moving_channels_that_are_not_taken_are_named(self):
+        t, u, x = plant()
+        others = {f"sensor_{i}": np.sin(0.1 * i * t) for i in range(1, 10)}
+        self.write("log.csv", time=t, wz=x, throttle=u, **others)
+        self.assertIn("sensor_6 and 3 more", self.expect("wz", "throttle")[1])
+
+    def test_a_set_point_is_not_the_only_input(self):
+        t, u, x = plant()
+        goal = np.repeat(np.random.default_rng(2).uniform(-1, 1, 6), 100)
+        self.write("log.csv", time=t, level_setpoint_cm=goal, level_cm=x, temperature=np.cos(t), pump_pct=u)
+        self.expect("level_cm", "pump_pct")
+        self.write("log.csv", time=t, speed_setpoint=goal, speed=x, collective=u)
+        self.assertIn("collective", self.expect("speed", "speed_setpoint, collective")[0]["data.input"])
+
+    def test_clocks_counters_and_ends_are_no_signals(self):
+        t, u, x = plant()
+        stamp = 1650775094.78 + t
+        end, frame = np.arange(len(t)) == len(t) - 1, np.arange(len(t)) // 3
+        self.write("log.csv", s=np.floor(stamp), ns=np.round(stamp % 1 * 1e9), y=x, u=u, frame=frame, end=end, done=end)
+        keys, doubts = self.expect("y", "u")
+        self.assertEqual((keys["data.time"], "frame" in doubts), ("s, ns", False))
+
+    def test_angles_that_wrap_and_inputs_at_their_limit(self):
+        t, u, x = plant()
+        self.write("log.csv", time=t, heading_deg=np.cumsum(20 + 9 * x) % 360, throttle=np.clip(60 + 80 * u, 0, 100))
+        keys, doubts = self.expect("heading_deg_unwrapped", "throttle")
+        self.assertIn("unwrap", keys["data.derive"])
+        self.assertIn("throttle stands at its limit, 100", doubts)
+
+    def test_stated_keys_settle_doubts(self):
+        t, u, x = plant()
+        self.write("log.csv", aa=x, bb=u)
+        words = ("run", "log.csv", "--archive.output", "out.h5", "--dry-run")
+        self.assertIn("data.rate_hz", self.run_program(*words))
+        told = self.run_program(*words, "--data.rate_hz", 20, "--data.state", "aa", "--data.input", "bb")
+        self.assertNotIn("doubt", told)
+
+
+class Configured(FieldTest):
+    def setUp(self):
+        super().setUp()
+        t, u, x = plant()
+        self.write("log.csv", time=t, speed=x, throttle=u)
+        self.configuration = ("[data]\ninputs = log.csv\nstate = speed\ninput = throttle\nsplit = last 30 %\n"
+                              "[window]\nmodel = linear\n[mixture]\ncomponents = 1\n[bank]\nrefine = none\n")
+        (self.folder / "c.ini").write_text(self.configuration)
+
+
+class Files(Configured):
+    def test_no_command_replaces_another_result(self):
+        self.run_program("run", "c.ini")
+        made = (self.folder / "c.h5").read_bytes()
+        shutil.copy(self.folder / "c.h5", self.folder / "bank.h5")
+        for words in (("evaluate", "c.ini", "--archive.bank", "bank.h5"), ("identify", "c.ini")):
+            self.assertIn("c.h5", self.run_program(*words, status=1))
+            self.assertEqual((self.folder / "c.h5").read_bytes(), made)
+        self.run_program("run", "c.ini")
+
+    def test_a_broken_configuration_is_no_log(self):
+        (self.folder / "robot.cfg").write_text(self.configuration.replace("state =", "state"))
+        self.assertIn("robot.cfg:3", self.run_program("run", "robot.cfg", status=2))
+
+    def test_each_derived_channel_stays(self):
+        self.write("log.csv", 'time,"speed, km/h",throttle', a=plant()[0], b=plant()[2], c=plant()[1])
+        derived = ("--data.derive", "fast = throttle * 2", "--data.derive", "slow = throttle / 2")
+        self.run_program("run", "log.csv", "--archive.output", "out.h5", "--effort", "quick", "--bank.refine", "none",
+                         "--mixture.components", 1, "--data.input", "fast, slow", *derived)
+        self.assertEqual((self.folder / "out.ini").read_text().count("derive ="), 3)  # init's own, fast and slow
+
+    def test_keys_that_contradict_each_other_are_named(self):
+        told = self.run_program("run", "c.ini", "--bank.noise", "shared", "--bank.refine", "em", status=2)
+        self.assertRegex(told, "bank.noise.*bank.refine")
+
+
+class Slurm(Configured):
+    def fake(self, name, script):
+        path = self.folder / "bin" / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("#!/bin/sh\n" + script)
+        path.chmod(0o755)
+
+    def study(self, stage, *words, status=0):
+        return self.run_program("study", "c.ini", "--study.vary", "job.seed = 1 | 2", "--study.stage", stage, *words,
+                                status=status, env={"PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
+
+    def test_the_last_number_is_the_job(self):
+        self.fake("sbatch", "printf 'Welcome to node 7\\nAllocation 12 OK\\nSubmitted batch job 4201;c2\\n'")
+        for name in ("squeue", "sacct"):
+            self.fake(name, "echo 'Unable to contact slurm controller' >&2; exit 1")
+        self.assertRegex(self.study("submit", "--study.slurm_options", "--time=60"),
+                         "--array=0 --time=60 .*\n.*--dependency=afterany:4201 --time=60 ")
+        self.assertEqual((self.folder / "c.study/slurm/jobs").read_text(), "run 4201\nmerge 4201\n")
+        self.assertNotIn("no longer", self.study("status", status=1))
+        self.fake("sbatch", "echo 'invalid partition' >&2; exit 1")
+        self.assertIn("invalid partition", self.study("submit", status=1))
+        self.assertIn("--array", self.study("submit", "--study.slurm_options", "--array=0-5%2", status=2))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
